@@ -1,0 +1,150 @@
+#!/bin/bash
+# Makes everything riser_soil needs: Debian packages, the environment .venv, and riser_soil itself in it.
+# A second call finds the stamp of the first, looks whether all modules are still there, and does nothing.
+set -uo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
+venv=$root/.venv
+logs=$root/build/setup
+python=/usr/bin/python3 # the system's: another python3 on the PATH does not see Debian's dolfinx
+
+debian_packages=(
+    python3 python3-venv python3-setuptools python3-wheel
+    python3-dev gcc g++ # dolfinx compiles its forms when a run starts
+    python3-dolfinx python3-dolfinx-real python3-petsc4py-real python3-mpi4py openmpi-bin
+    python3-gmsh python3-numpy python3-scipy python3-h5py python3-h5py-mpi
+    libopenblas0-serial # without it MUMPS falls back to the reference BLAS, seven times slower
+    libegl1 libegl-mesa0 libgl1-mesa-dri # pictures without a display
+)
+modules=(
+    dolfinx petsc4py mpi4py gmsh numpy scipy h5py numba pydantic typer rich ruamel.yaml h5netcdf pyvista matplotlib
+    pytest xdist hypothesis xarray riser_soil
+)
+
+main() {
+    export LC_ALL=C.UTF-8
+    unset PYTHONHOME PYTHONPATH PIP_USER PIP_TARGET PIP_PREFIX
+    mkdir -p "$logs" || exit 1
+    exec 9>"$logs/lock"
+    flock 9 # two set-ups at once would break each other's environment
+    if is_complete; then
+        echo "set-up: nothing to do"
+        return
+    fi
+    step debian "Debian packages" install_debian_packages
+    step venv "environment .venv on $python" make_venv
+    step packages "Python packages at pinned versions" install_python_packages
+    step project "riser_soil itself" install_project
+    step kernels "compile kernels" compile_kernels
+    step check "check that everything imports" check_imports
+    fingerprint >"$venv/stamp"
+    rm -f "$venv/unfinished"
+    echo "set-up: done in $SECONDS s"
+}
+
+step() { # name, title, function: runs it with its output in a log, of which a failure shows the end
+    local log=$logs/$1.log started=$SECONDS
+    echo "set-up: $2 ..."
+    ( set -e; "$3" ) >"$log" 2>&1 9>&-
+    local status=$?
+    if [ $status -ne 0 ]; then
+        echo "set-up: FAILED at the step \"$2\" after $((SECONDS - started)) s. Last lines of $log:" >&2
+        tail -n 15 "$log" | sed 's/^/    /' >&2
+        exit 1
+    fi
+    echo "set-up: $2: $((SECONDS - started)) s"
+}
+
+is_complete() {
+    [ -x "$venv/bin/python" ] && [ -f "$venv/stamp" ] && [ "$(fingerprint)" = "$(cat "$venv/stamp")" ] \
+        && [ -z "$(missing_debian_packages)" ] && modules_present
+}
+
+fingerprint() { # what the environment was made from; the path is part of it because scripts in .venv/bin hold it
+    echo "$root"
+    "$python" --version
+    {
+        cat "$root"/scripts/setup.sh "$root"/requirements/*.txt
+        sed '/^\[tool\.ruff/,$d' "$root/pyproject.toml"
+    } | sha256sum
+}
+
+modules_present() {
+    "$venv/bin/python" -c 'import sys; from importlib.util import find_spec
+sys.exit(not all(find_spec(name) for name in sys.argv[1:]))' "${modules[@]}" 2>/dev/null
+}
+
+missing_debian_packages() {
+    local package
+    for package in "${debian_packages[@]}"; do
+        [ -n "${installed[$package]:-}" ] || echo "$package"
+    done
+}
+
+read_installed() {
+    local package status
+    installed=()
+    while read -r package status; do
+        [ "$status" = installed ] && installed[$package]=1
+    done < <(dpkg-query -W -f='${Package} ${db:Status-Status}\n' "${debian_packages[@]}" 2>/dev/null)
+}
+
+install_debian_packages() {
+    local missing as_root=()
+    mapfile -t missing < <(missing_debian_packages)
+    [ ${#missing[@]} -gt 0 ] || return 0
+    if [ "$(id -u)" -ne 0 ]; then
+        if ! command -v sudo >/dev/null; then
+            echo "These Debian packages are missing, and installing them takes root or sudo: ${missing[*]}"
+            echo "As root:  apt-get install --no-install-recommends ${missing[*]}"
+            return 1
+        fi
+        as_root=(sudo)
+    fi
+    "${as_root[@]}" apt-get update
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"
+}
+
+make_venv() {
+    if venv_usable; then return; fi
+    "$python" -m venv --clear --system-site-packages "$venv"
+    touch "$venv/unfinished"
+}
+
+venv_usable() { # a set-up that was interrupted, moved, or made with another Python starts afresh
+    [ ! -e "$venv/unfinished" ] && [ -f "$venv/stamp" ] || return 1
+    [ "$(head -n 2 "$venv/stamp")" = "$(fingerprint | head -n 2)" ] || return 1
+    "$venv/bin/python" -m pip --version
+}
+
+install_python_packages() {
+    touch "$venv/unfinished"
+    "$venv/bin/python" - >"$venv/system-versions.txt" <<'PYTHON'
+from importlib.metadata import version
+
+for name in ("numpy", "scipy"):  # compiled against one another: PyPI's would not load beside Debian's PETSc
+    print(f"{name}=={version(name)}")
+PYTHON
+    "$venv/bin/python" -m pip install --disable-pip-version-check \
+        -c "$venv/system-versions.txt" -c "$root/requirements/pins.txt" \
+        -r "$root/requirements/run.txt" -r "$root/requirements/dev.txt"
+}
+
+install_project() {
+    "$venv/bin/python" -m pip install --disable-pip-version-check --no-deps --no-index --no-build-isolation -e "$root"
+}
+
+compile_kernels() { # numba caches them beside the sources, so that the first run does not wait
+    [ -f "$root/riser_soil/compile_kernels.py" ] || return 0
+    cd / && "$venv/bin/python" -m riser_soil.compile_kernels
+}
+
+check_imports() {
+    cd / && MPLBACKEND=Agg OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+        "$venv/bin/python" -c 'import importlib, sys
+for name in sys.argv[1:]: importlib.import_module(name)' "${modules[@]}"
+}
+
+declare -A installed
+read_installed
+main "$@"
