@@ -1,0 +1,180 @@
+"""Finite rotations: exponential, logarithm and the tangent maps of a rotation vector.
+
+Rotation vectors Theta are in rad. With R = Rn exp[Theta], a change dTheta turns the frame by the spatial spin
+w = Rn T_L(Theta) dTheta and by the spin T_R(Theta) dTheta in the frame's own axes; T_R is the transpose of T_L.
+With theta = |Theta|, a = sin(theta)/theta, b = (1 - cos(theta))/theta^2, c = (theta - sin(theta))/theta^3:
+
+    exp[Theta] = I + a [Theta] + b [Theta]^2,    T_L = I + b [Theta] + c [Theta]^2,
+    T_L^-1 = I - [Theta]/2 + k [Theta]^2,        k = (1 - (theta/2) cot(theta/2))/theta^2.
+
+Vectors are tuples (or arrays) of three numbers, matrices tuples of three rows: see `vectors`.
+Source: Cardona & Geradin, A beam finite element non-linear theory with finite rotations, Int. J. Numer. Meth.
+Engng 26 (1988).
+"""
+
+import math
+
+from numba import njit
+
+from riser_soil.riser.vectors import Mat, Vec, cross, dot, isotropic, matadd, matscale, outer, scale, skew
+
+SERIES_BELOW = 0.25  # theta^2 under which the closed forms lose digits and the power series have converged
+BERNOULLI = (  # |B_2n| / (2n)! for n = 2, 3, ..., the coefficients of theta^(2n-2) in k
+    1.0 / 720.0,
+    1.0 / 30240.0,
+    1.0 / 1209600.0,
+    1.0 / 47900160.0,
+    691.0 / 1307674368000.0,
+    1.0 / 74724249600.0,
+    3617.0 / 10670622842880000.0,
+)
+SMALLEST_SINE_SQUARED = 1e-20  # sin^2(theta/2) under which its arc sine equals it to round-off
+
+
+@njit(cache=True)
+def exp_coefficients(x: float) -> tuple[float, float, float]:
+    """(a, b, c) of the exponential and its tangent maps at x = theta^2."""
+    if x < SERIES_BELOW:
+        # each power series as b0 (1 - x/r1 (1 - x/r2 (...)))
+        c = 1.0 - x / 42.0 * (1.0 - x / 72.0 * (1.0 - x / 110.0 * (1.0 - x / 156.0 * (1.0 - x / 210.0))))
+        c = (1.0 - x / 20.0 * c) / 6.0
+        b = 1.0 - x / 30.0 * (1.0 - x / 56.0 * (1.0 - x / 90.0 * (1.0 - x / 132.0 * (1.0 - x / 182.0))))
+        return 1.0 - x * c, 0.5 * (1.0 - x / 12.0 * b), c
+    theta = math.sqrt(x)
+    a = math.sin(theta) / theta
+    half_sine = math.sin(0.5 * theta)
+    return a, 2.0 * half_sine * half_sine / x, (1.0 - a) / x
+
+
+@njit(cache=True)
+def exp_slopes(x: float) -> tuple[float, float]:
+    """(db/dtheta, dc/dtheta)/theta at x = theta^2, so that the gradients of b and c are these times Theta."""
+    if x < SERIES_BELOW:
+        db = -1.0 / 12.0 + x * (1.0 / 180.0 - x * (1.0 / 6720.0 - x * (1.0 / 453600.0 - x / 47900160.0)))
+        dc = -1.0 / 60.0 + x * (1.0 / 1260.0 - x * (1.0 / 60480.0 - x * (1.0 / 4989600.0 - x / 622702080.0)))
+        return db, dc
+    a, b, c = exp_coefficients(x)
+    return (a - 2.0 * b) / x, (b - 3.0 * c) / x
+
+
+@njit(cache=True)
+def inverse_coefficients(x: float) -> tuple[float, float]:
+    """(k, (dk/dtheta)/theta) of the inverse tangent maps at x = theta^2; singular at theta = 2 pi."""
+    if x < SERIES_BELOW:
+        k, slope, power = 1.0 / 12.0, 0.0, 1.0
+        for n, coefficient in enumerate(BERNOULLI):
+            slope += (n + 1) * coefficient * power
+            power *= x
+            k += coefficient * power
+        return k, 2.0 * slope
+    theta = math.sqrt(x)
+    sine = math.sin(0.5 * theta)
+    cotangent = math.cos(0.5 * theta) / sine
+    k = (1.0 - 0.5 * theta * cotangent) / x
+    return k, (0.25 / (sine * sine) + 0.5 * cotangent / theta - 2.0 / x) / x
+
+
+@njit(cache=True)
+def _polynomial(one: float, linear: float, square: float, v: Vec) -> Mat:
+    """one I + linear [v] + square [v]^2, with [v]^2 = v v' - |v|^2 I."""
+    diagonal = isotropic(one - square * dot(v, v))
+    return matadd(matadd(diagonal, matscale(linear, skew(v))), matscale(square, outer(v, v)))
+
+
+@njit(cache=True)
+def _double_cross_derivative(v: Vec, m: Vec) -> Mat:
+    """d(v x (v x m))/dv."""
+    return matadd(isotropic(dot(v, m)), matadd(outer(v, m), matscale(-2.0, outer(m, v))))
+
+
+@njit(cache=True)
+def exp(rotation: Vec) -> Mat:
+    """The rotation matrix of a rotation vector (rad)."""
+    a, b, _ = exp_coefficients(dot(rotation, rotation))
+    return _polynomial(1.0, a, b, rotation)
+
+
+@njit(cache=True)
+def left_tangent(rotation: Vec) -> Mat:
+    """T_L: rate of the rotation vector to spatial spin."""
+    _, b, c = exp_coefficients(dot(rotation, rotation))
+    return _polynomial(1.0, b, c, rotation)
+
+
+@njit(cache=True)
+def right_tangent(rotation: Vec) -> Mat:
+    """T_R: rate of the rotation vector to spin in the rotated axes; the transpose of T_L."""
+    _, b, c = exp_coefficients(dot(rotation, rotation))
+    return _polynomial(1.0, -b, c, rotation)
+
+
+@njit(cache=True)
+def left_tangent_inverse(rotation: Vec) -> Mat:
+    """Inverse of T_L, for rotations below 2 pi."""
+    k, _ = inverse_coefficients(dot(rotation, rotation))
+    return _polynomial(1.0, -0.5, k, rotation)
+
+
+@njit(cache=True)
+def right_tangent_inverse(rotation: Vec) -> Mat:
+    """Inverse of T_R, the inverse transpose of T_L, for rotations below 2 pi."""
+    k, _ = inverse_coefficients(dot(rotation, rotation))
+    return _polynomial(1.0, 0.5, k, rotation)
+
+
+@njit(cache=True)
+def right_tangent_derivative(rotation: Vec, m: Vec) -> Mat:
+    """d(T_R(Theta) m)/dTheta at fixed m: geometric stiffness of a moment m in the axes from which Theta turns."""
+    _, b, c = exp_coefficients(dot(rotation, rotation))
+    db, dc = exp_slopes(dot(rotation, rotation))
+    once = cross(rotation, m)
+    twice = cross(rotation, once)
+    change = (dc * twice[0] - db * once[0], dc * twice[1] - db * once[1], dc * twice[2] - db * once[2])
+    linear = matadd(matscale(b, skew(m)), matscale(c, _double_cross_derivative(rotation, m)))
+    return matadd(linear, outer(change, rotation))
+
+
+@njit(cache=True)
+def right_tangent_inverse_derivative(rotation: Vec, m: Vec) -> Mat:
+    """d(T_R^-1(Theta) m)/dTheta at fixed m."""
+    k, dk = inverse_coefficients(dot(rotation, rotation))
+    twice = cross(rotation, cross(rotation, m))
+    linear = matadd(matscale(-0.5, skew(m)), matscale(k, _double_cross_derivative(rotation, m)))
+    return matadd(linear, outer(scale(dk, twice), rotation))
+
+
+@njit(cache=True)
+def quaternion(R: Mat) -> tuple[float, float, float, float]:
+    """Unit quaternion (w, x, y, z), w >= 0, of a rotation matrix.
+
+    Divides by its largest component, so it is accurate for every angle (Spurrier, J. Spacecraft Rockets 15, 1978).
+    """
+    xx, yy, zz = R[0][0], R[1][1], R[2][2]
+    trace = xx + yy + zz
+    if trace >= max(xx, yy, zz):
+        w4 = 2.0 * math.sqrt(1.0 + trace)
+        return 0.25 * w4, (R[2][1] - R[1][2]) / w4, (R[0][2] - R[2][0]) / w4, (R[1][0] - R[0][1]) / w4
+    if xx >= yy and xx >= zz:
+        x4 = 2.0 * math.sqrt(1.0 + xx - yy - zz)
+        w, x, y, z = (R[2][1] - R[1][2]) / x4, 0.25 * x4, (R[1][0] + R[0][1]) / x4, (R[2][0] + R[0][2]) / x4
+    elif yy >= zz:
+        y4 = 2.0 * math.sqrt(1.0 + yy - zz - xx)
+        w, x, y, z = (R[0][2] - R[2][0]) / y4, (R[1][0] + R[0][1]) / y4, 0.25 * y4, (R[2][1] + R[1][2]) / y4
+    else:
+        z4 = 2.0 * math.sqrt(1.0 + zz - xx - yy)
+        w, x, y, z = (R[1][0] - R[0][1]) / z4, (R[0][2] + R[2][0]) / z4, (R[2][1] + R[1][2]) / z4, 0.25 * z4
+    sign = -1.0 if w < 0.0 else 1.0
+    return sign * w, sign * x, sign * y, sign * z
+
+
+@njit(cache=True)
+def log(R: Mat) -> Vec:
+    """Rotation vector (rad), no longer than pi, of a rotation matrix."""
+    w, x, y, z = quaternion(R)
+    square = x * x + y * y + z * z
+    if square < SMALLEST_SINE_SQUARED:
+        factor = 2.0 / w
+    else:
+        sine = math.sqrt(square)
+        factor = 2.0 * math.atan2(sine, w) / sine
+    return (factor * x, factor * y, factor * z)
