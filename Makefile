@@ -1,3 +1,47 @@
-.PHONY: setup
-setup:
+# Every goal starts from a bare Debian: `make demo` and `make test` set up what they need (scripts/setup.sh).
+
+PYTHON := .venv/bin/python
+WORKERS ?= 2
+
+export OMP_NUM_THREADS := 1
+export OMPI_ALLOW_RUN_AS_ROOT := 1
+export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
+export OMPI_MCA_rmaps_base_oversubscribe := 1
+export OMPI_MCA_hwloc_base_binding_policy := none
+export OMPI_MCA_mpi_yield_when_idle := 1
+export MPLBACKEND := Agg
+export PYVISTA_OFF_SCREEN := true
+
+.PHONY: help setup demo test lint verify bench verify-fresh docker clean
+
+help: ## this list
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
+
+setup: ## Debian packages, the environment .venv, riser_soil in it; does nothing when they are there
 	@scripts/setup.sh
+
+demo: setup ## the paper's riser on an elasto-plastic seabed, with pictures and a report
+	$(PYTHON) demos/touchdown_clay/run.py
+
+test: lint ## linters, types, and the quick tests, some of them on two ranks
+	$(PYTHON) -m pytest -n $(WORKERS)
+
+lint: setup
+	$(PYTHON) -m ruff check .
+	$(PYTHON) -m mypy
+
+verify: setup ## the long comparisons with closed forms, references and finer meshes
+	$(PYTHON) -m pytest -m verify
+
+bench: setup ## error against run time
+	$(PYTHON) -m benchmarks
+
+verify-fresh: ## both commands of the README on a bare Debian 12 made for it (needs root and debootstrap)
+	@scripts/verify_fresh.sh
+
+docker: ## the image riser_soil
+	docker build -t riser_soil -f docker/Dockerfile .
+
+clean: ## what set-up, tests and runs have left here
+	rm -rf .venv build results .pytest_cache .mypy_cache .ruff_cache .hypothesis riser_soil.egg-info
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -24,8 +24,12 @@ modules=(
 main() {
     export LC_ALL=C.UTF-8
     unset PYTHONHOME PYTHONPATH PIP_USER PIP_TARGET PIP_PREFIX
-    mkdir -p "$logs" || exit 1
-    exec 9>"$logs/lock"
+    if ! command -v apt-get >/dev/null; then
+        echo "set-up: riser_soil takes dolfinx and PETSc from Debian's packages, and there is no apt-get here." >&2
+        echo "        Use Debian 12 or newer, or the image of docker/Dockerfile." >&2
+        exit 1
+    fi
+    mkdir -p "$logs" && exec 9>"$logs/lock" || exit 1
     flock 9 # two set-ups at once would break each other's environment
     if is_complete; then
         echo "set-up: nothing to do"
@@ -35,10 +39,9 @@ main() {
     step venv "environment .venv on $python" make_venv
     step packages "Python packages at pinned versions" install_python_packages
     step project "riser_soil itself" install_project
-    step kernels "compile kernels" compile_kernels
+    step kernels "compiled kernels" compile_kernels
     step check "check that everything imports" check_imports
     fingerprint >"$venv/stamp"
-    rm -f "$venv/unfinished"
     echo "set-up: done in $SECONDS s"
 }
 
@@ -60,13 +63,18 @@ is_complete() {
         && [ -z "$(missing_debian_packages)" ] && modules_present
 }
 
-fingerprint() { # what the environment was made from; the path is part of it because scripts in .venv/bin hold it
-    echo "$root"
-    "$python" --version
+fingerprint() { # what the environment was made from
+    origin
     {
+        dpkg_state
         cat "$root"/scripts/setup.sh "$root"/requirements/*.txt
         sed '/^\[tool\.ruff/,$d' "$root/pyproject.toml"
     } | sha256sum
+}
+
+origin() { # an environment serves one place (scripts in .venv/bin hold the path) and one Python
+    echo "$root"
+    "$python" --version
 }
 
 modules_present() {
@@ -75,18 +83,11 @@ sys.exit(not all(find_spec(name) for name in sys.argv[1:]))' "${modules[@]}" 2>/
 }
 
 missing_debian_packages() {
-    local package
-    for package in "${debian_packages[@]}"; do
-        [ -n "${installed[$package]:-}" ] || echo "$package"
-    done
+    printf '%s\n' "${debian_packages[@]}" | sort | comm -23 - <(dpkg_state | sed -n 's/ installed .*//p' | sort -u)
 }
 
-read_installed() {
-    local package status
-    installed=()
-    while read -r package status; do
-        [ "$status" = installed ] && installed[$package]=1
-    done < <(dpkg-query -W -f='${Package} ${db:Status-Status}\n' "${debian_packages[@]}" 2>/dev/null)
+dpkg_state() {
+    dpkg-query -W -f='${Package} ${db:Status-Status} ${Version}\n' "${debian_packages[@]}" 2>/dev/null
 }
 
 install_debian_packages() {
@@ -105,29 +106,23 @@ install_debian_packages() {
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"
 }
 
-make_venv() {
-    if venv_usable; then return; fi
+make_venv() { # afresh when there is none, when its set-up was interrupted, when it was moved, or made with another Python
+    if [ "$(cat "$venv/origin" 2>/dev/null)" = "$(origin)" ] && "$venv/bin/python" -m pip --version; then return; fi
     "$python" -m venv --clear --system-site-packages "$venv"
-    touch "$venv/unfinished"
-}
-
-venv_usable() { # a set-up that was interrupted, moved, or made with another Python starts afresh
-    [ ! -e "$venv/unfinished" ] && [ -f "$venv/stamp" ] || return 1
-    [ "$(head -n 2 "$venv/stamp")" = "$(fingerprint | head -n 2)" ] || return 1
-    "$venv/bin/python" -m pip --version
 }
 
 install_python_packages() {
-    touch "$venv/unfinished"
+    rm -f "$venv/origin" "$venv/stamp"
     "$venv/bin/python" - >"$venv/system-versions.txt" <<'PYTHON'
 from importlib.metadata import version
 
-for name in ("numpy", "scipy"):  # compiled against one another: PyPI's would not load beside Debian's PETSc
+for name in ("numpy", "scipy"):  # another numpy than the one Debian's PETSc was compiled with does not load
     print(f"{name}=={version(name)}")
 PYTHON
     "$venv/bin/python" -m pip install --disable-pip-version-check \
         -c "$venv/system-versions.txt" -c "$root/requirements/pins.txt" \
         -r "$root/requirements/run.txt" -r "$root/requirements/dev.txt"
+    origin >"$venv/origin"
 }
 
 install_project() {
@@ -145,6 +140,4 @@ check_imports() {
 for name in sys.argv[1:]: importlib.import_module(name)' "${modules[@]}"
 }
 
-declare -A installed
-read_installed
 main "$@"
