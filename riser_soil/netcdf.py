@@ -1,0 +1,167 @@
+"""results.nc: time series of one run (netCDF-4), readable at any moment, also after a kill.
+
+The file is laid out once by h5netcdf. Rows are gathered in memory; `flush` appends them in one short
+open-write-close, so that between flushes the file on disk is closed and whole.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5netcdf
+import h5py
+import numpy as np
+
+from riser_soil.arrays import Array
+
+_ON_RISER = "exerted by the support on the riser; global axes, z up"
+_RIGHT_HAND = "right-hand rule; " + _ON_RISER
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One variable of results.nc; `sign` says what its sign means, where it has one."""
+
+    dims: tuple[str, ...]
+    units: str
+    long_name: str
+    sign: str = ""
+    dtype: str = "f8"
+
+
+_ARC = Variable(("arc",), "m", "unstressed arc length from the start")
+SERIES: dict[str, Variable] = {
+    "time": Variable(("time",), "s", "total simulated time; static stages take none"),
+    "stage": Variable(("time",), "1", "index of the stage", dtype="i4"),
+    "position": Variable(
+        ("time", "arc", "component"), "m", "position of the riser's axis", "global axes, z up"
+    ),
+    "effective_tension": Variable(("time", "arc"), "N", "effective tension", "positive in tension"),
+    "bending_moment": Variable(("time", "arc"), "N m", "magnitude of the bending moment"),
+    "curvature": Variable(("time", "arc"), "m-1", "magnitude of the curvature"),
+    "contact_force": Variable(
+        ("time", "arc"), "N m-1", "contact force per length of riser", "magnitude, >= 0"
+    ),
+    "moment_vector": Variable(
+        ("time", "arc", "component"),
+        "N m",
+        "section moment",
+        "right-hand rule, global axes; exerted by the part towards the end on the part towards the start",
+    ),
+    "start_force": Variable(("time", "component"), "N", "force at the start", _ON_RISER),
+    "end_force": Variable(("time", "component"), "N", "force at the end", _ON_RISER),
+    "start_moment": Variable(("time", "component"), "N m", "moment at the start", _RIGHT_HAND),
+    "end_moment": Variable(("time", "component"), "N m", "moment at the end", _RIGHT_HAND),
+    "touchdown_arc": Variable(("time",), "m", "arc length of the touchdown point; nan when nothing touches"),
+    "max_penetration": Variable(("time",), "m", "deepest penetration of the riser into the seabed", ">= 0"),
+    "contact_force_sum": Variable(
+        ("time", "component"),
+        "N",
+        "sum of the contact forces",
+        "exerted by the seabed on the riser; global axes, z up",
+    ),
+}
+HEALTH: dict[str, Variable] = {
+    "step": Variable(("step",), "1", "index of the accepted step", dtype="i8"),
+    "step_time": Variable(("step",), "s", "total simulated time at the end of the step"),
+    "step_stage": Variable(("step",), "1", "index of the stage", dtype="i4"),
+    "newton_iterations": Variable(("step",), "1", "Newton iterations", dtype="i4"),
+    "time_step": Variable(("step",), "s", "time step; in static stages the increment of the load factor"),
+    "energy_residual": Variable(
+        ("step",), "J", "residual of the step's energy balance", "positive when energy appears from nowhere"
+    ),
+    "step_cuts": Variable(("step",), "1", "failed attempts before the step was accepted", dtype="i4"),
+}
+_CHUNK_BYTES = 65536
+
+
+class SeriesFile:
+    """Writer of results.nc.
+
+    arc: (nn,) m, arc lengths of the nodes. left_out: names of SERIES that are not wanted.
+    Rows given to `record` and `step` live in memory until `flush`.
+    """
+
+    def __init__(
+        self, path: Path, arc: Array, title: str, version: str, left_out: Collection[str] = ()
+    ) -> None:
+        self._path = path
+        self._variables = {name: v for name, v in SERIES.items() if name not in left_out} | HEALTH
+        self._rows: defaultdict[str, list[object]] = defaultdict(list)
+        self._steps = 0
+        self._stages: list[str] = []
+        self._create(arc, title, version)
+
+    def begin_stage(self, name: str) -> None:
+        self._stages.append(name)
+
+    def record(self, values: Mapping[str, object]) -> None:
+        """Adds one output time. values: by the names of SERIES except `stage`; those left out are ignored."""
+        row = dict(values, stage=len(self._stages) - 1)
+        for name in self._variables.keys() & SERIES.keys():
+            self._rows[name].append(np.array(row[name]))
+
+    def step(self, values: Mapping[str, object]) -> None:
+        """Adds one accepted step. values: by the names of HEALTH, without `step` and `step_stage`."""
+        row = dict(values, step=self._steps, step_stage=len(self._stages) - 1)
+        self._steps += 1
+        for name in HEALTH:
+            self._rows[name].append(np.array(row[name]))
+
+    def flush(self, finished: bool = False) -> None:
+        """Appends the gathered rows to the file."""
+        # Without locks: somebody who looks at the file meanwhile must not bring the run down.
+        with h5py.File(self._path, "r+", locking=False) as file:
+            for name, rows in self._rows.items():
+                _append(file[name], rows)
+            file.attrs["finished"] = np.int8(finished)
+            _name_stages(file, self._stages)
+        self._rows.clear()
+
+    def _create(self, arc: Array, title: str, version: str) -> None:
+        with h5netcdf.File(self._path, "w") as file:
+            file.dimensions = {"time": None, "step": None, "arc": arc.size, "component": 3}
+            file.attrs["title"] = title
+            file.attrs["version"] = version
+            file.attrs["source"] = f"riser_soil {version}"
+            file.attrs["Conventions"] = "CF-1.11"
+            file.attrs["finished"] = np.int8(0)
+            _describe(file, "arc", _ARC)[...] = arc
+            axes = np.array([b"x", b"y", b"z"])
+            component = file.create_variable("component", ("component",), "S1", data=axes)
+            component.attrs["long_name"] = "global axis"
+            for name, variable in self._variables.items():
+                _describe(file, name, variable, arc.size)
+
+
+def _describe(file: h5netcdf.File, name: str, variable: Variable, nodes: int = 0) -> h5netcdf.Variable:
+    made = file.create_variable(name, variable.dims, variable.dtype, chunks=_chunks(variable, nodes))
+    made.attrs["units"] = variable.units
+    made.attrs["long_name"] = variable.long_name
+    if variable.sign:
+        made.attrs["sign_convention"] = variable.sign
+    return made
+
+
+def _chunks(variable: Variable, nodes: int) -> tuple[int, ...] | None:
+    if variable.dims[0] not in ("time", "step"):
+        return None
+    row = tuple({"arc": nodes, "component": 3}[d] for d in variable.dims[1:])
+    rows = _CHUNK_BYTES // (8 * max(1, int(np.prod(row))))
+    return (min(1024, max(1, rows)), *row)
+
+
+def _append(dataset: h5py.Dataset, rows: list[object]) -> None:
+    known = dataset.shape[0]
+    dataset.resize(known + len(rows), axis=0)
+    dataset[known:] = np.asarray(rows)
+
+
+def _name_stages(file: h5py.File, names: list[str]) -> None:
+    """CF's flags: the meaning of each stage index, blanks in names written as underscores."""
+    for variable in ("stage", "step_stage"):
+        file[variable].attrs["flag_values"] = np.arange(len(names), dtype="i4")
+        file[variable].attrs["flag_meanings"] = " ".join(name.replace(" ", "_") for name in names)

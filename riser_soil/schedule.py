@@ -1,0 +1,79 @@
+"""When to write: decided from the step's time alone, so that every rank comes to the same answer."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+# Share of an interval by which a step may end early and still count: time is a sum of steps.
+_SLACK = 1e-6
+
+
+@dataclass(frozen=True)
+class Due:
+    """What a step is to be written to."""
+
+    series: bool  # results.nc
+    pictures: bool  # riser.xdmf and soil.xdmf
+
+
+class _Pace:
+    """Multiples of one interval [s]; none means every step."""
+
+    def __init__(self, interval: float | None) -> None:
+        self._interval = interval
+        self._count = 1
+
+    @property
+    def next_time(self) -> float:
+        return 0.0 if self._interval is None else self._count * self._interval
+
+    def restart(self) -> None:
+        self._count = 1
+
+    def reached(self, t: float) -> bool:
+        if self._interval is None:
+            return True
+        passed = math.floor(t / self._interval + _SLACK)
+        if passed < self._count:
+            return False
+        self._count = passed + 1
+        return True
+
+
+class Schedule:
+    """Says after each accepted step what is to be written.
+
+    A dynamic stage is written at the first accepted step at or after each multiple of the interval since the
+    stage began, and at its last step; a static stage only at its last step. What is pictured is also in the series.
+
+    interval: s between records of results.nc; None for every accepted step.
+    picture_interval: s between frames of the XDMF files; None for the same as `interval`.
+    """
+
+    def __init__(self, interval: float | None = None, picture_interval: float | None = None) -> None:
+        self._series = _Pace(interval)
+        self._pictures = _Pace(interval if picture_interval is None else picture_interval)
+        self._static = True
+
+    @property
+    def next_time(self) -> float:
+        """Next output time [s since the stage began]; infinite in statics, 0 when every step is written."""
+        return math.inf if self._static else min(self._series.next_time, self._pictures.next_time)
+
+    def begin_stage(self, kind: str) -> None:
+        """kind: `static` or `dynamic`."""
+        self._static = kind == "static"
+        self._series.restart()
+        self._pictures.restart()
+
+    def due(self, t: float, last: bool) -> Due:
+        """What the step that ends at t [s since the stage began] is written to. Call once per accepted step.
+
+        last: whether it is the stage's last step.
+        """
+        if self._static:
+            return Due(last, last)
+        pictures = self._pictures.reached(t) or last
+        series = self._series.reached(t) or pictures
+        return Due(series, pictures)

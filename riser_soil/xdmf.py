@@ -1,0 +1,118 @@
+"""XDMF time series for ParaView and VTK: numbers in HDF5, structure in XML, readable at any moment.
+
+One temporal collection of uniform grids. The HDF5 file is written and closed before the XML that points into it is
+replaced, so that the XML never names what is not there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import h5py
+import numpy as np
+import numpy.typing as npt
+
+from riser_soil.arrays import Array, IntArray
+from riser_soil.folder import write_atomically
+
+Table = npt.NDArray[np.float64] | npt.NDArray[np.int64]
+_CELLS = {4: "Tetrahedron", 8: "Hexahedron", 10: "Tetrahedron_10"}
+_HEAD = """<?xml version="1.0"?>
+<Xdmf Version="3.0">
+ <Domain>
+  <Grid Name={name} GridType="Collection" CollectionType="Temporal">
+"""
+_FOOT = "  </Grid>\n </Domain>\n</Xdmf>\n"
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One instant: values on points and cells, (n,) or (n, 3).
+
+    geometry: name of the values on points, (np, 3) m, that are the points; None where the mesh stays.
+    """
+
+    time: float  # s
+    on_points: dict[str, Array] = field(default_factory=dict)
+    on_cells: dict[str, Array] = field(default_factory=dict)
+    geometry: str | None = None
+
+
+class XdmfFile:
+    """Writer of PATH.xdmf and the HDF5 file of the same name beside it.
+
+    cells: (nc, k) point numbers in VTK's order: k = 4, 8 or 10; or (1, np) with `polyline`.
+    points: (np, 3) m for a mesh that stays; None when each frame brings its own geometry.
+    """
+
+    def __init__(
+        self, path: Path, name: str, cells: IntArray, points: Array | None = None, *, polyline: bool = False
+    ) -> None:
+        self._path = path
+        self._heavy = path.with_suffix(".h5")
+        self._head = _HEAD.format(name=quoteattr(name))
+        self._grids: list[str] = []
+        self._waiting: list[Frame] = []
+        with h5py.File(self._heavy, "w") as store:
+            item = self._store(store, "cells", np.asarray(cells, dtype=np.int64))
+            self._points = None if points is None else self._store(store, "points", points)
+        kind = _polyline_of(cells) if polyline else f'TopologyType="{_CELLS[cells.shape[1]]}"'
+        self._topology = f'<Topology {kind} NumberOfElements="{len(cells)}">{item}</Topology>'
+        self._write_xml()
+
+    def add(self, frame: Frame) -> None:
+        """Takes one frame, later than the ones before; it lives in memory until `flush`."""
+        self._waiting.append(frame)
+
+    def flush(self) -> None:
+        """Writes the waiting frames: first the numbers, then the XML."""
+        if not self._waiting:
+            return
+        with h5py.File(self._heavy, "r+", locking=False) as store:
+            grids = [self._grid(store, len(self._grids) + i, frame) for i, frame in enumerate(self._waiting)]
+        self._grids += grids
+        self._waiting.clear()
+        self._write_xml()
+
+    def _grid(self, store: h5py.File, number: int, frame: Frame) -> str:
+        group = f"frame_{number:06d}"
+        values = frame.on_points | frame.on_cells
+        items = {name: self._store(store, f"{group}/{name}", v) for name, v in values.items()}
+        points = self._points if frame.geometry is None else items[frame.geometry]
+        lines = [
+            f'<Grid Name="{group}" GridType="Uniform">',
+            f'<Time Value="{float(frame.time)!r}"/>',
+            self._topology,
+            f'<Geometry GeometryType="XYZ">{points}</Geometry>',
+        ]
+        lines += [_attribute(name, "Node", v, items[name]) for name, v in frame.on_points.items()]
+        lines += [_attribute(name, "Cell", v, items[name]) for name, v in frame.on_cells.items()]
+        return "".join(f"   {line}\n" for line in [*lines, "</Grid>"])
+
+    def _store(self, store: h5py.File, where: str, values: Table) -> str:
+        store[where] = values
+        dims = " ".join(str(n) for n in values.shape)
+        number = "Int" if values.dtype.kind == "i" else "Float"
+        return (
+            f'<DataItem Dimensions="{dims}" NumberType="{number}" Precision="8" Format="HDF">'
+            f"{self._heavy.name}:/{where}</DataItem>"
+        )
+
+    def _write_xml(self) -> None:
+        write_atomically(self._path, self._head + "".join(self._grids) + _FOOT)
+
+
+def polyline(nodes: int) -> IntArray:
+    """Connectivity (1, nodes) of one line through all points in their order."""
+    return np.arange(nodes, dtype=np.int64)[None, :]
+
+
+def _polyline_of(cells: IntArray) -> str:
+    return f'TopologyType="Polyline" NodesPerElement="{cells.shape[1]}"'
+
+
+def _attribute(name: str, centre: str, values: Array, item: str) -> str:
+    kind = "Vector" if values.ndim == 2 else "Scalar"
+    return f'<Attribute Name={quoteattr(name)} AttributeType="{kind}" Center="{centre}">{item}</Attribute>'
