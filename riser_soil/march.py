@@ -1,0 +1,142 @@
+"""One accepted step after the other: solve, balance the energy, commit, and keep the rates for the next."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.arrays import Array
+from riser_soil.errors import SolveError
+from riser_soil.mass import RiserMass
+from riser_soil.newton import Newton, NotConverged, Solution, Step
+from riser_soil.part import Energy, Forces, State
+from riser_soil.stepping import StepControl
+from riser_soil.system import System, total
+from riser_soil.time_scheme import GeneralizedAlpha, Scheme
+
+EASY = 6  # Newton iterations up to which a step that was cut may grow again
+
+
+@runtime_checkable
+class Adaptive(Protocol):
+    """A part whose pattern covers what may come; it says when the motion has left it."""
+
+    outgrown: bool
+
+    def rebuild(self, state: State) -> None: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Accepted:
+    """An accepted step, before its configuration is committed."""
+
+    t: float
+    dt: float
+    solution: Solution
+    cuts: int
+    energy: Energy
+    dissipated: float
+    work: float
+
+
+class March:
+    """The state of a stage on its way: `before` is the accepted state, its increments zero."""
+
+    def __init__(self, system: System, newton: Newton, scheme: Scheme, before: State) -> None:
+        self.system, self.newton, self.scheme = system, newton, scheme
+        self._mass: RiserMass | None = None
+        self._contact = system.comm.allreduce(any(p.name == "contact" for p in system.model.parts), MPI.LOR)
+        self.before = before
+        self._forces = system.forces(before)
+        if isinstance(scheme, GeneralizedAlpha):
+            self._mass = RiserMass(system)
+            self._start_rates(before)
+        self._history = self._forces_at_start()
+        self._increment = np.zeros(system.numbering.size)
+        self._dt = 0.0
+
+    def _start_rates(self, before: State) -> None:
+        """Accelerations in balance with the forces at the start of a dynamic stage; prescribed rates."""
+        assert self._mass is not None
+        rest = State(before.t, before.u, before.v.copy(), np.zeros_like(before.a))
+        self.system.prescribe(rest)
+        forces = self.system.forces(rest)
+        bulk, whole = (self._mass.accelerations(before.t, -f) for f in (forces.inertia + forces.force, total(forces)))
+        fixed = self.system.prescribed
+        self.before = State(before.t, rest.u, rest.v, np.where(fixed, rest.a, bulk))
+        self._forces = self.system.forces(State(before.t, rest.u, rest.v, np.where(fixed, rest.a, whole)))
+
+    def advance(self, control: StepControl) -> Accepted:
+        """Take one step, cut as often as it needs; SolveError when it can't be cut any more."""
+        cuts = 0
+        while True:
+            try:
+                solution = self._solve(control.target, control.dt)
+                break
+            except NotConverged as failure:
+                cuts += 1
+                if not control.cut():
+                    raise SolveError(
+                        f"no convergence at t = {control.target:.6g} with the smallest step {control.dt:.3g}: {failure}"
+                    ) from failure
+        return self._account(solution, control, cuts)
+
+    def _solve(self, t: float, dt: float) -> Solution:
+        step = Step(self.scheme, self.before, t, dt, self._history, self._guess(dt))
+        try:
+            return self.newton.solve(step)
+        except NotConverged:
+            if not self._renew_pattern():
+                raise
+            return self.newton.solve(step)
+
+    def _guess(self, dt: float) -> Array:
+        """The last increment, scaled to the step."""
+        return self._increment * (dt / self._dt if self._dt > 0.0 else 0.0)
+
+    def _renew_pattern(self) -> bool:
+        """Rebuild what the motion has outgrown; whether anything was."""
+        outgrown = [p for p in self.system.model.parts if isinstance(p, Adaptive) and p.outgrown]
+        if not self.system.comm.allreduce(bool(outgrown), MPI.LOR):
+            return False
+        for part in outgrown:
+            part.rebuild(self.before)
+        self.newton.renew()
+        return True
+
+    def _account(self, solution: Solution, control: StepControl, cuts: int) -> Accepted:
+        state = solution.state
+        turned = self.system.work(self.before, state)
+        supports = self.system.work_of_supports(self._forces, solution.forces, state.u)
+        return Accepted(
+            control.target,
+            control.dt,
+            solution,
+            cuts,
+            self.system.energy(state),
+            turned.dissipated,
+            turned.external + supports,
+        )
+
+    def commit(self, step: Accepted, control: StepControl) -> None:
+        """Accept the step and get ready for the next."""
+        state, forces = step.solution.state, step.solution.forces
+        self.system.commit(state)
+        self.before = self._rates_after(state, forces, step.dt)
+        self._forces, self._history = forces, self._forces_at_start()
+        self._increment, self._dt = state.u, step.dt
+        control.accept(easy=step.solution.iterations <= EASY)
+        self._renew_pattern()
+
+    def _rates_after(self, state: State, forces: Forces, dt: float) -> State:
+        if self._contact and self._mass is not None and isinstance(self.scheme, GeneralizedAlpha):
+            state = self.scheme.split_contact(state, self._mass.accelerations(state.t, -forces.end), dt)
+        return State(state.t, np.zeros_like(state.u), state.v, state.a)
+
+    def _forces_at_start(self) -> Forces | None:
+        """Bulk forces at the accepted state, in its own axes, where the scheme weighs them."""
+        needed = isinstance(self.scheme, GeneralizedAlpha) and self.scheme.needs_history
+        return self.system.forces(self.before) if needed else None

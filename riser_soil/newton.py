@@ -1,0 +1,202 @@
+"""Newton's method for one step, by PETSc's SNES."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from riser_soil.arrays import Array
+from riser_soil.part import Forces, State
+from riser_soil.system import System, total
+from riser_soil.time_scheme import Scheme
+
+PREFIX = "riser_soil_"
+CONVERGED = PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
+DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_DTOL
+ITERATING = PETSc.SNES.ConvergedReason.ITERATING
+
+
+class NotConverged(Exception):
+    """A step that Newton could not solve; its text says why and where the residual sits."""
+
+
+@dataclass(frozen=True)
+class NewtonSettings:
+    """tolerance: of the residual's norm, relative to the norm of the forces in play.
+
+    floor [N]: the norm that counts as zero, for round-off of a scene whose forces all vanish.
+    """
+
+    tolerance: float
+    max_iterations: int
+    floor: float
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """One step to solve: from the accepted state `before` to time t."""
+
+    scheme: Scheme
+    before: State
+    t: float
+    dt: float
+    start: Forces | None
+    guess: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """A converged step: its state, its forces by group, and the residual norm [N] of every iteration."""
+
+    state: State
+    forces: Forces
+    norms: list[float] = field(default_factory=list)
+
+    @property
+    def iterations(self) -> int:
+        return len(self.norms) - 1
+
+
+class Newton:
+    """Solver of a system's steps. Create once a stage; the symbolic factorisation is reused throughout."""
+
+    def __init__(self, system: System, settings: NewtonSettings) -> None:
+        self.system, self.settings = system, settings
+        self._x = system.numbering.vector.duplicate()
+        self._f = system.numbering.vector.duplicate()
+        self._snes = self._create()
+
+    def _create(self) -> PETSc.SNES:
+        snes = PETSc.SNES().create(self.system.comm)
+        snes.setType(PETSc.SNES.Type.NEWTONLS)
+        snes.setFunction(self._function, self._f)
+        snes.setJacobian(self._jacobian, self.system.matrix.mat)
+        snes.setConvergenceTest(self._test)
+        snes.setTolerances(max_it=self.settings.max_iterations)
+        _set_direct_solver(snes, self.system)
+        return snes
+
+    def solve(self, step: Step) -> Solution:
+        """Solve a step or raise NotConverged; collective."""
+        self._step, self._norms = step, list[float]()
+        self._state: State | None = None
+        self._restrict(step.guess)
+        since = time.perf_counter()
+        self._snes.solve(None, self._x)
+        self.system.clock.add("newton", since)
+        if self._snes.getConvergedReason() <= 0:
+            raise NotConverged(self._reason())
+        state = self._trial(self._x)
+        return Solution(state, self._forces, self._norms)
+
+    def renew(self) -> None:
+        """Take over a new matrix after the system's pattern has changed."""
+        self._snes.destroy()
+        self.system.renew_pattern()
+        self._snes = self._create()
+
+    def _restrict(self, guess: Array) -> None:
+        first, last = self._x.getOwnershipRange()
+        index = self.system.numbering.index
+        mine = (index >= first) & (index < last)
+        self._x.array_w[index[mine] - first] = guess[mine]
+
+    def _trial(self, x: PETSc.Vec) -> State:
+        """State of the unknowns x; the same object while x stays the same, so that parts need not look twice."""
+        u = np.zeros(self.system.numbering.size)
+        self.system.numbering.to_local(x, u)
+        if self._state is None or not np.array_equal(u[self._free], self._state.u[self._free]):
+            step = self._step
+            self._state = step.scheme.trial(step.before, step.t, step.dt, u)
+            self.system.prescribe(self._state)
+        return self._state
+
+    @property
+    def _free(self) -> Array:
+        return ~self.system.prescribed
+
+    def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
+        state = self._trial(x)
+        self._forces = self.system.forces(state)
+        residual = self._step.scheme.combine(self._forces, self._step.start)
+        self.system.numbering.add_to_global(residual, f)
+
+    def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, jacobian: PETSc.Mat, p: PETSc.Mat) -> None:
+        self.system.assemble(self._trial(x), self._step.scheme.weights(self._step.dt))
+
+    def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
+        norm = norms[2]
+        self._norms.append(norm)
+        if not np.isfinite(norm):
+            return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
+        if norm <= max(self.settings.tolerance * self._scale(), self.settings.floor):
+            return CONVERGED
+        if iteration >= 4 and norm > 1e6 * self._norms[0]:
+            return DIVERGED
+        return ITERATING
+
+    def _scale(self) -> float:
+        """Norm of the forces in play: reactions, inertia, contact on the riser."""
+        forces, system = self._forces, self.system
+        riser = system.model.fields[0]
+        contact = forces.end[riser.offset : riser.offset + riser.size]
+        reactions = total(forces)[system.prescribed]
+        mine = np.array([reactions @ reactions, forces.inertia @ forces.inertia, contact @ contact])
+        return float(np.sqrt(system.comm.allreduce(mine).max()))
+
+    def _reason(self) -> str:
+        reason = self._snes.getConvergedReason()
+        name = next(
+            (n for n, v in vars(PETSc.SNES.ConvergedReason).items() if v == reason and n.startswith("DIV")),
+            str(reason),
+        )
+        norms = ", ".join(f"{n:.3g}" for n in self._norms[-3:])
+        return f"{name.lower()} after {len(self._norms) - 1} iterations (last residual norms {norms} N); {self._where()}"
+
+    def _where(self) -> str:
+        """The row with the largest residual, in words."""
+        values = np.abs(self._f.array_r)
+        if not self.system.comm.allreduce(bool(np.isfinite(values).all()), MPI.LAND):
+            return "the residual is not finite"
+        first = self._f.getOwnershipRange()[0]
+        k = int(np.argmax(values)) if len(values) else -1
+        mine = (float(values[k]), first + k) if k >= 0 else (-1.0, -1)
+        worst, row = max(self.system.comm.allgather(mine))
+        return f"the largest residual, {worst:.3g} N, sits at the {self.system.describe(row)}"
+
+    def destroy(self) -> None:
+        for thing in (self._snes, self._x, self._f):
+            thing.destroy()
+
+
+def _set_direct_solver(snes: PETSc.SNES, system: System) -> None:
+    """PETSc's own banded LU where a serial system is a chain in its natural order, MUMPS otherwise."""
+    banded = system.comm.size == 1 and len(system.model.fields) == 1
+    options = {"snes_linesearch_type": "basic", "ksp_type": "preonly"}
+    if banded:
+        options |= {"pc_type": "lu", "pc_factor_mat_ordering_type": "natural"}
+    else:
+        options |= {
+            "pc_type": "cholesky" if system.symmetric else "lu",
+            "pc_factor_mat_solver_type": "mumps",
+            "mat_mumps_icntl_14": 60,
+        }
+    _apply(snes, options)
+
+
+def _apply(snes: PETSc.SNES, options: dict[str, object]) -> None:
+    """Apply defaults under the project's prefix; what the user has set wins; leave nothing behind."""
+    database = PETSc.Options()
+    added = [k for k in options if not database.hasName(PREFIX + k)]
+    for key in added:
+        database[PREFIX + key] = options[key]
+    snes.setOptionsPrefix(PREFIX)
+    snes.setFromOptions()
+    snes.getKSP().getPC().setFromOptions()
+    snes.setUp()
+    for key in added:
+        database.delValue(PREFIX + key)

@@ -1,0 +1,55 @@
+"""Step sizes of a stage: the nominal step, halved where a step fails, doubled again where it goes well.
+
+All times lie on a binary refinement of the nominal steps, so that nominal times are always hit.
+"""
+
+from __future__ import annotations
+
+import math
+
+LEVELS = 20
+
+
+class StepControl:
+    """Walks from 0 to `end` in nominal steps of size `step`; never below `smallest`."""
+
+    def __init__(self, end: float, step: float, smallest: float) -> None:
+        self.end, self.step = end, step
+        self._levels = min(LEVELS, max(0, int(math.floor(math.log2(step / smallest) + 1e-9))))
+        self._tick = step / 2**self._levels
+        self._last = math.ceil(end / step - 1e-9) * 2**self._levels
+        self._at = 0
+        self._level = 0
+
+    @property
+    def finished(self) -> bool:
+        return self._at >= self._last
+
+    @property
+    def target(self) -> float:
+        """Time at the end of the step to be tried."""
+        return self._time(self._at + self._stride)
+
+    @property
+    def dt(self) -> float:
+        return self.target - self._time(self._at)
+
+    def accept(self, easy: bool) -> None:
+        """Move on; after an easy step on the coarser grid, try twice the step."""
+        self._at += self._stride
+        if easy and self._level > 0 and self._at % (2 * self._stride) == 0:
+            self._level -= 1
+
+    def cut(self) -> bool:
+        """Halve the step; False when it can't be halved any more."""
+        if self._level == self._levels:
+            return False
+        self._level += 1
+        return True
+
+    @property
+    def _stride(self) -> int:
+        return int(2 ** (self._levels - self._level))
+
+    def _time(self, ticks: int) -> float:
+        return self.end if ticks >= self._last else ticks * self._tick

@@ -1,0 +1,131 @@
+"""All parts of a stage as one system: residual, tangent, prescribed motion, commit."""
+
+from __future__ import annotations
+
+import time
+from collections import defaultdict
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.arrays import Array, BoolArray
+from riser_soil.matrix import Matrix
+from riser_soil.numbering import Numbering
+from riser_soil.part import Block, Energy, Field, Forces, Model, State, Weights, Work
+
+
+@dataclass
+class Clock:
+    """Seconds spent, by part."""
+
+    seconds: defaultdict[str, float]
+
+    @classmethod
+    def new(cls) -> Clock:
+        return cls(defaultdict(float))
+
+    def add(self, name: str, since: float) -> None:
+        self.seconds[name] += time.perf_counter() - since
+
+
+class System:
+    """Residual and matrix over the free dofs of the model's fields; collective over `comm`."""
+
+    def __init__(self, comm: MPI.Intracomm, model: Model, clock: Clock) -> None:
+        self.comm, self.model, self.clock = comm, model, clock
+        self.numbering = Numbering(comm, model.fields)
+        self.prescribed: BoolArray = self._gather_prescribed()
+        self.symmetric: bool = comm.allreduce(all(p.symmetric for p in model.parts), MPI.LAND)
+        self.matrix = self._new_matrix()
+
+    def _gather_prescribed(self) -> BoolArray:
+        return np.concatenate([f.prescribed for f in self.model.fields])
+
+    def _new_matrix(self) -> Matrix:
+        blocks: dict[str, Block] = {}
+        for part in self.model.parts:
+            blocks.update(part.blocks())
+        return Matrix(self.numbering, blocks, self.symmetric)
+
+    def renew_pattern(self) -> None:
+        """Build the matrix anew from the parts' present blocks."""
+        self.matrix.destroy()
+        self.matrix = self._new_matrix()
+
+    def prescribe(self, state: State) -> None:
+        """Write the prescribed motion at state.t into the state's arrays."""
+        for field in self.model.fields:
+            part = slice(field.offset, field.offset + field.size)
+            field.prescribe(state.t, state.u[part], state.v[part], state.a[part])
+
+    def forces(self, state: State) -> Forces:
+        """This rank's residual by group (local arrays; shares of shared dofs are summed by the numbering)."""
+        forces = Forces.zeros(self.numbering.size)
+        for part in self.model.parts:
+            since = time.perf_counter()
+            part.residual(state, forces)
+            self.clock.add(part.name, since)
+        return forces
+
+    def assemble(self, state: State, weights: Weights) -> None:
+        """Put dR/du at the state into the matrix."""
+        self.matrix.clear()
+        for part in self.model.parts:
+            since = time.perf_counter()
+            part.tangent(state, weights, self.matrix.values)
+            self.clock.add(part.name, since)
+        since = time.perf_counter()
+        self.matrix.assemble()
+        self.clock.add("matrix", since)
+
+    def energy(self, state: State) -> Energy:
+        mine = sum((p.energy(state) for p in self.model.parts), Energy())
+        values = self._sum([mine.kinetic, mine.strain, mine.potential])
+        return Energy(*values)
+
+    def work(self, before: State, after: State) -> Work:
+        mine = sum((p.work(before, after) for p in self.model.parts), Work())
+        return Work(*self._sum([mine.dissipated, mine.external]))
+
+    def work_of_supports(self, start: Forces, end: Forces, u: Array) -> float:
+        """Work [J] that prescribed motions put in over a step: mean reaction times increment."""
+        at = self.prescribed
+        mean = 0.5 * (total(start)[at] + total(end)[at])
+        return self._sum([float(mean @ u[at])])[0]
+
+    def commit(self, state: State) -> None:
+        """Accept a state: parts first, then the fields that they act on, each object once."""
+        seen: set[int] = set()
+        for owner in (*self.model.parts, *self.model.fields):
+            if id(owner) not in seen:
+                seen.add(id(owner))
+                owner.commit(state)
+
+    def describe(self, row: int) -> str:
+        """Where a row of the system sits; collective."""
+        entries = np.flatnonzero(self.numbering.index == row)
+        return next(filter(None, self.comm.allgather(self._describe(entries))), f"row {row}")
+
+    def _describe(self, entries: Array) -> str:
+        for entry in entries:
+            field = self._field_of(int(entry))
+            if field.owned[entry - field.offset]:
+                return field.describe(int(entry) - field.offset)
+        return ""
+
+    def _field_of(self, entry: int) -> Field:
+        return next(f for f in self.model.fields if f.offset <= entry < f.offset + f.size)
+
+    def _sum(self, values: list[float]) -> list[float]:
+        summed: list[float] = self.comm.allreduce(np.asarray(values)).tolist()
+        return summed
+
+    def destroy(self) -> None:
+        self.matrix.destroy()
+        self.numbering.destroy()
+
+
+def total(forces: Forces) -> Array:
+    """Sum of all groups [N, N.m]: zero on free dofs in balance, the reaction on prescribed ones."""
+    return forces.inertia + forces.force + forces.end

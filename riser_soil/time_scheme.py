@@ -1,0 +1,113 @@
+"""From increments to rates, and from the groups of forces to one residual.
+
+One code path for statics, Newmark and generalised-alpha. With bulk forces I + F and end-of-step forces E (contact,
+quasi-static soil), the residual of a step from n to n + 1 is
+
+    R = W [(1 - am) I(n+1) + am I(n) + (1 - af) F(n+1) + af F(n)] + E(n+1),    W = 2 beta / (1 - am).
+
+E is treated fully implicitly (Kane, Repetto, Ortiz & Marsden 1999, doi:10.1002/(SICI)1097-0207(20000110)49:1<1::AID-NME>3.0.CO;2-W):
+the acceleration that it causes counts with 2 beta = 1, gamma = 1, whatever the bulk's beta and gamma are, so that impact
+takes energy out and never puts any in. W makes both meet in one equation with a symmetric coupling to the soil.
+Generalised-alpha: Chung & Hulbert (1993), eqs 17 and 25; alpha_m = alpha_f = 0 is Newmark's scheme.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.part import Forces, State, Weights
+
+
+class Scheme(Protocol):
+    """What a step needs to know of the time integration."""
+
+    @property
+    def needs_history(self) -> bool:
+        """Whether forces at the start of the step enter the residual."""
+        ...
+
+    def weights(self, dt: float) -> Weights: ...
+
+    def trial(self, before: State, t: float, dt: float, u: Array) -> State:
+        """State at the end of the step for the increment u, taken as bulk motion alone."""
+        ...
+
+    def combine(self, forces: Forces, start: Forces | None) -> Array:
+        """Local residual from the forces at the end and, where needed, the start of the step."""
+        ...
+
+
+@dataclass(frozen=True)
+class Static:
+    """Equilibrium: no rates, no inertia."""
+
+    needs_history = False
+
+    def weights(self, dt: float) -> Weights:
+        return Weights(inertia=0.0, force=1.0, shift_v=0.0, shift_a=0.0)
+
+    def trial(self, before: State, t: float, dt: float, u: Array) -> State:
+        nothing = np.zeros_like(u)
+        return State(t, u, nothing, nothing.copy())
+
+    def combine(self, forces: Forces, start: Forces | None) -> Array:
+        return forces.force + forces.end
+
+
+@dataclass(frozen=True)
+class GeneralizedAlpha:
+    """Newmark's kinematics with weighted inertia (alpha_m) and weighted other bulk forces (alpha_f)."""
+
+    alpha_m: float
+    alpha_f: float
+    beta: float
+    gamma: float
+
+    @classmethod
+    def newmark(cls, beta: float = 0.25, gamma: float = 0.5) -> GeneralizedAlpha:
+        return cls(0.0, 0.0, beta, gamma)
+
+    @classmethod
+    def from_rho_inf(cls, rho_inf: float) -> GeneralizedAlpha:
+        """Second order and unconditionally stable on linear systems; rho_inf = 1 keeps all, 0 kills the highest modes at once."""
+        alpha_m = (2.0 * rho_inf - 1.0) / (rho_inf + 1.0)
+        alpha_f = rho_inf / (rho_inf + 1.0)
+        return cls(alpha_m, alpha_f, 0.25 * (1.0 - alpha_m + alpha_f) ** 2, 0.5 - alpha_m + alpha_f)
+
+    @property
+    def needs_history(self) -> bool:
+        return self.alpha_m != 0.0 or self.alpha_f != 0.0
+
+    @property
+    def bulk_weight(self) -> float:
+        return 2.0 * self.beta / (1.0 - self.alpha_m)
+
+    def weights(self, dt: float) -> Weights:
+        bulk = self.bulk_weight
+        return Weights(
+            inertia=bulk * (1.0 - self.alpha_m),
+            force=bulk * (1.0 - self.alpha_f),
+            shift_v=self.gamma / (self.beta * dt),
+            shift_a=1.0 / (self.beta * dt**2),
+        )
+
+    def trial(self, before: State, t: float, dt: float, u: Array) -> State:
+        a = (u - dt * before.v) / (self.beta * dt**2) - (0.5 / self.beta - 1.0) * before.a
+        v = before.v + dt * ((1.0 - self.gamma) * before.a + self.gamma * a)
+        return State(t, u, v, a)
+
+    def combine(self, forces: Forces, start: Forces | None) -> Array:
+        bulk = (1.0 - self.alpha_m) * forces.inertia + (1.0 - self.alpha_f) * forces.force
+        if start is not None:
+            bulk += self.alpha_m * start.inertia + self.alpha_f * start.force
+        return self.bulk_weight * bulk + forces.end
+
+    def split_contact(self, state: State, contact: Array, dt: float) -> State:
+        """State whose bulk acceleration excludes the contact's share `contact` [m/s2], and whose rate counts it in full."""
+        a = state.a - contact / (2.0 * self.beta)
+        v = state.v + dt * (1.0 - self.gamma / (2.0 * self.beta)) * contact
+        return State(state.t, state.u, v, a)

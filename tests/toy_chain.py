@@ -1,0 +1,138 @@
+"""A chain of point masses on springs above a floor: the smallest model that exercises the system and the time loop."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+
+
+class Chain:
+    """Field of n heights z; the first may be held."""
+
+    name, space = "chain", "chain"
+
+    def __init__(self, z: Array, held: bool = False, owner: bool = True) -> None:
+        self.z = np.asarray(z, dtype=float)
+        self.size, self.offset = len(self.z), 0
+        self.global_index = np.arange(self.size)
+        self.owned = np.full(self.size, owner)
+        self.prescribed = np.zeros(self.size, dtype=bool)
+        self.prescribed[0] = held
+
+    def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
+        u[self.prescribed] = v[self.prescribed] = a[self.prescribed] = 0.0
+
+    def heights(self, state: State) -> Array:
+        return self.z + state.u[self.offset : self.offset + self.size]
+
+    def commit(self, state: State) -> None:
+        self.z = self.heights(state)
+
+    def describe(self, entry: int) -> str:
+        return f"mass {entry}"
+
+    def pairs(self) -> Block:
+        nodes = self.offset + np.arange(self.size)
+        rows = np.stack([nodes[:-1], nodes[1:]], axis=1)
+        return Block(rows, rows)
+
+
+class Inertia:
+    name, symmetric = "inertia", True
+
+    def __init__(self, chain: Chain, mass: float) -> None:
+        self.chain, self.mass = chain, mass / 2.0
+
+    def blocks(self) -> dict[str, Block]:
+        return {"riser": self.chain.pairs()}
+
+    def _nodal(self) -> Array:
+        count = np.full(self.chain.size, 2.0)
+        count[[0, -1]] = 1.0
+        return self.mass * count
+
+    def residual(self, state: State, forces: Forces) -> None:
+        forces.inertia += self._nodal() * state.a
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        values["riser"] += weights.inertia * weights.shift_a * self.mass * np.eye(2)
+
+    def energy(self, state: State) -> Energy:
+        return Energy(kinetic=0.5 * float(self._nodal() @ state.v**2))
+
+    def work(self, before: State, after: State) -> Work:
+        return Work()
+
+    def commit(self, state: State) -> None:
+        pass
+
+
+class Springs:
+    """Forces k e + c e^3 in the stretches e beyond the rest lengths, and weight."""
+
+    name, symmetric = "springs", True
+
+    def __init__(self, chain: Chain, rest: float, k: float, cubic: float = 0.0, weight: float = 0.0) -> None:
+        self.chain, self.rest, self.k, self.cubic, self.weight = chain, rest, k, cubic, weight
+
+    def blocks(self) -> dict[str, Block]:
+        return {"riser": self.chain.pairs()}
+
+    def _stretch(self, state: State) -> Array:
+        return np.diff(self.chain.heights(state)) - self.rest
+
+    def residual(self, state: State, forces: Forces) -> None:
+        e = self._stretch(state)
+        f = self.k * e + self.cubic * e**3
+        forces.force[:-1] -= f
+        forces.force[1:] += f
+        forces.force += self.weight
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        k = self.k + 3.0 * self.cubic * self._stretch(state) ** 2
+        values["riser"] += weights.force * k[:, None, None] * np.array([[1.0, -1.0], [-1.0, 1.0]])
+
+    def energy(self, state: State) -> Energy:
+        e = self._stretch(state)
+        strain = float((0.5 * self.k * e**2 + 0.25 * self.cubic * e**4).sum())
+        return Energy(strain=strain, potential=float(self.weight * self.chain.heights(state).sum()))
+
+    def work(self, before: State, after: State) -> Work:
+        return Work()
+
+    def commit(self, state: State) -> None:
+        pass
+
+
+class Floor:
+    """Penalty contact with the plane z = 0, fully implicit."""
+
+    name, symmetric = "contact", True
+
+    def __init__(self, chain: Chain, stiffness: float) -> None:
+        self.chain, self.stiffness = chain, stiffness
+
+    def blocks(self) -> dict[str, Block]:
+        nodes = (self.chain.offset + np.arange(self.chain.size))[:, None]
+        return {"floor": Block(nodes, nodes)}
+
+    def _penetration(self, state: State) -> Array:
+        return np.maximum(-self.chain.heights(state), 0.0)
+
+    def residual(self, state: State, forces: Forces) -> None:
+        forces.end -= self.stiffness * self._penetration(state)
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        values["floor"][:, 0, 0] += self.stiffness * (self._penetration(state) > 0.0)
+
+    def energy(self, state: State) -> Energy:
+        return Energy(strain=0.5 * self.stiffness * float((self._penetration(state) ** 2).sum()))
+
+    def work(self, before: State, after: State) -> Work:
+        released = self.stiffness * float(self._penetration(after) @ after.u)
+        return Work(dissipated=-released - (self.energy(after).strain - self.energy(before).strain))
+
+    def commit(self, state: State) -> None:
+        pass

@@ -1,0 +1,96 @@
+"""The time loop on a chain of masses: order, energy, impact, step cuts and honest failure."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from riser_soil.errors import SolveError
+from riser_soil.march import Accepted, March
+from riser_soil.newton import Newton, NewtonSettings
+from riser_soil.part import Field, Forces, Model, Part, State
+from riser_soil.stepping import StepControl
+from riser_soil.system import Clock, System
+from riser_soil.time_scheme import GeneralizedAlpha, Scheme
+from tests.toy_chain import Chain, Floor, Inertia, Springs
+
+AVERAGE = GeneralizedAlpha.newmark()
+
+
+def march_through(
+    chain: Field, parts: list[Part], scheme: Scheme, v0: np.ndarray, end: float, dt: float, tolerance: float = 1e-11
+) -> list[Accepted]:
+    system = System(MPI.COMM_SELF, Model([chain], parts), Clock.new())
+    newton = Newton(system, NewtonSettings(tolerance, 20, 1e-12))
+    nothing = np.zeros_like(v0)
+    march = March(system, newton, scheme, State(0.0, nothing, v0.copy(), nothing))
+    control = StepControl(end, dt, dt / 8)
+    steps = []
+    while not control.finished:
+        steps.append(march.advance(control))
+        march.commit(steps[-1], control)
+    newton.destroy()
+    system.destroy()
+    return steps
+
+
+def oscillate(scheme: Scheme, dt: float) -> float:
+    """Height of the free end of a held nonlinear chain after 3 s."""
+    chain = Chain(np.arange(4.0), held=True)
+    parts = [Springs(chain, 1.0, 20.0, 50.0), Inertia(chain, 1.0)]
+    march_through(chain, parts, scheme, np.array([0.0, 0.3, 0.1, 0.8]), 3.0, dt)
+    return float(chain.z[-1])
+
+
+@pytest.mark.parametrize("scheme", [AVERAGE, GeneralizedAlpha.from_rho_inf(0.6), GeneralizedAlpha.newmark(0.3, 0.5)])
+def test_second_order_in_time(scheme: Scheme) -> None:
+    steps = [0.03, 0.015, 0.0075]
+    z = [oscillate(scheme, dt) for dt in steps]
+    reference = oscillate(AVERAGE, 0.0005)
+    errors = np.abs(np.array(z) - reference)
+    orders = np.log2(errors[:-1] / errors[1:])
+    assert orders[-1] == pytest.approx(2.0, abs=0.15)
+
+
+def test_spectral_radius_one_is_the_average_acceleration() -> None:
+    assert oscillate(GeneralizedAlpha.from_rho_inf(1.0), 0.03) == pytest.approx(oscillate(AVERAGE, 0.03), rel=1e-9)
+
+
+def test_average_acceleration_keeps_the_energy_of_a_linear_chain() -> None:
+    chain = Chain(np.arange(6.0), held=True)
+    parts = [Springs(chain, 1.0, 50.0, weight=2.0), Inertia(chain, 1.0)]
+    v0 = np.array([0.0, 1.0, -1.0, 0.5, 0.2, 2.0])
+    start = 0.5 * float(parts[1]._nodal() @ v0**2)
+    energies = [s.energy.total for s in march_through(chain, parts, AVERAGE, v0, 100.0, 0.1)]
+    assert len(energies) == 1000
+    assert np.ptp(energies) < 1e-8 * start
+
+
+@pytest.mark.parametrize("scheme", [AVERAGE, GeneralizedAlpha.from_rho_inf(0.8), GeneralizedAlpha.newmark(0.36, 0.7)])
+@pytest.mark.parametrize("stiffness", [1e4, 1e6, 1e8])
+@pytest.mark.parametrize("dt", [0.1, 0.02, 0.004])
+def test_impact_never_gains_energy(scheme: Scheme, stiffness: float, dt: float) -> None:
+    """A chain falls on a floor. Contact itself never gives energy; the total stays at or below the start's."""
+    chain = Chain(1.0 + 0.5 * np.arange(5.0))
+    springs, inertia = Springs(chain, 0.5, 2e4, weight=9.81), Inertia(chain, 1.0)
+    floor = Floor(chain, stiffness)
+    at_rest = State.at_rest(0.0, 5)
+    start = springs.energy(at_rest).total
+    steps = march_through(chain, [springs, inertia, floor], scheme, np.zeros(5), 2.0, dt, 1e-9)
+    assert min(s.dissipated for s in steps) > -1e-9 * start
+    assert max(s.energy.total for s in steps) <= start * (1.0 + 1e-6)
+    assert sum(s.dissipated for s in steps) > 0.0
+
+
+class Unsolvable(Springs):
+    """A force without any root: Newton can only fail."""
+
+    def residual(self, state: State, forces: Forces) -> None:
+        forces.force += 1.0 + self.chain.heights(state) ** 2
+
+
+def test_failure_names_the_place_and_the_step() -> None:
+    chain = Chain(np.zeros(3))
+    with pytest.raises(SolveError, match=r"smallest step 0\.0125.*mass \d"):
+        march_through(chain, [Unsolvable(chain, 1.0, 1.0), Inertia(chain, 0.0)], AVERAGE, np.zeros(3), 1.0, 0.1)
