@@ -1,17 +1,31 @@
-"""Errors that a user can act on; each message is one line."""
+"""The errors that a user can meet; each carries the exit status that the command line returns for it."""
 
 
-class SceneError(Exception):
-    """The scene, a file it names, or the output folder cannot be used."""
+class RiserSoilError(Exception):
+    """Base of the errors that end a run with a message of one line per problem and no traceback."""
+
+    exit_status = 1
 
 
-class MeshError(Exception):
-    """A mesh is missing, broken or unfit."""
+class SceneError(RiserSoilError):
+    """The scene (or the command line around it) is wrong: nothing was computed."""
+
+    exit_status = 2
 
 
-class SolveError(Exception):
-    """The solver gave up; the message says where the residual sits."""
+class MeshError(RiserSoilError):
+    """A mesh file is missing or unusable, or a mesh could not be made from the scene: nothing was computed."""
+
+    exit_status = 2
 
 
-class ResultsError(Exception):
-    """A run folder cannot be read."""
+class ResultsError(RiserSoilError):
+    """A result folder can't be read or must not be written."""
+
+    exit_status = 2
+
+
+class SolveError(RiserSoilError):
+    """The solve failed; everything up to the last accepted step is kept and marked unfinished."""
+
+    exit_status = 3

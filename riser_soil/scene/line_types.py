@@ -1,0 +1,78 @@
+"""Line types: the properties of the pipe's cross-section."""
+
+from typing import Self
+
+from pydantic import BaseModel, Field, model_validator
+
+from riser_soil.scene.quantities import FROZEN, NonNegative, Positive, Real, wrong
+
+
+class Drag(BaseModel):
+    """Drag coefficients of Morison's equation, referred to the outer diameter."""
+
+    model_config = FROZEN
+
+    normal: NonNegative = Field(description="normal drag coefficient, on the outer diameter [-]")
+    tangential: NonNegative = Field(default=0.0, description="tangential drag coefficient, on the circumference [-]")
+
+
+class AddedMass(BaseModel):
+    """Added mass coefficients, referred to the mass of the displaced water."""
+
+    model_config = FROZEN
+
+    normal: NonNegative = Field(description="added mass coefficient across the pipe [-]")
+    tangential: NonNegative = Field(default=0.0, description="added mass coefficient along the pipe [-]")
+
+
+class LineType(BaseModel):
+    """One kind of pipe."""
+
+    model_config = FROZEN
+
+    outer_diameter: Positive | None = Field(
+        default=None, description="outer diameter [m]; needed for buoyancy, drag, added mass and contact"
+    )
+    inner_diameter: NonNegative = Field(default=0.0, description="inner diameter, filled by the contents [m]")
+    mass: Positive | None = Field(
+        default=None, description="mass per length in air without contents [kg/m]; needed for dynamics"
+    )
+    EA: Positive = Field(description="axial stiffness [N]")
+    EI: Positive | None = Field(default=None, description="bending stiffness [N.m2]; or give EI_y and EI_z")
+    EI_y: Positive | None = Field(default=None, description="bending stiffness about the section's y axis [N.m2]")
+    EI_z: Positive | None = Field(default=None, description="bending stiffness about the section's z axis [N.m2]")
+    GJ: Positive | None = Field(default=None, description="torsional stiffness [N.m2]; needed in three dimensions")
+    submerged_weight: Real | None = Field(
+        default=None,
+        description="weight less buoyancy, contents included [N/m]; "
+        "without it, it follows from mass, contents, diameters and water",
+    )
+    drag: Drag | None = Field(default=None, description="drag coefficients; none by default")
+    added_mass: AddedMass | None = Field(default=None, description="added mass coefficients; none by default")
+
+    @model_validator(mode="after")
+    def _bore_inside_wall(self) -> Self:
+        if self.outer_diameter is not None and self.inner_diameter >= self.outer_diameter:
+            raise wrong(
+                "inner_diameter",
+                f"must be smaller than outer_diameter ({self.outer_diameter:g} m)",
+                "correct one of the two diameters",
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _bending_stiffness_given_once(self) -> Self:
+        pair = (self.EI_y, self.EI_z)
+        if self.EI is None and None in pair:
+            raise wrong("EI", "the bending stiffness is missing", "give EI, or both EI_y and EI_z [N.m2]")
+        if self.EI is not None and pair != (None, None):
+            raise wrong("EI", "the bending stiffness is given twice", "give either EI or the pair EI_y and EI_z")
+        return self
+
+    @property
+    def bending_stiffness(self) -> tuple[float, float]:
+        """EI about the section's y axis and z axis [N.m2]."""
+        if self.EI_y is not None and self.EI_z is not None:
+            return self.EI_y, self.EI_z
+        assert self.EI is not None  # the validator has seen to it
+        return self.EI, self.EI

@@ -1,0 +1,47 @@
+"""What a run writes."""
+
+from typing import Literal
+
+from pydantic import BaseModel, Field
+
+from riser_soil.scene.quantities import FROZEN, Positive, Text
+
+FieldName = Literal[
+    "effective_tension",
+    "bending_moment",
+    "curvature",
+    "contact_force",
+    "moment_vector",
+    "displacement",
+    "von_mises_stress",
+    "equivalent_plastic_strain",
+]
+ALL_FIELDS: tuple[FieldName, ...] = (
+    "effective_tension",
+    "bending_moment",
+    "curvature",
+    "contact_force",
+    "moment_vector",
+    "displacement",
+    "von_mises_stress",
+    "equivalent_plastic_strain",
+)
+
+
+class Output(BaseModel):
+    """Intervals and fields of the result files."""
+
+    model_config = FROZEN
+
+    interval: Positive | None = Field(
+        default=None, description="time between records in results.nc [s]; every accepted step by default"
+    )
+    xdmf_interval: Positive | None = Field(
+        default=None, description="time between records in riser.xdmf and soil.xdmf [s]; as interval by default"
+    )
+    fields: tuple[FieldName, ...] = Field(
+        default=ALL_FIELDS, description="fields to record beside the positions; all by default"
+    )
+    directory: Text | None = Field(
+        default=None, description="result folder; by default named after the scene file, in the current folder"
+    )

@@ -1,0 +1,114 @@
+"""The riser: its segments, contents, ends and shapes."""
+
+import math
+from typing import Annotated, Literal, Self
+
+from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
+
+from riser_soil.scene.quantities import FROZEN, Count, Positive, Text, Vector, word_or, wrong
+from riser_soil.scene.shapes import Initial, Unstressed
+
+
+class Segment(BaseModel):
+    """A stretch of riser of one line type, cut into elements of equal length."""
+
+    model_config = FROZEN
+
+    line_type: Text = Field(description="name of its line type, a key of `line_types`")
+    length: Positive = Field(description="unstressed length [m]")
+    elements: Count | None = Field(default=None, description="number of elements; or give element_length")
+    element_length: Positive | None = Field(
+        default=None, description="greatest length of an element [m]; or give elements"
+    )
+
+    @model_validator(mode="after")
+    def _cut_once(self) -> Self:
+        if self.elements is None and self.element_length is None:
+            raise wrong("elements", "the elements are missing", "give either elements or element_length [m]")
+        if self.elements is not None and self.element_length is not None:
+            raise wrong(
+                "elements", "elements and element_length are both given", "leave one out, or set it to null"
+            )
+        return self
+
+    @property
+    def number_of_elements(self) -> int:
+        """The number of elements, whichever way it was given."""
+        if self.elements is not None:
+            return self.elements
+        assert self.element_length is not None  # the validator has seen to it
+        return max(1, math.ceil(self.length / self.element_length - 1e-9))
+
+
+class Contents(BaseModel):
+    """What fills the pipe."""
+
+    model_config = FROZEN
+
+    density: Positive = Field(description="density of the contents [kg/m3]")
+
+
+class RotationSpring(BaseModel):
+    """A rotational spring between the riser's end and its support."""
+
+    model_config = FROZEN
+
+    stiffness: Positive = Field(description="rotational stiffness [N.m/rad]")
+
+
+Rotation = Annotated[
+    Annotated[Literal["free", "fixed"], Tag("<word>")] | Annotated[RotationSpring, Tag("<RotationSpring>")],
+    Discriminator(
+        word_or(RotationSpring),
+        custom_error_type="choice",
+        custom_error_message="must be free, fixed or {stiffness: N.m/rad}",
+    ),
+]
+
+
+class Support(BaseModel):
+    """An end held at a position."""
+
+    model_config = FROZEN
+
+    position: Vector = Field(description="where the end is held, [x, y, z] [m]")
+    rotation: Rotation = Field(
+        default="free",
+        description="free, fixed (keeps the direction of the initial shape), or {stiffness: N.m/rad} about it",
+    )
+
+
+End = Annotated[
+    Annotated[Literal["free"], Tag("<word>")] | Annotated[Support, Tag("<Support>")],
+    Discriminator(
+        word_or(Support),
+        custom_error_type="choice",
+        custom_error_message="must be free, or a mapping with position and rotation",
+    ),
+]
+
+
+class Riser(BaseModel):
+    """The riser from `start` (arc length 0) to `end`."""
+
+    model_config = FROZEN
+
+    segments: tuple[Segment, ...] = Field(min_length=1, description="the riser's stretches from start to end")
+    contents: Contents | None = Field(default=None, description="what fills the pipe; empty by default")
+    start: End = Field(description="the end at arc length 0: free, or position and rotation")
+    end: End = Field(description="the end at the full arc length: free, or position and rotation")
+    unstressed: Unstressed = Field(
+        default="straight",
+        description="shape without any load: straight (from start to end; along +x when an end is free), "
+        "{points: ...} or {arc: ...}",
+    )
+    initial: Initial = Field(
+        default="unstressed",
+        description="shape at the beginning: straight, catenary, unstressed or {points: ...}; by default "
+        "catenary when both ends are held and gravity acts, else unstressed",
+    )
+
+    @property
+    def length(self) -> float:
+        """Unstressed length of the riser [m]."""
+        return math.fsum(segment.length for segment in self.segments)

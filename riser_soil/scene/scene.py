@@ -1,0 +1,78 @@
+"""The scene: everything that a run is made of."""
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, Field, model_validator
+
+from riser_soil.scene.contact import Contact
+from riser_soil.scene.line_types import LineType
+from riser_soil.scene.output import Output
+from riser_soil.scene.quantities import FROZEN, NonNegative, Text
+from riser_soil.scene.riser import Riser
+from riser_soil.scene.seabed import ContactAt, Seabed
+from riser_soil.scene.soil import Soil
+from riser_soil.scene.solver import Solver
+from riser_soil.scene.stages import Stage
+from riser_soil.scene.water import Water
+
+
+class Scene(BaseModel):
+    """One scene in SI units; z points up and gravity acts along -z. A part that is absent is None."""
+
+    model_config = FROZEN
+
+    title: Text = Field(default="untitled", description="title of the run")
+    gravity: NonNegative = Field(default=9.81, description="acceleration of gravity along -z [m/s2]")
+    dimension: Literal["auto", 2, 3] = Field(
+        default="auto",
+        description="dimension of the riser's motion: 2 (in one vertical plane), 3, or auto: 2 whenever nothing "
+        "leaves the vertical plane",
+    )
+    water: Water | None = Field(default=None, description="the water; none by default")
+    line_types: dict[str, LineType] = Field(min_length=1, description="the kinds of pipe by name")
+    riser: Riser = Field(description="the riser")
+    seabed: Seabed | None = Field(default=None, description="seabed; with soil it acts outside the block")
+    soil: Soil | None = Field(default=None, description="continuum of soil under the touchdown zone")
+    contact: Contact | None = Field(
+        default=None, description="contact with seabed and soil; its defaults hold when there is one of them"
+    )
+    stages: tuple[Stage, ...] = Field(min_length=1, description="what happens, one stage after the other")
+    solver: Solver = Field(default=Solver(), description="settings of the nonlinear solver")
+    output: Output = Field(default=Output(), description="what the run writes")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _fill_what_depends_on_other_parts(cls, data: Any) -> Any:
+        return _with_initial(_with_contact(data)) if isinstance(data, dict) else data
+
+    @property
+    def seabed_level(self) -> float:
+        """Height z of the seabed and of the soil's top face [m]."""
+        return self.seabed.level if self.seabed else 0.0
+
+    @property
+    def contact_at(self) -> ContactAt:
+        """Which line of the pipe touches the seabed and the soil."""
+        return self.seabed.contact_at if self.seabed else "outer"
+
+    @property
+    def used_line_types(self) -> dict[str, LineType]:
+        """The line types that the riser is made of, by name."""
+        names = [segment.line_type for segment in self.riser.segments]
+        return {name: self.line_types[name] for name in names if name in self.line_types}
+
+
+def _with_contact(data: dict[str, Any]) -> dict[str, Any]:
+    """Contact has its defaults when there is something to touch."""
+    touches = data.get("seabed") is not None or data.get("soil") is not None
+    return {**data, "contact": {}} if touches and data.get("contact") is None else data
+
+
+def _with_initial(data: dict[str, Any]) -> dict[str, Any]:
+    """A riser held at both ends under gravity starts as a catenary."""
+    riser = data.get("riser")
+    if not isinstance(riser, dict) or riser.get("initial") is not None:
+        return data
+    held = all(isinstance(riser.get(end), dict) for end in ("start", "end"))
+    initial = "catenary" if held and data.get("gravity", 9.81) != 0 else "unstressed"
+    return {**data, "riser": {**riser, "initial": initial}}

@@ -1,0 +1,82 @@
+"""Shapes of the whole riser: unstressed, and at the beginning of the run."""
+
+import math
+from typing import Annotated, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
+
+from riser_soil.scene.quantities import FROZEN, Real, Vector, by_key, word_or, wrong
+
+
+class PointsShape(BaseModel):
+    """A curve through given points; distances along it are scaled to the length of the segments."""
+
+    model_config = FROZEN
+
+    points: tuple[Vector, ...] = Field(
+        min_length=2, description="points from start to end, [[x, y, z], ...] [m]"
+    )
+
+
+class Arc(BaseModel):
+    """An arc of a circle about an axis."""
+
+    model_config = ConfigDict(**FROZEN)
+
+    centre: Vector = Field(description="a point on the circle's axis, [x, y, z] [m]")
+    from_point: Vector = Field(alias="from", description="where the riser starts, [x, y, z] [m]")
+    angle_deg: Real = Field(description="angle from start to end, right-handed about the axis [deg]")
+    axis: Vector = Field(default=(0.0, 0.0, 1.0), description="direction of the circle's axis, of any length [-]")
+
+    @model_validator(mode="after")
+    def _is_an_arc(self) -> Self:
+        if math.hypot(*self.axis) == 0.0:
+            raise wrong("axis", "must not be the zero vector", "give the direction about which the arc turns")
+        if self.radius == 0.0:
+            raise wrong("from", "must not lie on the circle's axis", "move `from` or `centre`")
+        if self.angle_deg == 0.0:
+            raise wrong("angle_deg", "must not be zero", "use `unstressed: straight` for a straight riser")
+        return self
+
+    @property
+    def radius(self) -> float:
+        """Distance of the arc from the circle's axis [m]."""
+        arm = [f - c for f, c in zip(self.from_point, self.centre, strict=True)]
+        size = math.hypot(*self.axis)
+        along = sum(r * a for r, a in zip(arm, self.axis, strict=True)) / size
+        return math.hypot(*[r - along * a / size for r, a in zip(arm, self.axis, strict=True)])
+
+    @property
+    def length(self) -> float:
+        """Length of the arc [m]."""
+        return self.radius * math.radians(abs(self.angle_deg))
+
+
+class ArcShape(BaseModel):
+    """A circular riser."""
+
+    model_config = FROZEN
+
+    arc: Arc = Field(description="the circle's centre, the first point, the angle and the axis")
+
+
+Unstressed = Annotated[
+    Annotated[Literal["straight"], Tag("<word>")]
+    | Annotated[PointsShape, Tag("<PointsShape>")]
+    | Annotated[ArcShape, Tag("<ArcShape>")],
+    Discriminator(
+        by_key({"points": PointsShape, "arc": ArcShape}),
+        custom_error_type="choice",
+        custom_error_message="must be straight, {points: [[x, y, z], ...]} or {arc: {...}}",
+    ),
+]
+
+Initial = Annotated[
+    Annotated[Literal["straight", "catenary", "unstressed"], Tag("<word>")]
+    | Annotated[PointsShape, Tag("<PointsShape>")],
+    Discriminator(
+        word_or(PointsShape),
+        custom_error_type="choice",
+        custom_error_message="must be straight, catenary, unstressed or {points: [[x, y, z], ...]}",
+    ),
+]

@@ -1,0 +1,165 @@
+"""The soil continuum: its block or mesh, its law and its initial stress."""
+
+from pathlib import Path
+from typing import Annotated, Literal, Self
+
+from pydantic import (
+    BaseModel,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationInfo,
+    field_serializer,
+    field_validator,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError
+
+from riser_soil.scene.quantities import (
+    FROZEN,
+    Interval,
+    NonNegative,
+    PoissonRatio,
+    Positive,
+    Real,
+    by_kind,
+    wrong,
+)
+
+
+class Block(BaseModel):
+    """A box of soil whose top face is level with the seabed."""
+
+    model_config = FROZEN
+
+    x: Interval = Field(description="from and to along x, [x0, x1] [m]")
+    y: Interval = Field(description="from and to along y, [y0, y1] [m]")
+    depth: Positive = Field(description="depth below the seabed [m]")
+
+    @model_validator(mode="after")
+    def _has_a_size(self) -> Self:
+        for key, (low, high) in {"x": self.x, "y": self.y}.items():
+            if low >= high:
+                raise wrong(key, "the first bound must be smaller than the second", "write [from, to] in metres")
+        return self
+
+
+class GeneratedMesh(BaseModel):
+    """A mesh of the block, fine under the riser and coarse away from it."""
+
+    model_config = FROZEN
+
+    kind: Literal["hex", "tet"] = Field(default="hex", description="hex (hexahedra) or tet (tetrahedra)")
+    size_at_riser: Positive = Field(description="size of the cells under the riser [m]")
+    size_far: Positive = Field(description="size of the cells at the block's far sides and bottom [m]")
+
+    @model_validator(mode="after")
+    def _grows_away_from_the_riser(self) -> Self:
+        if self.size_far < self.size_at_riser:
+            raise wrong(
+                "size_far",
+                f"must not be smaller than size_at_riser ({self.size_at_riser:g} m)",
+                "cells grow away from the riser: swap the two sizes",
+            )
+        return self
+
+
+class MeshFile(BaseModel):
+    """A mesh of the user's own."""
+
+    model_config = FROZEN
+
+    file: Path = Field(description="gmsh file (.msh); a relative name is sought beside the scene file")
+
+    @field_validator("file", mode="after")
+    @classmethod
+    def _is_there(cls, file: Path, info: ValidationInfo) -> Path:
+        path = (Path((info.context or {}).get("folder", ".")) / file).absolute()
+        if not path.is_file():
+            text = f"there is no such file as {path}; correct the name: it is sought beside the scene file"
+            raise PydanticCustomError("missing_file", "{text}", {"text": text})
+        return path
+
+    @field_serializer("file")
+    def _as_text(self, file: Path) -> str:
+        return str(file)
+
+
+def _pick_mesh(value: object) -> str | None:
+    if isinstance(value, MeshFile) or (isinstance(value, dict) and "file" in value):
+        return "<MeshFile>"
+    return "<GeneratedMesh>" if isinstance(value, dict | GeneratedMesh) else None
+
+
+Mesh = Annotated[
+    Annotated[GeneratedMesh, Tag("<GeneratedMesh>")] | Annotated[MeshFile, Tag("<MeshFile>")],
+    Discriminator(
+        _pick_mesh,
+        custom_error_type="choice",
+        custom_error_message="must be a mapping: {kind, size_at_riser, size_far} or {file: mesh.msh}",
+    ),
+]
+
+
+class LinearElastic(BaseModel):
+    """Linear elastic soil."""
+
+    model_config = FROZEN
+
+    kind: Literal["linear-elastic"] = Field(description="linear-elastic or von-mises")
+    E: Positive = Field(description="Young's modulus [Pa]")
+    nu: PoissonRatio = Field(description="Poisson's ratio [-]")
+
+
+class VonMises(BaseModel):
+    """Undrained clay: elastic, perfectly plastic; su is the strength in simple shear and plane strain."""
+
+    model_config = FROZEN
+
+    kind: Literal["von-mises"] = Field(description="linear-elastic or von-mises")
+    su: Positive = Field(description="undrained shear strength at the seabed [Pa]")
+    su_gradient: Real = Field(default=0.0, description="growth of su with depth [Pa/m]")
+    E_over_su: Positive = Field(description="Young's modulus over su, the same at every depth [-]")
+    nu: PoissonRatio = Field(default=0.49, description="Poisson's ratio [-]")
+
+
+Law = Annotated[
+    Annotated[LinearElastic, Tag("<LinearElastic>")] | Annotated[VonMises, Tag("<VonMises>")],
+    Discriminator(
+        by_kind({"linear-elastic": LinearElastic, "von-mises": VonMises}),
+        custom_error_type="kind",
+        custom_error_message="linear-elastic, von-mises",
+    ),
+]
+
+
+class Soil(BaseModel):
+    """A continuum of soil under the touchdown zone; quasi-static."""
+
+    model_config = FROZEN
+
+    block: Block | None = Field(default=None, description="the box of soil to mesh; not with mesh.file")
+    mesh: Mesh = Field(description="{kind, size_at_riser, size_far} for a block, or {file: mesh.msh}")
+    law: Law = Field(description="constitutive law: linear-elastic or von-mises, with its constants")
+    submerged_unit_weight: NonNegative = Field(
+        default=0.0, description="submerged unit weight, source of the initial stress [N/m3]"
+    )
+    K0: Positive = Field(default=1.0, description="initial horizontal over vertical effective stress [-]")
+    inertia: Literal[False] = Field(default=False, description="whether the soil has mass; false: quasi-static")
+
+    @model_validator(mode="after")
+    def _meshed_once(self) -> Self:
+        if isinstance(self.mesh, MeshFile) and self.block is not None:
+            raise wrong("block", "a mesh file replaces the block", "leave out either block or mesh.file")
+        if isinstance(self.mesh, GeneratedMesh) and self.block is None:
+            raise wrong("block", "the box of soil is missing", "give block: {x, y, depth}, or mesh: {file: ...}")
+        return self
+
+    @model_validator(mode="after")
+    def _strong_to_the_bottom(self) -> Self:
+        law, block = self.law, self.block
+        if isinstance(law, VonMises) and block and law.su + law.su_gradient * block.depth <= 0.0:
+            raise wrong(
+                "law", "su must stay positive down to the block's bottom", "raise su_gradient or take a shallower block"
+            )
+        return self

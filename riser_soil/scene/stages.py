@@ -1,0 +1,198 @@
+"""The stages of a run: statics and dynamics, with their moves, motions, loads and time schemes."""
+
+from itertools import pairwise
+from typing import Annotated, Literal, Self
+
+from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
+
+from riser_soil.scene.quantities import (
+    FROZEN,
+    NonNegative,
+    Positive,
+    Real,
+    Text,
+    Vector,
+    by_key,
+    by_kind,
+    wrong,
+)
+
+
+def _pick_place(value: object) -> str | None:
+    return "<word>" if isinstance(value, str) else "<number>"
+
+
+Place = Annotated[
+    Annotated[Literal["start", "end"], Tag("<word>")] | Annotated[NonNegative, Tag("<number>")],
+    Discriminator(_pick_place, custom_error_type="choice", custom_error_message="must be start, end or an arc [m]"),
+]
+
+
+class Load(BaseModel):
+    """A load on the riser in global axes; it acts during its stage."""
+
+    model_config = FROZEN
+
+    at: Place | None = Field(
+        default=None, description="where force and moment act: start, end or arc length [m]; not for distributed"
+    )
+    force: Vector | None = Field(default=None, description="point force [Fx, Fy, Fz] [N]")
+    moment: Vector | None = Field(default=None, description="point moment about fixed axes [Mx, My, Mz] [N.m]")
+    distributed: Vector | None = Field(
+        default=None, description="force per unstressed length along the whole riser [qx, qy, qz] [N/m]"
+    )
+    history: tuple[tuple[NonNegative, Real], ...] | None = Field(
+        default=None,
+        description="factor on the load, linear between [[t, factor], ...]: t in seconds since the stage began "
+        "(in a static stage the part of the stage, 0 to 1); by default static loads grow linearly "
+        "from 0 to 1 and dynamic loads have the factor 1 throughout",
+    )
+
+    @model_validator(mode="after")
+    def _acts_somewhere(self) -> Self:
+        at_a_point = self.force is not None or self.moment is not None
+        if not at_a_point and self.distributed is None:
+            raise wrong("force", "the load is missing", "give force [N], moment [N.m] or distributed [N/m]")
+        if at_a_point and self.at is None:
+            raise wrong("at", "force and moment need a place", "give at: start, end or an arc length [m]")
+        if not at_a_point and self.at is not None:
+            raise wrong("at", "a distributed load acts along the whole riser", "leave out at")
+        return self
+
+    @model_validator(mode="after")
+    def _history_runs_forward(self) -> Self:
+        times = [t for t, _ in self.history or ()]
+        if self.history is not None and len(times) < 2:
+            raise wrong("history", "must have at least two points", "write [[t, factor], [t, factor]]")
+        if any(b <= a for a, b in pairwise(times)):
+            raise wrong("history", "times must increase", "sort the points [t, factor] by t")
+        return self
+
+
+class Move(BaseModel):
+    """New positions of held ends, reached linearly with the stage's load factor."""
+
+    model_config = FROZEN
+
+    start: Vector | None = Field(default=None, description="new position of the start, [x, y, z] [m]")
+    end: Vector | None = Field(default=None, description="new position of the end, [x, y, z] [m]")
+
+
+class Harmonic(BaseModel):
+    """Displacement amplitude · sin(2π t/period + phase) from the position at the stage's beginning."""
+
+    model_config = FROZEN
+
+    amplitude: Vector = Field(description="amplitude, [x, y, z] [m]")
+    period: Positive = Field(description="period [s]")
+    ramp: NonNegative = Field(default=0.0, description="time over which the motion grows smoothly to its full size [s]")
+    phase_deg: Real = Field(default=0.0, description="phase at the stage's beginning [deg]")
+
+
+class EndMotion(BaseModel):
+    """The prescribed motion of one end."""
+
+    model_config = FROZEN
+
+    harmonic: Harmonic = Field(description="harmonic motion: amplitude, period, ramp, phase_deg")
+
+
+class Motion(BaseModel):
+    """Prescribed motions of held ends."""
+
+    model_config = FROZEN
+
+    start: EndMotion | None = Field(default=None, description="motion of the start, {harmonic: ...}")
+    end: EndMotion | None = Field(default=None, description="motion of the end, {harmonic: ...}")
+
+
+class Newmark(BaseModel):
+    """Newmark's parameters."""
+
+    model_config = FROZEN
+
+    beta: Positive = Field(default=0.25, le=1.0, description="Newmark's beta [-]")
+    gamma: Real = Field(default=0.5, ge=0.5, le=1.0, description="Newmark's gamma [-]")
+
+
+class NewmarkScheme(BaseModel):
+    """Newmark's scheme."""
+
+    model_config = FROZEN
+
+    newmark: Newmark = Field(description="beta and gamma")
+
+
+class GeneralizedAlpha(BaseModel):
+    """Parameter of the generalised-alpha scheme."""
+
+    model_config = FROZEN
+
+    rho_inf: NonNegative = Field(default=0.8, le=1.0, description="spectral radius at infinite frequency [-]")
+
+
+class GeneralizedAlphaScheme(BaseModel):
+    """The generalised-alpha scheme of Chung and Hulbert (1993)."""
+
+    model_config = FROZEN
+
+    generalized_alpha: GeneralizedAlpha = Field(description="rho_inf")
+
+
+Scheme = Annotated[
+    Annotated[NewmarkScheme, Tag("<NewmarkScheme>")]
+    | Annotated[GeneralizedAlphaScheme, Tag("<GeneralizedAlphaScheme>")],
+    Discriminator(
+        by_key({"newmark": NewmarkScheme, "generalized_alpha": GeneralizedAlphaScheme}),
+        custom_error_type="choice",
+        custom_error_message="must be {newmark: {beta, gamma}} or {generalized_alpha: {rho_inf}}",
+    ),
+]
+
+
+class StaticStage(BaseModel):
+    """Equilibrium without inertia or drag."""
+
+    model_config = FROZEN
+
+    name: Text = Field(min_length=1, description="name of the stage, different from the others")
+    kind: Literal["static"] = Field(description="static or dynamic")
+    move: Move | None = Field(default=None, description="new positions of held ends, {start, end}")
+    loads: tuple[Load, ...] = Field(default=(), description="loads on the riser during this stage")
+
+
+class DynamicStage(BaseModel):
+    """Motion in time with inertia."""
+
+    model_config = FROZEN
+
+    name: Text = Field(min_length=1, description="name of the stage, different from the others")
+    kind: Literal["dynamic"] = Field(description="static or dynamic")
+    duration: Positive = Field(description="duration [s]")
+    time_step: Positive = Field(description="time step [s]")
+    motion: Motion | None = Field(default=None, description="prescribed motions of held ends, {start, end}")
+    loads: tuple[Load, ...] = Field(default=(), description="loads on the riser during this stage")
+    scheme: Scheme = Field(
+        default=GeneralizedAlphaScheme(generalized_alpha=GeneralizedAlpha()),
+        description="{newmark: {beta, gamma} or {generalized_alpha: {rho_inf}",
+    )
+
+    @model_validator(mode="after")
+    def _lasts_a_step(self) -> Self:
+        if self.time_step > self.duration:
+            raise wrong(
+                "time_step",
+                f"must not exceed the stage's duration ({self.duration:g} s)",
+                "take a smaller time_step or a longer duration",
+            )
+        return self
+
+
+Stage = Annotated[
+    Annotated[StaticStage, Tag("<StaticStage>")] | Annotated[DynamicStage, Tag("<DynamicStage>")],
+    Discriminator(
+        by_kind({"static": StaticStage, "dynamic": DynamicStage}),
+        custom_error_type="kind",
+        custom_error_message="static, dynamic",
+    ),
+]
