@@ -1,7 +1,7 @@
 """Finite rotations: exponential, logarithm and the tangent maps of a rotation vector.
 
 Rotation vectors Theta are in rad. With R = Rn exp[Theta], a change dTheta turns the frame by the spatial spin
-w = Rn T_L(Theta) dTheta and by the spin T_R(Theta) dTheta in the frame's own axes; T_R is the transpose of T_L.
+w = Rn T_L(Theta) dTheta, which is T_R(Theta) dTheta in the frame's own axes; T_R is the transpose of T_L.
 With theta = |Theta|, a = sin(theta)/theta, b = (1 - cos(theta))/theta^2, c = (theta - sin(theta))/theta^3:
 
     exp[Theta] = I + a [Theta] + b [Theta]^2,    T_L = I + b [Theta] + c [Theta]^2,
@@ -124,7 +124,7 @@ def right_tangent_inverse(rotation: Vec) -> Mat:
 
 @njit(cache=True)
 def right_tangent_derivative(rotation: Vec, m: Vec) -> Mat:
-    """d(T_R(Theta) m)/dTheta at fixed m: geometric stiffness of a moment m in the axes from which Theta turns."""
+    """d(T_R(Theta) m)/dTheta at fixed m, the geometric stiffness of a moment m given in the unturned axes."""
     _, b, c = exp_coefficients(dot(rotation, rotation))
     db, dc = exp_slopes(dot(rotation, rotation))
     once = cross(rotation, m)
@@ -147,7 +147,7 @@ def right_tangent_inverse_derivative(rotation: Vec, m: Vec) -> Mat:
 def quaternion(R: Mat) -> tuple[float, float, float, float]:
     """Unit quaternion (w, x, y, z), w >= 0, of a rotation matrix.
 
-    Divides by its largest component, so it is accurate for every angle (Spurrier, J. Spacecraft Rockets 15, 1978).
+    Divides by its largest component, so it is accurate for every angle (Spurrier, J. Spacecraft 15, 1978).
     """
     xx, yy, zz = R[0][0], R[1][1], R[2][2]
     trace = xx + yy + zz

@@ -1,8 +1,8 @@
 """Three-vectors and 3x3 matrices as tuples, for compiled kernels.
 
-A `Vec` is a tuple of three floats, a `Mat` a tuple of three rows. Tuples live in registers, so a kernel allocates
-nothing per element. `vector` and `matrix` read them from arrays, `store` writes a matrix to one; `np.array(A)` works
-too, also in compiled code.
+A `Vec` is a tuple of three floats, a `Mat` a tuple of three rows. Tuples live in registers, so a kernel
+allocates nothing per element. `vector` and `matrix` read them from arrays, `store` writes a matrix to one;
+`np.array(A)` works too, also in compiled code.
 """
 
 from numba import njit
