@@ -1,0 +1,1 @@
+"""Prescribed motions of the riser's ends: t -> position, velocity, acceleration, each (3,) in global axes."""

@@ -1,0 +1,21 @@
+"""Move of an end in a static stage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from riser_soil.arrays import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Move:
+    """Straight from `origin` to `target` (3,) [m] as the load factor grows from 0 to 1."""
+
+    origin: Array
+    target: Array
+
+    def __call__(self, t: float) -> tuple[Array, Array, Array]:
+        """Position [m] at the load factor t; statics know no rates."""
+        return self.origin + t * (self.target - self.origin), np.zeros(3), np.zeros(3)
