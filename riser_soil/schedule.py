@@ -45,7 +45,7 @@ class Schedule:
     """Says after each accepted step what is to be written.
 
     A dynamic stage is written at the first accepted step at or after each multiple of the interval since the
-    stage began, and at its last step; a static stage only at its last step. What is pictured is also in the series.
+    stage began, and at its last step; a static stage only at its last step. Pictures imply the series.
 
     interval: s between records of results.nc; None for every accepted step.
     picture_interval: s between frames of the XDMF files; None for the same as `interval`.

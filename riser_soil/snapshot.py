@@ -14,7 +14,7 @@ from riser_soil.arrays import Array, IntArray
 class RiserSnapshot:
     """The riser at one instant.
 
-    Forces and moments at the ends are exerted by the support on the riser; moments follow the right-hand rule.
+    Forces and moments at the ends are exerted by the support on the riser; moments by the right-hand rule.
     """
 
     position: Array  # (nn, 3) m

@@ -1,12 +1,12 @@
 """XDMF time series for ParaView and VTK: numbers in HDF5, structure in XML, readable at any moment.
 
-One temporal collection of uniform grids. The HDF5 file is written and closed before the XML that points into it is
-replaced, so that the XML never names what is not there.
+One temporal collection of uniform grids. The HDF5 file is written and closed before the XML that points into
+it is replaced, so that the XML never names what is not there.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -63,8 +63,10 @@ class XdmfFile:
         self._write_xml()
 
     def add(self, frame: Frame) -> None:
-        """Takes one frame, later than the ones before; it lives in memory until `flush`."""
-        self._waiting.append(frame)
+        """Takes a copy of one frame, later than the ones before; it lives in memory until `flush`."""
+        on_points = {name: np.array(values) for name, values in frame.on_points.items()}
+        on_cells = {name: np.array(values) for name, values in frame.on_cells.items()}
+        self._waiting.append(replace(frame, on_points=on_points, on_cells=on_cells))
 
     def flush(self) -> None:
         """Writes the waiting frames: first the numbers, then the XML."""

@@ -1,0 +1,235 @@
+"""The recorder: told of every accepted step, it writes the run's folder. Lives on one rank only."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from riser_soil import folder as run_folder
+from riser_soil.arrays import Array
+from riser_soil.errors import SceneError
+from riser_soil.netcdf import SeriesFile
+from riser_soil.schedule import Due
+from riser_soil.snapshot import Ledger, RiserSnapshot, RunFacts, SoilMesh, SoilSnapshot, StepHealth, Touch
+from riser_soil.summary import StageTally, Summary, final_state, pack
+from riser_soil.xdmf import Frame, XdmfFile, polyline
+
+RISER_FIELDS = ("effective_tension", "bending_moment", "curvature", "contact_force", "moment_vector")
+SOIL_FIELDS = ("displacement", "von_mises_stress", "equivalent_plastic_strain")
+FIELDS = RISER_FIELDS + SOIL_FIELDS
+
+# Equilibria of static stages take no time; those that would share an instant are set this far apart [s],
+# because readers of time series want time to grow.
+TICK = 1e-6
+# A killed run loses at most this much wall time of results [s].
+_FLUSH_EVERY = 1.0
+
+
+class Clock:
+    """Total simulated time: dynamic stages add up, static stages take none."""
+
+    def __init__(self) -> None:
+        self._begun = 0.0
+        self._now = 0.0
+        self._last_record = -TICK
+        self._static = True
+
+    @property
+    def stage_time(self) -> float:
+        """s simulated in the current stage."""
+        return self._now - self._begun
+
+    @property
+    def now(self) -> float:
+        return self._now
+
+    def begin_stage(self, kind: str) -> None:
+        self._static = kind == "static"
+        self._begun = self._now
+
+    def advance(self, t: float) -> None:
+        """t: s since the stage began; in a static stage the load factor, which is no time."""
+        if not self._static:
+            self._now = self._begun + t
+
+    def stamp(self) -> float:
+        """Time of a record made now [s], later than that of every record before."""
+        after = self._last_record + TICK
+        self._last_record = self._now if self._now > self._last_record else after
+        return self._last_record
+
+
+class Recorder:
+    """Owner of everything in the run's folder. Use `open`, in a `with` statement, and `finish` at the end.
+
+    A run that leaves the `with` statement without `finish`, or is killed, keeps its results, marked unfinished.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        facts: RunFacts,
+        arc: Array,
+        soil_mesh: SoilMesh | None,
+        fields: tuple[str, ...],
+    ) -> None:
+        self.summary = Summary(facts)
+        self._folder = folder
+        self._arc = arc
+        self._fields = fields
+        left_out = set(RISER_FIELDS) - set(fields)
+        self._series = SeriesFile(folder / run_folder.SERIES, arc, facts.title, facts.version, left_out)
+        self._riser_frames = XdmfFile(
+            folder / run_folder.RISER_XDMF, "riser", polyline(arc.size), polyline=True
+        )
+        self._soil_frames = _soil_file(folder, soil_mesh)
+        self._clock = Clock()
+        self._latest: Array | None = None
+        self._settlement: float | None = None
+        self._flushed = time.monotonic()
+        self._closed = False
+
+    @classmethod
+    def open(
+        cls,
+        folder: Path,
+        facts: RunFacts,
+        arc: Array,
+        soil_mesh: SoilMesh | None,
+        scene_text: str,
+        fields: tuple[str, ...] | None = None,
+        force: bool = False,
+    ) -> Self:
+        """Takes the folder over and lays the files out.
+
+        arc: (nn,) m. scene_text: the resolved scene, kept as scene.yaml. fields: names of FIELDS; None for all.
+        Raises SceneError for an unknown field and for a finished run's folder without `force`.
+        """
+        wanted = _check_fields(FIELDS if fields is None else fields)
+        run_folder.prepare_folder(folder, force)
+        run_folder.write_atomically(folder / run_folder.SCENE, scene_text)
+        recorder = cls(folder, facts, arc, soil_mesh, wanted)
+        recorder.flush()
+        return recorder
+
+    @property
+    def settlement(self) -> float | None:
+        """m, deepest settlement of the soil when it was last pictured; None without soil."""
+        return self._settlement
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def begin_stage(self, name: str, kind: str) -> None:
+        """kind: `static` or `dynamic`. A dynamic stage's extremes include the state that it begins with."""
+        self._clock.begin_stage(kind)
+        stage = StageTally(name, kind)
+        if kind == "dynamic" and self._latest is not None:
+            stage.extremes.update(self._clock.now, self._latest)
+        self.summary.stages.append(stage)
+        self._series.begin_stage(name)
+
+    def accept(
+        self,
+        t: float,
+        due: Due,
+        riser: RiserSnapshot,
+        touch: Touch,
+        health: StepHealth,
+        ledger: Ledger,
+        soil: SoilSnapshot | None = None,
+    ) -> None:
+        """Takes one accepted step.
+
+        t: s since the stage began (static: load factor). soil: needed where there is a soil mesh and pictures
+        are due.
+        """
+        self._clock.advance(t)
+        self._tally(t, riser, touch, health, ledger)
+        self._series.step({"step_time": self._clock.now} | vars(health))
+        if due.series:
+            stamp = self._clock.stamp()
+            self._series.record(_series_row(stamp, riser, touch))
+            if due.pictures:
+                self._picture(stamp, riser, soil)
+        if time.monotonic() - self._flushed > _FLUSH_EVERY:
+            self.flush()
+
+    def add_seconds(self, seconds: Mapping[str, float]) -> None:
+        """Adds wall time [s] to the named parts of the run."""
+        self.summary.seconds.update(seconds)
+
+    def flush(self) -> None:
+        """Brings everything told so far to disk, the summary last."""
+        self._series.flush(self.summary.finished)
+        self._riser_frames.flush()
+        if self._soil_frames is not None:
+            self._soil_frames.flush()
+        self.summary.write(self._folder / run_folder.SUMMARY)
+        self._flushed = time.monotonic()
+
+    def finish(self) -> None:
+        """Marks the run finished; nothing may be added afterwards."""
+        self.summary.finished = True
+        self.close()
+
+    def close(self) -> None:
+        """Brings the rest to disk. Does nothing the second time."""
+        if not self._closed:
+            self._closed = True
+            self.flush()
+
+    def _tally(
+        self, t: float, riser: RiserSnapshot, touch: Touch, health: StepHealth, ledger: Ledger
+    ) -> None:
+        stage = self.summary.stages[-1]
+        self._latest = pack(riser, touch)
+        stage.count(health)
+        stage.time = self._clock.stage_time
+        stage.energy = ledger
+        stage.extremes.update(t if stage.kind == "static" else self._clock.now, self._latest)
+        stage.final = final_state(self._arc, riser, touch)
+
+    def _picture(self, stamp: float, riser: RiserSnapshot, soil: SoilSnapshot | None) -> None:
+        on_points = {name: getattr(riser, name) for name in RISER_FIELDS if name in self._fields}
+        self._riser_frames.add(Frame(stamp, on_points | {"position": riser.position}, geometry="position"))
+        if self._soil_frames is not None:
+            if soil is None:
+                raise ValueError(
+                    "pictures are due, so the soil's snapshot is needed too: both files share one time axis"
+                )
+            self._soil_frames.add(_soil_frame(stamp, soil, self._fields))
+            self._settlement = max(0.0, -float(soil.displacement[:, 2].min()))
+
+
+def _check_fields(fields: tuple[str, ...]) -> tuple[str, ...]:
+    unknown = [name for name in fields if name not in (*FIELDS, "position")]
+    if unknown:
+        raise SceneError(f'output.fields: "{unknown[0]}" is not a field; allowed: {", ".join(FIELDS)}')
+    return fields
+
+
+def _series_row(stamp: float, riser: RiserSnapshot, touch: Touch) -> dict[str, object]:
+    row = vars(riser) | {"time": stamp, "touchdown_arc": touch.touchdown_arc}
+    return row | {"max_penetration": touch.max_penetration, "contact_force_sum": touch.contact_force}
+
+
+def _soil_file(folder: Path, mesh: SoilMesh | None) -> XdmfFile | None:
+    return None if mesh is None else XdmfFile(folder / run_folder.SOIL_XDMF, "soil", mesh.cells, mesh.points)
+
+
+def _soil_frame(stamp: float, soil: SoilSnapshot, fields: tuple[str, ...]) -> Frame:
+    on_cells = {"von_mises_stress": soil.von_mises, "equivalent_plastic_strain": soil.plastic_strain}
+    return Frame(
+        stamp,
+        {"displacement": soil.displacement} if "displacement" in fields else {},
+        {name: values for name, values in on_cells.items() if name in fields},
+    )

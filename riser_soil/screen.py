@@ -1,0 +1,93 @@
+"""What a finished run tells on the screen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+Row = tuple[str, str]
+
+
+def print_summary(
+    summary: dict[str, Any], settlement: float | None = None, console: Console | None = None
+) -> None:
+    """Prints one table of results for each stage, and the seconds by part.
+
+    summary: what goes into summary.json. settlement: m, deepest soil settlement at the end; None without soil.
+    """
+    console = console or Console()
+    for stage in summary["stages"]:
+        if stage["final"] is not None:
+            console.print(_table(f"{stage['name']} ({stage['kind']})", _stage_rows(stage)))
+    console.print(_table(_title(summary), [*_run_rows(summary, settlement)]))
+
+
+def _table(title: str, rows: list[Row]) -> Table:
+    table = Table(title=title, title_justify="left", show_header=False, min_width=72)
+    table.add_column()
+    table.add_column(justify="right")
+    for row in rows:
+        table.add_row(*row)
+    return table
+
+
+def _title(summary: dict[str, Any]) -> str:
+    return f"{summary['title']}: {'finished' if summary['finished'] else 'NOT finished'}"
+
+
+def _stage_rows(stage: dict[str, Any]) -> list[Row]:
+    final, extremes = stage["final"], stage["extremes"]
+    return [
+        (
+            "top tension",
+            _span(final["end"]["effective_tension"], extremes["end"]["effective_tension"], "kN", 1e-3),
+        ),
+        ("least effective tension", _at(final["min_effective_tension"], "kN", 1e-3)),
+        ("largest bending moment", _at(final["max_bending_moment"], "kN.m", 1e-3)),
+        ("largest curvature", _at(final["max_curvature"], "1/m")),
+        ("touchdown arc length", _span(final["touchdown_arc"], extremes["touchdown_arc"], "m")),
+        ("contact force", _span(final["contact_force"], extremes["contact_force"], "kN", 1e-3)),
+        ("deepest penetration", _span(final["max_penetration"], extremes["max_penetration"], "mm", 1e3)),
+        ("steps, cut", f"{stage['steps']}, {stage['step_cuts']}"),
+        ("Newton iterations per step", _newton(stage)),
+        ("energy residual", f"{stage['energy']['residual']:.3g} J of {_turnover(stage['energy']):.3g} J"),
+    ]
+
+
+def _run_rows(summary: dict[str, Any], settlement: float | None) -> Iterator[Row]:
+    if settlement is not None:
+        yield "deepest soil settlement", f"{settlement * 1e3:.4g} mm"
+    yield "unknowns, riser and soil", f"{summary['dofs']['riser']} and {summary['dofs']['soil']}"
+    for part, seconds in summary["seconds"].items():
+        yield f"time in {part}", f"{seconds:.2f} s"
+
+
+def _newton(stage: dict[str, Any]) -> str:
+    mean = stage["newton_iterations"] / max(1, stage["steps"])
+    return f"{mean:.2f} on average, at most {stage['most_newton_iterations']}"
+
+
+def _turnover(energy: dict[str, float]) -> float:
+    """J, the largest share of the balance: what its residual is to be measured by."""
+    return max(abs(energy[key]) for key in ("kinetic", "strain", "potential", "dissipated", "work"))
+
+
+def _span(value: float | None, extremes: dict[str, float | None], unit: str, scale: float = 1.0) -> str:
+    """The final value, and the range over the stage where there is one."""
+    least, most = extremes["min"], extremes["max"]
+    text = _number(value, unit, scale)
+    if least is None or most is None or not most > least:
+        return text
+    return f"{text}  ({least * scale:.5g} to {most * scale:.5g})"
+
+
+def _at(entry: dict[str, float], unit: str, scale: float = 1.0) -> str:
+    return f"{_number(entry['value'], unit, scale)} at {entry['arc']:.5g} m"
+
+
+def _number(value: float | None, unit: str, scale: float) -> str:
+    return "-" if value is None or np.isnan(value) else f"{value * scale:.5g} {unit}"

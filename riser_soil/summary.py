@@ -1,0 +1,178 @@
+"""summary.json: what a run was, how each stage ended, and the extremes on the way."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.folder import write_atomically
+from riser_soil.snapshot import Ledger, RiserSnapshot, RunFacts, StepHealth, Touch
+
+_END = (("position", 3), ("force", 3), ("moment", 3), ("effective_tension", 1), ("angle_deg", 1))
+_WHOLE = (
+    ("touchdown_arc", 1),
+    ("max_bending_moment", 1),
+    ("max_curvature", 1),
+    ("min_effective_tension", 1),
+    ("max_penetration", 1),
+    ("contact_force", 1),
+)
+# Where each number of the packed vector of observables belongs in the nested summary.
+_PLACES: tuple[tuple[tuple[str, ...], int], ...] = (
+    *((("start", name), size) for name, size in _END),
+    *((("end", name), size) for name, size in _END),
+    *(((name,), size) for name, size in _WHOLE),
+)
+
+
+def angle_deg(tangent: Array) -> float:
+    """Angle of a tangent (3,) from the horizontal [deg]; positive where the riser rises with the arc length."""
+    return math.degrees(math.atan2(tangent[2], math.hypot(tangent[0], tangent[1])))
+
+
+def pack(riser: RiserSnapshot, touch: Touch) -> Array:
+    """All observables of one instant as one vector, in the order of the summary."""
+    tension, position = riser.effective_tension, riser.position
+    start_angle, end_angle = angle_deg(riser.start_tangent), angle_deg(riser.end_tangent)
+    return np.concatenate([
+        position[0], riser.start_force, riser.start_moment, [tension[0], start_angle],
+        position[-1], riser.end_force, riser.end_moment, [tension[-1], end_angle],
+        [touch.touchdown_arc, riser.bending_moment.max(), riser.curvature.max(), tension.min()],
+        [touch.max_penetration, touch.contact_force[2]],
+    ])  # fmt: skip
+
+
+def unpack(vector: Array) -> dict[str, Any]:
+    """The nested form of a packed vector: scalars as numbers, vectors as lists."""
+    nested: dict[str, Any] = {}
+    first = 0
+    for path, size in _PLACES:
+        values = [float(x) for x in vector[first : first + size]]
+        _put(nested, path, values if size > 1 else values[0])
+        first += size
+    return nested
+
+
+def final_state(arc: Array, riser: RiserSnapshot, touch: Touch) -> dict[str, Any]:
+    """The summary's `final`: the observables, with the arc length [m] of those that sit on one node."""
+    final = unpack(pack(riser, touch))
+    for name, where in (
+        ("max_bending_moment", riser.bending_moment.argmax()),
+        ("max_curvature", riser.curvature.argmax()),
+        ("min_effective_tension", riser.effective_tension.argmin()),
+    ):
+        final[name] = {"value": final[name], "arc": float(arc[where])}
+    return final
+
+
+class Extremes:
+    """Smallest and largest of every observable, with their times; nan does not count."""
+
+    def __init__(self) -> None:
+        size = sum(n for _, n in _PLACES)
+        self._least, self._most = np.full(size, np.inf), np.full(size, -np.inf)
+        self._t_least, self._t_most = np.full(size, np.nan), np.full(size, np.nan)
+
+    def update(self, t: float, vector: Array) -> None:
+        """t: s (static stages: load factor); vector: from `pack`."""
+        less, more = vector < self._least, vector > self._most
+        self._least[less], self._most[more] = vector[less], vector[more]
+        self._t_least[less], self._t_most[more] = t, t
+
+    def nested(self) -> dict[str, Any]:
+        """{min, max, t_min, t_max} at each observable's place; vectors by component."""
+        columns = {"min": self._least, "max": self._most, "t_min": self._t_least, "t_max": self._t_most}
+        parts = {key: unpack(values) for key, values in columns.items()}
+        nested: dict[str, Any] = {}
+        for path, _ in _PLACES:
+            _put(nested, path, {key: _get(part, path) for key, part in parts.items()})
+        return nested
+
+
+@dataclass
+class StageTally:
+    """What is gathered of one stage while it runs. time: s simulated in it (0 in statics)."""
+
+    name: str
+    kind: str
+    time: float = 0.0
+    steps: int = 0
+    newton_iterations: int = 0
+    most_newton_iterations: int = 0
+    step_cuts: int = 0
+    final: dict[str, Any] | None = None
+    extremes: Extremes = field(default_factory=Extremes)
+    energy: Ledger = field(default_factory=Ledger)
+
+    def count(self, health: StepHealth) -> None:
+        self.steps += 1
+        self.newton_iterations += health.newton_iterations
+        self.most_newton_iterations = max(self.most_newton_iterations, health.newton_iterations)
+        self.step_cuts += health.step_cuts
+
+    def as_dict(self) -> dict[str, Any]:
+        plain = {k: v for k, v in vars(self).items() if k not in ("extremes", "energy")}
+        extremes = self.extremes.nested() if self.steps else None
+        return plain | {"extremes": extremes, "energy": asdict(self.energy)}
+
+
+class Summary:
+    """Keeps the whole summary and writes it."""
+
+    def __init__(self, facts: RunFacts) -> None:
+        self.finished = False
+        self.stages: list[StageTally] = []
+        self.seconds: Counter[str] = Counter()
+        self._facts = facts
+
+    def as_dict(self) -> dict[str, Any]:
+        """The summary as it goes into the file, before nan becomes null."""
+        facts = self._facts
+        return {
+            "title": facts.title,
+            "finished": self.finished,
+            "version": facts.version,
+            "ranks": facts.ranks,
+            "parts": {"built": list(facts.built), "left_out": dict(facts.left_out)},
+            "dofs": {"riser": facts.riser_dofs, "soil": facts.soil_dofs},
+            "stages": [stage.as_dict() for stage in self.stages],
+            "seconds": dict(self.seconds),
+        }
+
+    def write(self, path: Path) -> None:
+        write_atomically(path, json.dumps(plain_json(self.as_dict()), indent=2, allow_nan=False) + "\n")
+
+
+def plain_json(value: Any) -> Any:
+    """The same value in JSON's terms: plain numbers; null for nan and infinities, which JSON lacks."""
+    if isinstance(value, Mapping):
+        return {str(key): plain_json(v) for key, v in value.items()}
+    if isinstance(value, list | tuple | np.ndarray):
+        return [plain_json(v) for v in value]
+    if isinstance(value, np.generic):
+        return plain_json(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def _put(nested: dict[str, Any], path: tuple[str, ...], value: Any) -> None:
+    *outer, last = path
+    for key in outer:
+        nested = nested.setdefault(key, {})
+    nested[last] = value
+
+
+def _get(nested: dict[str, Any], path: tuple[str, ...]) -> Any:
+    value: Any = nested
+    for key in path:
+        value = value[key]
+    return value
