@@ -1,15 +1,15 @@
 """Two-node corotational Euler-Bernoulli elements in space: forces and tangent from one energy.
 
-An element sees its chord x2 - x1 (m) and the section frames T1, T2 at its ends (columns: tangent, second and
-third section axis). In the frame of `corotation` the chord's length l and the rotation vectors theta_i of the
-ends store
+An element sees its chord x2 - x1 (m) and the section frames T1, T2 at its ends (columns: tangent, second
+and third section axis). In the frame of `corotation` the chord's length l and the rotation vectors
+theta_i of the ends store
 
     U = EA L strain^2 / 2 + bending about the second and the third axis + GJ twist^2 / (2 L),
 
-with the shallow-arch strain of `bending`. Forces (N) and moments (N m) are ordered force1, moment1, force2,
-moment2, in global axes; they are internal and conjugate to displacements and spatial spins, by which the tangent
-differentiates them. `increments` turns both into those of rotation vectors, where the tangent is the symmetric
-Hessian of U. Nodes may turn without limit; only theta_i must stay below pi.
+with the shallow-arch strain of `bending`. Forces (N) and moments (N m) are ordered force1, moment1,
+force2, moment2, in global axes; they are internal and conjugate to displacements and spatial spins, by
+which the tangent differentiates them. `increments` turns both into those of rotation vectors, where the
+tangent is the symmetric Hessian of U. Nodes may turn without limit; only theta_i must stay below pi.
 """
 
 from typing import NamedTuple
@@ -89,7 +89,7 @@ class Tangents(NamedTuple):
 
 
 class Response(NamedTuple):
-    """What the variation of an element's forces needs besides its configuration; components in its own frame."""
+    """What the variation of an element's forces needs besides its configuration, in the element's frame."""
 
     N: float
     twisting: float  # moment of m_1 + m_2 about the chord, N m
@@ -100,7 +100,7 @@ class Response(NamedTuple):
 
 @njit(cache=True)
 def reference(chord0: Array, T0_1: Array, T0_2: Array, L: Array) -> Reference:
-    """Unstressed configuration: chords (ne, 3) and arc lengths (ne,), m, section frames (ne, 3, 3) of the ends."""
+    """Unstressed configuration from chords (ne, 3), end frames (ne, 3, 3) and arc lengths (ne,)."""
     ne = len(L)
     l0, theta1, theta2 = np.empty(ne), np.empty((ne, 3)), np.empty((ne, 3))
     for e in range(ne):
@@ -209,7 +209,7 @@ def _put_forces(axes: Mat, forces: NodalForces, out: Array) -> None:
 
 @njit(cache=True)
 def forces(chord: Array, frame1: Array, frame2: Array, ref: Reference, section: Section) -> Array:
-    """Internal forces f (ne, 12) of elements with chords (ne, 3) and section frames (ne, 3, 3) at their ends."""
+    """Internal forces f (ne, 12) for chords (ne, 3) and section frames (ne, 3, 3) of both ends."""
     f = np.empty((len(chord), 12))
     for e in range(len(chord)):
         at = _configure(chord, frame1, frame2, e)

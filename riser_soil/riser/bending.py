@@ -1,12 +1,13 @@
 """Strain energy of a two-node Euler-Bernoulli element in one bending plane.
 
-The end rotations a and b (rad) are measured from the chord. Bending follows from the cubic deflection; half
-its square slope, averaged over the element, is the shallow-arch term of the axial strain
+The end rotations a and b (rad) are measured from the chord. Bending follows from the cubic deflection;
+half its square slope, averaged over the element, is the shallow-arch term of the axial strain
 
     strain = (l - l0)/L + bow(a, b) - bow(a0, b0),    bow(a, b) = (2 a^2 - a b + 2 b^2)/30,
 
 which makes the two-node element fourth-order accurate on curved lines.
-Source: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), section 7.3.
+Source: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), section
+7.3.
 """
 
 from numba import njit

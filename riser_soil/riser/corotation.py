@@ -1,15 +1,16 @@
 """The frame that follows a two-node beam element in space, and how it hands forces on to the nodes.
 
-e1 lies along the chord, e2 in the plane of e1 and the mean of the second section axes of both ends. Vectors here
-are given by their components along (e1, e2, e3); u is the displacement of node 2 less that of node 1, w_i are the
-spins of the ends. With q_i, the second axis of an end over the component of the mean along e2, with
-eta = (q_1 + q_2).e1 / 2 and the levers p_i = q_i x e3 / 2, the frame spins by
+e1 lies along the chord, e2 in the plane of e1 and the mean of the second section axes of both ends.
+Vectors here are given by their components along (e1, e2, e3); u is the displacement of node 2 less that
+of node 1, w_i are the spins of the ends. With q_i, the second axis of an end over the component of the
+mean along e2, with eta = (q_1 + q_2).e1 / 2 and the levers p_i = q_i x e3 / 2, the frame spins by
 
     omega = (eta omega_2 + p_1.w_1 + p_2.w_2, -u_3/l, u_2/l),
 
-and virtual work gives the nodal forces from the chord force N and the moments m_i conjugate to w_i - omega.
-Source: Battini & Pacoste, Co-rotational beam elements with warping effects in instability problems, Comput.
-Methods Appl. Mech. Engng 191 (2002), section 2; here with the variation of every term.
+and virtual work gives the nodal forces from the chord force N and the moments m_i conjugate to w_i -
+omega.
+Source: Battini & Pacoste, Co-rotational beam elements with warping effects in instability problems,
+Comput. Methods Appl. Mech. Engng 191 (2002), section 2; here with the variation of every term.
 """
 
 import math

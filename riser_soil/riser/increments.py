@@ -1,7 +1,8 @@
 """From spatial spins to rotation vectors: element forces and tangents along a chain of nodes.
 
-A node's frame is R = Rn exp[Theta]; its spin is w = H dTheta with H = Rn T_L(Theta). Element e joins the nodes
-e and e + 1, its dofs are ordered displacement1, rotation1, displacement2, rotation2. Arrays are changed in place.
+A node's frame is R = Rn exp[Theta]; its spin is w = H dTheta with H = Rn T_L(Theta). Element e joins
+nodes e and e + 1, its dofs are ordered displacement1, rotation1, displacement2, rotation2. Arrays are
+changed in place.
 """
 
 from numba import njit

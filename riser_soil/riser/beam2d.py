@@ -1,0 +1,215 @@
+"""Two-node corotational Euler-Bernoulli elements in a vertical plane: forces and tangent from one energy.
+
+`beam3d` in a plane, with in-plane coordinates (p, z) and angles positive from p to z. An element sees
+its chord x2 - x1 (m) and the directions of the section tangents at its ends (rad). The chord's length l
+and the angles theta_i from the chord to the tangents store
+
+    U = EA L strain^2 / 2 + bending,
+
+with the shallow-arch strain of `bending`. Forces (N) and moments (N m) are ordered p1, z1, moment1, p2,
+z2, moment2; they are internal, and the tangent is the symmetric Hessian of U. Nodes may turn without
+limit; only theta_i must stay below pi.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from riser_soil.arrays import Array
+from riser_soil.riser.bending import bow, bow_slopes, end_moments
+
+Vec2 = tuple[float, float]
+
+
+class Section(NamedTuple):
+    """Section stiffnesses of the elements, each of shape (ne,)."""
+
+    EA: Array  # N
+    EI: Array  # N m2
+
+
+class Reference(NamedTuple):
+    """Unstressed configuration of the elements, each of shape (ne,)."""
+
+    L: Array  # arc length, m
+    l0: Array  # chord length, m
+    theta1: Array  # angles from the chord to the tangents at the ends, rad
+    theta2: Array
+
+
+class Element(NamedTuple):
+    """Stiffnesses and unstressed configuration of one element."""
+
+    L: float
+    EA: float
+    EI_per_L: float
+    l0: float
+    theta1: float
+    theta2: float
+
+
+class Corotated(NamedTuple):
+    """Configuration of one element seen from its own frame."""
+
+    axis: Vec2  # unit vector along the chord
+    length: float  # chord, m
+    theta1: float
+    theta2: float
+
+
+class NodalForces(NamedTuple):
+    """Force on node 2 (node 1 gets its opposite), along and across the chord, and moments on both nodes."""
+
+    force: Vec2
+    moment1: float
+    moment2: float
+
+
+@njit(cache=True)
+def _angle_from(axis: Vec2, direction: float) -> float:
+    """Angle from a unit vector to a direction, in (-pi, pi]."""
+    cosine, sine = math.cos(direction), math.sin(direction)
+    return math.atan2(axis[0] * sine - axis[1] * cosine, axis[0] * cosine + axis[1] * sine)
+
+
+@njit(cache=True)
+def _corotate(chord: Array, direction1: float, direction2: float) -> Corotated:
+    length = math.sqrt(chord[0] * chord[0] + chord[1] * chord[1])
+    axis = (chord[0] / length, chord[1] / length)
+    return Corotated(axis, length, _angle_from(axis, direction1), _angle_from(axis, direction2))
+
+
+@njit(cache=True)
+def reference(chord0: Array, direction0_1: Array, direction0_2: Array, L: Array) -> Reference:
+    """Unstressed configuration from chords (ne, 2), tangent directions and arc lengths (each (ne,))."""
+    ne = len(L)
+    l0, theta1, theta2 = np.empty(ne), np.empty(ne), np.empty(ne)
+    for e in range(ne):
+        at = _corotate(chord0[e], direction0_1[e], direction0_2[e])
+        l0[e], theta1[e], theta2[e] = at.length, at.theta1, at.theta2
+    return Reference(L, l0, theta1, theta2)
+
+
+@njit(cache=True)
+def _element(ref: Reference, section: Section, e: int) -> Element:
+    L = ref.L[e]
+    return Element(L, section.EA[e], section.EI[e] / L, ref.l0[e], ref.theta1[e], ref.theta2[e])
+
+
+@njit(cache=True)
+def _strain(element: Element, at: Corotated) -> float:
+    stretch = (at.length - element.l0) / element.L
+    return stretch + bow(at.theta1, at.theta2) - bow(element.theta1, element.theta2)
+
+
+@njit(cache=True)
+def _stress(element: Element, at: Corotated) -> tuple[float, float, float]:
+    """Derivatives of U by the chord's length and by theta_1 and theta_2."""
+    N = element.EA * _strain(element, at)
+    m1, m2 = end_moments(element.EI_per_L, at.theta1 - element.theta1, at.theta2 - element.theta2)
+    slope1, slope2 = bow_slopes(at.theta1, at.theta2)
+    return N, m1 + N * element.L * slope1, m2 + N * element.L * slope2
+
+
+@njit(cache=True)
+def _stress_variation(
+    element: Element, at: Corotated, N: float, stretch: float, dtheta1: float, dtheta2: float
+) -> tuple[float, float, float]:
+    """Variation of `_stress`: the Hessian of U times a variation of the chord's length and of theta_i."""
+    slope1, slope2 = bow_slopes(at.theta1, at.theta2)
+    dN = element.EA * (stretch / element.L + slope1 * dtheta1 + slope2 * dtheta2)
+    dm1, dm2 = end_moments(element.EI_per_L, dtheta1, dtheta2)
+    dslope1, dslope2 = bow_slopes(dtheta1, dtheta2)
+    dm1 += element.L * (dN * slope1 + N * dslope1)
+    dm2 += element.L * (dN * slope2 + N * dslope2)
+    return dN, dm1, dm2
+
+
+@njit(cache=True)
+def strain_energy(
+    chord: Array, direction1: Array, direction2: Array, ref: Reference, section: Section
+) -> Array:
+    """Strain energy U (ne,) in J; arguments as in `forces`."""
+    U = np.empty(len(chord))
+    for e in range(len(chord)):
+        element = _element(ref, section, e)
+        at = _corotate(chord[e], direction1[e], direction2[e])
+        phi1, phi2 = at.theta1 - element.theta1, at.theta2 - element.theta2
+        m1, m2 = end_moments(element.EI_per_L, phi1, phi2)
+        U[e] = 0.5 * (element.EA * element.L * _strain(element, at) ** 2 + m1 * phi1 + m2 * phi2)
+    return U
+
+
+@njit(cache=True)
+def _nodal_forces(at: Corotated, N: float, m1: float, m2: float) -> NodalForces:
+    """Nodal forces from the chord force N and the moments m_i conjugate to theta_i."""
+    return NodalForces((N, -(m1 + m2) / at.length), m1, m2)
+
+
+@njit(cache=True)
+def _put_forces(axis: Vec2, forces: NodalForces, out: Array) -> None:
+    """Write an element's forces, given along its frame, to `out` (6,) in the plane's axes."""
+    along, across = forces.force
+    p, z = axis[0] * along - axis[1] * across, axis[1] * along + axis[0] * across
+    out[0], out[1], out[2] = -p, -z, forces.moment1
+    out[3], out[4], out[5] = p, z, forces.moment2
+
+
+@njit(cache=True)
+def forces(chord: Array, direction1: Array, direction2: Array, ref: Reference, section: Section) -> Array:
+    """Internal forces f (ne, 6) for chords (ne, 2) and tangent directions (ne,) of both ends, rad."""
+    f = np.empty((len(chord), 6))
+    for e in range(len(chord)):
+        at = _corotate(chord[e], direction1[e], direction2[e])
+        N, m1, m2 = _stress(_element(ref, section, e), at)
+        _put_forces(at.axis, _nodal_forces(at, N, m1, m2), f[e])
+    return f
+
+
+@njit(cache=True)
+def configuration_variation(at: Corotated, force: Vec2, stretch: float, spin: float) -> Vec2:
+    """Variation of the force on node 2 at fixed N and m_i: the chord lengthens by `stretch` and spins."""
+    return -spin * force[1], spin * force[0] - stretch / at.length * force[1]
+
+
+@njit(cache=True)
+def _vary(
+    element: Element, at: Corotated, N: float, force: Vec2, u: Vec2, w1: float, w2: float
+) -> NodalForces:
+    """Variation of an element's forces when its nodes move by u = u2 - u1, in its axes, and turn by w_i."""
+    stretch, spin = u[0], u[1] / at.length
+    dN, dm1, dm2 = _stress_variation(element, at, N, stretch, w1 - spin, w2 - spin)
+    change = _nodal_forces(at, dN, dm1, dm2)
+    moved = configuration_variation(at, force, stretch, spin)
+    total = (change.force[0] + moved[0], change.force[1] + moved[1])
+    return NodalForces(total, change.moment1, change.moment2)
+
+
+@njit(cache=True)
+def _tangent(element: Element, at: Corotated, N: float, force: Vec2, K: Array) -> None:
+    """Write the element's tangent, column by column, to K (6, 6)."""
+    c, s = at.axis
+    still = (0.0, 0.0)
+    _put_forces(at.axis, _vary(element, at, N, force, (c, -s), 0.0, 0.0), K[:, 3])
+    _put_forces(at.axis, _vary(element, at, N, force, (s, c), 0.0, 0.0), K[:, 4])
+    _put_forces(at.axis, _vary(element, at, N, force, still, 1.0, 0.0), K[:, 2])
+    _put_forces(at.axis, _vary(element, at, N, force, still, 0.0, 1.0), K[:, 5])
+    for i in range(6):
+        K[i, 0], K[i, 1] = -K[i, 3], -K[i, 4]
+
+
+@njit(cache=True)
+def forces_and_tangent(
+    chord: Array, direction1: Array, direction2: Array, ref: Reference, section: Section
+) -> tuple[Array, Array]:
+    """Internal forces f (ne, 6) and their derivative K (ne, 6, 6) by displacements and angles."""
+    f, K = np.empty((len(chord), 6)), np.empty((len(chord), 6, 6))
+    for e in range(len(chord)):
+        element, at = _element(ref, section, e), _corotate(chord[e], direction1[e], direction2[e])
+        N, m1, m2 = _stress(element, at)
+        response = _nodal_forces(at, N, m1, m2)
+        _put_forces(at.axis, response, f[e])
+        _tangent(element, at, N, response.force, K[e])
+    return f, K
