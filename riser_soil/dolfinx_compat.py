@@ -1,0 +1,110 @@
+"""The only module that knows how versions of dolfinx differ (0.5, 0.9, 0.11).
+
+The soil needs three things of dolfinx: distribute a gmsh mesh over the ranks, number Lagrange nodes, and say
+where they are. Everything else works on the arrays returned here.
+"""
+
+from __future__ import annotations
+
+import importlib
+import logging
+import os
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import dolfinx
+import numpy as np
+from dolfinx import fem
+from mpi4py import MPI
+
+from riser_soil.arrays import Array, IntArray
+
+STALE_AFTER = 120.0  # s; the code compiled for one element takes a few seconds
+
+
+@dataclass(frozen=True, eq=False)
+class Nodes:
+    """Lagrange nodes of this rank's part of a mesh, owned ones first, then ghosts.
+
+    cells (nc, nn): local node numbers of the cells this rank owns, in basix' order (vertices first). points
+    (n, 3): m. number (n,): global node number; rank by rank, contiguous. owned: how many this rank owns.
+    """
+
+    comm: MPI.Intracomm
+    cells: IntArray
+    points: Array
+    number: IntArray
+    owned: int
+
+
+def mesh_from_gmsh(model: Any, comm: MPI.Intracomm) -> Any:
+    """dolfinx mesh of the gmsh model that lives on rank 0, distributed over the ranks (collective)."""
+    return _gmsh_module().model_to_mesh(model, comm, 0, gdim=3)[0]
+
+
+def lagrange_nodes(mesh: Any, degree: int, comm: MPI.Intracomm) -> Nodes:
+    """Nodes of the continuous Lagrange space of this degree (collective; compiles code the first time).
+
+    The arrays outlive the mesh; `comm` is the caller's, since the mesh frees its own copy.
+    """
+    _quiet_compiler_log()
+    _remove_stale_locks(comm)
+    space = _function_space(mesh, degree)
+    index_map = space.dofmap.index_map
+    owned_cells = mesh.topology.index_map(mesh.topology.dim).size_local
+    local = np.arange(index_map.size_local + index_map.num_ghosts, dtype=np.int32)
+    return Nodes(
+        comm,
+        _table(space.dofmap.list)[:owned_cells].astype(np.int64),
+        np.array(space.tabulate_dof_coordinates(), dtype=np.float64),
+        np.asarray(index_map.local_to_global(local), dtype=np.int64),
+        int(index_map.size_local),
+    )
+
+
+def jit_cache() -> Path:
+    """Folder in which dolfinx keeps its compiled code."""
+    root = os.environ.get("XDG_CACHE_HOME")
+    return (Path(root) if root else Path.home() / ".cache") / "fenics"
+
+
+def _gmsh_module() -> Any:
+    name = "gmshio" if hasattr(dolfinx.io, "gmshio") or _release() < (0, 10) else "gmsh"
+    return importlib.import_module(f"dolfinx.io.{name}")
+
+
+def _release() -> tuple[int, int]:
+    major, minor = dolfinx.__version__.split(".")[:2]
+    return int(major), int(minor)
+
+
+def _function_space(mesh: Any, degree: int) -> Any:
+    make = fem.functionspace if hasattr(fem, "functionspace") else fem.FunctionSpace
+    return make(mesh, ("Lagrange", degree))
+
+
+def _table(dofs: Any) -> Any:
+    """Dofs by cell as a 2-d array: an adjacency list in 0.5, an array since."""
+    return dofs.array.reshape(dofs.num_nodes, -1) if hasattr(dofs, "num_nodes") else np.asarray(dofs)
+
+
+def _quiet_compiler_log() -> None:
+    """The compiler of 0.5 logs every command at level INFO through the root logger."""
+    for handler in logging.getLogger().handlers:
+        handler.setLevel(max(handler.level, logging.WARNING))
+
+
+def _remove_stale_locks(comm: MPI.Intracomm) -> None:
+    """A process killed while it compiled leaves a lock on which every later run waits and then fails."""
+    if comm.rank == 0:
+        for source in jit_cache().glob("libffcx_*.c"):
+            if not source.with_suffix(".c.cached").exists() and _age(source) > STALE_AFTER:
+                source.unlink(missing_ok=True)
+    comm.barrier()
+
+
+def _age(file: Path) -> float:
+    """Seconds since the file was written; 0 if it has gone."""
+    return time.time() - file.stat().st_mtime if file.exists() else 0.0

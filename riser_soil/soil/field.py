@@ -1,0 +1,53 @@
+"""The soil's displacement field: its dofs, supports and committed displacement."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.arrays import Array, BoolArray, IntArray
+from riser_soil.part import State
+from riser_soil.soil.grid import Grid
+
+_DIRECTION = ("x", "y", "z")
+
+
+class SoilField:
+    """Field "soil": three displacements at every node of this rank, ghosts included.
+
+    The bottom is fixed, the block's upright sides slide on rollers (no normal displacement), the top is free.
+    total (size,): committed displacement since the geostatic start [m].
+    """
+
+    name = "soil"
+    space = "soil"
+
+    def __init__(self, grid: Grid) -> None:
+        nodes = grid.nodes
+        self.points = nodes.points
+        self.size = 3 * len(nodes.points)
+        self.offset = 0
+        self.global_index: IntArray = components(nodes.number)
+        self.owned: BoolArray = np.arange(self.size) < 3 * nodes.owned
+        self.prescribed: BoolArray = grid.supported(nodes.points).ravel()
+        self.total: Array = np.zeros(self.size)
+
+    def own(self, values: Array) -> Array:
+        """The field's slice of a local array."""
+        return values[self.offset : self.offset + self.size]
+
+    def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
+        for values in (u, v, a):
+            values[self.prescribed] = 0.0
+
+    def commit(self, state: State) -> None:
+        self.total += self.own(state.u)
+
+    def describe(self, entry: int) -> str:
+        node, direction = divmod(entry, 3)
+        x, y, z = self.points[node]
+        return f"soil node at ({x:.3g}, {y:.3g}, {z:.3g}) m, {_DIRECTION[direction]} displacement"
+
+
+def components(nodes: IntArray) -> IntArray:
+    """Numbers of the three components of each node: (..., n) to (..., 3n)."""
+    return (3 * nodes[..., None] + np.arange(3)).reshape(*nodes.shape[:-1], -1)

@@ -1,0 +1,60 @@
+"""The whole soil mesh on rank 0: for output, and for contact, which sees the top surface there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from riser_soil.arrays import Array, IntArray
+from riser_soil.soil.grid import Grid
+
+T = TypeVar("T", bound=np.generic)
+
+
+@dataclass(frozen=True, eq=False)
+class Gathered:
+    """Points (n, 3) [m] by global node number and cells (nc, nn), rank by rank; empty on the other ranks."""
+
+    points: Array
+    cells: IntArray
+
+
+def gather(grid: Grid) -> Gathered:
+    """Bring the mesh to rank 0 (collective)."""
+    nodes = grid.nodes
+    points = gather_rows(grid, nodes.points[: nodes.owned])
+    return Gathered(points, gather_rows(grid, nodes.number[nodes.cells]))
+
+
+def gather_rows(grid: Grid, rows: npt.NDArray[T]) -> npt.NDArray[T]:
+    """Concatenate the ranks' rows on rank 0, in the order of ranks; no rows elsewhere (collective)."""
+    pieces = grid.nodes.comm.gather(rows)
+    return rows[:0] if pieces is None else np.concatenate(pieces)
+
+
+def top_facets(grid: Grid, mesh: Gathered) -> IntArray:
+    """Boundary facets that look upwards (nf, nv): counter-clockwise from above, ordered as `Family.faces`."""
+    family = grid.family
+    faces = mesh.cells[:, np.array(family.faces)].reshape(-1, len(family.flip))
+    outer = _unshared(faces[:, : family.corners])
+    faces, cells = faces[outer], mesh.cells[outer // len(family.faces)]
+    outward = mesh.points[faces].mean(axis=1) - mesh.points[cells].mean(axis=1)
+    inside_out = np.einsum("fi,fi->f", _normal(mesh.points, faces), outward) < 0.0
+    faces[inside_out] = faces[inside_out][:, family.flip]
+    return faces[_normal(mesh.points, faces)[:, 2] > 0.01]
+
+
+def _unshared(corners: IntArray) -> IntArray:
+    """Rows that no other row repeats in whatever order."""
+    _, first, count = np.unique(np.sort(corners, axis=1), axis=0, return_index=True, return_counts=True)
+    return np.sort(first[count == 1])
+
+
+def _normal(points: Array, faces: IntArray) -> Array:
+    """Unit normal (nf, 3) from the first three corners."""
+    a, b, c = (points[faces[:, i]] for i in range(3))
+    normal = np.cross(b - a, c - a)
+    return normal / np.linalg.norm(normal, axis=1, keepdims=True)

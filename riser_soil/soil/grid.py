@@ -1,0 +1,148 @@
+"""The soil's distributed mesh, from a block's description or a user's gmsh file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+import gmsh
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil import dolfinx_compat
+from riser_soil.arrays import Array, BoolArray
+from riser_soil.dolfinx_compat import Nodes
+from riser_soil.errors import MeshError
+from riser_soil.soil.block import BlockSpec, make_block
+from riser_soil.soil.families import HEX8, TET10, Family
+
+T = TypeVar("T")
+
+_TETRAHEDRON, _HEXAHEDRON = 4, 5  # gmsh's numbers of the first-order cells
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """This rank's nodes and cells, their element family, and the corners of the whole mesh's box [m]."""
+
+    family: Family
+    nodes: Nodes
+    low: Array
+    high: Array
+
+    def supported(self, points: Array) -> BoolArray:
+        """Held directions (n, 3) of points: all on the bottom, the normal one on the box' sides."""
+        near = 1e-6 * float(np.max(self.high - self.low))
+        at_side = (points < self.low + near) | (points > self.high - near)
+        bottom = points[:, 2] < self.low[2] + near
+        held: BoolArray = np.column_stack((at_side[:, 0] | bottom, at_side[:, 1] | bottom, bottom))
+        return held
+
+
+def block_grid(comm: MPI.Intracomm, spec: BlockSpec) -> Grid:
+    """Mesh a plain block (collective)."""
+    return _grid(comm, lambda: make_block(spec))
+
+
+def file_grid(comm: MPI.Intracomm, path: Path) -> Grid:
+    """Read a gmsh .msh file of first-order tetrahedra or hexahedra (collective); MeshError if it won't do."""
+    return _grid(comm, lambda: _read(path))
+
+
+def on_all_ranks(comm: MPI.Intracomm, make: Callable[[], T]) -> T:
+    """The result of `make`, each rank its own; a MeshError of any rank is raised on all (collective)."""
+    result, failure = None, ""
+    try:
+        result = make()
+    except MeshError as err:
+        failure = str(err)
+    failures = [text for text in comm.allgather(failure) if text]
+    if failures or result is None:
+        raise MeshError(failures[0])
+    return result
+
+
+@contextmanager
+def silent_gmsh() -> Iterator[None]:
+    """A gmsh session that prints nothing and reads no settings of the user."""
+    gmsh.initialize(readConfigFiles=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        yield
+    finally:
+        gmsh.finalize()
+
+
+def _grid(comm: MPI.Intracomm, make: Callable[[], None]) -> Grid:
+    if comm.rank == 0:
+        with silent_gmsh():
+            return _distribute(comm, make)
+    return _distribute(comm, make)
+
+
+def _distribute(comm: MPI.Intracomm, make: Callable[[], None]) -> Grid:
+    """Make the model on rank 0; a failure there is raised on every rank, before the collective calls."""
+    hexahedra, failure = comm.bcast(_outcome(make) if comm.rank == 0 else None)
+    if failure:
+        raise MeshError(failure)
+    family = HEX8 if hexahedra else TET10
+    mesh = dolfinx_compat.mesh_from_gmsh(gmsh.model, comm)
+    nodes = dolfinx_compat.lagrange_nodes(mesh, family.degree, comm)
+    low = np.array([comm.allreduce(x, MPI.MIN) for x in nodes.points.min(axis=0, initial=np.inf)])
+    high = np.array([comm.allreduce(x, MPI.MAX) for x in nodes.points.max(axis=0, initial=-np.inf)])
+    grid = Grid(family, nodes, low, high)
+    _check_box(grid)
+    return grid
+
+
+def _check_box(grid: Grid) -> None:
+    """Bottom and upright sides must be planes with nodes on them, or nothing would hold the soil."""
+    near = 1e-6 * float(np.max(grid.high - grid.low))
+    mine = grid.nodes.points[: grid.nodes.owned]
+    planes = [(axis, end[axis]) for axis in (0, 1) for end in (grid.low, grid.high)] + [(2, grid.low[2])]
+    for axis, at in planes:
+        count = grid.nodes.comm.allreduce(int(np.count_nonzero(np.abs(mine[:, axis] - at) < near)))
+        if count < 3:
+            raise MeshError(
+                f"soil mesh: only {count} nodes on the plane {'xyz'[axis]} = {at:.4g} m; "
+                "the bottom must be level and the upright sides plane and square to x and y"
+            )
+
+
+def _outcome(make: Callable[[], None]) -> tuple[bool, str]:
+    """Whether the cells are hexahedra, and why the model can't be used ("" if it can)."""
+    try:
+        make()
+        return _cell_type() == _HEXAHEDRON, ""
+    except MeshError as err:
+        return False, str(err)
+    except Exception as err:  # gmsh raises nothing more specific, and the other ranks wait
+        return False, f"soil mesh: gmsh failed ({err})"
+
+
+def _cell_type() -> int:
+    types = [int(t) for t in gmsh.model.mesh.getElementTypes(3)]
+    if len(types) == 1 and types[0] in (_TETRAHEDRON, _HEXAHEDRON):
+        return types[0]
+    found = ", ".join(gmsh.model.mesh.getElementProperties(t)[0] for t in types) or "no volume cells"
+    raise MeshError(
+        f"soil mesh: found {found}; it must hold first-order tetrahedra only or hexahedra only "
+        "(in gmsh: mesh in 3 dimensions, element order 1)"
+    )
+
+
+def _read(path: Path) -> None:
+    if not path.is_file():
+        raise MeshError(f"soil mesh {path}: there is no such file")
+    try:
+        gmsh.merge(str(path))
+    except Exception as err:  # gmsh raises nothing more specific
+        raise MeshError(f"soil mesh {path}: gmsh can't read it ({err}); save it as .msh") from err
+    volumes = [tag for _, tag in gmsh.model.getEntities(3)]
+    if not volumes:
+        raise MeshError(f"soil mesh {path}: no volume in it; save a 3-dimensional mesh as .msh")
+    gmsh.model.removePhysicalGroups()
+    gmsh.model.addPhysicalGroup(3, volumes)

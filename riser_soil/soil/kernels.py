@@ -1,0 +1,111 @@
+"""Batched element integration: strain, internal force and stiffness from gradients (see element.py).
+
+Stress and strain in the components of mandel.py: xx, yy, zz, √2 xy, √2 xz, √2 yz.
+nc cells, nq quadrature points, nn nodes a cell; `full` (nc, nq, nn, 3), `volume` (nc, 1 or nq, nn, 3).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from riser_soil.arrays import Array, IntArray
+
+_SHEAR = 1.0 / np.sqrt(2.0)
+
+
+@njit(cache=True)
+def strain(full: Array, volume: Array, cells: IntArray, u: Array, out: Array) -> None:
+    """Strain (nc, nq, 6) of the nodal displacements u (3n,), written to out."""
+    nc, nq, nn, _ = full.shape
+    step = 0 if volume.shape[1] == 1 else 1
+    for c in range(nc):
+        for q in range(nq):
+            xx = yy = zz = xy = xz = yz = dilatation = 0.0
+            for a in range(nn):
+                i = 3 * cells[c, a]
+                ux, uy, uz = u[i], u[i + 1], u[i + 2]
+                gx, gy, gz = full[c, q, a, 0], full[c, q, a, 1], full[c, q, a, 2]
+                h = volume[c, q * step, a]
+                xx += ux * gx
+                yy += uy * gy
+                zz += uz * gz
+                xy += ux * gy + uy * gx
+                xz += ux * gz + uz * gx
+                yz += uy * gz + uz * gy
+                dilatation += ux * h[0] + uy * h[1] + uz * h[2]
+            extra = (dilatation - xx - yy - zz) / 3.0
+            e = out[c, q]
+            e[0], e[1], e[2] = xx + extra, yy + extra, zz + extra
+            e[3], e[4], e[5] = _SHEAR * xy, _SHEAR * xz, _SHEAR * yz
+
+
+@njit(cache=True)
+def add_internal_force(
+    full: Array, volume: Array, weights: Array, cells: IntArray, stress: Array, out: Array
+) -> None:
+    """Add the nodal forces ∫ B̄ᵀσ [N] of the stress (nc, nq, 6) [Pa] to out (3n,)."""
+    nc, nq, nn, _ = full.shape
+    step = 0 if volume.shape[1] == 1 else 1
+    for c in range(nc):
+        for q in range(nq):
+            s, w = stress[c, q], weights[c, q]
+            pressure = (s[0] + s[1] + s[2]) / 3.0
+            xx, yy, zz = w * (s[0] - pressure), w * (s[1] - pressure), w * (s[2] - pressure)
+            xy, xz, yz = w * _SHEAR * s[3], w * _SHEAR * s[4], w * _SHEAR * s[5]
+            pressure *= w
+            for a in range(nn):
+                i = 3 * cells[c, a]
+                gx, gy, gz = full[c, q, a, 0], full[c, q, a, 1], full[c, q, a, 2]
+                h = volume[c, q * step, a]
+                out[i] += xx * gx + xy * gy + xz * gz + pressure * h[0]
+                out[i + 1] += xy * gx + yy * gy + yz * gz + pressure * h[1]
+                out[i + 2] += xz * gx + yz * gy + zz * gz + pressure * h[2]
+
+
+@njit(cache=True)
+def add_stiffness(full: Array, volume: Array, weights: Array, moduli: Array, out: Array) -> None:
+    """Add the cell matrices ∫ B̄ᵀ C B̄ [N/m] of the moduli C (nc, nq, 6, 6) [Pa] to out (nc, 3nn, 3nn)."""
+    nc, nq, nn, _ = full.shape
+    step = 0 if volume.shape[1] == 1 else 1
+    B = np.zeros((6, 3 * nn))
+    CB = np.zeros((6, 3 * nn))
+    for c in range(nc):
+        K = out[c]
+        for q in range(nq):
+            _operator(full[c, q], volume[c, q * step], B)
+            _product(weights[c, q], moduli[c, q], B, CB)
+            for i in range(3 * nn):
+                row = K[i]
+                for k in range(6):
+                    factor = B[k, i]
+                    if factor != 0.0:
+                        for j in range(3 * nn):
+                            row[j] += factor * CB[k, j]
+
+
+@njit(cache=True)
+def _operator(full: Array, volume: Array, B: Array) -> None:
+    """B̄ (6, 3nn) of one quadrature point."""
+    for a in range(full.shape[0]):
+        for i in range(3):
+            column = 3 * a + i
+            extra = (volume[a, i] - full[a, i]) / 3.0
+            B[0, column] = B[1, column] = B[2, column] = extra
+            B[i, column] += full[a, i]
+        gx, gy, gz = _SHEAR * full[a, 0], _SHEAR * full[a, 1], _SHEAR * full[a, 2]
+        B[3, 3 * a], B[3, 3 * a + 1] = gy, gx
+        B[4, 3 * a], B[4, 3 * a + 2] = gz, gx
+        B[5, 3 * a + 1], B[5, 3 * a + 2] = gz, gy
+
+
+@njit(cache=True)
+def _product(weight: float, C: Array, B: Array, CB: Array) -> None:
+    for k in range(6):
+        row = CB[k]
+        row[:] = 0.0
+        for m in range(6):
+            factor = weight * C[k, m]
+            if factor != 0.0:
+                for j in range(row.shape[0]):
+                    row[j] += factor * B[m, j]

@@ -1,0 +1,56 @@
+"""Symmetric tensors as vectors of six: xx, yy, zz, √2 xy, √2 xz, √2 yz (Mandel); products are dot products.
+
+Tension positive. Arrays have the components last; elastic constants broadcast against the leading axes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.arrays import Array
+
+UNIT: Array = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+DEVIATOR: Array = np.eye(6) - np.outer(UNIT, UNIT) / 3.0  # projector on the deviatoric part
+
+
+def bulk_modulus(E: Array, nu: float) -> Array:
+    """K = E / 3(1 − 2ν) [Pa]."""
+    return E / (3.0 * (1.0 - 2.0 * nu))
+
+
+def shear_modulus(E: Array, nu: float) -> Array:
+    """G = E / 2(1 + ν) [Pa]."""
+    return E / (2.0 * (1.0 + nu))
+
+
+def mean(a: Array) -> Array:
+    """A third of the trace (...,)."""
+    result: Array = (a[..., 0] + a[..., 1] + a[..., 2]) / 3.0
+    return result
+
+
+def deviator(a: Array) -> Array:
+    """Deviatoric part (..., 6)."""
+    return a - mean(a)[..., None] * UNIT
+
+
+def stiffness(bulk: Array, shear: Array) -> Array:
+    """Isotropic elastic moduli K 1⊗1 + 2G P (n, 6, 6) [Pa] of bulk (n,) and shear modulus (n,)."""
+    result: Array = bulk[:, None, None] * np.outer(UNIT, UNIT) + (2.0 * shear)[:, None, None] * DEVIATOR
+    return result
+
+
+def elastic_stress(bulk: Array, shear: Array, strain: Array) -> Array:
+    """Stress (n, 6) [Pa] of an elastic strain (n, 6)."""
+    return 3.0 * (bulk * mean(strain))[:, None] * UNIT + (2.0 * shear)[:, None] * deviator(strain)
+
+
+def elastic_strain(bulk: Array, shear: Array, stress: Array) -> Array:
+    """Elastic strain (n, 6) of a stress (n, 6) [Pa]."""
+    return (mean(stress) / (3.0 * bulk))[:, None] * UNIT + deviator(stress) / (2.0 * shear)[:, None]
+
+
+def von_mises(stress: Array) -> Array:
+    """Equivalent stress q = √(3/2 s:s) [Pa] (...,); |σ| in uniaxial tension, √3|τ| in simple shear."""
+    s = deviator(stress)
+    return np.sqrt(1.5 * np.einsum("...i,...i->...", s, s))

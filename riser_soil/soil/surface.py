@@ -1,0 +1,48 @@
+"""The soil's top surface as contact sees it: all of it on rank 0, none elsewhere."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.arrays import Array, BoolArray, IntArray
+from riser_soil.part import State
+from riser_soil.soil.field import components
+from riser_soil.soil.gathered import Gathered, top_facets
+from riser_soil.soil.grid import Grid
+
+
+class Surface:
+    """Field "surface": views, on rank 0, of the soil's dofs at the top; it owns none.
+
+    kind: "quad4" or "tri6". points (np, 3) [m]: undeformed. facets (nf, nv): indexes into points,
+    counter-clockwise from above, for tri6 the corners and then the midpoints of the sides 12, 23, 31.
+    committed (np, 3) [m]: displacement since the geostatic start at the last accepted step.
+    """
+
+    name = "surface"
+    space = "soil"
+
+    def __init__(self, grid: Grid, mesh: Gathered) -> None:
+        facets = top_facets(grid, mesh)
+        used = np.unique(facets)
+        self.kind = grid.family.facet_kind
+        self.facets: IntArray = np.searchsorted(used, facets)
+        self.points: Array = mesh.points[used]
+        self.committed: Array = np.zeros_like(self.points)
+        self.size = self.points.size
+        self.offset = 0
+        self.global_index: IntArray = components(used)
+        self.owned: BoolArray = np.zeros(self.size, dtype=bool)
+        self.prescribed: BoolArray = grid.supported(self.points).ravel()
+
+    def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
+        for values in (u, v, a):
+            values[self.prescribed] = 0.0
+
+    def commit(self, state: State) -> None:
+        self.committed += state.u[self.offset : self.offset + self.size].reshape(-1, 3)
+
+    def describe(self, entry: int) -> str:
+        node, direction = divmod(entry, 3)
+        x, y, _ = self.points[node]
+        return f"soil surface at ({x:.3g}, {y:.3g}) m, {'xyz'[direction]} displacement"
