@@ -1,0 +1,90 @@
+"""The soil's surface as a ground, and the points by which the riser stands on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from riser_soil.arrays import Array, BoolArray, IntArray
+from riser_soil.contact.pairing import Pairing
+from riser_soil.part import State
+
+
+class SoilSurface(Protocol):
+    """The top of the soil: points (np, 3) [m], facets (nf, 4 or 6) into them, and the displacement (np, 3)
+    accepted so far.
+
+    Its dofs, x, y, z of each point, stand in the local arrays from `offset` on.
+    """
+
+    offset: int
+    size: int
+    points: Array
+    facets: IntArray
+    committed: Array
+
+
+@dataclass(frozen=True, eq=False)
+class ContactPoints:
+    """Points fixed to nodes that carry the nodes' contact forces.
+
+    node (n,). offset (n, 2): horizontal distance from the node [m]. length (n,): riser length that a point
+    stands for [m].
+    """
+
+    node: IntArray
+    offset: Array
+    length: Array
+
+    @classmethod
+    def of_nodes(cls, tributary: Array, footprint: float, along: Array) -> ContactPoints:
+        """One point a node where footprint = 0, else four at ±footprint along the horizontal unit vector and
+        across.
+        """
+        across = np.array([-along[1], along[0]])
+        corners = np.array([-along - across, along - across, -along + across, along + across])
+        corners = footprint * corners if footprint > 0.0 else np.zeros((1, 2))
+        node = np.repeat(np.arange(len(tributary)), len(corners))
+        return cls(node, np.tile(corners, (len(tributary), 1)), tributary[node] / len(corners))
+
+    def of_chosen(self, nodes: BoolArray) -> ContactPoints:
+        """The points of those nodes (nn,) that are marked."""
+        chosen = nodes[self.node]
+        return ContactPoints(self.node[chosen], self.offset[chosen], self.length[chosen])
+
+
+class Soil:
+    """The deformed surface: what lies where, and the dofs behind it."""
+
+    def __init__(self, surface: SoilSurface) -> None:
+        self._surface = surface
+        self._pairing = Pairing(surface.points, surface.facets)
+        self.facets = np.ascontiguousarray(surface.facets, dtype=np.int64)
+
+    @property
+    def end(self) -> int:
+        """First local dof number behind the surface's."""
+        return self._surface.offset + self._surface.size
+
+    @property
+    def facet_size(self) -> float:
+        """Median over the facets of their largest horizontal extent [m]."""
+        at = self._surface.points[self.facets][:, :, :2]
+        return float(np.median((at.max(axis=1) - at.min(axis=1)).max(axis=1)))
+
+    def deformed(self, state: State) -> Array:
+        """Points (np, 3) of the surface at a state [m]."""
+        s = self._surface
+        u = state.u[s.offset : s.offset + s.size].reshape(-1, 3)
+        return np.asarray(s.points + s.committed + u)
+
+    def locate(self, xy: Array, points: Array) -> tuple[IntArray, Array]:
+        """Facet (n,), −1 outside, and place on it (n, 2) below positions xy (n, 2), at deformed points."""
+        return self._pairing.locate(xy, points)
+
+    def facet_dofs(self, facet: IntArray) -> IntArray:
+        """Local dof numbers (n, 3·nv) of facets, node by node."""
+        dofs = self._surface.offset + 3 * self.facets[facet][:, :, None] + np.arange(3)
+        return dofs.reshape(len(facet), 3 * self.facets.shape[1])

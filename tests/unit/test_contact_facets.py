@@ -1,0 +1,172 @@
+"""Shape functions, the map's inverse, pairing, and the gap's derivatives on deformed facets."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from riser_soil.arrays import Array, IntArray
+from riser_soil.contact.facets import inside, shape
+from riser_soil.contact.gap import gap_forms, heights, penalty_hessian
+from riser_soil.contact.pairing import Pairing, invert
+
+CORNERS = {
+    4: np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]], dtype=float),
+    6: np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]]),
+}
+PLACES = {4: [(-0.3, 0.7), (0.9, -0.95)], 6: [(0.2, 0.3), (0.05, 0.9)]}
+KINDS = pytest.mark.parametrize("nv", [4, 6])
+
+
+def deformed_facet(nv: int) -> Array:
+    """One facet, distorted, tilted, and (six nodes) curved, in all directions."""
+    rng = np.random.default_rng(3)
+    flat = np.column_stack([CORNERS[nv] @ [[0.5, 0.1], [-0.05, 0.4]], np.zeros(nv)])
+    return np.asarray(flat + 0.04 * rng.standard_normal((nv, 3)))
+
+
+@KINDS
+def test_functions_interpolate(nv: int) -> None:
+    values = np.array([shape(nv, x, y)[0] for x, y in CORNERS[nv]])
+    np.testing.assert_allclose(values, np.eye(nv), atol=1e-15)
+
+
+@KINDS
+@pytest.mark.parametrize("which", [0, 1])
+def test_functions_sum_to_one_and_their_derivatives_agree(nv: int, which: int) -> None:
+    x, h = np.array(PLACES[nv][which]), 1e-5
+    N, dN, ddN = shape(nv, *x)
+    assert N.sum() == pytest.approx(1.0, abs=1e-15)
+    assert abs(dN.sum(axis=0)).max() < 1e-14
+    for a, step in enumerate(h * np.eye(2)):
+        up, down = shape(nv, *(x + step)), shape(nv, *(x - step))
+        np.testing.assert_allclose(dN[:, a], (up[0] - down[0]) / (2 * h), atol=1e-10)
+        np.testing.assert_allclose(ddN[:, :, a], (up[1] - down[1]) / (2 * h), atol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("nv", "function"),
+    [
+        (4, lambda x, y: 1 + 2 * x - y + 3 * x * y),
+        (6, lambda x, y: 1 + x - y + x * x - 2 * x * y + 4 * y * y),
+    ],
+)
+def test_facets_hold_their_polynomials(nv: int, function: Callable[[Array, Array], Array]) -> None:
+    at_nodes = function(*CORNERS[nv].T)
+    for x, y in PLACES[nv]:
+        assert shape(nv, x, y)[0] @ at_nodes == pytest.approx(function(x, y), abs=1e-14)
+
+
+@KINDS
+def test_map_is_inverted(nv: int) -> None:
+    points, nodes = deformed_facet(nv), np.arange(nv)
+    for place in PLACES[nv]:
+        xy = shape(nv, *place)[0] @ points[:, :2]
+        converged, *found = invert(xy, points, nodes)
+        assert converged
+        np.testing.assert_allclose(found, place, atol=1e-13)
+
+
+def test_degenerate_facet_is_not_inverted() -> None:
+    assert not invert(np.array([0.5, 0.5]), np.zeros((4, 3)), np.arange(4))[0]
+
+
+@KINDS
+def test_inside(nv: int) -> None:
+    assert all(inside(nv, x, y, 1e-9) for x, y in (*PLACES[nv], *CORNERS[nv]))
+    assert not any(inside(nv, x, y, 1e-9) for x, y in [(1.1, 0.0), (0.0, 1.1), (-1.1, 0.0), (0.0, -1.1)])
+
+
+def grid(nv: int, nx: int = 5, ny: int = 4) -> tuple[Array, IntArray]:
+    """Surface over [0, nx/2] × [0, ny/2] of quad4, or of two tri6 to the square; z = 0."""
+    n = 1 if nv == 4 else 2
+    x, y = np.meshgrid(np.linspace(0, nx / 2, n * nx + 1), np.linspace(0, ny / 2, n * ny + 1), indexing="ij")
+    points = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
+    number = np.arange(x.size).reshape(x.shape)
+    cells = [number[n * i : n * i + n + 1, n * j : n * j + n + 1] for i in range(nx) for j in range(ny)]
+    if nv == 4:
+        return points, np.array([[c[0, 0], c[1, 0], c[1, 1], c[0, 1]] for c in cells])
+    lower = [[c[0, 0], c[2, 0], c[2, 2], c[1, 0], c[2, 1], c[1, 1]] for c in cells]
+    upper = [[c[0, 0], c[2, 2], c[0, 2], c[1, 1], c[1, 2], c[0, 1]] for c in cells]
+    return points, np.array(lower + upper)
+
+
+@KINDS
+def test_every_point_of_a_deformed_surface_finds_its_facet(nv: int) -> None:
+    points, facets = grid(nv)
+    rng = np.random.default_rng(0)
+    deformed = points + 0.02 * rng.standard_normal(points.shape)
+    place = np.array([0.2, 0.3]) if nv == 6 else np.array([-0.4, 0.8])
+    xy = shape(nv, *place)[0] @ deformed[facets]
+    facet, xi = Pairing(points, facets).locate(xy[:, :2], deformed)
+    np.testing.assert_array_equal(facet, np.arange(len(facets)))
+    np.testing.assert_allclose(xi, np.tile(place, (len(facets), 1)), atol=1e-12)
+    np.testing.assert_allclose(heights(facet, xi, facets, deformed), xy[:, 2], atol=1e-14)
+
+
+@KINDS
+def test_point_on_a_side_belongs_to_the_lowest_facet(nv: int) -> None:
+    points, facets = grid(nv)
+    shared, step = np.array([[0.5, 0.25], [1.0, 1.0], [1.5, 0.6]]), 1e-13
+    for xy in (shared, shared + step, shared - step):
+        facet, _ = Pairing(points, facets).locate(xy, points)
+        around = [np.array([0, 4]), np.array([5, 6, 9, 10]), np.array([9, 13])]
+        if nv == 4:
+            np.testing.assert_array_equal(facet, [cells.min() for cells in around])
+        again, _ = Pairing(points, facets[::-1]).locate(xy, points)
+        assert (facet <= len(facets) - 1 - again).all()
+
+
+@KINDS
+def test_no_facet_outside_the_surface(nv: int) -> None:
+    points, facets = grid(nv)
+    xy = np.array([[-1e-3, 0.3], [2.501, 0.3], [1.0, 2.001], [40.0, 0.0]])
+    facet, _ = Pairing(points, facets).locate(xy, points)
+    np.testing.assert_array_equal(facet, -1)
+    np.testing.assert_array_equal(heights(facet, np.zeros((4, 2)), facets, points), -np.inf)
+
+
+def test_far_facet_is_found_where_the_nearest_centres_mislead() -> None:
+    """A long facet beside many small ones: the tree proposes only small ones."""
+    x = np.append(np.linspace(0.0, 0.2, 21), 10.0)
+    points = np.array([[a, b, 0.0] for a in x for b in (0.0, 1.0)])
+    facets = np.array([[2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1] for i in range(21)])
+    facet, _ = Pairing(points, facets).locate(np.array([[0.25, 0.5]]), points)
+    assert facet[0] == 20
+
+
+def gap(q: Array, nv: int) -> float:
+    """Gap of one point over one facet; q holds the point, then the facet's nodes."""
+    at = np.ascontiguousarray(q.reshape(-1, 3))
+    _, x, y = invert(at[0, :2], at[1:], np.arange(nv))
+    return float(at[0, 2] - shape(nv, x, y)[0] @ at[1:, 2])
+
+
+def configuration(nv: int) -> tuple[Array, Array, Array, IntArray]:
+    """q, (ξ, η) (1, 2), points and facets of a point over a deformed facet."""
+    points, place = deformed_facet(nv), np.array([PLACES[nv][0]])
+    above = shape(nv, *place[0])[0] @ points + [0.0, 0.0, 0.01]
+    return np.concatenate([above, points.ravel()]), place, points, np.arange(nv)[None]
+
+
+@KINDS
+def test_gap_forms_are_derivatives(nv: int) -> None:
+    q, place, points, facets = configuration(nv)
+    forms, H = gap_forms(np.array([0]), place, facets, points)
+    h, steps = 1e-4, np.eye(len(q))
+    gradient = [
+        (8 * (gap(q + h * e, nv) - gap(q - h * e, nv)) - gap(q + 2 * h * e, nv) + gap(q - 2 * h * e, nv))
+        / (12 * h)
+        for e in steps
+    ]
+    np.testing.assert_allclose(forms[0, 0], gradient, atol=1e-10)
+    np.testing.assert_allclose(forms[0, 0].reshape(-1, 3).sum(axis=0), 0.0, atol=1e-15)
+    second = np.array([[_mixed(q, a, b, nv) for a in 1e-3 * steps] for b in 1e-3 * steps]) / 1e-6
+    exact = -penalty_hessian(forms, H, np.ones(1), np.zeros(1))[0]
+    np.testing.assert_allclose(exact, second, atol=1e-4 * abs(second).max())
+    without_curvature = -penalty_hessian(forms, 0.0 * H, np.ones(1), np.zeros(1))[0]
+    assert abs(without_curvature - second).max() > 1e-2 * abs(second).max()
+
+
+def _mixed(q: Array, a: Array, b: Array, nv: int) -> float:
+    return (gap(q + a + b, nv) - gap(q + a - b, nv) - gap(q - a + b, nv) + gap(q - a - b, nv)) / 4
