@@ -65,7 +65,7 @@ class Clock:
 class Recorder:
     """Owner of everything in the run's folder. Use `open`, in a `with` statement, and `finish` at the end.
 
-    A run that leaves the `with` statement without `finish`, or is killed, keeps its results, marked unfinished.
+    A run that leaves the `with` statement without `finish`, or is killed, keeps its results as unfinished.
     """
 
     def __init__(
@@ -105,7 +105,7 @@ class Recorder:
     ) -> Self:
         """Takes the folder over and lays the files out.
 
-        arc: (nn,) m. scene_text: the resolved scene, kept as scene.yaml. fields: names of FIELDS; None for all.
+        arc: (nn,) m. scene_text: the resolved scene, kept as scene.yaml. fields: of FIELDS; None for all.
         Raises SceneError for an unknown field and for a finished run's folder without `force`.
         """
         wanted = _check_fields(FIELDS if fields is None else fields)

@@ -17,7 +17,7 @@ def print_summary(
 ) -> None:
     """Prints one table of results for each stage, and the seconds by part.
 
-    summary: what goes into summary.json. settlement: m, deepest soil settlement at the end; None without soil.
+    summary: what goes into summary.json. settlement: m, deepest of the soil at the end; None without soil.
     """
     console = console or Console()
     for stage in summary["stages"]:

@@ -34,7 +34,7 @@ _PLACES: tuple[tuple[tuple[str, ...], int], ...] = (
 
 
 def angle_deg(tangent: Array) -> float:
-    """Angle of a tangent (3,) from the horizontal [deg]; positive where the riser rises with the arc length."""
+    """Angle of a tangent (3,) from the horizontal [deg]; positive where the riser rises with its arc."""
     return math.degrees(math.atan2(tangent[2], math.hypot(tangent[0], tangent[1])))
 
 

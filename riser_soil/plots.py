@@ -1,0 +1,243 @@
+"""Pictures of a run, drawn off screen from the files in its folder."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pyvista as pv
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
+
+from riser_soil.arrays import Array
+from riser_soil.errors import ResultsError
+from riser_soil.folder import SCENE
+from riser_soil.results import Run, SoilFrame
+
+_SIZE = (1600, 900)
+_CELL_TYPES = {4: pv.CellType.TETRA, 8: pv.CellType.HEXAHEDRON, 10: pv.CellType.QUADRATIC_TETRA}
+_MOMENT = "bending moment [kN m]"
+_STRESS = "von Mises stress [kPa]"
+# Unless told, the soil's largest displacement is drawn as about this share of the soil's depth.
+_VISIBLE_SHARE = 0.2
+_UP = np.array([0.0, 0.0, 1.0])
+_MOMENT_COLOURS, _STRESS_COLOURS = "viridis", "YlOrBr"
+
+
+@dataclass(frozen=True, eq=False)
+class _Still:
+    """What is drawn of one instant: the axis (nn, 3) m, the moment (nn,) N.m, and the touchdown point (3,) m.
+
+    Where nothing touches, the riser's lowest point stands in for the touchdown point, and its arc is nan.
+    """
+
+    title: str
+    time: float
+    position: Array
+    moment: Array
+    radius: float
+    touchdown: Array
+    touchdown_arc: float
+    soil: pv.UnstructuredGrid | None
+
+
+def picture(folder: Path | str, png: Path | str, magnify: float | None = None) -> Path:
+    """Draws the last recorded instant: the touchdown zone from close by, and the whole riser beside it.
+
+    The riser is coloured by bending moment, the soil by von Mises stress. The soil is cut open along the riser,
+    and its displacement is drawn `magnify` times (None: a round factor that makes it visible); the riser sinks
+    with it.
+    Raises ResultsError when nothing was recorded.
+    """
+    still = _read(Run(folder))
+    factor = _factor(still.soil) if magnify is None else magnify
+    # VTK tries a display first and warns when there is none, although it then draws without.
+    with pv.vtk_verbosity("error"):
+        plotter = pv.Plotter(
+            off_screen=True, window_size=list(_SIZE), shape=(1, 2), col_weights=[3, 1], border=False
+        )
+        plotter.set_background("white")
+        plotter.subplot(0, 0)
+        _draw_close(plotter, still, factor)
+        plotter.subplot(0, 1)
+        _draw_whole(plotter, still)
+        plotter.screenshot(str(png))
+        plotter.close()
+    return Path(png)
+
+
+def _read(run: Run) -> _Still:
+    if run.time.size == 0:
+        raise ResultsError(f"{run.folder}: nothing was recorded, so there is nothing to draw")
+    frame = run.soil_frame() if run.has_soil and run.soil_times.size else None
+    at = -1 if frame is None else int(np.abs(run.time - frame.time).argmin())
+    position, arc = run["position"][at], float(run["touchdown_arc"][at])
+    return _Still(
+        title=run.summary["title"],
+        time=float(run.time[at]),
+        position=position,
+        moment=run["bending_moment"][at],
+        radius=_radius(run),
+        touchdown=_touchdown(arc, run.arc, position),
+        touchdown_arc=arc,
+        soil=None if frame is None else _grid(frame),
+    )
+
+
+def _radius(run: Run) -> float:
+    """m, half the largest outer diameter in the scene; a thin line's where the scene cannot be read."""
+    try:
+        scene = YAML(typ="safe").load((run.folder / SCENE).read_text(encoding="utf-8"))
+        return 0.5 * max(float(line["outer_diameter"]) for line in scene["line_types"].values())
+    except (OSError, YAMLError, KeyError, TypeError, AttributeError, ValueError):
+        return 1e-3 * float(run.arc[-1])
+
+
+def _touchdown(arc_length: float, arc: Array, position: Array) -> Array:
+    if math.isnan(arc_length):
+        return position[position[:, 2].argmin()]
+    return np.array([np.interp(arc_length, arc, position[:, i]) for i in range(3)])
+
+
+def _grid(frame: SoilFrame) -> pv.UnstructuredGrid:
+    grid = pv.UnstructuredGrid({_CELL_TYPES[frame.cells.shape[1]]: frame.cells}, frame.points)
+    grid.point_data["displacement"] = frame.fields["displacement"]
+    grid.cell_data[_STRESS] = 1e-3 * frame.fields["von_mises_stress"]
+    return grid
+
+
+def _factor(soil: pv.UnstructuredGrid | None) -> float:
+    """A round factor (1, 2, 5, 10, ...) that makes the largest displacement visible."""
+    if soil is None:
+        return 1.0
+    largest = float(np.linalg.norm(soil.point_data["displacement"], axis=1).max())
+    depth = soil.bounds[5] - soil.bounds[4]
+    wanted = _VISIBLE_SHARE * depth / largest if largest > 0.0 else 1.0
+    decade = 10.0 ** math.floor(math.log10(max(1.0, wanted)))
+    return decade * max(m for m in (1.0, 2.0, 5.0) if m * decade <= max(1.0, wanted))
+
+
+def _along(position: Array) -> Array:
+    """Horizontal unit vector from the start to the end; x where they lie above each other."""
+    chord = (position[-1] - position[0]) * [1.0, 1.0, 0.0]
+    length = np.linalg.norm(chord)
+    return chord / length if length > 0.0 else np.array([1.0, 0.0, 0.0])
+
+
+def _draw_close(plotter: pv.Plotter, still: _Still, factor: float) -> None:
+    along = _along(still.position)
+    side = np.cross(_UP, along)
+    if still.soil is None:
+        _add_tube(plotter, still.position, still)
+    else:
+        opened = still.soil.clip(normal=-side, origin=still.touchdown)
+        _add_soil(plotter, opened.warp_by_vector("displacement", factor=factor))
+        _add_tube(plotter, still.position + (factor - 1.0) * _sunk(still.soil, still.position), still)
+    plotter.add_text(_caption(still, factor), position="upper_left", font_size=12, color="black")
+    if not math.isnan(still.touchdown_arc):
+        _mark(
+            plotter,
+            still.touchdown + 4.0 * still.radius * _UP,
+            f"touchdown at arc {still.touchdown_arc:.4g} m",
+        )
+    reach = _reach(still)
+    plotter.camera.focal_point = still.touchdown + 0.05 * reach * _UP
+    plotter.camera.position = still.touchdown + reach * (0.6 * _UP - 1.2 * side - 0.2 * along)
+    plotter.camera.up = _UP
+    plotter.reset_camera_clipping_range()
+
+
+def _mark(plotter: pv.Plotter, where: Array, text: str) -> None:
+    plotter.add_point_labels(
+        [where], [text], font_size=18, text_color="black", shape=None, show_points=False, always_visible=True
+    )
+
+
+def _caption(still: _Still, factor: float) -> str:
+    words = f"{still.title}\nt = {still.time:.4g} s"
+    if still.soil is None:
+        return words
+    return f"{words}\nsoil cut open along the riser; its deformation is drawn \u00d7 {factor:g}"
+
+
+def _add_soil(plotter: pv.Plotter, soil: pv.UnstructuredGrid) -> None:
+    plotter.add_mesh(
+        soil,
+        scalars=_STRESS,
+        cmap=_STRESS_COLOURS,
+        clim=(0.0, _top(soil.cell_data[_STRESS])),
+        show_edges=True,
+        edge_opacity=0.25,
+        ambient=0.55,
+        diffuse=0.5,
+        scalar_bar_args=_bar(_STRESS, 0.55),
+    )
+
+
+def _sunk(soil: pv.UnstructuredGrid, position: Array) -> Array:
+    """The soil's displacement (nn, 3) m under each node of the riser; 0 beside the block."""
+    inside = soil.bounds[5] - 1e-6 * soil.length
+    below = pv.PolyData(np.column_stack([position[:, :2], np.full(len(position), inside)]))
+    return np.asarray(below.sample(soil).point_data["displacement"])
+
+
+def _reach(still: _Still) -> float:
+    """m, what the close view shows from left to right, roughly."""
+    if still.soil is None:
+        return 0.2 * float(np.ptp(still.position, axis=0).max())
+    x0, x1, y0, y1, _, _ = still.soil.bounds
+    return 0.4 * max(x1 - x0, y1 - y0)
+
+
+def _add_tube(plotter: pv.Plotter, position: Array, still: _Still) -> None:
+    plotter.add_mesh(
+        _tube(position, still.moment, still.radius),
+        scalars=_MOMENT,
+        cmap=_MOMENT_COLOURS,
+        clim=(0.0, _top(1e-3 * still.moment)),
+        smooth_shading=True,
+        scalar_bar_args=_bar(_MOMENT, 0.05),
+    )
+
+
+def _tube(position: Array, moment: Array, radius: float) -> pv.PolyData:
+    line = pv.lines_from_points(position)
+    line.point_data[_MOMENT] = 1e-3 * moment
+    return line.tube(radius=radius, n_sides=24)
+
+
+def _top(values: Array) -> float:
+    """Upper end of a colour scale: the largest value, two digits, rounded up; 1 where all is zero."""
+    largest = float(values.max(initial=0.0))
+    if not largest > 0.0:
+        return 1.0
+    unit = 10.0 ** (math.floor(math.log10(largest)) - 1)
+    return unit * math.ceil(largest / unit - 1e-9)
+
+
+def _bar(title: str, left: float) -> dict[str, object]:
+    place = {"position_x": left, "position_y": 0.03, "width": 0.4, "height": 0.11}
+    fonts = {"title_font_size": 22, "label_font_size": 18, "color": "black", "fmt": "%.3g", "n_labels": 5}
+    # The blank line keeps the title clear of the labels.
+    return {"title": title + "\n", **place, **fonts}
+
+
+def _draw_whole(plotter: pv.Plotter, still: _Still) -> None:
+    lowest, highest = still.position.min(axis=0), still.position.max(axis=0)
+    size = highest - lowest
+    tube = _tube(still.position, still.moment, 0.006 * float(size.max()))
+    plotter.add_mesh(tube, scalars=_MOMENT, cmap=_MOMENT_COLOURS, show_scalar_bar=False)
+    if still.soil is not None:
+        plotter.add_mesh(still.soil.outline(), color="saddlebrown", line_width=2)
+    wide = float(np.linalg.norm(size[:2]))
+    plotter.add_text(f"whole riser, {wide:.3g} m by {size[2]:.3g} m", font_size=12, color="black")
+    plotter.enable_parallel_projection()
+    plotter.camera.focal_point = 0.5 * (lowest + highest)
+    plotter.camera.position = 0.5 * (lowest + highest) - float(size.max()) * np.cross(
+        _UP, _along(still.position)
+    )
+    plotter.camera.up = _UP
+    plotter.reset_camera()
+    plotter.camera.zoom(1.25)

@@ -1,0 +1,140 @@
+"""A run as the recorder sees it, without a solver: a catenary that comes down on a block of soil and heaves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from riser_soil.arrays import Array, IntArray
+from riser_soil.record import Recorder
+from riser_soil.schedule import Schedule
+from riser_soil.snapshot import (
+    Ledger,
+    RiserSnapshot,
+    RunFacts,
+    SoilMesh,
+    SoilSnapshot,
+    StepHealth,
+    Touch,
+)
+
+EI, WEIGHT, RADIUS = 5.0e4, 650.0, 0.15  # N.m2, N/m, m
+FACTS = RunFacts(
+    title="Touchdown on soft clay",
+    version="0.1.0",
+    ranks=1,
+    built=("riser", "soil", "contact"),
+    left_out={"waves": "the scene has none"},
+    riser_dofs=900,
+    soil_dofs=9000,
+)
+SCENE = "title: Touchdown on soft clay\nline_types: {flexible: {outer_diameter: 0.3}}\n"
+
+
+@dataclass(frozen=True)
+class Catenary:
+    """Inextensible catenary of parameter a [m] in the plane y = 0 that leaves the seabed at the arc s0 [m]."""
+
+    a: float
+    s0: float
+
+    def riser(self, arc: Array) -> RiserSnapshot:
+        s = np.maximum(0.0, arc - self.s0)
+        a, zero = self.a, np.zeros_like(arc)
+        x = np.where(arc < self.s0, arc, self.s0 + a * np.arcsinh(s / a))
+        z = np.hypot(a, s) - a + RADIUS
+        curvature = np.where(arc < self.s0, 0.0, a / (a**2 + s**2))
+        tension = WEIGHT * np.hypot(a, s)
+        moment = np.stack([zero, -EI * curvature, zero], axis=1)
+        top = WEIGHT * np.array([a, 0.0, s[-1]])
+        return RiserSnapshot(
+            position=np.stack([x, zero, z], axis=1),
+            effective_tension=tension,
+            bending_moment=EI * curvature,
+            curvature=curvature,
+            contact_force=np.where(arc < self.s0, WEIGHT, 0.0),
+            moment_vector=moment,
+            start_force=np.array([-WEIGHT * a, 0.0, 0.0]),
+            end_force=top,
+            start_moment=np.zeros(3),
+            end_moment=np.zeros(3),
+            start_tangent=np.array([1.0, 0.0, 0.0]),
+            end_tangent=top / np.linalg.norm(top),
+        )
+
+    def touch(self) -> Touch:
+        return Touch(self.s0, 0.003, np.array([0.0, 0.0, WEIGHT * self.s0]))
+
+
+def block(nx: int = 40, ny: int = 10, nz: int = 5, *, tetrahedra: bool = False) -> SoilMesh:
+    """Block of 40 x 5 x 2.5 m whose top lies at z = 0."""
+    x, y, z = np.linspace(10, 50, nx + 1), np.linspace(-2.5, 2.5, ny + 1), np.linspace(-2.5, 0, nz + 1)
+    points = np.stack(np.meshgrid(x, y, z, indexing="ij"), axis=-1).reshape(-1, 3)
+    number = np.arange(len(points)).reshape(nx + 1, ny + 1, nz + 1)
+    low, high = slice(None, -1), slice(1, None)
+    corners = [(low, low), (high, low), (high, high), (low, high)]
+    cells = np.stack([number[i, j, k].ravel() for k in (low, high) for i, j in corners], axis=1)
+    return SoilMesh(points, _split(cells) if tetrahedra else cells)
+
+
+def _split(cells: IntArray) -> IntArray:
+    """Six tetrahedra for each hexahedron, all around its diagonal 0-6."""
+    around = [1, 2, 3, 7, 4, 5, 1]
+    return np.concatenate([cells[:, [0, p, q, 6]] for p, q in pairwise(around)])
+
+
+def soil(mesh: SoilMesh, s0: float) -> SoilSnapshot:
+    """A trough of 4 cm below the riser, up to the touchdown point."""
+    settlement, stress = _bowl(mesh.points, s0), _bowl(mesh.points[mesh.cells].mean(axis=1), s0)
+    displacement = np.zeros_like(mesh.points)
+    displacement[:, 2] = -0.04 * settlement
+    return SoilSnapshot(displacement, 6.9e3 * stress, 0.02 * np.maximum(0.0, stress - 0.5))
+
+
+def _bowl(points: Array, s0: float) -> Array:
+    x, y, z = points.T
+    along = 1.0 / (1.0 + np.exp(2.0 * (x - s0)))
+    values: Array = along * np.exp(-((y / 0.6) ** 2)) * np.exp(z / 0.8)
+    return values
+
+
+def record(
+    folder: Path,
+    *,
+    duration: float = 2.0,
+    mesh: SoilMesh | None = None,
+    interval: float | None = None,
+    picture_interval: float | None = None,
+    fields: tuple[str, ...] | None = None,
+    force: bool = False,
+    finish: bool = True,
+) -> Array:
+    """Records a static stage and a dynamic stage of steps of 0.1 s. Returns the arc lengths."""
+    arc = np.concatenate([np.arange(0.0, 50.0, 0.5), np.arange(50.0, 150.0, 2.0)])
+    schedule = Schedule(interval, picture_interval)
+    with Recorder.open(folder, FACTS, arc, mesh, SCENE, fields, force) as recorder:
+        for name, kind, times in (
+            ("lay", "static", [0.5, 1.0]),
+            ("heave", "dynamic", list(0.1 * np.arange(1, round(duration / 0.1) + 1))),
+        ):
+            recorder.begin_stage(name, kind)
+            schedule.begin_stage(kind)
+            for t in times:
+                heave = t if kind == "dynamic" else 0.0
+                line = Catenary(32.0 + np.sin(heave), 30.0 - 2.0 * np.sin(heave))
+                recorder.accept(
+                    float(t),
+                    schedule.due(float(t), t == times[-1]),
+                    line.riser(arc),
+                    line.touch(),
+                    StepHealth(3, 0.1, 1e-6, 0),
+                    Ledger(kinetic=heave, work=heave + 1.0, residual=1e-6),
+                    None if mesh is None else soil(mesh, line.s0),
+                )
+        recorder.add_seconds({"newton": 1.25})
+        if finish:
+            recorder.finish()
+    return arc
