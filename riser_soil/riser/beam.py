@@ -1,0 +1,75 @@
+"""The elastic line under its own weight: the part "riser"."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.riser.elastic import elastic_elements
+from riser_soil.riser.hermite import uniform_load
+from riser_soil.riser.line import EMPTY, Line, LoadTangent, Trial
+from riser_soil.riser.sections import Elements
+
+DOWN = np.array([0.0, 0.0, -1.0])
+
+
+class Beam:
+    """Elastic elements and their submerged weight, both with a potential (group F).
+
+    line: the riser's field. elements: section properties and weight (N/m) per element.
+    load: further constant load per length (3,) or (ne, 3), N/m, global axes.
+    factor: of weight and load, from seconds since the stage began (load factor in statics); 1 unless a stage
+    grows them.
+    """
+
+    name = "riser"
+    symmetric = True
+
+    def __init__(self, line: Line, elements: Elements, load: Array | None = None) -> None:
+        self.line = line
+        self.factor: Callable[[float], float] = lambda _: 1.0
+        self._elastic = elastic_elements(line, elements)
+        per_length = elements.weight[:, None] * DOWN + (np.zeros(3) if load is None else load)
+        self._pull = uniform_load(line.length)[:, :, None] * (per_length @ line.basis)[:, None]
+
+    def blocks(self) -> dict[str, Block]:
+        return {"riser": self.line.element_block()} if self.line.active else {}
+
+    def _F(self, t: float) -> Array:
+        """Residual of the constant loads, conjugate to q (ne, 4, d)."""
+        return -self.factor(t) * self._pull
+
+    def _element_forces(self, trial: Trial) -> Array:
+        return self._elastic.forces(trial) + trial.pull_back(self._F(trial.state.t))
+
+    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
+        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
+        return None, self._element_forces(self.line.trial(state))
+
+    def residual(self, state: State, forces: Forces) -> None:
+        if self.line.active:
+            self.line.scatter(self._element_forces(self.line.trial(state)), forces.force)
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        if self.line.active:
+            trial = self.line.trial(state)
+            values["riser"] += weights.force * self._elastic.tangent(trial)
+            load = LoadTangent(self._F(state.t), EMPTY, EMPTY, EMPTY)
+            trial.add_tangent(values["riser"], weights.force, weights, load)
+
+    def energy(self, state: State) -> Energy:
+        """Strain energy, and the potential of weight and load, zero at the origin of the axes."""
+        if not self.line.active:
+            return Energy()
+        trial = self.line.trial(state)
+        potential = float(np.sum(self._F(state.t) * trial.q))
+        return Energy(strain=self._elastic.energy(trial), potential=potential)
+
+    def work(self, before: State, after: State) -> Work:
+        return Work()
+
+    def commit(self, state: State) -> None:
+        pass

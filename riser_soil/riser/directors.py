@@ -1,0 +1,243 @@
+"""Node orientations: how rotation dofs turn the unit tangents at element ends, in the plane and in space.
+
+`PlanarFrames` keeps an angle per node, `SpatialFrames` a rotation matrix. Each gives the trial orientation
+for a rotation increment as a turn with the same members:
+
+    tangent   unit tangents t at both ends of each element (ne, 2, d)
+    P         dt/dTheta (ne, 2, d, r)
+    rates     t' and t'' from the rates and accelerations of the rotation dofs
+    maps      P and the derivatives of t', t'' with respect to Theta, rates following by the shifts
+    geometric derivative of P^T F with respect to Theta at fixed F
+
+R is the identity in the unstressed configuration. With body-axes angular velocity W and acceleration A,
+t = R t0, t' = R (W x t0), t'' = R (A x t0 + W x (W x t0)).
+"""
+
+from functools import cached_property
+
+import numpy as np
+from numba import njit
+
+from riser_soil.arrays import Array
+from riser_soil.riser import rotations
+from riser_soil.riser.vectors import (
+    Mat,
+    Vec,
+    cross,
+    dot,
+    isotropic,
+    matadd,
+    matmul,
+    matrix,
+    matscale,
+    matvec,
+    outer,
+    scale,
+    skew,
+    store,
+    transpose,
+    vector,
+)
+from riser_soil.riser.vectors import add as plus
+
+Maps = tuple[Array, Array, Array]
+
+
+class PlanarTurn:
+    """Trial orientation of a plane line. angle (nn,) [rad], initial angle of element ends alpha0 (ne, 2)."""
+
+    def __init__(self, angle: Array, alpha0: Array) -> None:
+        self.angle = angle
+        self.end_angle = _at_ends(angle) + alpha0
+        cosine, sine = np.cos(self.end_angle), np.sin(self.end_angle)
+        self.tangent = np.stack([cosine, sine], axis=-1)
+        self.normal = np.stack([-sine, cosine], axis=-1)
+
+    @cached_property
+    def P(self) -> Array:
+        return np.ascontiguousarray(self.normal[..., None])
+
+    def rates(self, v: Array, a: Array) -> tuple[Array, Array]:
+        """t' and t'' (ne, 2, 2) from angular velocity and acceleration (nn, 1)."""
+        w, alpha = _at_ends(v), _at_ends(a)
+        return w * self.normal, alpha * self.normal - w**2 * self.tangent
+
+    def maps(self, v: Array, a: Array, shift_v: float, shift_a: float) -> Maps:
+        w, alpha = _at_ends(v), _at_ends(a)
+        first = shift_v * self.normal - w * self.tangent
+        second = (shift_a - w**2) * self.normal - (alpha + 2.0 * shift_v * w) * self.tangent
+        return self.P, first[..., None], second[..., None]
+
+    def geometric(self, F: Array) -> Array:
+        """(ne, 2, 1, 1) from the residual conjugate to the tangents, F (ne, 2, 2)."""
+        return -np.einsum("esi,esi->es", self.tangent, F)[..., None, None]
+
+
+class PlanarFrames:
+    """Committed node angles of a plane line; angles grow without limit.
+
+    angle: (nn,) rad from the unstressed configuration. alpha0: unstressed tangent angle at element ends (ne,
+    2).
+    """
+
+    dofs = 1
+
+    def __init__(self, angle: Array, alpha0: Array) -> None:
+        self.angle, self.alpha0 = angle, alpha0
+
+    def turn(self, increment: Array) -> PlanarTurn:
+        return PlanarTurn(self.angle + increment[:, 0], self.alpha0)
+
+    def commit(self, increment: Array) -> None:
+        self.angle = self.angle + increment[:, 0]
+
+
+class SpatialTurn:
+    """Trial orientation of a line in space; see `SpatialFrames` for the arguments."""
+
+    def __init__(self, Rn: Array, Theta: Array, T0: Array) -> None:
+        self.Rn, self.Theta, self.T0 = Rn, Theta, T0
+        self.R, self.H = node_frames(Rn, Theta)
+        self.frame1, self.frame2 = end_frames(self.R, T0)
+        self.tangent = np.stack([self.frame1[:, :, 0], self.frame2[:, :, 0]], axis=1)
+
+    @cached_property
+    def P(self) -> Array:
+        return _spatial_P(self.tangent, self.H)
+
+    def rates(self, v: Array, a: Array) -> tuple[Array, Array]:
+        """t' and t'' (ne, 2, 3) from body-axes angular velocity and acceleration (nn, 3)."""
+        return _spatial_rates(self.R, self.T0, v, a)
+
+    def maps(self, v: Array, a: Array, shift_v: float, shift_a: float) -> Maps:
+        first, second = _spatial_maps(self.R, self.H, self.T0, v, a, shift_v, shift_a)
+        return self.P, first, second
+
+    def geometric(self, F: Array) -> Array:
+        """(ne, 2, 3, 3) from the residual conjugate to the tangents, F (ne, 2, 3)."""
+        return _spatial_geometric(self.Rn, self.H, self.Theta, self.tangent, np.ascontiguousarray(F))
+
+
+class SpatialFrames:
+    """Committed node frames of a line in space.
+
+    R: (nn, 3, 3), identity in the unstressed configuration. T0: unstressed frames at element ends (ne, 2, 3,
+    3), their columns tangent and normals.
+    """
+
+    dofs = 3
+
+    def __init__(self, R: Array, T0: Array) -> None:
+        self.R, self.T0 = np.ascontiguousarray(R), np.ascontiguousarray(T0)
+
+    def turn(self, increment: Array) -> SpatialTurn:
+        return SpatialTurn(self.R, np.ascontiguousarray(increment), self.T0)
+
+    def commit(self, increment: Array) -> None:
+        """Keep R, brought back to a rotation to second order (round-off would pile up over many steps)."""
+        R, _ = node_frames(self.R, np.ascontiguousarray(increment))
+        self.R = 1.5 * R - 0.5 * R @ np.swapaxes(R, 1, 2) @ R
+
+
+Frames = PlanarFrames | SpatialFrames
+Turn = PlanarTurn | SpatialTurn
+
+
+def _at_ends(nodal: Array) -> Array:
+    """Nodal values (nn, ...) at both ends of each element (ne, 2, ...)."""
+    return np.stack([nodal[:-1], nodal[1:]], axis=1)
+
+
+@njit(cache=True)
+def node_frames(Rn: Array, Theta: Array) -> tuple[Array, Array]:
+    """R = Rn exp(Theta) and H = Rn T_L(Theta), which gives the spatial spin H dTheta; each (nn, 3, 3)."""
+    R, H = np.empty_like(Rn), np.empty_like(Rn)
+    for i in range(Rn.shape[0]):
+        before, turn = matrix(Rn[i]), vector(Theta[i])
+        store(matmul(before, rotations.exp(turn)), R[i])
+        store(matmul(before, rotations.left_tangent(turn)), H[i])
+    return R, H
+
+
+@njit(cache=True)
+def end_frames(R: Array, T0: Array) -> tuple[Array, Array]:
+    """Frames T = R T0 at the first and second end of each element, each (ne, 3, 3)."""
+    ne = T0.shape[0]
+    first, second = np.empty((ne, 3, 3)), np.empty((ne, 3, 3))
+    for e in range(ne):
+        store(matmul(matrix(R[e]), matrix(T0[e, 0])), first[e])
+        store(matmul(matrix(R[e + 1]), matrix(T0[e, 1])), second[e])
+    return first, second
+
+
+@njit(cache=True)
+def _spatial_P(t: Array, H: Array) -> Array:
+    P = np.empty((t.shape[0], 2, 3, 3))
+    for e in range(t.shape[0]):
+        for side in range(2):
+            store(matscale(-1.0, matmul(skew(vector(t[e, side])), matrix(H[e + side]))), P[e, side])
+    return P
+
+
+@njit(cache=True)
+def _double_cross(w: Vec, t0: Vec) -> Mat:
+    """d(w x (w x t0))/dw."""
+    return matadd(isotropic(dot(w, t0)), matadd(outer(w, t0), matscale(-2.0, outer(t0, w))))
+
+
+@njit(cache=True)
+def _spatial_rates(R: Array, T0: Array, v: Array, a: Array) -> tuple[Array, Array]:
+    ne = T0.shape[0]
+    first, second = np.empty((ne, 2, 3)), np.empty((ne, 2, 3))
+    for e in range(ne):
+        for side in range(2):
+            frame, t0 = matrix(R[e + side]), transpose(matrix(T0[e, side]))[0]
+            w, alpha = vector(v[e + side]), vector(a[e + side])
+            turning = cross(w, t0)
+            first[e, side, 0], first[e, side, 1], first[e, side, 2] = matvec(frame, turning)
+            bend = matvec(frame, plus(cross(alpha, t0), cross(w, turning)))
+            second[e, side, 0], second[e, side, 1], second[e, side, 2] = bend
+    return first, second
+
+
+@njit(cache=True)
+def _spatial_maps(
+    R: Array, H: Array, T0: Array, v: Array, a: Array, shift_v: float, shift_a: float
+) -> tuple[Array, Array]:
+    """d t'/dTheta = -[t'] H - shift_v R [t0];  d t''/dTheta = -[t''] H - shift_a R [t0] + shift_v R d(W x (W
+    x t0))/dW.
+    """
+    ne = T0.shape[0]
+    rates = _spatial_rates(R, T0, v, a)
+    first, second = np.empty((ne, 2, 3, 3)), np.empty((ne, 2, 3, 3))
+    for e in range(ne):
+        for side in range(2):
+            frame, spin = matrix(R[e + side]), matrix(H[e + side])
+            t0, w = transpose(matrix(T0[e, side]))[0], vector(v[e + side])
+            lever = skew(scale(-1.0, t0))
+            turned = matmul(skew(scale(-1.0, vector(rates[0][e, side]))), spin)
+            store(matadd(turned, matscale(shift_v, matmul(frame, lever))), first[e, side])
+            turned = matmul(skew(scale(-1.0, vector(rates[1][e, side]))), spin)
+            change = matadd(matscale(shift_a, lever), matscale(shift_v, _double_cross(w, t0)))
+            store(matadd(turned, matmul(frame, change)), second[e, side])
+    return first, second
+
+
+@njit(cache=True)
+def moment_stiffness(Rn: Mat, Theta: Vec, m: Vec) -> Mat:
+    """d(H^T m)/dTheta at fixed spatial moment m."""
+    return rotations.right_tangent_derivative(Theta, matvec(transpose(Rn), m))
+
+
+@njit(cache=True)
+def _spatial_geometric(Rn: Array, H: Array, Theta: Array, t: Array, F: Array) -> Array:
+    """d(H^T (t x F))/dTheta at fixed F: H turns, and so does t."""
+    G = np.empty((t.shape[0], 2, 3, 3))
+    for e in range(t.shape[0]):
+        for side in range(2):
+            node, spin = e + side, matrix(H[e + side])
+            tangent, force = vector(t[e, side]), vector(F[e, side])
+            turning = matmul(transpose(spin), matmul(matmul(skew(force), skew(tangent)), spin))
+            lever = moment_stiffness(matrix(Rn[node]), vector(Theta[node]), cross(tangent, force))
+            store(matadd(turning, lever), G[e, side])
+    return G

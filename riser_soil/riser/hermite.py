@@ -1,0 +1,142 @@
+"""Line kinematics between nodes: cubic Hermite interpolation of positions and unit tangents.
+
+On an element of unstressed arc length L, with xi = s/L in 0..1,
+
+    x(xi) = N1 x1 + N2 t1 + N3 x2 + N4 t2,
+    N1 = 1 - 3 xi^2 + 2 xi^3,  N2 = L (xi - 2 xi^2 + xi^3),  N3 = 3 xi^2 - 2 xi^3,  N4 = L (xi^3 - xi^2),
+
+where t1, t2 are the unit tangents at its ends. q = (x1, t1, x2, t2) has shape (ne, 4, d) with d = 2 or 3. A
+load gives its residual F_q (ne, 4, d), conjugate to q, and its derivatives in blocks (ne, 4, 4, d, d). The
+kernels below carry them to the dofs by P = dt/dTheta (ne, 2, d, r): positions pass, tangents turn with the r
+rotation dofs of their node.
+"""
+
+import numpy as np
+from numba import njit
+
+from riser_soil.arrays import Array
+
+Four = tuple[float, float, float, float]
+
+
+def shape(xi: float, L: float) -> Four:
+    """N1..N4 (1, m, 1, m) at xi."""
+    square, cube = xi * xi, xi * xi * xi
+    return (
+        1.0 - 3.0 * square + 2.0 * cube,
+        L * (xi - 2.0 * square + cube),
+        3.0 * square - 2.0 * cube,
+        L * (cube - square),
+    )
+
+
+def slope(xi: float, L: float) -> Four:
+    """dN1/ds..dN4/ds (1/m, 1, 1/m, 1) at xi; the first and third cancel, so x' depends on the chord only."""
+    square = xi * xi
+    bow = 6.0 * (xi - square) / L
+    return -bow, 1.0 - 4.0 * xi + 3.0 * square, bow, 3.0 * square - 2.0 * xi
+
+
+def shapes(xi: Array, L: Array) -> Array:
+    """N1..N4 of each element at its own xi, shape (ne, 4)."""
+    return np.array([shape(x, length) for x, length in zip(xi, L, strict=True)]).reshape(-1, 4)
+
+
+def slopes(xi: Array, L: Array) -> Array:
+    """dN1/ds..dN4/ds of each element at its own xi, shape (ne, 4)."""
+    return np.array([slope(x, length) for x, length in zip(xi, L, strict=True)]).reshape(-1, 4)
+
+
+def uniform_load(L: Array) -> Array:
+    """Integrals of N1..N4 over each element (ne, 4): a load w per length acts on q as these times w."""
+    return np.stack([L / 2, L**2 / 12, L / 2, -(L**2) / 12], axis=1)
+
+
+def consistent_mass(L: Array, mass: Array) -> Array:
+    """Integrals of mass N_a N_b over each element (ne, 4, 4); mass in kg/m."""
+    scale = np.stack([np.ones_like(L), L, np.ones_like(L), L], axis=1)
+    unit = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]) / 420.0
+    return (mass * L)[:, None, None] * unit * scale[:, :, None] * scale[:, None, :]
+
+
+@njit(cache=True)
+def pull_back(F: Array, P: Array) -> Array:
+    """Element residual in the dofs, (ne, 2 (d + r)), of F (ne, 4, d) conjugate to q."""
+    ne, d, r = P.shape[0], P.shape[2], P.shape[3]
+    out = np.zeros((ne, 2 * (d + r)))
+    for e in range(ne):
+        for side in range(2):
+            at = side * (d + r)
+            for i in range(d):
+                out[e, at + i] = F[e, 2 * side, i]
+                for k in range(r):
+                    out[e, at + d + k] += P[e, side, i, k] * F[e, 2 * side + 1, i]
+    return out
+
+
+@njit(cache=True)
+def _add_right(S: Array, K: Array, column_map: Array, translation: bool, shift: float) -> None:
+    """S += K times the derivative of one entry of q, q' or q'' with respect to its node's dofs."""
+    d = K.shape[0]
+    for i in range(d):
+        for j in range(d):
+            if translation:
+                S[i, j] += shift * K[i, j]
+            else:
+                for k in range(column_map.shape[1]):
+                    S[i, k] += K[i, j] * column_map[j, k]
+
+
+@njit(cache=True)
+def _add_left(
+    out: Array, S: Array, row_map: Array, translation: bool, scale: float, row: int, col: int, columns: int
+) -> None:
+    """out[row:, col:] += scale times S, its rows brought to the dofs of their node."""
+    for i in range(S.shape[0]):
+        for k in range(columns):
+            if translation:
+                out[row + i, col + k] += scale * S[i, k]
+            else:
+                for m in range(row_map.shape[1]):
+                    out[row + m, col + k] += scale * row_map[i, m] * S[i, k]
+
+
+@njit(cache=True)
+def add_tangent(
+    out: Array,
+    scale: float,
+    maps: tuple[Array, Array, Array],
+    shifts: tuple[float, float],
+    blocks: tuple[Array, Array, Array],
+) -> None:
+    """Add scale dF/du to out (ne, n, n), without the part that comes from turning P.
+
+    maps: P, dt'/dTheta, dt''/dTheta, each (ne, 2, d, r), the latter two with the shifts included.
+    shifts: dv/du, da/du. blocks: dF/dq, dF/dq', dF/dq'' (ne, 4, 4, d, d); an empty array stands for zero.
+    """
+    d, r = maps[0].shape[2], maps[0].shape[3]
+    factors = (1.0, shifts[0], shifts[1])
+    S = np.empty((d, max(d, r)))
+    for e in range(out.shape[0]):
+        for b in range(4):
+            moves, right = b % 2 == 0, b // 2
+            col, columns = right * (d + r) + (0 if moves else d), d if moves else r
+            for a in range(4):
+                S[:] = 0.0
+                for level in range(3):
+                    if blocks[level].shape[0] > 0:
+                        _add_right(S, blocks[level][e, a, b], maps[level][e, right], moves, factors[level])
+                row = (a // 2) * (d + r) + (0 if a % 2 == 0 else d)
+                _add_left(out[e], S, maps[0][e, a // 2], a % 2 == 0, scale, row, col, columns)
+
+
+@njit(cache=True)
+def add_geometric(out: Array, scale: float, G: Array, d: int) -> None:
+    """Add scale G, (ne, 2, r, r), to the rotation blocks of out (ne, 2 (d + r), 2 (d + r))."""
+    r = G.shape[2]
+    for e in range(out.shape[0]):
+        for side in range(2):
+            at = side * (d + r) + d
+            for i in range(r):
+                for j in range(r):
+                    out[e, at + i, at + j] += scale * G[e, side, i, j]

@@ -1,0 +1,56 @@
+"""Inertia of the line's mass: the part "inertia" of dynamic stages."""
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.riser.hermite import consistent_mass
+from riser_soil.riser.line import EMPTY, Line, LoadTangent
+
+
+class Inertia:
+    """Consistent mass of the cubic line, turning with the tangents (group I).
+
+    line: the riser's field. mass: kg/m per element (ne,), contents included, water excluded.
+    The section's own rotary inertia is left out: it is (diameter/wavelength)^2 of the rest.
+    The tangent is not symmetric, as the tangents' accelerations depend on their rates.
+    """
+
+    name = "inertia"
+    symmetric = False
+
+    def __init__(self, line: Line, mass: Array) -> None:
+        self.line = line
+        self.M = consistent_mass(line.length, mass)
+        self.blockwise = np.ascontiguousarray(self.M[..., None, None] * np.eye(line.dimension))
+
+    def blocks(self) -> dict[str, Block]:
+        return {"riser": self.line.element_block()} if self.line.active else {}
+
+    def _F(self, state: State) -> Array:
+        return np.asarray(self.M @ self.line.trial(state).q_acceleration)
+
+    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
+        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
+        return self.line.trial(state).pull_back(self._F(state)), None
+
+    def residual(self, state: State, forces: Forces) -> None:
+        if self.line.active:
+            self.line.scatter(self.line.trial(state).pull_back(self._F(state)), forces.inertia)
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        if self.line.active:
+            load = LoadTangent(self._F(state), EMPTY, EMPTY, self.blockwise)
+            self.line.trial(state).add_tangent(values["riser"], weights.inertia, weights, load)
+
+    def energy(self, state: State) -> Energy:
+        if not self.line.active:
+            return Energy()
+        rate = self.line.trial(state).q_rate
+        return Energy(kinetic=0.5 * float(np.sum(rate * (self.M @ rate))))
+
+    def work(self, before: State, after: State) -> Work:
+        return Work()
+
+    def commit(self, state: State) -> None:
+        pass

@@ -1,0 +1,278 @@
+"""The riser's line: its dofs, committed configuration, ends and prescribed motion.
+
+Dofs are interleaved by node: in space x, y, z and a body-axes rotation vector; in a vertical plane p, z and
+an angle, p along the horizontal unit vector d, the angle positive from d towards z.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from riser_soil.arrays import Array, BoolArray, IntArray
+from riser_soil.part import Block, State, Weights
+from riser_soil.riser import hermite
+from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames, Turn
+
+Kinematics = tuple[Array, Array, Array]
+Motion = Callable[[float], Kinematics]
+"""Seconds since the stage began (load factor in statics) -> position, velocity, acceleration (3,) in global
+axes.
+"""
+
+UP = np.array([0.0, 0.0, 1.0])
+EMPTY: Array = np.zeros((0, 4, 4, 0, 0))
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """A line before any load: unstressed shape and initial configuration, in global axes.
+
+    arc: (nn,) arc length of the nodes, from the start. outer_diameter: (ne,).
+    T0: (ne, 2, 3, 3) unstressed frames at element ends, columns tangent and two normals. chord0: (ne, 3)
+    unstressed chords.
+    position: (nn, 3) and rotation: (nn, 3, 3) of the initial configuration; rotation turns T0 to its frames
+    there.
+    """
+
+    arc: Array
+    outer_diameter: Array
+    T0: Array
+    chord0: Array
+    position: Array
+    rotation: Array
+
+
+@dataclass
+class End:
+    """How an end is held. motion, when given, moves a held position; without it the end stays where it is."""
+
+    held: bool
+    rotation_fixed: bool = False
+    motion: Motion | None = None
+
+
+@dataclass(frozen=True)
+class LoadTangent:
+    """A load's residual F (ne, 4, d), conjugate to q, and its derivatives in blocks (ne, 4, 4, d, d); empty
+    means zero.
+    """
+
+    F: Array
+    stiffness: Array
+    damping: Array
+    mass: Array
+
+
+class Trial:
+    """The line at a trial state: x (nn, d), chord (ne, d), orientation `turn`; rates of q on demand."""
+
+    def __init__(self, state: State, x: Array, chord: Array, turn: Turn, rates: tuple[Array, Array]) -> None:
+        self.state, self.x, self.chord, self.turn = state, x, chord, turn
+        self._v, self._a = rates
+
+    @cached_property
+    def _director_rates(self) -> tuple[Array, Array]:
+        d = self.x.shape[1]
+        return self.turn.rates(self._v[:, d:], self._a[:, d:])
+
+    @cached_property
+    def q_rate(self) -> Array:
+        """q' (ne, 4, d)."""
+        return _interleave(self._v, self._director_rates[0])
+
+    @cached_property
+    def q_acceleration(self) -> Array:
+        """q'' (ne, 4, d)."""
+        return _interleave(self._a, self._director_rates[1])
+
+    @cached_property
+    def q(self) -> Array:
+        """q (ne, 4, d)."""
+        return _interleave(self.x, self.turn.tangent)
+
+    def pull_back(self, F: Array) -> Array:
+        """Element residual in the dofs (ne, 2 ndof) of F (ne, 4, d) conjugate to q."""
+        return np.asarray(hermite.pull_back(F, self.turn.P))
+
+    def add_tangent(self, out: Array, weight: float, weights: Weights, load: LoadTangent) -> None:
+        """Add weight times dF/du, rates following by the shifts, to out (ne, 2 ndof, 2 ndof)."""
+        d = self.x.shape[1]
+        blocks = (load.stiffness, load.damping, load.mass)
+        if any(block.size for block in blocks):
+            shifts = (weights.shift_v, weights.shift_a)
+            maps = self.turn.maps(self._v[:, d:], self._a[:, d:], *shifts)
+            hermite.add_tangent(out, weight, maps, shifts, blocks)
+        hermite.add_geometric(out, weight, self.turn.geometric(load.F[:, 1::2]), d)
+
+
+class Line:
+    """Field "riser": committed configuration, dofs and ends of the line; see the module's text and `Layout`.
+
+    dimension: 2 or 3. A planar line needs a layout in one vertical plane (`shapes.vertical_direction`).
+    Where no end holds the rotation of a line in space, `hold_spin` keeps the start from spinning about the
+    pipe's axis: nothing else would, as a round pipe spins at no cost.
+    active: whether this rank evaluates and owns the riser.
+    """
+
+    name = "riser"
+    space = "riser"
+
+    def __init__(
+        self,
+        dimension: int,
+        layout: Layout,
+        start: End,
+        end: End,
+        direction: Array | None = None,
+        hold_spin: bool = False,
+        active: bool = True,
+    ) -> None:
+        self.dimension, self.start, self.end, self.active = dimension, start, end, active
+        self.arc, self.outer_diameter = layout.arc, layout.outer_diameter
+        self.length = np.diff(layout.arc)
+        self.direction = np.array([1.0, 0.0, 0.0]) if direction is None else direction
+        self.basis, self.origin = self._axes(layout.position[0])
+        self.chord0 = layout.chord0 @ self.basis
+        self.frames: Frames = (
+            _planar_frames(layout, self.direction) if dimension == 2 else _spatial_frames(layout)
+        )
+        self.x = (layout.position - self.origin) @ self.basis
+        self.chord = np.diff(self.x, axis=0)
+        self.offset = 0
+        self._trial: Trial | None = None
+        self._number(hold_spin and dimension == 3)
+
+    def _axes(self, first: Array) -> tuple[Array, Array]:
+        """Constant basis (3, d) and origin of the in-plane coordinates; z is counted from zero, not from the
+        start.
+        """
+        if self.dimension == 3:
+            return np.eye(3), np.zeros(3)
+        return np.stack([self.direction, UP], axis=1), np.array([first[0], first[1], 0.0])
+
+    def _number(self, hold_spin: bool) -> None:
+        self.ndof = self.dimension + self.frames.dofs
+        self.nodes = self.arc.size
+        self.size = self.nodes * self.ndof
+        self.global_index: IntArray = np.arange(self.size, dtype=np.int64)
+        self.owned: BoolArray = np.full(self.size, self.active)
+        prescribed = np.zeros((self.nodes, self.ndof), dtype=bool)
+        for node, end in ((0, self.start), (-1, self.end)):
+            prescribed[node, : self.dimension] = end.held
+            prescribed[node, self.dimension :] = end.rotation_fixed
+        prescribed[0, self.dimension] |= hold_spin
+        self.prescribed: BoolArray = prescribed.ravel()
+
+    @property
+    def part(self) -> slice:
+        """The field's slice of the local arrays."""
+        return slice(self.offset, self.offset + self.size)
+
+    def nodal(self, values: Array) -> Array:
+        """View (nn, ndof) of the riser's slice of a local array."""
+        return values[self.part].reshape(self.nodes, self.ndof)
+
+    def scatter(self, element: Array, values: Array) -> None:
+        """Add element arrays (ne, 2 ndof) along the chain to the riser's slice of a local array."""
+        nodal = self.nodal(values)
+        nodal[:-1] += element[:, : self.ndof]
+        nodal[1:] += element[:, self.ndof :]
+
+    def element_block(self) -> Block:
+        """Pattern "riser": all dofs of each element."""
+        first = self.offset + self.ndof * np.arange(self.nodes - 1, dtype=np.int64)
+        dofs = first[:, None] + np.arange(2 * self.ndof)
+        return Block(dofs, dofs)
+
+    @property
+    def translation_dofs(self) -> IntArray:
+        """Local numbers of the translations (nn, d)."""
+        first = self.offset + self.ndof * np.arange(self.nodes, dtype=np.int64)
+        return np.asarray(first[:, None] + np.arange(self.dimension), dtype=np.int64)
+
+    @cached_property
+    def tributary_length(self) -> Array:
+        """Arc length that belongs to each node (nn,): half of each adjoining element."""
+        half = 0.5 * self.length
+        return np.asarray(np.append(half, 0.0) + np.append(0.0, half))
+
+    def trial(self, state: State) -> Trial:
+        """The line at a state; kept for the state asked last, whose arrays must not change from then on."""
+        if self._trial is None or self._trial.state is not state:
+            self._trial = self._make_trial(state)
+        return self._trial
+
+    def _make_trial(self, state: State) -> Trial:
+        d, u = self.dimension, self.nodal(state.u)
+        x, chord = self.x + u[:, :d], self.chord + np.diff(u[:, :d], axis=0)
+        return Trial(state, x, chord, self.frames.turn(u[:, d:]), (self.nodal(state.v), self.nodal(state.a)))
+
+    def commit(self, state: State) -> None:
+        """Accept the increments of a state; chords sum theirs, so their round-off is not that of far
+        positions.
+        """
+        trial = self.trial(state)
+        self.x, self.chord = trial.x, trial.chord
+        self.frames.commit(self.nodal(state.u)[:, self.dimension :])
+        self._trial = None
+
+    def to_global(self, x: Array) -> Array:
+        """Global positions (…, 3) of in-plane (or global) coordinates (…, d)."""
+        return np.asarray(self.origin + x @ self.basis.T)
+
+    def positions3(self, state: State) -> Array:
+        """Global node positions (nn, 3) at a state."""
+        return self.to_global(self.trial(state).x)
+
+    def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
+        """Write the increments, rates and accelerations of the held ends into views of the field's slice."""
+        held = self.prescribed
+        u[held], v[held], a[held] = 0.0, 0.0, 0.0
+        for node, end in ((0, self.start), (self.nodes - 1, self.end)):
+            if end.held and end.motion is not None:
+                at = slice(node * self.ndof, node * self.ndof + self.dimension)
+                position, velocity, acceleration = end.motion(t)
+                u[at] = (position - self.origin) @ self.basis - self.x[node]
+                v[at], a[at] = velocity @ self.basis, acceleration @ self.basis
+
+    def describe(self, entry: int) -> str:
+        """ "riser node at arc 24 m, vertical force"."""
+        node, dof = divmod(entry, self.ndof)
+        names = (
+            ("force along the plane", "vertical force", "moment")
+            if self.dimension == 2
+            else ("force x", "force y", "vertical force", "moment 1", "moment 2", "moment 3")
+        )
+        return f"riser node at arc {self.arc[node]:.6g} m, {names[dof]}"
+
+
+def _interleave(nodal: Array, directors: Array) -> Array:
+    """(ne, 4, d) from nodal translations (nn, ≥ d) and end directors (ne, 2, d), as q orders them."""
+    ne, _, d = directors.shape
+    q = np.empty((ne, 4, d))
+    q[:, 0], q[:, 2] = nodal[:-1, :d], nodal[1:, :d]
+    q[:, 1], q[:, 3] = directors[:, 0], directors[:, 1]
+    return q
+
+
+def _planar_frames(layout: Layout, direction: Array) -> PlanarFrames:
+    """Angles from d towards z."""
+    turned = layout.rotation @ direction
+    tangent = layout.T0[..., 0]
+    return PlanarFrames(_angle(turned, direction), _angle(tangent, direction))
+
+
+def _angle(vectors: Array, direction: Array) -> Array:
+    return np.asarray(np.arctan2(vectors @ UP, vectors @ direction))
+
+
+def _spatial_frames(layout: Layout) -> SpatialFrames:
+    """Body axes are those of the unstressed line at its start, so that the first rotation dof there is spin
+    about the axis.
+    """
+    axes = layout.T0[0, 0]
+    return SpatialFrames(layout.rotation @ axes, axes.T @ layout.T0)

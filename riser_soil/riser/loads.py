@@ -1,0 +1,139 @@
+"""Loads of a stage on the riser, growing by their own histories: the part "loads"."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.errors import SceneError
+from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.riser import hermite
+from riser_soil.riser.directors import SpatialTurn, moment_stiffness
+from riser_soil.riser.line import EMPTY, UP, Line, LoadTangent, Trial
+
+
+@dataclass(frozen=True, eq=False)
+class Load:
+    """force [N] and moment [N m] at an arc length [m], or a load distributed [N/m] over the whole riser;
+    global axes.
+
+    All keep their directions while the riser turns. factor: of seconds since the stage began (load factor in
+    statics).
+    """
+
+    factor: Callable[[float], float]
+    arc: float = 0.0
+    force: Array | None = None
+    moment: Array | None = None
+    distributed: Array | None = None
+
+
+class PointLoads:
+    """Loads of a stage (group F).
+
+    Forces spread to their element by the cubic shape functions; moments must sit at a node. A moment of fixed
+    axis has no potential in space, so its tangent isn't symmetric there.
+    """
+
+    name = "loads"
+
+    def __init__(self, line: Line, loads: list[Load]) -> None:
+        self.line, self._loads = line, loads
+        self._places = [self._place(load) for load in loads]
+        self._moments = [(load, self._node(load)) for load in loads if load.moment is not None]
+        self.symmetric = not (self._moments and line.dimension == 3)
+
+    def _node(self, load: Load) -> int:
+        node = int(np.argmin(np.abs(self.line.arc - load.arc)))
+        if abs(self.line.arc[node] - load.arc) > 1e-9 * self.line.arc[-1]:
+            raise SceneError(
+                f"stages: loads: a moment at arc {load.arc:.9g} m lies between nodes; "
+                f"move it to the nearest, {self.line.arc[node]:.9g} m, or choose elements that put a node there"
+            )
+        return node
+
+    def _place(self, load: Load) -> tuple[slice, Array]:
+        """Elements that the load acts on, and what their q gets of it (m, 4, d)."""
+        line = self.line
+        if load.distributed is not None:
+            return slice(None), hermite.uniform_load(line.length)[:, :, None] * (
+                load.distributed @ line.basis
+            )
+        if not -1e-9 * line.arc[-1] <= load.arc <= line.arc[-1] * (1.0 + 1e-9):
+            raise SceneError(
+                f"stages: loads: at arc {load.arc:.6g} m: the riser ends at {line.arc[-1]:.6g} m"
+            )
+        e = min(max(int(np.searchsorted(line.arc, load.arc, side="right")) - 1, 0), line.length.size - 1)
+        xi = (load.arc - line.arc[e]) / line.length[e]
+        xi = np.round(xi) if abs(xi - np.round(xi)) < 1e-9 else xi
+        force = np.zeros(3) if load.force is None else load.force
+        return slice(e, e + 1), hermite.shapes(np.array([xi]), line.length[e : e + 1])[:, :, None] * (
+            force @ line.basis
+        )
+
+    def blocks(self) -> dict[str, Block]:
+        return {"riser": self.line.element_block()} if self.line.active else {}
+
+    def _F(self, t: float) -> Array:
+        """Residual conjugate to q (ne, 4, d)."""
+        F = np.zeros((self.line.length.size, 4, self.line.dimension))
+        for load, (at, share) in zip(self._loads, self._places, strict=True):
+            F[at] -= load.factor(t) * share
+        return F
+
+    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
+        """Element residuals (inertia, force) of forces, each (ne, 2 ndof) or None; moments act on nodes."""
+        return None, self.line.trial(state).pull_back(self._F(state.t))
+
+    def residual(self, state: State, forces: Forces) -> None:
+        if self.line.active:
+            self._add(self.line.trial(state), forces.force)
+
+    def _add(self, trial: Trial, out: Array) -> None:
+        self.line.scatter(trial.pull_back(self._F(trial.state.t)), out)
+        rotations = self.line.nodal(out)[:, self.line.dimension :]
+        for load, node in self._moments:
+            rotations[node] -= self._conjugate(trial, node, self._moment(load, trial.state.t))
+
+    def _moment(self, load: Load, t: float) -> Array:
+        return load.factor(t) * np.asarray(load.moment, dtype=float)
+
+    def _conjugate(self, trial: Trial, node: int, moment: Array) -> Array:
+        """What the node's rotation dofs (r,) get of a moment in global axes."""
+        if isinstance(trial.turn, SpatialTurn):
+            return np.asarray(trial.turn.H[node].T @ moment)
+        return np.array([moment @ np.cross(self.line.direction, UP)])
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        if not self.line.active:
+            return
+        trial, K = self.line.trial(state), values["riser"]
+        trial.add_tangent(K, weights.force, weights, LoadTangent(self._F(state.t), EMPTY, EMPTY, EMPTY))
+        if isinstance(trial.turn, SpatialTurn):
+            for load, node in self._moments:
+                self._add_moment_stiffness(K, trial.turn, node, -weights.force * self._moment(load, state.t))
+
+    def _add_moment_stiffness(self, K: Array, turn: SpatialTurn, node: int, moment: Array) -> None:
+        element, at = (node, 3) if node < len(K) else (node - 1, 9)
+        K[element, at : at + 3, at : at + 3] += np.array(
+            moment_stiffness(turn.Rn[node], turn.Theta[node], moment)
+        )
+
+    def energy(self, state: State) -> Energy:
+        return Energy()
+
+    def work(self, before: State, after: State) -> Work:
+        """Work of the mean loads over the step."""
+        if not self.line.active:
+            return Work()
+        residual = np.zeros_like(after.u)
+        for state in (before, after):
+            self._add(self.line.trial(state), residual)
+        part = self.line.part
+        return Work(external=-0.5 * float(residual[part] @ (after.u - before.u)[part]))
+
+    def commit(self, state: State) -> None:
+        pass

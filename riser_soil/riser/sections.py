@@ -1,0 +1,112 @@
+"""From line types and segments to arrays per element."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.errors import SceneError
+
+
+@dataclass(frozen=True)
+class LineType:
+    """Section properties. Diameters m; mass kg/m, empty, in air; EA N; EI_y, EI_z, GJ N m2; submerged_weight
+    N/m.
+
+    EI_y and EI_z are about the second and third section axis. A given submerged weight overrides the computed
+    one.
+    drag and added_mass: (normal, tangential) coefficients of Morison's formula, see
+    `riser_soil.sea.morison_law`.
+    """
+
+    EA: float
+    EI_y: float
+    EI_z: float
+    GJ: float = 0.0
+    outer_diameter: float = 0.0
+    inner_diameter: float = 0.0
+    mass: float = 0.0
+    submerged_weight: float | None = None
+    drag: tuple[float, float] = (0.0, 0.0)
+    added_mass: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A run of equal elements: unstressed length in m."""
+
+    line_type: LineType
+    length: float
+    elements: int
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What fills and surrounds the pipe: densities in kg/m3 (0: nothing), gravity in m/s2."""
+
+    gravity: float = 9.81
+    contents: float = 0.0
+    water: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Elements:
+    """Properties per element (ne,); drag and added_mass (ne, 2). mass includes the contents, weight is
+    submerged.
+    """
+
+    length: Array
+    EA: Array
+    EI_y: Array
+    EI_z: Array
+    GJ: Array
+    outer_diameter: Array
+    mass: Array
+    weight: Array
+    drag: Array
+    added_mass: Array
+
+    @property
+    def arc(self) -> Array:
+        """Arc length of the nodes (nn,), m from the start."""
+        return np.concatenate([[0.0], np.cumsum(self.length)])
+
+
+def mass_with_contents(line: LineType, around: Surroundings) -> float:
+    """Mass of pipe and contents, kg/m."""
+    return line.mass + around.contents * 0.25 * np.pi * line.inner_diameter**2
+
+
+def submerged_weight(line: LineType, around: Surroundings) -> float:
+    """g (m + rho_contents pi di^2/4 - rho_water pi do^2/4), N/m, unless it is given."""
+    if line.submerged_weight is not None:
+        return line.submerged_weight
+    buoyancy = around.water * 0.25 * np.pi * line.outer_diameter**2
+    return around.gravity * (mass_with_contents(line, around) - buoyancy)
+
+
+def elements(segments: Sequence[Segment], around: Surroundings) -> Elements:
+    """Properties of all elements, from start to end."""
+    if not segments:
+        raise SceneError("riser.segments: none given; at least one is needed")
+    count = np.array([s.elements for s in segments])
+    types = [s.line_type for s in segments]
+
+    def spread(values: list[float] | list[tuple[float, float]]) -> Array:
+        return np.repeat(np.asarray(values, dtype=float), count, axis=0)
+
+    return Elements(
+        length=spread([s.length / s.elements for s in segments]),
+        EA=spread([t.EA for t in types]),
+        EI_y=spread([t.EI_y for t in types]),
+        EI_z=spread([t.EI_z for t in types]),
+        GJ=spread([t.GJ for t in types]),
+        outer_diameter=spread([t.outer_diameter for t in types]),
+        mass=spread([mass_with_contents(t, around) for t in types]),
+        weight=spread([submerged_weight(t, around) for t in types]),
+        drag=spread([t.drag for t in types]),
+        added_mass=spread([t.added_mass for t in types]),
+    )

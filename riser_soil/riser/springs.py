@@ -1,0 +1,76 @@
+"""Rotational spring between an end and its support: the parts "start spring" and "end spring"."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.riser import rotations
+from riser_soil.riser.directors import PlanarTurn, SpatialTurn, moment_stiffness
+from riser_soil.riser.line import Line
+
+
+class EndSpring:
+    """Moment stiffness times the rotation vector from the end's direction when the part is made (group F).
+
+    line: the riser's field. node: 0 for the start, -1 for the end. stiffness: N m/rad.
+    In space the rotation is below pi and counts twist too; in the plane it is unlimited.
+    """
+
+    symmetric = True
+
+    def __init__(self, line: Line, node: int, stiffness: float) -> None:
+        self.line, self.stiffness = line, stiffness
+        self.node = node % line.nodes
+        self.name = "start spring" if self.node == 0 else "end spring"
+        turn = line.frames.turn(np.zeros((line.nodes, line.frames.dofs)))
+        self._rest = turn.angle[self.node] if isinstance(turn, PlanarTurn) else turn.R[self.node].copy()
+
+    def blocks(self) -> dict[str, Block]:
+        if not self.line.active:
+            return {}
+        first = self.line.offset + self.node * self.line.ndof + self.line.dimension
+        dofs = np.arange(first, first + self.line.frames.dofs, dtype=np.int64)[None]
+        return {self.name: Block(dofs, dofs)}
+
+    def moment(self, state: State) -> Array:
+        """Moment of the spring on the riser in its own axes: (3,) global in space, (1,) in the plane."""
+        return -self.stiffness * self._rotation(state)
+
+    def _rotation(self, state: State) -> Array:
+        turn = self.line.trial(state).turn
+        if isinstance(turn, PlanarTurn):
+            return np.array([turn.angle[self.node] - self._rest])
+        return np.array(rotations.log(turn.R[self.node] @ self._rest.T))
+
+    def residual(self, state: State, forces: Forces) -> None:
+        if self.line.active:
+            turn = self.line.trial(state).turn
+            H = turn.H[self.node] if isinstance(turn, SpatialTurn) else np.eye(1)
+            self.line.nodal(forces.force)[self.node, self.line.dimension :] -= H.T @ self.moment(state)
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        if self.line.active:
+            turn = self.line.trial(state).turn
+            K = self._spatial_tangent(turn, state) if isinstance(turn, SpatialTurn) else self.stiffness
+            values[self.name][0] += weights.force * K
+
+    def _spatial_tangent(self, turn: SpatialTurn, state: State) -> Array:
+        """H^T k T_L^-1(phi) H, and the change of H at fixed moment."""
+        H, phi = turn.H[self.node], self._rotation(state)
+        material = self.stiffness * H.T @ np.array(rotations.left_tangent_inverse(phi)) @ H
+        frame, Theta = turn.Rn[self.node], turn.Theta[self.node]
+        return np.asarray(material + np.array(moment_stiffness(frame, Theta, self.stiffness * phi)))
+
+    def energy(self, state: State) -> Energy:
+        if not self.line.active:
+            return Energy()
+        phi = self._rotation(state)
+        return Energy(strain=0.5 * self.stiffness * float(phi @ phi))
+
+    def work(self, before: State, after: State) -> Work:
+        return Work()
+
+    def commit(self, state: State) -> None:
+        pass
