@@ -1,0 +1,296 @@
+"""Beam elements against their own energy, finite differences, rigid motions and each other."""
+
+from collections.abc import Callable
+from types import ModuleType
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from riser_soil.arrays import Array
+from riser_soil.riser import beam2d, beam3d, corotation, increments, rotations
+from riser_soil.riser.vectors import isotropic, vector
+
+NE = 5
+EA = 2.0e3
+TOLERANCE = 1e-9  # of finite differences
+STENCIL = {-3: -1 / 60, -2: 3 / 20, -1: -3 / 4, 1: 3 / 4, 2: -3 / 20, 3: 1 / 60}
+SHAPES = pytest.mark.parametrize("curved", [0.0, 0.3], ids=["straight", "curved"])
+ROTATIONS = pytest.mark.parametrize("rotation", [1e-4, 0.3, 1.0])
+
+
+def exp(rotation: Array) -> Array:
+    return np.array(rotations.exp(vector(rotation)))
+
+
+def turns(rng: np.random.Generator, angle: float, n: int) -> Array:
+    """n rotations by `angle` about random axes."""
+    axes = rng.normal(size=(n, 3))
+    return np.array([exp(angle * a / np.linalg.norm(a)) for a in axes])
+
+
+class Space(NamedTuple):
+    """Elements in space: unstressed and current configuration."""
+
+    chord0: Array
+    frames0: Array  # (2, ne, 3, 3)
+    ref: beam3d.Reference
+    section: beam3d.Section
+    chord: Array
+    frames: Array
+
+    def call(self, function: Callable, moved: Array | None = None) -> Array:
+        """function at this configuration, moved by (ne, 12) displacements and spatial rotations."""
+        s = np.zeros((NE, 12)) if moved is None else moved
+        ends = [np.array([exp(w) for w in s[:, at : at + 3]]) @ self.frames[i] for i, at in ((0, 3), (1, 9))]
+        return function(self.chord + s[:, 6:9] - s[:, :3], *ends, self.ref, self.section)
+
+
+def space(curved: float, rotation: float, seed: int = 7) -> Space:
+    rng = np.random.default_rng(seed)
+    L, base = 1.0 + rng.random(NE), turns(rng, 1.0, NE)
+    chord0 = (L * (1.0 - curved**2 / 8))[:, None] * base[:, :, 0]
+    frames0 = np.array([turns(rng, curved, NE) @ base, turns(rng, curved, NE) @ base])
+    section = beam3d.Section(np.full(NE, EA), 1 + rng.random(NE), 2 + rng.random(NE), 1.5 + rng.random(NE))
+    rigid = turns(rng, 2.0, NE)
+    chord = np.einsum("eij,ej->ei", rigid, chord0) * 1.02
+    frames = np.array([turns(rng, rotation, NE) @ rigid @ end for end in frames0])
+    ref = beam3d.reference(chord0, frames0[0], frames0[1], L)
+    return Space(chord0, frames0, ref, section, chord, frames)
+
+
+class Plane(NamedTuple):
+    """Elements in a plane: unstressed and current configuration."""
+
+    chord0: Array
+    directions0: Array  # (2, ne)
+    ref: beam2d.Reference
+    section: beam2d.Section
+    chord: Array
+    directions: Array
+
+    def call(self, function: Callable, moved: Array | None = None) -> Array:
+        """function at this configuration, moved by (ne, 6) displacements and angles."""
+        s = np.zeros((NE, 6)) if moved is None else moved
+        ends = self.directions[0] + s[:, 2], self.directions[1] + s[:, 5]
+        return function(self.chord + s[:, 3:5] - s[:, :2], *ends, self.ref, self.section)
+
+
+def plane(curved: float, rotation: float, seed: int = 7) -> Plane:
+    rng = np.random.default_rng(seed)
+    L, base = 1.0 + rng.random(NE), 6.0 * rng.random(NE)
+    chord0 = (L * (1.0 - curved**2 / 8)) * np.array([np.cos(base), np.sin(base)])
+    directions0 = base + curved * rng.uniform(-1, 1, size=(2, NE))
+    section = beam2d.Section(np.full(NE, EA), 1 + rng.random(NE))
+    chord = 1.02 * np.array([[0.6, -0.8], [0.8, 0.6]]) @ chord0
+    directions = directions0 + np.arctan2(0.8, 0.6) + rotation * rng.choice([-1.0, 1.0], size=(2, NE))
+    ref = beam2d.reference(chord0.T, directions0[0], directions0[1], L)
+    return Plane(chord0.T, directions0, ref, section, chord.T, directions)
+
+
+def derivative(elements: Space | Plane, function: Callable, n: int, step: float = 3e-3) -> Array:
+    """Sixth-order finite differences by the n dofs of each element; the last index is the dof."""
+    columns = []
+    for unit in np.eye(n):
+        moves = [c * elements.call(function, np.tile(k * step * unit, (NE, 1))) for k, c in STENCIL.items()]
+        columns.append(np.sum(moves, axis=0) / step)
+    return np.stack(columns, axis=-1)
+
+
+def difference(a: Array, b: Array) -> float:
+    """Largest difference over the largest entry."""
+    return float(np.abs(a - b).max() / np.abs(b).max())
+
+
+CASES = pytest.mark.parametrize(
+    ("build", "module", "n"), [(plane, beam2d, 6), (space, beam3d, 12)], ids=["2D", "3D"]
+)
+
+
+@CASES
+@SHAPES
+@ROTATIONS
+def test_forces_are_the_gradient_of_the_energy(
+    build: Callable[[float, float], Space | Plane], module: ModuleType, n: int, curved: float, rotation: float
+) -> None:
+    elements = build(curved, rotation)
+    assert difference(elements.call(module.forces), derivative(elements, module.strain_energy, n)) < TOLERANCE
+
+
+@CASES
+@SHAPES
+@ROTATIONS
+def test_tangent_is_the_derivative_of_the_forces(
+    build: Callable[[float, float], Space | Plane], module: ModuleType, n: int, curved: float, rotation: float
+) -> None:
+    elements = build(curved, rotation)
+    f, K = elements.call(module.forces_and_tangent)
+    assert difference(K, derivative(elements, module.forces, n)) < TOLERANCE
+    assert np.array_equal(f, elements.call(module.forces))
+
+
+@SHAPES
+@given(seed=st.integers(0, 2**32 - 1), angle=st.floats(-25.0, 25.0))
+def test_rigid_motion_in_space_gives_no_force(curved: float, seed: int, angle: float) -> None:
+    at_rest = space(curved, 0.0, seed)
+    Q = turns(np.random.default_rng(seed), angle, 1)[0]
+    moved = at_rest._replace(chord=at_rest.chord0 @ Q.T, frames=Q @ at_rest.frames0)
+    assert np.abs(moved.call(beam3d.forces)).max() < 1e-12 * EA
+
+
+@SHAPES
+@given(seed=st.integers(0, 2**32 - 1), angle=st.floats(-25.0, 25.0))
+def test_rigid_motion_in_a_plane_gives_no_force(curved: float, seed: int, angle: float) -> None:
+    at_rest = plane(curved, 0.0, seed)
+    Q = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    moved = at_rest._replace(chord=at_rest.chord0 @ Q.T, directions=at_rest.directions0 + angle)
+    assert np.abs(moved.call(beam2d.forces)).max() < 1e-12 * EA
+
+
+@SHAPES
+def test_elements_in_space_are_in_equilibrium(curved: float) -> None:
+    elements = space(curved, 0.8)
+    force1, moment1, force2, moment2 = np.split(elements.call(beam3d.forces), 4, axis=1)
+    assert np.abs(force1 + force2).max() < 1e-12 * EA
+    assert np.abs(moment1 + moment2 + np.cross(elements.chord, force2)).max() < 1e-12 * EA
+
+
+PLANAR = [0, 2, 4, 6, 8, 10]  # x, z and the moment about -y, that is from x to z, of both nodes
+TO_PLANE = np.eye(12)[PLANAR] * np.array([1, 1, -1, 1, 1, -1])[:, None]
+
+
+def upright(directions: Array) -> Array:
+    """Section frames (..., 3, 3) of tangents in the x-z plane, second axis in the plane."""
+    c, s, o = np.cos(directions), np.sin(directions), np.zeros_like(directions)
+    columns = np.stack([c, o, s]), np.stack([-s, o, c]), np.stack([o, o - 1, o])
+    return np.moveaxis(np.stack(columns, axis=1), (0, 1), (-2, -1))
+
+
+@SHAPES
+@ROTATIONS
+def test_plane_is_space_restricted_to_a_plane(curved: float, rotation: float) -> None:
+    flat = plane(curved, rotation)
+    in_space = flat.chord0 @ np.eye(3)[[0, 2]], flat.chord @ np.eye(3)[[0, 2]]
+    frames0, frames = upright(flat.directions0), upright(flat.directions)
+    section = beam3d.Section(flat.section.EA, 3 * flat.section.EI, flat.section.EI, flat.section.EI)
+    ref = beam3d.reference(in_space[0], frames0[0], frames0[1], flat.ref.L)
+    f3, K3 = beam3d.forces_and_tangent(in_space[1], frames[0], frames[1], ref, section)
+    f2, K2 = flat.call(beam2d.forces_and_tangent)
+    assert difference(f3 @ TO_PLANE.T, f2) < 1e-12
+    assert difference(TO_PLANE @ K3 @ TO_PLANE.T, K2) < 1e-12
+    assert np.abs(np.delete(f3, PLANAR, axis=1)).max() < 1e-12 * EA
+
+
+class Nodes(NamedTuple):
+    """Committed frames and rotation vectors of a chain's nodes, and end frames turned back by both."""
+
+    Rn: Array
+    Theta: Array
+    H: Array
+    ends: Array  # (2, ne, 3, 3)
+
+
+def nodes_of(elements: Space, angle: float) -> Nodes:
+    rng = np.random.default_rng(3)
+    Rn, Theta = turns(rng, 2.0, NE + 1), angle * rng.normal(size=(NE + 1, 3))
+    R = Rn @ np.array([exp(t) for t in Theta])
+    H = Rn @ np.array([rotations.left_tangent(vector(t)) for t in Theta])
+    back = np.swapaxes(R, -1, -2)
+    return Nodes(Rn, Theta, H, np.array([back[:-1] @ elements.frames[0], back[1:] @ elements.frames[1]]))
+
+
+def increments_forces(elements: Space, nodes: Nodes, moved: Array) -> Array:
+    """Forces conjugate to displacements and rotation vectors after increments (12,) of every element."""
+    Theta1, Theta2 = nodes.Theta[:-1] + moved[3:6], nodes.Theta[1:] + moved[9:]
+    ends = []
+    for Rn, Theta, end in ((nodes.Rn[:-1], Theta1, nodes.ends[0]), (nodes.Rn[1:], Theta2, nodes.ends[1])):
+        ends.append(Rn @ np.array([exp(t) for t in Theta]) @ end)
+    f = beam3d.forces(elements.chord + moved[6:9] - moved[:3], *ends, elements.ref, elements.section)
+    for n, Theta, at in ((0, Theta1, 3), (1, Theta2, 9)):
+        H = nodes.Rn[n : n + NE] @ np.array([rotations.left_tangent(vector(t)) for t in Theta])
+        f[:, at : at + 3] = np.einsum("eji,ej->ei", H, f[:, at : at + 3])
+    return f
+
+
+@SHAPES
+@pytest.mark.parametrize("angle", [0.0, 1e-3, 0.7])
+def test_tangent_by_rotation_vectors_is_the_symmetric_hessian(curved: float, angle: float) -> None:
+    elements = space(curved, 0.8)
+    nodes = nodes_of(elements, angle)
+    f, K = elements.call(beam3d.forces_and_tangent)
+    by_spins = K.copy()
+    increments.to_increments(f, K, nodes.H, nodes.Rn, nodes.Theta)
+    step, expected = 3e-3, np.zeros_like(K)
+    for j, unit in enumerate(np.eye(12)):
+        for k, c in STENCIL.items():
+            expected[:, :, j] += c / step * increments_forces(elements, nodes, k * step * unit)
+    assert difference(f, increments_forces(elements, nodes, np.zeros(12))) < 1e-13
+    assert difference(K, expected) < TOLERANCE
+    assert difference(K, np.swapaxes(K, 1, 2)) < 1e-12
+    assert difference(by_spins, np.swapaxes(by_spins, 1, 2)) > 1e-3
+
+
+def test_forces_alone_and_with_tangent_transform_alike() -> None:
+    elements = space(0.3, 0.8)
+    nodes = nodes_of(elements, 0.7)
+    alone = elements.call(beam3d.forces)
+    f, K = elements.call(beam3d.forces_and_tangent)
+    increments.forces_to_increments(alone, nodes.H)
+    increments.to_increments(f, K, nodes.H, nodes.Rn, nodes.Theta)
+    assert np.array_equal(alone, f)
+
+
+def nothing(*_: object) -> corotation.NodalForces:
+    return corotation.NodalForces((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
+# What a term of the tangent is replaced by to leave it out: module, function, substitute
+LEFT_OUT = {
+    "variation of eta": (corotation, "obliquity", lambda *_: 0.0),
+    "variation of the levers": (corotation, "lever", lambda *_: (0.0, 0.0, 0.0)),
+    "spin of the frame": (beam3d, "turn", nothing),
+    "derivative of the logarithm": (beam3d, "right_tangent_inverse_derivative", lambda *_: isotropic(0.0)),
+    "chord and axes": (beam3d, "configuration_variation", nothing),
+}
+
+
+def interpret(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs the tangent's own functions uncompiled, so that they see substitutes."""
+    for name in ("_respond", "_vary", "_tangent"):
+        monkeypatch.setattr(beam3d, name, getattr(beam3d, name).py_func)
+    monkeypatch.setattr(beam3d, "configuration_variation", corotation.configuration_variation.py_func)
+
+
+@pytest.mark.parametrize("term", LEFT_OUT)
+def test_each_geometric_term_of_the_tangent_matters(term: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    elements = space(0.0, 0.6)
+    interpret(monkeypatch)
+    _, K = elements.call(beam3d.forces_and_tangent.py_func)
+    assert difference(K, elements.call(beam3d.forces_and_tangent)[1]) < 1e-14
+    monkeypatch.setattr(*LEFT_OUT[term])
+    _, incomplete = elements.call(beam3d.forces_and_tangent.py_func)
+    assert difference(incomplete, K) > 1e4 * TOLERANCE
+
+
+def test_geometric_term_of_rotation_vectors_matters(monkeypatch: pytest.MonkeyPatch) -> None:
+    elements = space(0.0, 0.6)
+    nodes = nodes_of(elements, 0.7)
+    f, K = elements.call(beam3d.forces_and_tangent)
+    f_incomplete, incomplete = f.copy(), K.copy()
+    increments.to_increments(f, K, nodes.H, nodes.Rn, nodes.Theta)
+    monkeypatch.setattr(increments, "_end_to_increments", increments._end_to_increments.py_func)
+    monkeypatch.setattr(increments, "_moment_tangent", lambda *_: isotropic(0.0))
+    increments.to_increments.py_func(f_incomplete, incomplete, nodes.H, nodes.Rn, nodes.Theta)
+    assert difference(incomplete, K) > 1e4 * TOLERANCE
+
+
+def test_geometric_term_of_the_plane_matters(monkeypatch: pytest.MonkeyPatch) -> None:
+    elements = plane(0.0, 0.6)
+    _, K = elements.call(beam2d.forces_and_tangent)
+    for name in ("_vary", "_tangent"):
+        monkeypatch.setattr(beam2d, name, getattr(beam2d, name).py_func)
+    monkeypatch.setattr(beam2d, "configuration_variation", lambda *_: (0.0, 0.0))
+    _, incomplete = elements.call(beam2d.forces_and_tangent.py_func)
+    assert difference(incomplete, K) > 1e4 * TOLERANCE

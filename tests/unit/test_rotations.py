@@ -1,0 +1,109 @@
+"""Finite rotations against the matrix exponential, each other and finite differences."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+from scipy.linalg import expm
+
+from riser_soil.arrays import Array
+from riser_soil.riser import rotations
+from riser_soil.riser.vectors import Mat, Vec, skew, vector
+
+NEAR_PI = np.pi - 1e-9
+component = st.floats(-1.0, 1.0)
+axes = st.tuples(component, component, component).filter(lambda a: np.linalg.norm(a) > 1e-3)
+angles = st.one_of(st.floats(0.0, NEAR_PI), st.floats(0.0, 1e-6), st.floats(3.14, NEAR_PI))
+STENCIL = {-3: -1 / 60, -2: 3 / 20, -1: -3 / 4, 1: 3 / 4, 2: -3 / 20, 3: 1 / 60}
+
+
+def turned(axis: Vec, angle: float) -> Vec:
+    return vector(angle * np.array(axis) / np.linalg.norm(axis))
+
+
+def derivative(f: Callable[[Vec], Array], at: Vec, step: float = 5e-3) -> Array:
+    """Sixth-order finite differences; the last index is the direction."""
+    columns = []
+    for unit in np.eye(3):
+        values = [c * f(vector(np.array(at) + k * step * unit)) for k, c in STENCIL.items()]
+        columns.append(np.sum(values, axis=0) / step)
+    return np.stack(columns, axis=-1)
+
+
+def as_array(A: Mat) -> Array:
+    return np.array(A)
+
+
+def as_arrays(function: Callable[[Vec], Mat]) -> Callable[[Vec], Array]:
+    return lambda v: as_array(function(v))
+
+
+@given(axis=axes, angle=st.floats(0.0, 20.0))
+def test_exponential_is_the_matrix_exponential(axis: Vec, angle: float) -> None:
+    rotation = turned(axis, angle)
+    R = as_array(rotations.exp(rotation))
+    assert np.abs(R - expm(as_array(skew(rotation)))).max() < 1e-13
+    assert np.abs(R @ R.T - np.eye(3)).max() < 1e-14
+
+
+@given(axis=axes, angle=angles)
+@example(axis=(1.0, 0.0, 0.0), angle=0.0)
+@example(axis=(0.0, -1.0, 0.0), angle=NEAR_PI)
+@example(axis=(0.0, 0.0, 1.0), angle=NEAR_PI)
+@example(axis=(1.0, 1.0, -1.0), angle=NEAR_PI)
+def test_logarithm_inverts_the_exponential(axis: Vec, angle: float) -> None:
+    rotation = np.array(turned(axis, angle))
+    found = np.array(rotations.log(rotations.exp(vector(rotation))))
+    assert np.abs(found - rotation).max() < 1e-14 + 1e-14 * angle
+
+
+@pytest.mark.parametrize("axis", [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.6, 0.0, -0.8)])
+def test_logarithm_of_a_half_turn_has_length_pi(axis: Vec) -> None:
+    R = as_array(rotations.exp(turned(axis, np.pi)))
+    found = np.array(rotations.log(rotations.exp(turned(axis, np.pi))))
+    assert np.linalg.norm(found) == pytest.approx(np.pi, abs=1e-14)
+    assert np.abs(as_array(rotations.exp(vector(found))) - R).max() < 1e-14
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-5, 0.3, 0.499, 0.501, 1.5, 3.0, 5.0])
+def test_tangent_maps_are_the_spin_of_the_exponential(angle: float) -> None:
+    rotation = turned((0.3, -0.7, 0.5), angle)
+    R = as_array(rotations.exp(rotation))
+    rates = derivative(as_arrays(rotations.exp), rotation)
+    spins = np.einsum("ijk,lj->ilk", rates, R)  # (dR) R', skew for each direction k
+    left = np.stack([spins[2, 1], spins[0, 2], spins[1, 0]])
+    assert np.abs(left - as_array(rotations.left_tangent(rotation))).max() < 1e-11
+    assert np.abs(R.T @ left - as_array(rotations.right_tangent(rotation))).max() < 1e-11
+
+
+@given(axis=axes, angle=st.floats(0.0, 5.5))
+def test_inverse_tangent_maps(axis: Vec, angle: float) -> None:
+    rotation = turned(axis, angle)
+    left = as_array(rotations.left_tangent(rotation)) @ as_array(rotations.left_tangent_inverse(rotation))
+    right = as_array(rotations.right_tangent(rotation)) @ as_array(rotations.right_tangent_inverse(rotation))
+    assert np.abs(left - np.eye(3)).max() < 1e-12
+    assert np.abs(right - np.eye(3)).max() < 1e-12
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-5, 0.3, 0.499, 0.501, 1.5, 3.0, 5.0])
+def test_derivatives_of_the_tangent_maps(angle: float) -> None:
+    rotation, m = turned((0.3, -0.7, 0.5), angle), (0.4, 1.1, -0.2)
+    maps = [
+        (rotations.right_tangent, rotations.right_tangent_derivative),
+        (rotations.right_tangent_inverse, rotations.right_tangent_inverse_derivative),
+    ]
+    for function, function_derivative in maps:
+        found = as_array(function_derivative(rotation, m))
+        expected = np.einsum("ijk,j->ik", derivative(as_arrays(function), rotation), m)
+        assert np.abs(found - expected).max() < 2e-10
+
+
+@pytest.mark.parametrize(
+    "coefficients", [rotations.exp_coefficients, rotations.exp_slopes, rotations.inverse_coefficients]
+)
+def test_power_series_meet_the_closed_forms(coefficients: Callable[[float], tuple[float, ...]]) -> None:
+    x = rotations.SERIES_BELOW
+    below, above = np.array(coefficients(np.nextafter(x, 0.0))), np.array(coefficients(x))
+    assert np.abs(below / above - 1.0).max() < 3e-12
