@@ -11,6 +11,7 @@ export OMPI_MCA_hwloc_base_binding_policy := none
 export OMPI_MCA_mpi_yield_when_idle := 1
 export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
+export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
 .PHONY: help setup demo test lint verify bench verify-fresh docker clean
 

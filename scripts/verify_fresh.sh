@@ -65,9 +65,9 @@ copy_host_configuration() {
     for file in /etc/pip.conf /etc/xdg/pip/pip.conf "$HOME/.pip/pip.conf" "${XDG_CONFIG_HOME:-$HOME/.config}/pip/pip.conf"; do
         [ -f "$file" ] || continue
         case $file in
-            "$HOME"/.pip/*) install -D "$file" "$fresh/root/.pip/pip.conf" ;;
-            /etc/*) install -D "$file" "$fresh$file" ;;
-            *) install -D "$file" "$fresh/root/.config/pip/pip.conf" ;;
+            "$HOME"/.pip/*) install -D -m 644 "$file" "$fresh/root/.pip/pip.conf" ;;
+            /etc/*) install -D -m 644 "$file" "$fresh$file" ;;
+            *) install -D -m 644 "$file" "$fresh/root/.config/pip/pip.conf" ;;
         esac
     done
 }
@@ -85,7 +85,7 @@ mount_and_run() { # the new root; runs in its own mount and process namespace
     local command list
     IFS=';' read -ra list <<<"$commands"
     for command in "${list[@]}"; do
-        command=$(xargs <<<"$command")
+        command=${command#"${command%%[! ]*}"}
         timed "$command" in_fresh bash -c "cd $inside && $command"
     done
     timed "make setup again, without a network" second_setup
