@@ -14,7 +14,7 @@ class SceneError(RiserSoilError):
 
 
 class MeshError(RiserSoilError):
-    """A mesh file is missing or unusable, or a mesh could not be made from the scene: nothing was computed."""
+    """A mesh file is missing or unusable, or no mesh can be made from the scene: nothing was computed."""
 
     exit_status = 2
 

@@ -13,7 +13,9 @@ def _pick_stiffness(value: object) -> str | None:
 
 Stiffness = Annotated[
     Annotated[Literal["auto"], Tag("<word>")] | Annotated[Positive, Tag("<number>")],
-    Discriminator(_pick_stiffness, custom_error_type="choice", custom_error_message="must be auto or a number"),
+    Discriminator(
+        _pick_stiffness, custom_error_type="choice", custom_error_message="must be auto or a number"
+    ),
 ]
 
 
@@ -22,7 +24,9 @@ class Contact(BaseModel):
 
     model_config = FROZEN
 
-    method: Literal["node"] = Field(default="node", description="where contact is evaluated: at the riser's nodes")
+    method: Literal["node"] = Field(
+        default="node", description="where contact is evaluated: at the riser's nodes"
+    )
     stiffness: Stiffness = Field(
         default="auto", description="force per length of pipe and penetration [N/m2], or auto"
     )

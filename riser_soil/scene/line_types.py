@@ -13,7 +13,9 @@ class Drag(BaseModel):
     model_config = FROZEN
 
     normal: NonNegative = Field(description="normal drag coefficient, on the outer diameter [-]")
-    tangential: NonNegative = Field(default=0.0, description="tangential drag coefficient, on the circumference [-]")
+    tangential: NonNegative = Field(
+        default=0.0, description="tangential drag coefficient, on the circumference [-]"
+    )
 
 
 class AddedMass(BaseModel):
@@ -39,9 +41,15 @@ class LineType(BaseModel):
     )
     EA: Positive = Field(description="axial stiffness [N]")
     EI: Positive | None = Field(default=None, description="bending stiffness [N.m2]; or give EI_y and EI_z")
-    EI_y: Positive | None = Field(default=None, description="bending stiffness about the section's y axis [N.m2]")
-    EI_z: Positive | None = Field(default=None, description="bending stiffness about the section's z axis [N.m2]")
-    GJ: Positive | None = Field(default=None, description="torsional stiffness [N.m2]; needed in three dimensions")
+    EI_y: Positive | None = Field(
+        default=None, description="bending stiffness about the section's y axis [N.m2]"
+    )
+    EI_z: Positive | None = Field(
+        default=None, description="bending stiffness about the section's z axis [N.m2]"
+    )
+    GJ: Positive | None = Field(
+        default=None, description="torsional stiffness [N.m2]; needed in three dimensions"
+    )
     submerged_weight: Real | None = Field(
         default=None,
         description="weight less buoyancy, contents included [N/m]; "
@@ -66,7 +74,9 @@ class LineType(BaseModel):
         if self.EI is None and None in pair:
             raise wrong("EI", "the bending stiffness is missing", "give EI, or both EI_y and EI_z [N.m2]")
         if self.EI is not None and pair != (None, None):
-            raise wrong("EI", "the bending stiffness is given twice", "give either EI or the pair EI_y and EI_z")
+            raise wrong(
+                "EI", "the bending stiffness is given twice", "give either EI or the pair EI_y and EI_z"
+            )
         return self
 
     @property

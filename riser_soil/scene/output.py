@@ -37,11 +37,13 @@ class Output(BaseModel):
         default=None, description="time between records in results.nc [s]; every accepted step by default"
     )
     xdmf_interval: Positive | None = Field(
-        default=None, description="time between records in riser.xdmf and soil.xdmf [s]; as interval by default"
+        default=None,
+        description="time between records in riser.xdmf and soil.xdmf [s]; as interval by default",
     )
     fields: tuple[FieldName, ...] = Field(
         default=ALL_FIELDS, description="fields to record beside the positions; all by default"
     )
     directory: Text | None = Field(
-        default=None, description="result folder; by default named after the scene file, in the current folder"
+        default=None,
+        description="result folder; by default named after the scene file, in the current folder",
     )

@@ -74,7 +74,7 @@ class Support(BaseModel):
     position: Vector = Field(description="where the end is held, [x, y, z] [m]")
     rotation: Rotation = Field(
         default="free",
-        description="free, fixed (keeps the direction of the initial shape), or {stiffness: N.m/rad} about it",
+        description="free, fixed (keeps the direction of the initial shape), or {stiffness: N.m/rad}",
     )
 
 

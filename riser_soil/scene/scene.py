@@ -25,8 +25,8 @@ class Scene(BaseModel):
     gravity: NonNegative = Field(default=9.81, description="acceleration of gravity along -z [m/s2]")
     dimension: Literal["auto", 2, 3] = Field(
         default="auto",
-        description="dimension of the riser's motion: 2 (in one vertical plane), 3, or auto: 2 whenever nothing "
-        "leaves the vertical plane",
+        description="dimension of the riser's motion: 2 (in one vertical plane), 3, or auto: "
+        "2 whenever nothing leaves the vertical plane",
     )
     water: Water | None = Field(default=None, description="the water; none by default")
     line_types: dict[str, LineType] = Field(min_length=1, description="the kinds of pipe by name")

@@ -16,7 +16,9 @@ class RigidSeabed(BaseModel):
 
     kind: Literal["rigid"] = Field(description="rigid or spring")
     level: Real = Field(default=0.0, description="height z of the seabed and of the soil's top face [m]")
-    contact_at: ContactAt = Field(default="outer", description="what touches: the pipe's axis or its outer surface")
+    contact_at: ContactAt = Field(
+        default="outer", description="what touches: the pipe's axis or its outer surface"
+    )
 
 
 class SpringSeabed(BaseModel):
@@ -26,7 +28,9 @@ class SpringSeabed(BaseModel):
 
     kind: Literal["spring"] = Field(description="rigid or spring")
     level: Real = Field(default=0.0, description="height z of the seabed and of the soil's top face [m]")
-    contact_at: ContactAt = Field(default="outer", description="what touches: the pipe's axis or its outer surface")
+    contact_at: ContactAt = Field(
+        default="outer", description="what touches: the pipe's axis or its outer surface"
+    )
     stiffness: Positive = Field(description="force per length of pipe and penetration [N/m2]")
 
 

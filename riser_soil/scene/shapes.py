@@ -3,7 +3,7 @@
 import math
 from typing import Annotated, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
 from riser_soil.scene.quantities import FROZEN, Real, Vector, by_key, word_or, wrong
 
@@ -21,12 +21,14 @@ class PointsShape(BaseModel):
 class Arc(BaseModel):
     """An arc of a circle about an axis."""
 
-    model_config = ConfigDict(**FROZEN)
+    model_config = FROZEN
 
     centre: Vector = Field(description="a point on the circle's axis, [x, y, z] [m]")
     from_point: Vector = Field(alias="from", description="where the riser starts, [x, y, z] [m]")
     angle_deg: Real = Field(description="angle from start to end, right-handed about the axis [deg]")
-    axis: Vector = Field(default=(0.0, 0.0, 1.0), description="direction of the circle's axis, of any length [-]")
+    axis: Vector = Field(
+        default=(0.0, 0.0, 1.0), description="direction of the circle's axis, of any length [-]"
+    )
 
     @model_validator(mode="after")
     def _is_an_arc(self) -> Self:

@@ -40,7 +40,9 @@ class Block(BaseModel):
     def _has_a_size(self) -> Self:
         for key, (low, high) in {"x": self.x, "y": self.y}.items():
             if low >= high:
-                raise wrong(key, "the first bound must be smaller than the second", "write [from, to] in metres")
+                raise wrong(
+                    key, "the first bound must be smaller than the second", "write [from, to] in metres"
+                )
         return self
 
 
@@ -145,14 +147,18 @@ class Soil(BaseModel):
         default=0.0, description="submerged unit weight, source of the initial stress [N/m3]"
     )
     K0: Positive = Field(default=1.0, description="initial horizontal over vertical effective stress [-]")
-    inertia: Literal[False] = Field(default=False, description="whether the soil has mass; false: quasi-static")
+    inertia: Literal[False] = Field(
+        default=False, description="whether the soil has mass; false: quasi-static"
+    )
 
     @model_validator(mode="after")
     def _meshed_once(self) -> Self:
         if isinstance(self.mesh, MeshFile) and self.block is not None:
             raise wrong("block", "a mesh file replaces the block", "leave out either block or mesh.file")
         if isinstance(self.mesh, GeneratedMesh) and self.block is None:
-            raise wrong("block", "the box of soil is missing", "give block: {x, y, depth}, or mesh: {file: ...}")
+            raise wrong(
+                "block", "the box of soil is missing", "give block: {x, y, depth}, or mesh: {file: ...}"
+            )
         return self
 
     @model_validator(mode="after")
@@ -160,6 +166,8 @@ class Soil(BaseModel):
         law, block = self.law, self.block
         if isinstance(law, VonMises) and block and law.su + law.su_gradient * block.depth <= 0.0:
             raise wrong(
-                "law", "su must stay positive down to the block's bottom", "raise su_gradient or take a shallower block"
+                "law",
+                "su must stay positive down to the block's bottom",
+                "raise su_gradient or take a shallower block",
             )
         return self

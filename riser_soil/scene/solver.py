@@ -14,8 +14,14 @@ class Solver(BaseModel):
         default=1.0e-8, lt=1.0, description="residual at convergence, relative to the scene's own forces [-]"
     )
     max_iterations: Count = Field(default=25, description="Newton iterations before a step is cut [-]")
-    load_steps: Count = Field(default=1, description="steps into which a static stage is divided at first [-]")
-    min_load_step: Positive = Field(
-        default=1.0e-4, le=1.0, description="smallest part of a static stage's load before the solve fails [-]"
+    load_steps: Count = Field(
+        default=1, description="steps into which a static stage is divided at first [-]"
     )
-    min_time_step: Positive = Field(default=1.0e-5, description="smallest time step before the solve fails [s]")
+    min_load_step: Positive = Field(
+        default=1.0e-4,
+        le=1.0,
+        description="smallest part of a static stage's load before the solve fails [-]",
+    )
+    min_time_step: Positive = Field(
+        default=1.0e-5, description="smallest time step before the solve fails [s]"
+    )

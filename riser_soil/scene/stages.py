@@ -24,7 +24,9 @@ def _pick_place(value: object) -> str | None:
 
 Place = Annotated[
     Annotated[Literal["start", "end"], Tag("<word>")] | Annotated[NonNegative, Tag("<number>")],
-    Discriminator(_pick_place, custom_error_type="choice", custom_error_message="must be start, end or an arc [m]"),
+    Discriminator(
+        _pick_place, custom_error_type="choice", custom_error_message="must be start, end or an arc [m]"
+    ),
 ]
 
 
@@ -34,17 +36,20 @@ class Load(BaseModel):
     model_config = FROZEN
 
     at: Place | None = Field(
-        default=None, description="where force and moment act: start, end or arc length [m]; not for distributed"
+        default=None,
+        description="where force and moment act: start, end or arc length [m]; not for distributed",
     )
     force: Vector | None = Field(default=None, description="point force [Fx, Fy, Fz] [N]")
-    moment: Vector | None = Field(default=None, description="point moment about fixed axes [Mx, My, Mz] [N.m]")
+    moment: Vector | None = Field(
+        default=None, description="point moment about fixed axes [Mx, My, Mz] [N.m]"
+    )
     distributed: Vector | None = Field(
         default=None, description="force per unstressed length along the whole riser [qx, qy, qz] [N/m]"
     )
     history: tuple[tuple[NonNegative, Real], ...] | None = Field(
         default=None,
-        description="factor on the load, linear between [[t, factor], ...]: t in seconds since the stage began "
-        "(in a static stage the part of the stage, 0 to 1); by default static loads grow linearly "
+        description="factor on the load, linear between [[t, factor], ...]: t in seconds since the stage "
+        "began (in a static stage the part of the stage, 0 to 1); by default static loads grow linearly "
         "from 0 to 1 and dynamic loads have the factor 1 throughout",
     )
 
@@ -85,7 +90,9 @@ class Harmonic(BaseModel):
 
     amplitude: Vector = Field(description="amplitude, [x, y, z] [m]")
     period: Positive = Field(description="period [s]")
-    ramp: NonNegative = Field(default=0.0, description="time over which the motion grows smoothly to its full size [s]")
+    ramp: NonNegative = Field(
+        default=0.0, description="time over which the motion grows smoothly to its full size [s]"
+    )
     phase_deg: Real = Field(default=0.0, description="phase at the stage's beginning [deg]")
 
 
@@ -174,7 +181,7 @@ class DynamicStage(BaseModel):
     loads: tuple[Load, ...] = Field(default=(), description="loads on the riser during this stage")
     scheme: Scheme = Field(
         default=GeneralizedAlphaScheme(generalized_alpha=GeneralizedAlpha()),
-        description="{newmark: {beta, gamma} or {generalized_alpha: {rho_inf}",
+        description="{newmark: {beta, gamma}} or {generalized_alpha: {rho_inf}}",
     )
 
     @model_validator(mode="after")

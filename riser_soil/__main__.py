@@ -1,0 +1,140 @@
+"""The command line: riser-soil run | check | schema. Exit status 0 done, 2 bad input, 3 the solve failed."""
+
+import os
+import sys
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from riser_soil import __version__
+from riser_soil.errors import RiserSoilError, SceneError
+
+if TYPE_CHECKING:
+    from riser_soil.scene.scene import Scene
+
+app = typer.Typer(
+    help="Static and dynamic analysis of a riser on the seabed.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+SceneFile = Annotated[str, typer.Argument(metavar="SCENE", help="scene file (.yaml)")]
+Overrides = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="PATH=VALUE", help="override a value, e.g. riser.segments.0.elements=70"),
+]
+
+
+@app.command()
+def run(
+    scene: SceneFile,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FOLDER", help="result folder")
+    ] = None,
+    restart: Annotated[bool, typer.Option("--restart", help="continue from the last checkpoint")] = False,
+    force: Annotated[bool, typer.Option("--force", help="overwrite a finished run")] = False,
+    overrides: Overrides = None,
+) -> None:
+    """Compute a scene; the results go to FOLDER, by default named after the scene file, in the current folder."""
+    with _expected_errors():
+        if restart:
+            raise SceneError("--restart: not supported yet; run the scene from its beginning")
+        checked = _read(scene, overrides)
+        folder = _result_folder(scene, checked, output, force)
+        from riser_soil.run import run as compute
+
+        compute(checked, folder, force)
+
+
+@app.command()
+def check(scene: SceneFile, overrides: Overrides = None) -> None:
+    """Check a scene and tell what would be built, without computing anything."""
+    with _expected_errors():
+        checked = _read(scene, overrides)
+        from riser_soil.build import describe
+
+        text = describe(checked)
+        if _rank() == 0:
+            typer.echo(text)
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON schema of scene files, for editors."""
+    from riser_soil.scene.schema import schema_text
+
+    typer.echo(schema_text())
+
+
+def _read(scene: str, overrides: list[str] | None) -> "Scene":
+    from riser_soil.scene.reader import read_scene
+
+    return read_scene(scene, overrides or ())
+
+
+def _result_folder(file: str, scene: "Scene", output: Path | None, force: bool) -> Path:
+    """The folder for the results; a finished run in it is only overwritten by force."""
+    from riser_soil.folder import refuse_finished
+
+    folder = output or Path(scene.output.directory or Path(file).stem)
+    if folder.exists() and not folder.is_dir():
+        raise SceneError(f"{folder}: is a file, not a folder; choose another result folder with -o FOLDER")
+    refuse_finished(folder, force)
+    return folder
+
+
+@contextmanager
+def _expected_errors() -> Iterator[None]:
+    """Tell expected errors by their message alone, on the first rank; every rank leaves with their status."""
+    try:
+        yield
+    except RiserSoilError as err:
+        if _rank() == 0:
+            typer.echo(str(err), err=True)
+        raise typer.Exit(err.exit_status) from err
+    except Exception:
+        _abort_other_ranks()
+        raise
+
+
+def _rank() -> int:
+    """This process's number under mpirun, without importing MPI; 0 alone."""
+    names = ("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK")
+    return next((int(os.environ[name]) for name in names if os.environ.get(name, "").isdecimal()), 0)
+
+
+def _abort_other_ranks() -> None:
+    """After an unexpected error: ranks that wait for this one would wait for ever."""
+    mpi = sys.modules.get("mpi4py.MPI")
+    if mpi is not None and mpi.COMM_WORLD.size > 1:
+        traceback.print_exc()
+        mpi.COMM_WORLD.Abort(1)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"riser-soil {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="print the version")
+    ] = False,
+) -> None:
+    """Static and dynamic analysis of a riser on the seabed."""
+
+
+def main() -> None:
+    """Entry point of the console script."""
+    app()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""The scene language: models, reader, checks across parts, echo and JSON schema."""

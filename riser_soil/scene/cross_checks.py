@@ -1,0 +1,224 @@
+"""Conflicts between parts of a scene that each by itself is well formed."""
+
+import math
+from collections.abc import Callable, Iterator
+
+from riser_soil.scene.line_types import LineType
+from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
+from riser_soil.scene.problem import Problem, dotted, hint
+from riser_soil.scene.quantities import Vector
+from riser_soil.scene.riser import Support
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.shapes import ArcShape, PointsShape
+from riser_soil.scene.soil import Block
+from riser_soil.scene.stage_checks import stage_conflicts
+
+# A given unstressed shape may differ from the segments' length by this part; points leave out the curve.
+_ARC_TOLERANCE = 1e-3
+_POINTS_TOLERANCE = 0.05
+# Strain of a riser pulled straight between its ends beyond which the positions must be a mistake.
+_GREATEST_STRAIN = 0.1
+
+_Check = Callable[[Scene], Iterator[Problem]]
+
+
+def conflicts(scene: Scene) -> list[Problem]:
+    """All conflicts of the scene; a missing line type hides those that follow from it."""
+    missing = list(_line_types_exist(scene))
+    return missing or [problem for check in _CHECKS for problem in check(scene)]
+
+
+def _line_types_exist(scene: Scene) -> Iterator[Problem]:
+    for n, segment in enumerate(scene.riser.segments):
+        if segment.line_type not in scene.line_types:
+            known = f"must be a key of line_types ({', '.join(scene.line_types)})"
+            remedy = f"name one of them or add {segment.line_type}" + hint(
+                segment.line_type, scene.line_types
+            )
+            yield Problem(("riser", "segments", n, "line_type"), known, remedy)
+
+
+def _line_types_suffice(scene: Scene) -> Iterator[Problem]:
+    for name, line in scene.used_line_types.items():
+        for key, reason in _wanting(scene, line):
+            yield Problem(("line_types", name, key), reason, f"add {key}: {_describe(key)}")
+
+
+def _wanting(scene: Scene, line: LineType) -> Iterator[tuple[str, str]]:
+    """Keys that a line type of this scene lacks, and why they are needed."""
+    if line.mass is None and (reason := _mass_needed(scene, line)):
+        yield "mass", reason
+    if line.outer_diameter is None and (reason := _diameter_needed(scene, line)):
+        yield "outer_diameter", reason
+    if line.GJ is None and resolved_dimension(scene) == 3:
+        yield "GJ", f"needed in three dimensions{_why_three(scene)}"
+
+
+def _mass_needed(scene: Scene, line: LineType) -> str | None:
+    if any(stage.kind == "dynamic" for stage in scene.stages):
+        return "a dynamic stage needs the mass"
+    if scene.gravity > 0.0 and line.submerged_weight is None:
+        return "the weight follows from the mass, unless submerged_weight is given"
+    return None
+
+
+def _diameter_needed(scene: Scene, line: LineType) -> str | None:
+    if scene.water and scene.gravity > 0.0 and line.submerged_weight is None:
+        return "buoyancy follows from the outer diameter, unless submerged_weight is given"
+    if line.drag or line.added_mass:
+        return "drag and added mass follow from the outer diameter"
+    if scene.contact and scene.contact_at == "outer":
+        return "the pipe's outer surface touches the ground, unless seabed.contact_at is axis"
+    return None
+
+
+def _why_three(scene: Scene) -> str:
+    path = next(leaving_the_plane(scene), None)
+    return f" ({dotted(path)} leaves the vertical plane)" if path else ""
+
+
+def _describe(key: str) -> str:
+    return LineType.model_fields[key].description or key
+
+
+def _water_where_it_acts(scene: Scene) -> Iterator[Problem]:
+    for name, line in scene.used_line_types.items():
+        for key, coefficients in {"drag": line.drag, "added_mass": line.added_mass}.items():
+            if coefficients and not scene.water and (coefficients.normal or coefficients.tangential):
+                remedy = f"add water: {{density: 1025.0}}, or leave out {key}"
+                yield Problem(
+                    ("line_types", name, key), "acts in water only, and the scene has no water", remedy
+                )
+
+
+def _contents_fit(scene: Scene) -> Iterator[Problem]:
+    if scene.riser.contents and not any(line.inner_diameter for line in scene.used_line_types.values()):
+        remedy = "give inner_diameter in line_types, or leave out contents"
+        yield Problem(("riser", "contents"), "no line type of the riser has room for contents", remedy)
+
+
+def _stays_in_plane(scene: Scene) -> Iterator[Problem]:
+    if scene.dimension == 2:
+        for path in leaving_the_plane(scene):
+            remedy = "set dimension: 3 or auto, or correct the value"
+            yield Problem(path, "leaves the riser's vertical plane, but dimension is 2", remedy)
+
+
+def _contact_with_something(scene: Scene) -> Iterator[Problem]:
+    if scene.contact and not scene.seabed and not scene.soil:
+        yield Problem(("contact",), "there is nothing to touch", "add seabed or soil, or leave out contact")
+
+
+def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
+    if not scene.contact:
+        return
+    for key, end in {"start": scene.riser.start, "end": scene.riser.end}.items():
+        if isinstance(end, Support) and end.position[2] < scene.seabed_level:
+            allowed = f"must not lie below the seabed (z = {scene.seabed_level:g} m)"
+            yield Problem(("riser", key, "position"), allowed, "raise the position or lower seabed.level")
+
+
+def _initial_shape_possible(scene: Scene) -> Iterator[Problem]:
+    riser, path = scene.riser, ("riser", "initial")
+    if riser.initial == "catenary" and "free" in (riser.start, riser.end):
+        yield Problem(
+            path, "a catenary hangs between two held ends", "hold both ends, or set initial: unstressed"
+        )
+    elif riser.initial == "catenary" and scene.gravity == 0.0:
+        yield Problem(path, "there is no catenary without gravity", "set initial: straight or unstressed")
+    if riser.initial == "straight" and riser.unstressed != "straight" and "free" in (riser.start, riser.end):
+        yield Problem(path, "straight needs two held ends here", "hold both ends, or set initial: unstressed")
+
+
+def _long_enough(scene: Scene) -> Iterator[Problem]:
+    start, end, length = scene.riser.start, scene.riser.end, scene.riser.length
+    if not isinstance(start, Support) or not isinstance(end, Support):
+        return
+    distance = math.dist(start.position, end.position)
+    if scene.riser.initial == "catenary" and distance >= length:
+        remedy = "lengthen the segments, bring the ends together, or set initial: straight"
+        yield Problem(("riser", "end", "position"), _too_short(distance, length), remedy)
+    elif distance > (1.0 + _GREATEST_STRAIN) * length:
+        remedy = "lengthen the segments or bring the ends together"
+        yield Problem(("riser", "end", "position"), _too_short(distance, length), remedy)
+
+
+def _too_short(distance: float, length: float) -> str:
+    return f"the ends are {distance:.6g} m apart, but the riser is only {length:.6g} m long"
+
+
+def _unstressed_shape_fits(scene: Scene) -> Iterator[Problem]:
+    shape, length = scene.riser.unstressed, scene.riser.length
+    if isinstance(shape, ArcShape):
+        yield from _same_length(("riser", "unstressed", "arc"), shape.arc.length, length, _ARC_TOLERANCE)
+        yield from _starts_at_support(scene, ("riser", "unstressed", "arc", "from"), shape.arc.from_point)
+    if isinstance(shape, PointsShape):
+        along = math.fsum(map(math.dist, shape.points, shape.points[1:]))
+        yield from _same_length(("riser", "unstressed", "points"), along, length, _POINTS_TOLERANCE)
+        yield from _starts_at_support(scene, ("riser", "unstressed", "points", 0), shape.points[0])
+
+
+def _same_length(path: tuple[str, ...], along: float, length: float, tolerance: float) -> Iterator[Problem]:
+    if abs(along - length) > tolerance * length:
+        allowed = f"the shape is {along:.6g} m long, but the segments add up to {length:.6g} m"
+        yield Problem(path, allowed, "correct the shape or the segments' lengths")
+
+
+def _starts_at_support(scene: Scene, path: tuple[str | int, ...], point: Vector) -> Iterator[Problem]:
+    start = scene.riser.start
+    if scene.riser.initial != "unstressed" or not isinstance(start, Support):
+        return
+    if math.dist(start.position, point) > 1e-6 * scene.riser.length:
+        yield Problem(
+            path, "must be riser.start.position, since initial is unstressed", "make the two points equal"
+        )
+
+
+def _points_run_between_the_ends(scene: Scene) -> Iterator[Problem]:
+    shape = scene.riser.initial
+    if not isinstance(shape, PointsShape):
+        return
+    for n, key, end in ((0, "start", scene.riser.start), (len(shape.points) - 1, "end", scene.riser.end)):
+        if isinstance(end, Support) and math.dist(end.position, shape.points[n]) > 1e-6 * scene.riser.length:
+            path = ("riser", "initial", "points", n)
+            yield Problem(path, f"must be riser.{key}.position", "make the two points equal")
+
+
+def _passes_over_block(scene: Scene) -> Iterator[Problem]:
+    start, end = scene.riser.start, scene.riser.end
+    block = scene.soil.block if scene.soil else None
+    if block is None or not isinstance(start, Support) or not isinstance(end, Support):
+        return
+    if scene.riser.initial == "catenary" and not _crosses(block, start.position, end.position):
+        remedy = "move the block under the touchdown zone"
+        yield Problem(("soil", "block"), "the riser, seen from above, never passes over it", remedy)
+
+
+def _crosses(block: Block, a: Vector, b: Vector) -> bool:
+    """Whether the line from a to b, seen from above, meets the block (Liang and Barsky 1984)."""
+    low, high = 0.0, 1.0
+    for axis, (first, last) in enumerate((block.x, block.y)):
+        step = b[axis] - a[axis]
+        if step == 0.0:
+            if not first <= a[axis] <= last:
+                return False
+            continue
+        near, far = sorted(((first - a[axis]) / step, (last - a[axis]) / step))
+        low, high = max(low, near), min(high, far)
+    return low <= high
+
+
+_CHECKS: tuple[_Check, ...] = (
+    _line_types_suffice,
+    _water_where_it_acts,
+    _contents_fit,
+    _stays_in_plane,
+    _contact_with_something,
+    _ends_above_seabed,
+    _initial_shape_possible,
+    _long_enough,
+    _unstressed_shape_fits,
+    _points_run_between_the_ends,
+    _passes_over_block,
+    stage_conflicts,
+)

@@ -1,0 +1,157 @@
+"""A YAML file as plain data, with the line of every value."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path as FilePath
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+
+from riser_soil.errors import SceneError
+from riser_soil.scene.problem import Path, dotted
+
+_TAG = "tag:yaml.org,2002:"
+_SCALARS = {_TAG + name for name in ("str", "int", "float", "bool", "null", "timestamp")}
+_MOST_VALUES = 1_000_000
+
+
+@dataclass
+class Document:
+    """Plain data (dict, list, str, int, float, bool, None) and where each value was written."""
+
+    name: str
+    data: Any
+    lines: dict[Path, int] = field(default_factory=dict)
+    overrides: dict[Path, str] = field(default_factory=dict)
+
+    def where(self, path: Path) -> tuple[int, str]:
+        """Sorting number and text of the place of a value, or of the nearest value around it."""
+        for n in range(len(path), -1, -1):
+            if path[:n] in self.overrides:
+                return 0, f"--set {self.overrides[path[:n]]}"
+            if path[:n] in self.lines:
+                return self.lines[path[:n]], f"{self.name}:{self.lines[path[:n]]}"
+        return 1, self.name
+
+
+def read_text(file: FilePath) -> str:
+    """The text of a scene file; SceneError when it can't be read."""
+    if file.is_dir():
+        raise SceneError(f"{file}: is a folder; give the name of a scene file (.yaml)")
+    try:
+        return file.read_text(encoding="utf-8-sig")
+    except FileNotFoundError as err:
+        raise SceneError(f"{file}: there is no such file; correct the name of the scene file") from err
+    except UnicodeDecodeError as err:
+        line = err.object.count(b"\n", 0, err.start) + 1
+        raise SceneError(f"{file}:{line}: not UTF-8 text; save the scene as UTF-8") from err
+    except OSError as err:
+        raise SceneError(
+            f"{file}: can't be read ({err.strerror}); check the file and its permissions"
+        ) from err
+
+
+def parse(text: str, name: str) -> Document:
+    """The document in a YAML text; SceneError with the line when the text is not plain YAML."""
+    yaml = YAML(typ="safe", pure=True)
+    try:
+        node = yaml.compose(text)
+    except MarkedYAMLError as err:
+        raise SceneError(_broken(err, name)) from err
+    except YAMLError as err:
+        raise SceneError(f"{name}: not valid YAML: {' '.join(str(err).split())}; correct the file") from err
+    except RecursionError as err:
+        raise SceneError(f"{name}: nested too deeply; a scene is at most some ten levels deep") from err
+    if node is None:
+        raise SceneError(f"{name}: the scene is empty; it needs at least line_types, riser and stages")
+    return _Builder(yaml, name).document(node)
+
+
+def _broken(err: MarkedYAMLError, name: str) -> str:
+    mark = err.problem_mark or err.context_mark
+    line = f":{mark.line + 1}" if mark else ""
+    reason = " ".join(str(part) for part in (err.context, err.problem) if part)
+    return f"{name}{line}: not valid YAML: {' '.join(reason.split())}; correct indentation or quotes here"
+
+
+class _Builder:
+    """Turns YAML nodes into plain data; allows no tags, so that no object is ever built from a scene."""
+
+    def __init__(self, yaml: YAML, name: str) -> None:
+        self._constructor = yaml.constructor
+        self._out = Document(name, None)
+        self._open: list[int] = []
+        self._count = 0
+
+    def document(self, node: Node) -> Document:
+        self._out.lines[()] = node.start_mark.line + 1
+        self._out.data = self._value(node, ())
+        return self._out
+
+    def _value(self, node: Node, path: Path) -> Any:
+        self._guard(node, path)
+        self._open.append(id(node))
+        try:
+            if isinstance(node, MappingNode) and node.tag == _TAG + "map":
+                return self._mapping(node, path)
+            if isinstance(node, SequenceNode) and node.tag == _TAG + "seq":
+                return [self._entry(item, item, (*path, i)) for i, item in enumerate(node.value)]
+            if isinstance(node, ScalarNode) and node.tag in _SCALARS:
+                return self._scalar(node, path)
+        finally:
+            self._open.pop()
+        raise self._error(node, path, f"tag {node.tag}: tags are not allowed in a scene; remove the tag")
+
+    def _guard(self, node: Node, path: Path) -> None:
+        self._count += 1
+        if id(node) in self._open:
+            raise self._error(node, path, "refers to itself; remove the alias (*name)")
+        if self._count > _MOST_VALUES:
+            raise self._error(node, path, f"more than {_MOST_VALUES} values; use fewer aliases or points")
+
+    def _entry(self, marked: Node, node: Node, path: Path) -> Any:
+        self._out.lines[path] = marked.start_mark.line + 1
+        return self._value(node, path)
+
+    def _scalar(self, node: ScalarNode, path: Path) -> Any:
+        if node.tag in (_TAG + "str", _TAG + "timestamp"):
+            return node.value
+        try:
+            return self._constructor.construct_object(node)
+        except (ValueError, KeyError, YAMLError) as err:
+            raise self._error(
+                node, path, f"value {node.value!r} can't be read; write a plain number or word"
+            ) from err
+
+    def _mapping(self, node: MappingNode, path: Path) -> dict[str, Any]:
+        merged: dict[str, Any] = {}
+        own: dict[str, Any] = {}
+        for key_node, value_node in node.value:
+            if key_node.tag == _TAG + "merge":
+                for source in self._merge_sources(value_node):
+                    merged = {**self._value(source, path), **merged}
+                continue
+            key = self._key(key_node, path)
+            if key in own:
+                raise self._error(key_node, (*path, key), "the key is given twice; remove one of the two")
+            own[key] = self._entry(key_node, value_node, (*path, key))
+        return {**merged, **own}
+
+    def _merge_sources(self, node: Node) -> Iterator[Node]:
+        sources = node.value if isinstance(node, SequenceNode) else [node]
+        for source in sources:
+            if not isinstance(source, MappingNode):
+                raise self._error(
+                    source, (), "<< must be followed by an alias (*name) of a mapping; correct it"
+                )
+            yield source
+
+    def _key(self, node: Node, path: Path) -> str:
+        if isinstance(node, ScalarNode) and node.tag in _SCALARS:
+            return str(node.value)
+        raise self._error(node, path, "a key must be one plain word; write `key: value`")
+
+    def _error(self, node: Node, path: Path, text: str) -> SceneError:
+        return SceneError(f"{self._out.name}:{node.start_mark.line + 1}: {dotted(path)}: {text}")

@@ -1,0 +1,181 @@
+"""Problems in the words of the scene from the errors of the models."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from riser_soil.scene.language import Spot, spot
+from riser_soil.scene.problem import Path, Problem, did_you_mean, hint, value_at
+
+
+@dataclass(frozen=True)
+class Failure:
+    """One error of the models, seen from the scene."""
+
+    location: Path  # as the models give it, alternatives' tags included
+    data: Any
+    context: dict[str, Any]
+
+    @property
+    def path(self) -> Path:
+        """The location without tags: the path in the scene."""
+        return tuple(item for item in self.location if not (isinstance(item, str) and item.startswith("<")))
+
+    @property
+    def value(self) -> Any:
+        """The value in the scene, or NOTHING."""
+        return value_at(self.data, self.path)
+
+    @property
+    def here(self) -> Spot:
+        """What the language says about the place."""
+        return spot(self.location)
+
+    @property
+    def around(self) -> Spot:
+        """What the language says about the mapping or list that holds the place."""
+        return spot(self.location[:-1])
+
+    @property
+    def correct(self) -> str:
+        """The remedy when only the right value is wanted."""
+        return f"correct it: {self.here.description}"
+
+    def problem(self, allowed: str, remedy: str | None = None) -> Problem:
+        return Problem(self.path, allowed, remedy or self.correct)
+
+
+_Explain = Callable[[Failure], Problem]
+
+
+def problems_in(error: ValidationError, data: Any) -> list[Problem]:
+    """One problem per error; follow-up errors of another one are left out."""
+    details = [d for d in error.errors(include_url=False) if not _follows_from_items(d)]
+    failures = [
+        Failure(d["loc"], data, {"type": d["type"], "text": d["msg"], **d.get("ctx", {})}) for d in details
+    ]
+    meant = {_meant(f) for f in failures if f.context["type"] == "extra_forbidden"}
+    told = [f for f in failures if f.context["type"] != "missing" or f.path not in meant]
+    return [_EXPLAIN.get(f.context["type"], _as_it_is)(f) for f in told]
+
+
+def _follows_from_items(detail: ErrorDetails) -> bool:
+    """A list counts as too short as well when its items are wrong: only the items need telling."""
+    return detail["type"] == "too_short" and len(detail["input"]) >= detail["ctx"]["min_length"]
+
+
+def _meant(failure: Failure) -> Path:
+    """The key that an unknown one was probably meant to be."""
+    return (*failure.path[:-1], did_you_mean(str(failure.path[-1]), failure.around.keys) or "")
+
+
+def _as_it_is(failure: Failure) -> Problem:
+    text = str(failure.context["text"])
+    return failure.problem(text[:1].lower() + text[1:])
+
+
+def _missing(failure: Failure) -> Problem:
+    if isinstance(failure.path[-1], int):
+        return _wrong_count(replace(failure, location=failure.location[:-1]))
+    return failure.problem("the key is required here", f"add it: {failure.here.description}")
+
+
+def _wrong_count(failure: Failure) -> Problem:
+    return failure.problem(f"must be a list of {failure.here.count} values")
+
+
+def _too_short(failure: Failure) -> Problem:
+    return failure.problem(f"must have at least {failure.context['min_length']} entries")
+
+
+def _number(failure: Failure) -> Problem:
+    whole = "whole " if int in failure.here.types else ""
+    words = f" or one of {', '.join(failure.here.words)}" if failure.here.words else ""
+    remedy = f"write it in SI units, without a unit and without quotes: {failure.here.description}"
+    return failure.problem(f"must be a {whole}number{words}", remedy)
+
+
+def _finite(failure: Failure) -> Problem:
+    return failure.problem("must be a finite number")
+
+
+def _text(failure: Failure) -> Problem:
+    return failure.problem("must be a text", f"put it in quotes: {failure.here.description}")
+
+
+def _mapping(failure: Failure) -> Problem:
+    keys = failure.here.keys
+    return failure.problem(
+        f"must be a mapping with the keys {', '.join(keys)}" if keys else "must be a mapping"
+    )
+
+
+def _list(failure: Failure) -> Problem:
+    count = f" of {failure.here.count} values" if failure.here.count else ""
+    return failure.problem(f"must be a list{count}", f"write it in [brackets]: {failure.here.description}")
+
+
+def _word(failure: Failure) -> Problem:
+    words = failure.here.words
+    allowed = f"must be one of {', '.join(words)}" if len(words) > 1 else f"must be {''.join(words)}"
+    return failure.problem(allowed, failure.correct + hint(failure.value, words))
+
+
+def _unknown_key(failure: Failure) -> Problem:
+    keys, key = failure.around.keys, failure.path[-1]
+    return failure.problem(
+        f"no such key here, known are {', '.join(keys)}", "correct or remove it" + hint(key, keys)
+    )
+
+
+def _choice(failure: Failure) -> Problem:
+    return failure.problem(failure.context["text"], failure.correct + hint(failure.value, failure.here.words))
+
+
+def _kind(failure: Failure) -> Problem:
+    words, value = failure.context["text"], failure.value
+    if not isinstance(value, dict):
+        return failure.problem(f"must be a mapping with kind: {words}")
+    remedy = "choose one" + hint(value.get("kind"), words.split(", "))
+    return Problem((*failure.path, "kind"), f"must be one of {words}", remedy)
+
+
+def _said_by_a_check(failure: Failure) -> Problem:
+    allowed, _, remedy = failure.context["text"].partition("; ")
+    key = failure.context.get("key")
+    return Problem((*failure.path, key) if key else failure.path, allowed, remedy)
+
+
+def _bound(relation: str, name: str) -> _Explain:
+    def explain(failure: Failure) -> Problem:
+        return failure.problem(f"must be {relation} {failure.context[name]:g}")
+
+    return explain
+
+
+_EXPLAIN: dict[str, _Explain] = {
+    "missing": _missing,
+    "extra_forbidden": _unknown_key,
+    "float_type": _number,
+    "int_type": _number,
+    "finite_number": _finite,
+    "string_type": _text,
+    "model_type": _mapping,
+    "model_attributes_type": _mapping,
+    "dict_type": _mapping,
+    "tuple_type": _list,
+    "too_short": _too_short,
+    "too_long": _wrong_count,
+    "literal_error": _word,
+    "choice": _choice,
+    "kind": _kind,
+    "conflict": _said_by_a_check,
+    "missing_file": _said_by_a_check,
+    "greater_than": _bound("greater than", "gt"),
+    "greater_than_equal": _bound("at least", "ge"),
+    "less_than": _bound("less than", "lt"),
+    "less_than_equal": _bound("at most", "le"),
+}

@@ -1,0 +1,83 @@
+"""What the models say about a place of the scene: its keys, words and description."""
+
+from dataclasses import dataclass
+from types import UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from pydantic import BaseModel
+
+from riser_soil.scene.scene import Scene
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A place of the language: the types that fit there and the description of its key."""
+
+    types: tuple[Any, ...]
+    description: str
+
+    @property
+    def keys(self) -> list[str]:
+        """Keys of the mappings that fit here."""
+        return [f.alias or name for model in self._models for name, f in model.model_fields.items()]
+
+    @property
+    def words(self) -> list[str]:
+        """Words that fit here."""
+        words = (word for kind in self.types if get_origin(kind) is Literal for word in get_args(kind))
+        return [str(word).lower() if isinstance(word, bool) else str(word) for word in words]
+
+    @property
+    def count(self) -> int | None:
+        """How many items a list of fixed length has here."""
+        lengths = [
+            len(get_args(t)) for t in self.types if get_origin(t) is tuple and Ellipsis not in get_args(t)
+        ]
+        return lengths[0] if lengths else None
+
+    @property
+    def _models(self) -> list[type[BaseModel]]:
+        return [kind for kind in self.types if isinstance(kind, type) and issubclass(kind, BaseModel)]
+
+    def under(self, item: str | int) -> "Spot":
+        """The place below a key or index; an alternative's tag `<Model>` narrows the types."""
+        if isinstance(item, str) and item.startswith("<"):
+            chosen = tuple(model for model in self._models if f"<{model.__name__}>" == item)
+            return Spot(chosen or self.types, self.description)
+        if isinstance(item, int):
+            return Spot(tuple(t for kind in self.types for t in _item_types(kind, item)), self.description)
+        return self._key(item)
+
+    def _key(self, key: str) -> "Spot":
+        for model in self._models:
+            for name, field in model.model_fields.items():
+                if (field.alias or name) == key:
+                    return Spot(_alternatives(field.annotation), field.description or "")
+        values = (get_args(kind)[1] for kind in self.types if get_origin(kind) is dict)
+        return Spot(tuple(t for kind in values for t in _alternatives(kind)), self.description)
+
+
+def spot(location: tuple[str | int, ...]) -> Spot:
+    """The place of the language at a location with or without tags."""
+    here = Spot((Scene,), "the scene")
+    for item in location:
+        here = here.under(item)
+    return here
+
+
+def _alternatives(kind: Any) -> tuple[Any, ...]:
+    """The types that an annotation allows."""
+    if get_origin(kind) is Annotated:
+        return _alternatives(get_args(kind)[0])
+    if get_origin(kind) in (Union, UnionType):
+        return tuple(t for arg in get_args(kind) for t in _alternatives(arg))
+    return (kind,)
+
+
+def _item_types(kind: Any, index: int) -> tuple[Any, ...]:
+    """The types of one item of a list."""
+    args = get_args(kind) if get_origin(kind) is tuple else ()
+    if not args:
+        return ()
+    fixed = Ellipsis not in args
+    return _alternatives(args[min(index, len(args) - 1)] if fixed else args[0])

@@ -1,0 +1,65 @@
+"""Values given on the command line: `--set riser.segments.0.elements=70`."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from riser_soil.errors import SceneError
+from riser_soil.scene.document import Document, parse
+from riser_soil.scene.problem import Path, dotted, shown
+
+
+def override(document: Document, assignments: Sequence[str]) -> None:
+    """Replace values of the document by `path=value`, the value read as YAML."""
+    for assignment in assignments:
+        _override(document, assignment)
+
+
+def _override(document: Document, assignment: str) -> None:
+    dots, sign, text = assignment.partition("=")
+    words = dots.strip().split(".")
+    if not sign or not all(words):
+        raise SceneError(
+            f"--set {assignment}: must be path=value; write for example --set riser.segments.0.elements=70"
+        )
+    value = parse(text, f"--set {assignment}").data if text.strip() else None
+    path = _store(document.data, words, value, assignment)
+    _forget_places_below(document, path)
+    document.overrides[path] = assignment
+
+
+def _store(data: Any, words: list[str], value: Any, assignment: str) -> Path:
+    """Put the value at its path, making the mappings that are not there yet; give the path."""
+    path: Path = ()
+    for n, word in enumerate(words):
+        key = _key(data, word, path, assignment)
+        path = (*path, key)
+        if n == len(words) - 1:
+            data[key] = value
+        elif isinstance(data, dict) and data.get(key) is None:
+            data[key] = {}
+        data = data[key]
+    return path
+
+
+def _key(data: Any, word: str, path: Path, assignment: str) -> str | int:
+    """The word as key of a mapping or as index of a list."""
+    if isinstance(data, dict):
+        return word
+    if not isinstance(data, list):
+        raise SceneError(
+            f"--set {assignment}: {dotted(path)}: value {shown(data)}: has no parts; shorten the path"
+        )
+    if not word.isdecimal() or int(word) >= len(data):
+        allowed = (
+            f"a number from 0 to {len(data) - 1} must follow, not {shown(word)}"
+            if data
+            else "the list is empty"
+        )
+        raise SceneError(f"--set {assignment}: {dotted(path)}: {allowed}; correct the path")
+    return int(word)
+
+
+def _forget_places_below(document: Document, path: Path) -> None:
+    for places in (document.lines, document.overrides):
+        for known in [p for p in places if p[: len(path)] == path]:
+            del places[known]

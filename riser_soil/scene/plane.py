@@ -1,0 +1,144 @@
+"""The vertical plane of a scene, and what leaves it."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from riser_soil.scene.problem import Path
+from riser_soil.scene.quantities import Vector
+from riser_soil.scene.riser import Support
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.shapes import ArcShape, PointsShape
+from riser_soil.scene.stages import DynamicStage, StaticStage
+
+# Relative distance from the plane that round-off may leave.
+_FLAT = 1e-9
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A vertical plane: a point of it [m] and its horizontal unit direction from start to end."""
+
+    origin: Vector
+    direction: Vector
+
+    @property
+    def normal(self) -> Vector:
+        """Horizontal unit vector across the plane."""
+        return (-self.direction[1], self.direction[0], 0.0)
+
+    def offset(self, vector: Vector) -> float:
+        """Component of a vector across the plane."""
+        return _dot(self.normal, vector)
+
+    def holds_point(self, point: Vector) -> bool:
+        arm = _minus(point, self.origin)
+        return abs(self.offset(arm)) <= _FLAT * max(1.0, math.hypot(*arm))
+
+    def holds_vector(self, vector: Vector) -> bool:
+        return abs(self.offset(vector)) <= _FLAT * math.hypot(*vector)
+
+    def holds_axis(self, axis: Vector) -> bool:
+        """Whether a rotation or moment about the axis stays in the plane."""
+        along = self.offset(axis)
+        across = _minus(axis, (along * self.normal[0], along * self.normal[1], 0.0))
+        return math.hypot(*across) <= _FLAT * math.hypot(*axis)
+
+
+def vertical_plane(scene: Scene) -> Plane:
+    """The plane through the riser's start and end; along x when they give no direction."""
+    points = _ends(scene)
+    return Plane(points[0], _direction(points))
+
+
+def resolved_dimension(scene: Scene) -> Literal[2, 3]:
+    """2 when the scene says so, or says auto and nothing leaves the vertical plane; else 3."""
+    if scene.dimension != "auto":
+        return scene.dimension
+    return 3 if any(leaving_the_plane(scene)) else 2
+
+
+def leaving_the_plane(scene: Scene) -> Iterator[Path]:
+    """Paths of the values that lead out of the vertical plane."""
+    plane = vertical_plane(scene)
+    yield from (path for path, point in _points(scene) if not plane.holds_point(point))
+    yield from (path for path, vector in _vectors(scene) if not plane.holds_vector(vector))
+    yield from (path for path, axis in _axes(scene) if not plane.holds_axis(axis))
+
+
+def _ends(scene: Scene) -> tuple[Vector, ...]:
+    """Points that fix the plane: the held ends, or those of the unstressed shape."""
+    riser = scene.riser
+    held = tuple(end.position for end in (riser.start, riser.end) if isinstance(end, Support))
+    if len(held) == 2:
+        return held
+    if isinstance(riser.unstressed, PointsShape):
+        return riser.unstressed.points
+    if isinstance(riser.unstressed, ArcShape):
+        arc = riser.unstressed.arc
+        return arc.from_point, _plus(arc.from_point, _cross(arc.axis, (0.0, 0.0, 1.0)))
+    return held or ((0.0, 0.0, 0.0),)
+
+
+def _direction(points: tuple[Vector, ...]) -> Vector:
+    chord = _minus(points[-1], points[0])
+    span = math.hypot(chord[0], chord[1])
+    if span <= _FLAT * math.hypot(*chord) or span == 0.0:
+        return (1.0, 0.0, 0.0)
+    return (chord[0] / span, chord[1] / span, 0.0)
+
+
+def _points(scene: Scene) -> Iterator[tuple[Path, Vector]]:
+    """Positions in the scene."""
+    riser = scene.riser
+    for key, end in {"start": riser.start, "end": riser.end}.items():
+        if isinstance(end, Support):
+            yield ("riser", key, "position"), end.position
+    for key, shape in {"unstressed": riser.unstressed, "initial": riser.initial}.items():
+        if isinstance(shape, PointsShape):
+            yield from ((("riser", key, "points", n), point) for n, point in enumerate(shape.points))
+    if isinstance(riser.unstressed, ArcShape):
+        yield ("riser", "unstressed", "arc", "from"), riser.unstressed.arc.from_point
+    for n, stage in enumerate(scene.stages):
+        if isinstance(stage, StaticStage) and stage.move:
+            targets = {"start": stage.move.start, "end": stage.move.end}
+            yield from ((("stages", n, "move", key), p) for key, p in targets.items() if p is not None)
+
+
+def _vectors(scene: Scene) -> Iterator[tuple[Path, Vector]]:
+    """Forces and displacements in the scene."""
+    for n, stage in enumerate(scene.stages):
+        for m, load in enumerate(stage.loads):
+            given = {"force": load.force, "distributed": load.distributed}
+            yield from ((("stages", n, "loads", m, key), v) for key, v in given.items() if v is not None)
+        if isinstance(stage, DynamicStage) and stage.motion:
+            for key, motion in {"start": stage.motion.start, "end": stage.motion.end}.items():
+                if motion:
+                    yield ("stages", n, "motion", key, "harmonic", "amplitude"), motion.harmonic.amplitude
+
+
+def _axes(scene: Scene) -> Iterator[tuple[Path, Vector]]:
+    """Moments and axes of rotation in the scene."""
+    for n, stage in enumerate(scene.stages):
+        for m, load in enumerate(stage.loads):
+            if load.moment is not None:
+                yield ("stages", n, "loads", m, "moment"), load.moment
+    if isinstance(scene.riser.unstressed, ArcShape):
+        yield ("riser", "unstressed", "arc", "axis"), scene.riser.unstressed.arc.axis
+
+
+def _dot(a: Vector, b: Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a: Vector, b: Vector) -> Vector:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def _plus(a: Vector, b: Vector) -> Vector:
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def _minus(a: Vector, b: Vector) -> Vector:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]

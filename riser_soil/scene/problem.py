@@ -1,0 +1,69 @@
+"""A problem in a scene, and the one line that tells it."""
+
+import difflib
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+Path = tuple[str | int, ...]
+
+_WIDTH = 60
+
+
+class Nothing:
+    """Stands for a value that is not there (None is a value: null)."""
+
+
+NOTHING = Nothing()
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is wrong at a path of the scene: what is allowed there, and what to do."""
+
+    path: Path
+    allowed: str
+    remedy: str
+
+
+def dotted(path: Path) -> str:
+    """The path as it is written in messages and after --set."""
+    return ".".join(str(item) for item in path) or "scene"
+
+
+def value_at(data: Any, path: Path) -> Any:
+    """The value at a path of plain data, or NOTHING."""
+    for item in path:
+        try:
+            data = NOTHING if isinstance(data, str) else data[item]
+        except (KeyError, IndexError, TypeError):
+            return NOTHING
+    return data
+
+
+def shown(value: Any) -> str:
+    """A value as YAML would write it in one short line."""
+    text = json.dumps(value, ensure_ascii=False, default=str)
+    return text if len(text) <= _WIDTH else text[: _WIDTH - 3] + "..."
+
+
+def told(problem: Problem, data: Any) -> str:
+    """Path, value, what is allowed and what to do, in one line."""
+    value = value_at(data, problem.path)
+    given = "missing" if value is NOTHING else f"value {shown(value)}"
+    text = f"{dotted(problem.path)}: {given}: {problem.allowed}; {problem.remedy}"
+    return " ".join(text.split())
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str | None:
+    """The known word nearest to a misspelt one, whatever the case of its letters; None when none is near."""
+    by_lower = {name.lower(): name for name in known}
+    near = difflib.get_close_matches(word.lower(), list(by_lower), n=1, cutoff=0.5)
+    return by_lower[near[0]] if near else None
+
+
+def hint(word: Any, known: Iterable[str]) -> str:
+    """' (did you mean "..."?)' when a known word is near, else nothing."""
+    near = did_you_mean(word, known) if isinstance(word, str) else None
+    return f' (did you mean "{near}"?)' if near else ""

@@ -1,0 +1,58 @@
+"""From a scene file to a checked scene."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from riser_soil.errors import SceneError
+from riser_soil.scene import not_yet
+from riser_soil.scene.cross_checks import conflicts
+from riser_soil.scene.document import Document, parse, read_text
+from riser_soil.scene.explain import problems_in
+from riser_soil.scene.overrides import override
+from riser_soil.scene.problem import Problem, told
+from riser_soil.scene.scene import Scene
+
+_MOST_LINES = 20
+
+
+def read_scene(file: str | Path, overrides: Sequence[str] = ()) -> Scene:
+    """The scene in a file, with `path=value` overrides; SceneError has one line per problem found."""
+    path = Path(file)
+    document = parse(read_text(path), str(file))
+    override(document, overrides)
+    return _checked(document, path.parent)
+
+
+def scene_from_mapping(data: dict[str, Any], folder: Path = Path()) -> Scene:
+    """A scene from plain data as a file would give it; relative file names are sought in `folder`."""
+    return _checked(Document("scene", data), folder)
+
+
+def _checked(document: Document, folder: Path) -> Scene:
+    data, unsupported = not_yet.taken_out(document.data)
+    try:
+        scene = Scene.model_validate(data, context={"folder": folder})
+    except ValidationError as err:
+        others = [p for p in problems_in(err, data) if not _beside(p, unsupported)]
+        raise _scene_error([*unsupported, *others], document) from err
+    found = unsupported or conflicts(scene)
+    if found:
+        raise _scene_error(found, document)
+    return scene
+
+
+def _beside(problem: Problem, others: Iterable[Problem]) -> bool:
+    """Whether a problem may only follow from another one in the same mapping."""
+    return any(problem.path[: len(other.path) - 1] == other.path[:-1] for other in others)
+
+
+def _scene_error(problems: Sequence[Problem], document: Document) -> SceneError:
+    placed = sorted((*document.where(problem.path), told(problem, document.data)) for problem in problems)
+    lines = [f"{place}: {text}" for _, place, text in placed]
+    more = len(lines) - _MOST_LINES
+    return SceneError(
+        "\n".join([*lines[:_MOST_LINES], *([f"... and {more} more problems"] if more > 0 else [])])
+    )

@@ -1,0 +1,10 @@
+"""The JSON schema of the scene language, for editors."""
+
+import json
+
+from riser_soil.scene.scene import Scene
+
+
+def schema_text() -> str:
+    """The schema of a scene file; every key with its description, unit, bounds and default."""
+    return json.dumps(Scene.model_json_schema(by_alias=True), indent=2)

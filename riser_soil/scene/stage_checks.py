@@ -1,0 +1,121 @@
+"""Conflicts between the stages and the rest of a scene."""
+
+import math
+from collections.abc import Iterator
+from itertools import accumulate, pairwise
+
+from riser_soil.scene.problem import Path, Problem
+from riser_soil.scene.quantities import Vector
+from riser_soil.scene.riser import End, Support
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage, Load, StaticStage
+
+# Strain of a riser pulled straight beyond which a new position must be a mistake.
+_GREATEST_STRAIN = 0.1
+
+
+def stage_conflicts(scene: Scene) -> Iterator[Problem]:
+    """Conflicts of the stages with each other and with riser and solver."""
+    yield from _different_names(scene)
+    for n, stage in enumerate(scene.stages):
+        for m, load in enumerate(stage.loads):
+            yield from _load_on_riser(scene, ("stages", n, "loads", m), load)
+        if isinstance(stage, StaticStage):
+            yield from _static(scene, n, stage)
+        else:
+            yield from _dynamic(scene, n, stage)
+    yield from _reachable_moves(scene)
+
+
+def _different_names(scene: Scene) -> Iterator[Problem]:
+    seen: set[str] = set()
+    for n, stage in enumerate(scene.stages):
+        if stage.name in seen:
+            yield Problem(("stages", n, "name"), "another stage has the same name", "rename one of the two")
+        seen.add(stage.name)
+
+
+def _load_on_riser(scene: Scene, path: Path, load: Load) -> Iterator[Problem]:
+    if not isinstance(load.at, float):
+        return
+    length = scene.riser.length
+    if load.at > length * (1.0 + 1e-9):
+        yield Problem(
+            (*path, "at"), f"must not exceed the riser's length ({length:.6g} m)", "correct the arc length"
+        )
+    elif load.moment is not None and abs((near := _nearest_node(scene, load.at)) - load.at) > 1e-6 * length:
+        allowed = f"a moment must act at a node; the nearest is at {near:.6g} m"
+        yield Problem((*path, "at"), allowed, "move the moment there or change the elements")
+
+
+def _nearest_node(scene: Scene, arc: float) -> float:
+    segments = scene.riser.segments
+    joints = list(accumulate((segment.length for segment in segments), initial=0.0))
+    nodes = (
+        first + (last - first) * n / segment.number_of_elements
+        for segment, (first, last) in zip(segments, pairwise(joints), strict=True)
+        for n in range(segment.number_of_elements + 1)
+    )
+    return min(nodes, key=lambda node: abs(node - arc))
+
+
+def _static(scene: Scene, n: int, stage: StaticStage) -> Iterator[Problem]:
+    ends = {"start": scene.riser.start, "end": scene.riser.end}
+    if all(end == "free" for end in ends.values()):
+        remedy = "hold an end with position, or make the stage dynamic"
+        yield Problem(("stages", n), "a riser with two free ends has no equilibrium", remedy)
+    elif _swings_freely(scene):
+        remedy = "set rotation: fixed or a stiffness, hold the other end, or let gravity act"
+        yield Problem(
+            ("stages", n), "a riser held at one freely rotating end, without gravity, has none", remedy
+        )
+    if stage.move:
+        targets = {"start": stage.move.start, "end": stage.move.end}
+        yield from _held(ends, {("stages", n, "move", k): k for k, v in targets.items() if v is not None})
+
+
+def _swings_freely(scene: Scene) -> bool:
+    held = [end for end in (scene.riser.start, scene.riser.end) if isinstance(end, Support)]
+    return scene.gravity == 0.0 and len(held) == 1 and held[0].rotation == "free"
+
+
+def _dynamic(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
+    if stage.motion:
+        ends = {"start": scene.riser.start, "end": scene.riser.end}
+        motions = {"start": stage.motion.start, "end": stage.motion.end}
+        yield from _held(ends, {("stages", n, "motion", k): k for k, v in motions.items() if v is not None})
+    if scene.solver.min_time_step > stage.time_step:
+        allowed = f"must not be smaller than solver.min_time_step ({scene.solver.min_time_step:g} s)"
+        yield Problem(
+            ("stages", n, "time_step"), allowed, "lower solver.min_time_step or take a longer time_step"
+        )
+
+
+def _held(ends: dict[str, End], places: dict[Path, str]) -> Iterator[Problem]:
+    """Only held ends can be moved."""
+    for path, key in places.items():
+        if ends[key] == "free":
+            remedy = f"give riser.{key} a position, or leave this out"
+            yield Problem(path, f"riser.{key} is free and can't be moved", remedy)
+
+
+def _reachable_moves(scene: Scene) -> Iterator[Problem]:
+    """The ends' positions stage by stage, against the riser's length."""
+    start, end = scene.riser.start, scene.riser.end
+    if not isinstance(start, Support) or not isinstance(end, Support):
+        return
+    a, b, length = start.position, end.position, scene.riser.length
+    for n, stage in enumerate(scene.stages):
+        if isinstance(stage, StaticStage) and stage.move:
+            a, b = stage.move.start or a, stage.move.end or b
+            if _strained(a, b, length):
+                allowed = (
+                    f"pulls the ends {math.dist(a, b):.6g} m apart, but the riser is only {length:.6g} m long"
+                )
+                yield Problem(
+                    ("stages", n, "move"), allowed, "bring the ends together or lengthen the segments"
+                )
+
+
+def _strained(a: Vector, b: Vector, length: float) -> bool:
+    return math.dist(a, b) > (1.0 + _GREATEST_STRAIN) * length
