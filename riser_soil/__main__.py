@@ -40,7 +40,7 @@ def run(
     force: Annotated[bool, typer.Option("--force", help="overwrite a finished run")] = False,
     overrides: Overrides = None,
 ) -> None:
-    """Compute a scene; the results go to FOLDER, by default named after the scene file, in the current folder."""
+    """Compute a scene. FOLDER is by default named after the scene file, in the current folder."""
     with _expected_errors():
         if restart:
             raise SceneError("--restart: not supported yet; run the scene from its beginning")

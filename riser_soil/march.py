@@ -50,13 +50,16 @@ class March:
         self._mass: RiserMass | None = None
         self._contact = system.comm.allreduce(any(p.name == "contact" for p in system.model.parts), MPI.LOR)
         self.before = before
-        self._forces = system.forces(before)
+        self.restart()
         if isinstance(scheme, GeneralizedAlpha):
             self._mass = RiserMass(system)
             self._start_rates(before)
         self._history = self._forces_at_start()
-        self._increment = np.zeros(system.numbering.size)
-        self._dt = 0.0
+
+    def restart(self) -> None:
+        """Start anew from the configuration that the parts hold now."""
+        self._forces = self.system.forces(self.before)
+        self._increment, self._dt = np.zeros(self.system.numbering.size), 0.0
 
     def _start_rates(self, before: State) -> None:
         """Accelerations in balance with the forces at the start of a dynamic stage; prescribed rates."""

@@ -26,7 +26,13 @@ class Clock:
         return cls(defaultdict(float))
 
     def add(self, name: str, since: float) -> None:
+        """Count the time since `since` (of time.perf_counter)."""
         self.seconds[name] += time.perf_counter() - since
+
+    @property
+    def total(self) -> float:
+        """Seconds counted so far."""
+        return sum(self.seconds.values())
 
 
 class System:

@@ -25,10 +25,17 @@ class RiserNodes(Protocol):
     arc (nn,) [m]. basis (3, d): the riser's axes in global ones. translation_dofs (nn, d): local numbers.
     """
 
-    offset: int
-    size: int
-    arc: Array
-    basis: Array
+    @property
+    def offset(self) -> int: ...
+
+    @property
+    def size(self) -> int: ...
+
+    @property
+    def arc(self) -> Array: ...
+
+    @property
+    def basis(self) -> Array: ...
 
     @property
     def translation_dofs(self) -> IntArray: ...

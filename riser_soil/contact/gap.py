@@ -37,9 +37,9 @@ def heights(facet: IntArray, xi: Array, facets: IntArray, points: Array) -> Arra
 
 @njit(cache=True)
 def gap_forms(facet: IntArray, xi: Array, facets: IntArray, points: Array) -> tuple[Array, Array]:
-    """Linear forms (n, 5, 3 + 3·nv) and H (n, 2, 2); columns: the point's x, y, z, then those of the facet's
-    nodes.
+    """Linear forms (n, 5, 3 + 3·nv) and H (n, 2, 2).
 
+    Columns: the point's x, y, z, then those of the facet's nodes.
     facet (n,), xi (n, 2): where the points are above. facets (nf, nv). points (np, 3): deformed [m].
     """
     n, nv = len(facet), facets.shape[1]

@@ -13,17 +13,26 @@ from riser_soil.part import State
 
 
 class SoilSurface(Protocol):
-    """The top of the soil: points (np, 3) [m], facets (nf, 4 or 6) into them, and the displacement (np, 3)
-    accepted so far.
+    """The top of the soil.
 
-    Its dofs, x, y, z of each point, stand in the local arrays from `offset` on.
+    points (np, 3): undeformed [m]. facets (nf, 4 or 6): indexes into points, ordered as in `facets`.
+    committed (np, 3): displacement accepted so far [m]. offset: where its dofs, x, y, z of each point, begin.
     """
 
-    offset: int
-    size: int
-    points: Array
-    facets: IntArray
-    committed: Array
+    @property
+    def offset(self) -> int: ...
+
+    @property
+    def size(self) -> int: ...
+
+    @property
+    def points(self) -> Array: ...
+
+    @property
+    def facets(self) -> IntArray: ...
+
+    @property
+    def committed(self) -> Array: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,9 +49,7 @@ class ContactPoints:
 
     @classmethod
     def of_nodes(cls, tributary: Array, footprint: float, along: Array) -> ContactPoints:
-        """One point a node where footprint = 0, else four at ±footprint along the horizontal unit vector and
-        across.
-        """
+        """One point a node where footprint = 0, else four at ±footprint along a horizontal unit vector and across."""
         across = np.array([-along[1], along[0]])
         corners = np.array([-along - across, along - across, -along + across, along + across])
         corners = footprint * corners if footprint > 0.0 else np.zeros((1, 2))

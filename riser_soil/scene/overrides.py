@@ -22,13 +22,14 @@ def _override(document: Document, assignment: str) -> None:
             f"--set {assignment}: must be path=value; write for example --set riser.segments.0.elements=70"
         )
     value = parse(text, f"--set {assignment}").data if text.strip() else None
-    path = _store(document.data, words, value, assignment)
+    path = _store(document, words, value, assignment)
     _forget_places_below(document, path)
     document.overrides[path] = assignment
 
 
-def _store(data: Any, words: list[str], value: Any, assignment: str) -> Path:
+def _store(document: Document, words: list[str], value: Any, assignment: str) -> Path:
     """Put the value at its path, making the mappings that are not there yet; give the path."""
+    data = document.data
     path: Path = ()
     for n, word in enumerate(words):
         key = _key(data, word, path, assignment)
@@ -37,6 +38,7 @@ def _store(data: Any, words: list[str], value: Any, assignment: str) -> Path:
             data[key] = value
         elif isinstance(data, dict) and data.get(key) is None:
             data[key] = {}
+            document.overrides[path] = assignment
         data = data[key]
     return path
 

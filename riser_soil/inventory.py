@@ -1,0 +1,55 @@
+"""What a scene is built of, and what is left out and why."""
+
+from __future__ import annotations
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.part import Field
+from riser_soil.scene.riser import RotationSpring, Support
+from riser_soil.scene.scene import Scene
+
+
+def built(scene: Scene) -> tuple[str, ...]:
+    """Names of the parts that the scene's stages solve with."""
+    return tuple(name for name, reason in _reasons(scene).items() if not reason)
+
+
+def left_out(scene: Scene) -> dict[str, str]:
+    """Names of the parts that are never built, imported or solved for, each with its reason."""
+    return {name: reason for name, reason in _reasons(scene).items() if reason}
+
+
+def _reasons(scene: Scene) -> dict[str, str]:
+    """Part -> why it is left out, empty where it is built."""
+    ends = (scene.riser.start, scene.riser.end)
+    sprung = any(isinstance(e, Support) and isinstance(e.rotation, RotationSpring) for e in ends)
+    ground = scene.seabed is not None or scene.soil is not None
+    return {
+        "riser": "",
+        "springs": "" if sprung else "no end has a rotational spring",
+        "loads": "" if any(s.loads for s in scene.stages) else "no stage has loads",
+        "inertia": "" if has_dynamics(scene) else "all stages are static",
+        "morison": _no_morison(scene),
+        "seabed": "" if scene.seabed is not None else "the scene has no seabed",
+        "soil": "" if scene.soil is not None else "the scene has no soil",
+        "contact": "" if ground else "the scene has neither seabed nor soil",
+    }
+
+
+def has_dynamics(scene: Scene) -> bool:
+    return any(s.kind == "dynamic" for s in scene.stages)
+
+
+def _no_morison(scene: Scene) -> str:
+    if not has_dynamics(scene):
+        return "all stages are static, and still water does not load a riser at rest"
+    if scene.water is None:
+        return "the scene has no water"
+    types = scene.used_line_types.values()
+    return "" if any(t.drag or t.added_mass for t in types) else "no line type has drag or added mass"
+
+
+def unknowns(comm: MPI.Intracomm, field: Field) -> int:
+    """Free dofs of a field over all ranks; collective."""
+    return int(comm.allreduce(int(np.count_nonzero(field.owned & ~field.prescribed))))

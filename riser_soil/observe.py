@@ -1,0 +1,123 @@
+"""From the parts' states to what the recorder is told; the same calls on every rank, files on rank 0 only."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from riser_soil import __version__
+from riser_soil.build import World
+from riser_soil.inventory import built, left_out, unknowns
+from riser_soil.march import Accepted
+from riser_soil.part import Energy
+from riser_soil.progress import Progress
+from riser_soil.record import Recorder
+from riser_soil.scene.dump import dump_scene
+from riser_soil.scene.stages import Stage, StaticStage
+from riser_soil.schedule import Schedule
+from riser_soil.screen import print_summary
+from riser_soil.snapshot import Ledger, RiserSnapshot, RunFacts, SoilSnapshot, StepHealth, Touch
+from riser_soil.system import Clock, System
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """The riser at the end of a step, looked at before the step is committed; rank 0 only."""
+
+    riser: RiserSnapshot
+    touch: Touch
+
+
+class Observer:
+    """Follows a run: progress bar, energy ledger, files. recorder is None off rank 0."""
+
+    def __init__(self, world: World, clock: Clock, recorder: Recorder | None, progress: Progress) -> None:
+        self._world, self._clock, self._recorder, self._progress = world, clock, recorder, progress
+        output = world.scene.output
+        self._schedule = Schedule(output.interval, output.xdmf_interval)
+
+    @classmethod
+    @contextmanager
+    def open(cls, world: World, clock: Clock, folder: Path, force: bool) -> Iterator[Observer]:
+        """Take the run's folder over; collective. What was written stays when the block is left early."""
+        mesh = world.soil.output_mesh() if world.soil is not None else None
+        known = facts(world)
+        with Progress(enabled=world.comm.rank == 0) as progress:
+            if world.comm.rank != 0:
+                yield cls(world, clock, None, progress)
+                return
+            scene = world.scene
+            with Recorder.open(
+                folder, known, world.line.arc, mesh, dump_scene(scene), scene.output.fields, force
+            ) as recorder:
+                yield cls(world, clock, recorder, progress)
+
+    def begin_stage(self, stage: Stage, system: System, energy: Energy) -> None:
+        """energy: stored at the stage's beginning."""
+        self._schedule.begin_stage(stage.kind)
+        self._static = isinstance(stage, StaticStage)
+        self._begun, self._ledger = energy, Ledger()
+        self._relaxed = 0
+        if self._recorder is not None:
+            self._recorder.begin_stage(stage.name, stage.kind)
+        self._progress.begin_stage(stage.name, stage.kind, 1.0 if self._static else stage.duration)
+
+    def look(self, system: System, step: Accepted) -> Seen | None:
+        if self._recorder is None:
+            return None
+        return Seen(riser_snapshot(self._world, system, step), touch(self._world, step))
+
+    def record(self, step: Accepted, seen: Seen | None, last: bool) -> None:
+        """Tell the recorder of a step that has been committed; collective."""
+        due = self._schedule.due(step.t, last)
+        wanted = due.pictures and self._world.soil is not None
+        soil = self._world.soil.output_fields() if wanted and self._world.soil is not None else None
+        previous, self._ledger = self._ledger, self._balance(step)
+        self._progress.update(step.t, step.dt, step.solution.iterations)
+        if self._recorder is not None and seen is not None:
+            change = self._ledger.residual - previous.residual
+            health = StepHealth(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
+            self._recorder.accept(step.t, due, seen.riser, seen.touch, health, self._ledger, soil)
+        self._relaxed = 0
+
+    def relaxed(self, iterations: int) -> None:
+        """Dynamic relaxation was needed; its Newton iterations count with the next step."""
+        self._relaxed = iterations
+
+    def finish(self) -> None:
+        if self._recorder is not None:
+            self._recorder.add_seconds(self._clock.seconds)
+            self._recorder.finish()
+            print_summary(self._recorder.summary)
+
+    def _balance(self, step: Accepted) -> Ledger:
+        """The ledger after a step. A static stage balances no energy: its first shape need not be an equilibrium."""
+        e, before = step.energy, self._ledger
+        dissipated, work = before.dissipated + step.dissipated, before.work + step.work
+        residual = np.nan if self._static else e.total - self._begun.total + dissipated - work
+        return Ledger(e.kinetic, e.strain, e.potential, dissipated, work, residual)
+
+
+def touch(world: World, step: Accepted) -> Touch:
+    """Where the riser touches the seabed, on the rank that holds contact."""
+    if world.contact is None:
+        return Touch(float("nan"), 0.0, np.zeros(3))
+    state, contact = step.solution.state, world.contact
+    return Touch(contact.touchdown_arc(state), contact.max_penetration(state), contact.force_on_riser(state))
+
+
+def facts(world: World) -> RunFacts:
+    """What is known of a run before its first step; collective."""
+    return RunFacts(
+        title=world.scene.title,
+        version=__version__,
+        ranks=world.comm.size,
+        built=built(world.scene),
+        left_out=left_out(world.scene),
+        riser_dofs=unknowns(world.comm, world.line),
+        soil_dofs=unknowns(world.comm, world.soil.field) if world.soil is not None else 0,
+    )

@@ -1,0 +1,77 @@
+"""Dynamic relaxation: pseudo-time steps through an artificial drag, until equilibrium needs none.
+
+Used when Newton's method finds no equilibrium from the shape that a static stage starts with, and reported when used.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.errors import SolveError
+from riser_soil.newton import Newton, NewtonSettings, NotConverged, Solution, Step
+from riser_soil.part import Model, State
+from riser_soil.riser.line import Line
+from riser_soil.riser.relaxation import Relaxation
+from riser_soil.system import Clock, System
+from riser_soil.time_scheme import Static
+
+FREE_FALL = 0.1  # the first step lets the riser fall by about this many element lengths
+MOST_STEPS = 2000
+QUICK = 6  # Newton iterations up to which the drag is lowered
+NEARLY_THERE = 1e-2  # largest increment, in element lengths, from which equilibrium without drag is tried
+
+
+def relax(
+    comm: MPI.Intracomm, model: Model, line: Line, weight: float, settings: NewtonSettings, clock: Clock, t: float
+) -> int:
+    """Bring the line to equilibrium at the load factor t and commit it; the number of Newton iterations spent.
+
+    weight: typical force per length [N/m]. Raises SolveError when no equilibrium is found.
+    """
+    part = Relaxation(line, weight / (FREE_FALL * line.length.min()))
+    system = System(comm, Model(model.fields, [*model.parts, part]), clock)
+    newton = Newton(system, settings)
+    try:
+        return _descend(system, newton, part, line, t)
+    finally:
+        newton.destroy()
+        system.destroy()
+
+
+def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: float) -> int:
+    stiffest, iterations, moved = part.drag * 1e8, 0, np.inf
+    for _ in range(MOST_STEPS):
+        if moved < NEARLY_THERE * line.length.min():
+            solution = _try(system, newton, part, t, drag=0.0)
+            if solution is not None:
+                return iterations + solution.iterations
+        solution = _try(system, newton, part, t, part.drag)
+        if solution is None:
+            part.drag *= 8.0
+            if part.drag > stiffest:
+                raise SolveError("dynamic relaxation finds no equilibrium: not even tiny pseudo-time steps converge")
+            continue
+        iterations += solution.iterations
+        moved = _largest_increment(system, line, solution)
+        part.drag *= 0.4 if solution.iterations <= QUICK else 1.0
+    raise SolveError(f"dynamic relaxation finds no equilibrium in {MOST_STEPS} pseudo-time steps")
+
+
+def _try(system: System, newton: Newton, part: Relaxation, t: float, drag: float) -> Solution | None:
+    """A committed step with the given drag, or None."""
+    usual, part.drag = part.drag, drag
+    size = system.numbering.size
+    try:
+        solution = newton.solve(Step(Static(), State.at_rest(t, size), t, 0.0, None, np.zeros(size)))
+    except NotConverged:
+        return None
+    finally:
+        part.drag = usual
+    system.commit(solution.state)
+    return solution
+
+
+def _largest_increment(system: System, line: Line, solution: Solution) -> float:
+    """Longest translation [m] of the step, the same on all ranks, as every rank holds the riser."""
+    return float(np.abs(line.nodal(solution.state.u)[:, : line.dimension]).max())
