@@ -49,7 +49,7 @@ class ContactPoints:
 
     @classmethod
     def of_nodes(cls, tributary: Array, footprint: float, along: Array) -> ContactPoints:
-        """One point a node where footprint = 0, else four at ±footprint along a horizontal unit vector and across."""
+        """Four points a node, at ±footprint along a horizontal unit vector and across; one where it is 0."""
         across = np.array([-along[1], along[0]])
         corners = np.array([-along - across, along - across, -along + across, along + across])
         corners = footprint * corners if footprint > 0.0 else np.zeros((1, 2))

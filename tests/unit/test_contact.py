@@ -1,0 +1,376 @@
+"""The contact part on stand-ins for riser and soil surface: derivatives, balance, pattern, readings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from riser_soil.arrays import Array, IntArray
+from riser_soil.contact.contact import Contact, Reach
+from riser_soil.contact.law import Penalty
+from riser_soil.part import Forces, State, Weights
+from riser_soil.seabed.plane import Plane
+
+LAW = Penalty(stiffness=2.0e5, smoothing=1e-3)
+FLOOR = Plane(level=0.0, stiffness=5.0e4, smoothing=1e-3)
+WEIGHTS = Weights(inertia=0.0, force=0.0, shift_v=0.0, shift_a=0.0)
+RADIUS = 0.15
+FOOTPRINT = 0.04
+
+
+@dataclass
+class Nodes:
+    """Riser nodes without elements: translations and one angle a node in a plane, three in space."""
+
+    position: Array
+    basis: Array
+    offset: int = 0
+
+    @property
+    def arc(self) -> Array:
+        """Horizontal distance along the row."""
+        steps = np.linalg.norm(np.diff(self.position[:, :2], axis=0), axis=1)
+        return np.concatenate(([0.0], np.cumsum(steps)))
+
+    @property
+    def dofs(self) -> int:
+        return 3 if self.basis.shape[1] == 2 else 6
+
+    @property
+    def size(self) -> int:
+        return self.dofs * len(self.position)
+
+    @property
+    def translation_dofs(self) -> IntArray:
+        first = self.offset + self.dofs * np.arange(len(self.position))
+        return np.asarray(first[:, None] + np.arange(self.basis.shape[1]))
+
+    @property
+    def tributary_length(self) -> Array:
+        half = 0.5 * np.diff(self.arc)
+        return np.append(half, 0.0) + np.append(0.0, half)
+
+    def positions3(self, state: State) -> Array:
+        return np.asarray(self.position + state.u[self.translation_dofs] @ self.basis.T)
+
+
+@dataclass
+class Top:
+    """Soil surface of points and facets; `committed` deforms it."""
+
+    points: Array
+    facets: IntArray
+    committed: Array
+    offset: int = 0
+
+    @property
+    def size(self) -> int:
+        return self.points.size
+
+
+def top(kind: str, nx: int = 6, ny: int = 4, size: float = 0.5) -> Top:
+    """Level surface over [0, nx·size] × [−ny·size/2, ny·size/2], of squares or pairs of triangles."""
+    n = 1 if kind == "quad4" else 2
+    x = np.linspace(0.0, nx * size, n * nx + 1)
+    y = np.linspace(-0.5 * ny * size, 0.5 * ny * size, n * ny + 1)
+    points = np.array([[a, b, 0.0] for a in x for b in y])
+    number = np.arange(len(points)).reshape(len(x), len(y))
+    cells = [number[n * i : n * i + n + 1, n * j : n * j + n + 1] for i in range(nx) for j in range(ny)]
+    quads = [[c[0, 0], c[1, 0], c[1, 1], c[0, 1]] for c in cells]
+    lower = [[c[0, 0], c[-1, 0], c[-1, -1], c[n // 2, 0], c[-1, n // 2], c[n // 2, n // 2]] for c in cells]
+    upper = [[c[0, 0], c[-1, -1], c[0, -1], c[n // 2, n // 2], c[n // 2, -1], c[0, n // 2]] for c in cells]
+    facets = np.array(quads if kind == "quad4" else lower + upper)
+    return Top(points, facets, np.zeros_like(points))
+
+
+def in_plane(angle: float = 0.0) -> Array:
+    return np.array([[np.cos(angle), 0.0], [np.sin(angle), 0.0], [0.0, 1.0]])
+
+
+@dataclass
+class Case:
+    """A riser over a surface and a plane; dofs of another field lie between them."""
+
+    riser: Nodes
+    surface: Top | None
+    contact: Contact
+
+    @classmethod
+    def build(
+        cls, riser: Nodes, surface: Top | None, plane: Plane | None = None, footprint: float = FOOTPRINT
+    ) -> Case:
+        riser.offset = 2
+        if surface is not None:
+            surface.offset = 2 + riser.size + 3
+        radius = np.full(len(riser.position), RADIUS)
+        contact = Contact(
+            riser,
+            radius,
+            plane=plane,
+            surface=surface,
+            penalty=LAW,
+            footprint=footprint,
+            reach=Reach(0.5, 0.3),
+        )
+        return cls(riser, surface, contact)
+
+    @property
+    def size(self) -> int:
+        return self.riser.offset + self.riser.size + (3 + self.surface.size if self.surface else 0)
+
+    def state(self, u: Array | None = None) -> State:
+        z = np.zeros(self.size)
+        return State(1.0, z if u is None else u, z, z)
+
+    def residual(self, u: Array) -> Array:
+        forces = Forces.zeros(self.size)
+        self.contact.residual(self.state(u), forces)
+        return forces.end
+
+    def outgrows(self, u: Array) -> bool:
+        """Whether the pattern lacks something at u."""
+        self.dense_tangent(u)
+        return self.contact.outgrown
+
+    def dense_tangent(self, u: Array) -> Array:
+        blocks = self.contact.blocks()
+        values = {key: np.zeros(block.shape) for key, block in blocks.items()}
+        self.contact.tangent(self.state(u), WEIGHTS, values)
+        dense = np.zeros((self.size, self.size))
+        for key, block in blocks.items():
+            np.add.at(dense, (block.rows[:, :, None], block.cols[:, None, :]), values[key])
+        return dense
+
+
+def deformed_case(kind: str, dimension: int, footprint: float = FOOTPRINT) -> Case:
+    """A riser, oblique in space, that touches a surface deformed in all directions."""
+    surface = top(kind)
+    rng = np.random.default_rng(5)
+    surface.points[:, :2] += 0.05 * rng.uniform(-1.0, 1.0, (len(surface.points), 2))
+    surface.committed = 0.03 * rng.uniform(-1.0, 1.0, surface.points.shape)
+    x = np.linspace(-0.77, 3.61, 12)
+    basis = in_plane(0.1) if dimension == 2 else np.eye(3)
+    position = np.column_stack([x, 0.1 * x - 0.03, np.full(12, RADIUS - 0.02)])
+    return Case.build(Nodes(position, basis), surface, FLOOR, footprint)
+
+
+def small(case: Case, size: float = 2e-3, seed: int = 1) -> Array:
+    return np.asarray(size * np.random.default_rng(seed).uniform(-1.0, 1.0, case.size))
+
+
+def differences(case: Case, u: Array, h: float = 2e-6) -> Array:
+    """dR/du by central differences of fourth order."""
+    columns = []
+    for e in h * np.eye(case.size):
+        near, far = (case.residual(u + s * e) - case.residual(u - s * e) for s in (1, 2))
+        columns.append((8 * near - far) / (12 * h))
+    return np.array(columns).T
+
+
+KINDS = pytest.mark.parametrize("kind", ["quad4", "tri6"])
+DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])
+
+
+@KINDS
+@DIMENSIONS
+@pytest.mark.parametrize("footprint", [0.0, FOOTPRINT])
+def test_tangent_is_the_residuals_derivative(kind: str, dimension: int, footprint: float) -> None:
+    case = deformed_case(kind, dimension, footprint)
+    u = small(case)
+    K = case.dense_tangent(u)
+    assert not case.contact.outgrown
+    assert {t.key: len(t.node) > 0 for t in case.contact.meet(case.state(u)).touching} == {
+        "contact.plane": True,
+        "contact.soil": True,
+    }
+    np.testing.assert_allclose(K, differences(case, u), atol=1e-7 * abs(K).max())
+    np.testing.assert_allclose(K, K.T, atol=1e-14 * abs(K).max())
+
+
+@KINDS
+def test_tangent_needs_the_gaps_second_derivative(kind: str) -> None:
+    case = deformed_case(kind, 3)
+    state = case.state(small(case))
+    soil = case.contact.meet(state).touching[-1]
+    slope = soil.length * soil.law.slope(soil.penetration)
+    gradient = soil.forms[:, 0]
+    first = slope[:, None, None] * gradient[:, :, None] * gradient[:, None, :]
+    assert abs(soil.hessian - first).max() > 1e-3 * abs(first).max()
+
+
+@KINDS
+@DIMENSIONS
+def test_residual_is_the_potentials_gradient(kind: str, dimension: int) -> None:
+    case = deformed_case(kind, dimension)
+    u, h = small(case), 1e-6
+
+    def potential(v: Array) -> float:
+        return case.contact.energy(case.state(v)).potential
+
+    steps = h * np.eye(case.size)
+    gradient = np.array([(potential(u + e) - potential(u - e)) / (2 * h) for e in steps])
+    R = case.residual(u)
+    np.testing.assert_allclose(R, gradient, atol=1e-6 * abs(R).max())
+
+
+@KINDS
+@DIMENSIONS
+def test_forces_balance_to_round_off(kind: str, dimension: int) -> None:
+    case = deformed_case(kind, dimension)
+    case.contact = Contact(
+        case.riser, np.full(12, RADIUS), surface=case.surface, penalty=LAW, footprint=FOOTPRINT
+    )
+    state = case.state(small(case))
+    on_riser, on_soil = case.contact.force_on_riser(state), case.contact.force_on_soil(state)
+    assert on_riser[2] > 100.0
+    out_of_plane = np.zeros(3) if dimension == 3 else np.array([-np.sin(0.1), np.cos(0.1), 0.0])
+    unbalanced = on_riser + on_soil
+    unbalanced -= (unbalanced @ out_of_plane) * out_of_plane
+    np.testing.assert_allclose(unbalanced, 0.0, atol=1e-13 * on_riser[2])
+
+
+def test_force_on_riser_is_minus_its_residual() -> None:
+    case = deformed_case("quad4", 3)
+    u = small(case)
+    rows = case.riser.translation_dofs
+    np.testing.assert_allclose(
+        case.contact.force_on_riser(case.state(u)), -case.residual(u)[rows].sum(axis=0)
+    )
+
+
+def level_case(depth: Array, surface: Top | None, plane: Plane | None, basis: Array | None = None) -> Case:
+    """A level row of nodes over x = 0.25, 0.75, …, each sunk in by its depth [m]."""
+    n = len(depth)
+    position = np.column_stack([0.25 + 0.5 * np.arange(n), np.zeros(n), RADIUS - depth])
+    return Case.build(Nodes(position, np.eye(3) if basis is None else basis), surface, plane)
+
+
+@pytest.mark.parametrize("basis", [np.eye(3), in_plane()])
+def test_flat_soil_and_plane_give_the_law_itself(basis: Array) -> None:
+    depth = np.array([0.01, 0.002, 0.0, -0.01])
+    soft = Plane(0.0, LAW.stiffness, LAW.smoothing)
+    for surface, plane in ((top("quad4"), None), (top("tri6"), soft), (None, soft)):
+        case = level_case(depth, surface, plane, basis)
+        state = case.state()
+        np.testing.assert_allclose(case.contact.force_per_length(state), LAW.force(depth), rtol=1e-10)
+        total = case.riser.tributary_length @ LAW.force(depth)
+        np.testing.assert_allclose(case.contact.force_on_riser(state), [0.0, 0.0, total], atol=1e-9)
+        assert case.contact.max_penetration(state) == pytest.approx(0.01, rel=1e-12)
+
+
+def test_plane_acts_outside_the_block_only() -> None:
+    """The block's middle has settled; nodes over it find the settled surface, the others the plane."""
+    surface = top("quad4", nx=4)
+    surface.committed[:, 2] = -0.01
+    depth = np.full(8, 0.012)
+    case = level_case(depth, surface, FLOOR)
+    force = case.contact.force_per_length(case.state())
+    expected = np.where(
+        np.arange(8) < 4, LAW.force(np.array(0.002)), Penalty(FLOOR.stiffness, FLOOR.smoothing).force(depth)
+    )
+    np.testing.assert_allclose(force, expected, rtol=1e-9)
+    assert case.contact.force_on_soil(case.state())[2] == pytest.approx(
+        -0.5 * 3.5 * LAW.force(np.array(0.002))
+    )
+
+
+def test_no_plane_no_force_outside_the_block() -> None:
+    case = level_case(np.full(8, 0.012), top("quad4", nx=4), None)
+    np.testing.assert_array_equal(case.contact.force_per_length(case.state())[4:], 0.0)
+
+
+def test_node_over_a_valley_of_the_mesh_feels_no_side_force() -> None:
+    """Below it facets meet in a kink: the four points balance, one point would push to a side."""
+    surface = top("quad4")
+    surface.committed[:, 2] = 0.05 * abs(surface.points[:, 1])
+    side = {}
+    for footprint in (0.0, FOOTPRINT):
+        position = np.array([[1.0, 0.0, RADIUS - 0.01], [1.5, 0.0, RADIUS - 0.01]])
+        case = Case.build(Nodes(position, np.eye(3)), surface, None, footprint)
+        side[footprint] = abs(case.contact.force_on_riser(case.state())[1])
+    assert side[0.0] > 10.0
+    assert side[FOOTPRINT] < 1e-10
+
+
+def test_weightless_groups_and_inactive_ranks() -> None:
+    case = level_case(np.full(4, 0.01), top("quad4"), FLOOR)
+    forces = Forces.zeros(case.size)
+    case.contact.residual(case.state(), forces)
+    assert abs(forces.end).max() > 0.0
+    assert not forces.inertia.any()
+    assert not forces.force.any()
+    idle = Contact(case.riser, np.full(4, RADIUS), plane=FLOOR, penalty=LAW, active=False)
+    idle.rebuild(case.state())
+    assert idle.blocks() == {}
+    assert idle.energy(case.state()).potential == 0.0
+    assert not idle.force_per_length(case.state()).any()
+
+
+depths = st.lists(st.floats(-0.01, 0.02), min_size=4, max_size=4)
+
+
+@settings(max_examples=60, deadline=None)
+@given(before=depths, after=depths, sunk=st.lists(st.floats(-0.01, 0.01), min_size=4, max_size=4))
+def test_vertical_steps_never_gain_energy(before: list[float], after: list[float], sunk: list[float]) -> None:
+    """Riser and soil move vertically, on soil (three nodes) and plane (the fourth)."""
+    case = level_case(np.array(before), top("quad4", nx=3), FLOOR)
+    assert case.surface is not None
+    u = np.zeros(case.size)
+    u[case.riser.translation_dofs[:, 2]] = np.array(before) - np.array(after)
+    heights = np.resize(sunk, len(case.surface.points))
+    u[case.surface.offset + 2 :: 3] = heights
+    start, end = case.state(), case.state(u)
+    dissipated = case.contact.work(start, end).dissipated
+    assert dissipated >= -1e-12
+    taken = case.residual(u) @ u
+    stored = case.contact.energy(end).potential - case.contact.energy(start).potential
+    assert dissipated == pytest.approx(taken - stored, abs=1e-12)
+
+
+def test_pattern_is_outgrown_and_rebuilt() -> None:
+    case = level_case(np.array([0.01, 0.01, -1.0, -1.0, 0.01]), top("quad4", nx=4), FLOOR)
+    assert case.contact.blocks()["contact.plane"].shape == (3, 3, 3)
+    u = np.zeros(case.size)
+    u[case.riser.translation_dofs[2, 2]] = -1.01
+    assert not case.dense_tangent(u)[case.riser.translation_dofs[2, 2]].any()
+    assert case.outgrows(u)
+    case.contact.rebuild(case.state())
+    assert not case.outgrows(u), "the node that was missed belongs to the new pattern"
+    K = case.dense_tangent(u)
+    np.testing.assert_allclose(K, differences(case, u), atol=1e-7 * abs(K).max())
+    case.contact.rebuild(case.state())
+    assert case.outgrows(u), "what is neither near nor missed is dropped"
+    case.contact.rebuild(case.state(u))
+    assert not case.outgrows(u)
+
+
+def test_sliding_within_the_patch_keeps_the_pattern() -> None:
+    case = level_case(np.full(3, 0.01), top("quad4"), None)
+    assert case.contact.blocks()["contact.soil"].shape[1:] == (15, 15)
+    u = np.zeros(case.size)
+    u[case.riser.translation_dofs[:, 0]] = 0.45
+    assert not case.outgrows(u)
+    u[case.riser.translation_dofs[:, 0]] = 1.1
+    assert case.outgrows(u)
+
+
+def test_touchdown_is_interpolated_to_where_the_force_begins() -> None:
+    case = level_case(np.array([0.01, 0.003, -0.005, -0.2, -0.4]), None, FLOOR)
+    arc = case.contact.touchdown_arc(case.state())
+    assert arc == pytest.approx(0.5 + 0.5 * (0.003 + 0.001) / (0.003 + 0.005))
+    assert np.isnan(level_case(np.full(3, -0.1), None, FLOOR).contact.touchdown_arc(case.state()))
+    assert level_case(np.full(3, 0.1), None, FLOOR).contact.touchdown_arc(case.state()) == pytest.approx(1.0)
+
+
+def test_committed_settlement_counts_and_memory_is_dropped() -> None:
+    case = level_case(np.full(4, 0.01), top("quad4"), None)
+    assert case.surface is not None
+    state = case.state()
+    force = case.contact.force_per_length(state)
+    case.contact.commit(state)
+    case.surface.committed[:, 2] -= 0.005
+    np.testing.assert_allclose(case.contact.force_per_length(state), force - 0.005 * LAW.stiffness, rtol=1e-9)
