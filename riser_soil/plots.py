@@ -46,9 +46,9 @@ class _Still:
 def picture(folder: Path | str, png: Path | str, magnify: float | None = None) -> Path:
     """Draws the last recorded instant: the touchdown zone from close by, and the whole riser beside it.
 
-    The riser is coloured by bending moment, the soil by von Mises stress. The soil is cut open along the riser,
-    and its displacement is drawn `magnify` times (None: a round factor that makes it visible); the riser sinks
-    with it.
+    The riser is coloured by bending moment, the soil by von Mises stress. The soil is cut open along the
+    riser, and its displacement is drawn `magnify` times (None: by a round factor that makes it visible); the
+    riser sinks with it.
     Raises ResultsError when nothing was recorded.
     """
     still = _read(Run(folder))
@@ -167,7 +167,7 @@ def _add_soil(plotter: pv.Plotter, soil: pv.UnstructuredGrid) -> None:
         soil,
         scalars=_STRESS,
         cmap=_STRESS_COLOURS,
-        clim=(0.0, _top(soil.cell_data[_STRESS])),
+        clim=(0.0, round_up(soil.cell_data[_STRESS])),
         show_edges=True,
         edge_opacity=0.25,
         ambient=0.55,
@@ -196,7 +196,7 @@ def _add_tube(plotter: pv.Plotter, position: Array, still: _Still) -> None:
         _tube(position, still.moment, still.radius),
         scalars=_MOMENT,
         cmap=_MOMENT_COLOURS,
-        clim=(0.0, _top(1e-3 * still.moment)),
+        clim=(0.0, round_up(1e-3 * still.moment)),
         smooth_shading=True,
         scalar_bar_args=_bar(_MOMENT, 0.05),
     )
@@ -208,8 +208,8 @@ def _tube(position: Array, moment: Array, radius: float) -> pv.PolyData:
     return line.tube(radius=radius, n_sides=24)
 
 
-def _top(values: Array) -> float:
-    """Upper end of a colour scale: the largest value, two digits, rounded up; 1 where all is zero."""
+def round_up(values: Array) -> float:
+    """Upper end of a colour scale: the largest value rounded up to two digits; 1 where all is zero."""
     largest = float(values.max(initial=0.0))
     if not largest > 0.0:
         return 1.0

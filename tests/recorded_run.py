@@ -1,4 +1,4 @@
-"""A run as the recorder sees it, without a solver: a catenary that comes down on a block of soil and heaves."""
+"""A run as the recorder sees it, without a solver: a catenary comes down on a block of soil and heaves."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ SCENE = "title: Touchdown on soft clay\nline_types: {flexible: {outer_diameter: 
 
 @dataclass(frozen=True)
 class Catenary:
-    """Inextensible catenary of parameter a [m] in the plane y = 0 that leaves the seabed at the arc s0 [m]."""
+    """Inextensible catenary of parameter a [m] in the plane y = 0 that leaves the seabed at arc s0 [m]."""
 
     a: float
     s0: float

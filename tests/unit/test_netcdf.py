@@ -1,0 +1,131 @@
+"""results.nc, read back by h5py and by xarray."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import xarray as xr
+
+from riser_soil.netcdf import HEALTH, SERIES, SeriesFile
+from tests.recorded_run import Catenary, record
+
+ARC = np.linspace(0.0, 100.0, 11)
+
+
+def a_row(time: float, value: float = 1.0) -> dict[str, object]:
+    sizes = {"arc": ARC.size, "component": 3}
+    row: dict[str, object] = {
+        name: np.full([sizes[d] for d in variable.dims[1:]], value) for name, variable in SERIES.items()
+    }
+    return row | {"time": time}
+
+
+def a_step(iterations: int = 2) -> dict[str, object]:
+    return {
+        "step_time": 0.1,
+        "newton_iterations": iterations,
+        "time_step": 0.1,
+        "energy_residual": 1e-3,
+        "step_cuts": 0,
+    }
+
+
+def a_file(folder: Path) -> SeriesFile:
+    file = SeriesFile(folder / "results.nc", ARC, "a title", "0.1.0")
+    file.begin_stage("lay down")
+    return file
+
+
+def test_xarray_reads_what_was_recorded(tmp_path: Path) -> None:
+    arc = record(tmp_path / "run", duration=1.0)
+    data = xr.open_dataset(tmp_path / "run" / "results.nc", engine="h5netcdf")
+    assert dict(data.sizes) == {"time": 11, "step": 12, "arc": arc.size, "component": 3}
+    np.testing.assert_allclose(data["time"], 0.1 * np.arange(11), atol=1e-12)
+    first = Catenary(32.0, 30.0).riser(arc)
+    np.testing.assert_array_equal(data["position"].sel(time=0.0), first.position)
+    np.testing.assert_array_equal(data["effective_tension"][0], first.effective_tension)
+    np.testing.assert_array_equal(data["end_force"][0], first.end_force)
+    assert float(data["end_force"].sel(component=b"z")[0]) == first.end_force[2]
+    assert data.attrs["finished"] == 1
+    assert data.attrs["Conventions"].startswith("CF-")
+
+
+def test_every_variable_has_unit_and_long_name(tmp_path: Path) -> None:
+    a_file(tmp_path)
+    with h5py.File(tmp_path / "results.nc") as file:
+        for name in (*SERIES, *HEALTH, "arc"):
+            assert file[name].attrs["units"], name
+            assert file[name].attrs["long_name"], name
+        for name in ("start_force", "end_moment", "effective_tension", "moment_vector", "energy_residual"):
+            assert file[name].attrs["sign_convention"], name
+
+
+def test_the_file_on_disk_is_whole_after_each_flush(tmp_path: Path) -> None:
+    file = a_file(tmp_path)
+    for count in range(1, 4):
+        file.record(a_row(0.5 * count))
+        file.step(a_step())
+        file.flush()
+        with h5py.File(tmp_path / "results.nc") as read:
+            assert {len(read[name]) for name in (*SERIES, *HEALTH)} == {count}
+            assert read.attrs["finished"] == 0
+
+
+def test_a_reader_does_not_stop_the_writer(tmp_path: Path) -> None:
+    file = a_file(tmp_path)
+    hold = f"import h5py; f = h5py.File({str(tmp_path / 'results.nc')!r}, 'r'); print('open', flush=True); input()"
+    with subprocess.Popen(
+        [sys.executable, "-c", hold], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as reader:
+        assert reader.stdout is not None
+        assert reader.stdout.readline() == "open\n"
+        file.record(a_row(0.0))
+        file.flush()
+        reader.communicate("done\n")
+    with h5py.File(tmp_path / "results.nc") as read:
+        assert len(read["time"]) == 1
+
+
+def test_rows_are_copies(tmp_path: Path) -> None:
+    file = a_file(tmp_path)
+    reused = a_row(0.0, value=1.0)
+    file.record(reused)
+    np.asarray(reused["curvature"])[:] = 2.0
+    file.flush()
+    with h5py.File(tmp_path / "results.nc") as read:
+        np.testing.assert_array_equal(read["curvature"][0], 1.0)
+
+
+def test_stages_are_named(tmp_path: Path) -> None:
+    file = a_file(tmp_path)
+    file.record(a_row(0.0))
+    file.begin_stage("heave")
+    file.record(a_row(0.1))
+    file.flush(finished=True)
+    with xr.open_dataset(tmp_path / "results.nc") as data:
+        np.testing.assert_array_equal(data["stage"], [0, 1])
+        assert data["stage"].attrs["flag_meanings"].split() == ["lay_down", "heave"]
+        assert data.attrs["finished"] == 1
+
+
+def test_nan_and_all_digits_survive(tmp_path: Path) -> None:
+    file = a_file(tmp_path)
+    file.record(a_row(1.0 / 3.0, value=1e6 / 7.0) | {"touchdown_arc": np.nan})
+    file.flush()
+    with xr.open_dataset(tmp_path / "results.nc") as data:
+        assert float(data["time"][0]) == 1.0 / 3.0
+        assert float(data["bending_moment"][0, 3]) == 1e6 / 7.0
+        assert np.isnan(data["touchdown_arc"][0])
+
+
+def test_what_is_left_out_takes_no_room(tmp_path: Path) -> None:
+    file = SeriesFile(tmp_path / "results.nc", ARC, "t", "0", left_out={"curvature", "moment_vector"})
+    file.begin_stage("only")
+    file.record(a_row(0.0))
+    file.flush()
+    with h5py.File(tmp_path / "results.nc") as read:
+        assert "curvature" not in read
+        assert "moment_vector" not in read
+        assert len(read["bending_moment"]) == 1

@@ -1,0 +1,59 @@
+"""Pictures from result files, looked at by their pixels."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from riser_soil.errors import ResultsError
+from riser_soil.plots import picture, round_up
+from riser_soil.record import Recorder
+from tests.recorded_run import FACTS, SCENE, block, record
+
+
+def pixels(png: Path) -> np.ndarray:
+    with Image.open(png) as image:
+        return np.asarray(image.convert("RGB")).astype(int)
+
+
+def share(image: np.ndarray, colour: tuple[int, int, int], tolerance: int = 60) -> float:
+    return float((np.abs(image - np.array(colour)).sum(axis=2) < tolerance).mean())
+
+
+@pytest.mark.parametrize("tetrahedra", [False, True])
+def test_the_picture_shows_riser_and_soil(tmp_path: Path, tetrahedra: bool) -> None:
+    record(tmp_path, mesh=block(20, 6, 3, tetrahedra=tetrahedra))
+    image = pixels(picture(tmp_path, tmp_path / "touchdown.png"))
+    assert image.shape == (900, 1600, 3)
+    close = image[100:750, :1190]
+    assert share(close, (255, 255, 255), 10) < 0.8  # not blank
+    assert share(close, (68, 1, 84)) > 0.005  # the riser where its moment is zero
+    assert share(close, (204, 76, 2), 90) > 0.002  # highly stressed soil
+    assert share(image[100:, 1210:], (255, 255, 255), 10) < 0.999  # the whole riser beside it
+
+
+def test_magnifying_the_soil_changes_the_picture(tmp_path: Path) -> None:
+    record(tmp_path, mesh=block(20, 6, 3))
+    small, large = (pixels(picture(tmp_path, tmp_path / f"{m}.png", magnify=m)) for m in (1.0, 20.0))
+    assert np.abs(small - large)[100:750].max() > 50
+
+
+def test_a_riser_alone(tmp_path: Path) -> None:
+    record(tmp_path)
+    assert share(pixels(picture(tmp_path, tmp_path / "riser.png")), (68, 1, 84)) > 0.005
+
+
+def test_nothing_recorded_is_said(tmp_path: Path) -> None:
+    with Recorder.open(tmp_path, FACTS, np.linspace(0.0, 1.0, 3), None, SCENE):
+        pass
+    with pytest.raises(ResultsError, match="nothing was recorded"):
+        picture(tmp_path, tmp_path / "nothing.png")
+
+
+def test_colour_scales_end_at_round_numbers() -> None:
+    assert round_up(np.array([0.0, 1531.0])) == pytest.approx(1600.0)
+    assert round_up(np.array([3.0])) == pytest.approx(3.0)
+    assert round_up(np.zeros(2)) == 1.0
+    assert math.isfinite(round_up(np.array([])))

@@ -1,0 +1,238 @@
+"""The recorder and its folder: what is written when, and what a stopped run leaves behind."""
+
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from rich.console import Console
+
+from riser_soil.errors import ResultsError, SceneError
+from riser_soil.progress import Progress
+from riser_soil.record import TICK, Clock
+from riser_soil.results import Run
+from riser_soil.schedule import Due, Schedule
+from riser_soil.screen import print_summary
+from tests.recorded_run import SCENE, block, record
+
+ROOT = Path(__file__).parents[2]
+
+
+def times_due(schedule: Schedule, steps: list[float]) -> list[float]:
+    schedule.begin_stage("dynamic")
+    return [t for t in steps if schedule.due(t, last=False).series]
+
+
+def test_summed_time_steps_still_hit_the_interval() -> None:
+    steps = list(np.cumsum(np.full(100, 0.1)))
+    assert times_due(Schedule(0.5), steps) == pytest.approx([0.5 * k for k in range(1, 21)])
+
+
+def test_steps_that_miss_the_interval_are_written_at_the_next_one() -> None:
+    assert times_due(Schedule(0.5), [0.3, 0.6, 0.9, 1.2, 1.9, 2.0]) == [0.6, 1.2, 1.9, 2.0]
+
+
+def test_without_an_interval_every_step_is_written() -> None:
+    assert times_due(Schedule(None), [0.1, 0.15, 0.2]) == [0.1, 0.15, 0.2]
+
+
+def test_pictures_imply_the_series_and_each_has_its_pace() -> None:
+    schedule = Schedule(0.4, 0.6)
+    schedule.begin_stage("dynamic")
+    due = {t: schedule.due(t, last=t == 1.3) for t in (0.4, 0.6, 0.7, 0.8, 1.3)}
+    assert due[0.4] == Due(series=True, pictures=False)
+    assert due[0.6] == Due(series=True, pictures=True)
+    assert due[0.7] == Due(series=False, pictures=False)
+    assert due[1.3] == Due(series=True, pictures=True)
+
+
+def test_a_static_stage_is_written_once_at_its_end() -> None:
+    schedule = Schedule(0.1)
+    schedule.begin_stage("static")
+    assert [schedule.due(t, last=t == 1.0).series for t in (0.3, 0.6, 1.0)] == [False, False, True]
+    assert schedule.next_time == np.inf
+
+
+def test_the_schedule_starts_anew_with_each_stage() -> None:
+    schedule = Schedule(1.0)
+    assert times_due(schedule, [1.0, 2.0]) == [1.0, 2.0]
+    assert times_due(schedule, [0.5, 1.0]) == [1.0]
+
+
+def test_statics_take_no_time_yet_time_grows() -> None:
+    clock = Clock()
+    stamps = []
+    for kind, times in (
+        ("static", [1.0]),
+        ("static", [1.0]),
+        ("dynamic", [0.1, 0.2]),
+        ("static", [1.0]),
+        ("dynamic", [0.1]),
+    ):
+        clock.begin_stage(kind)
+        for t in times:
+            clock.advance(t)
+            stamps.append(clock.stamp())
+    np.testing.assert_allclose(stamps, [0.0, TICK, 0.1, 0.2, 0.2 + TICK, 0.3], rtol=0.0, atol=1e-15)
+    assert np.all(np.diff(stamps) > 0.0)
+
+
+def test_intervals_thin_the_series_but_not_the_health_nor_the_extremes(tmp_path: Path) -> None:
+    record(tmp_path, duration=2.0, interval=0.5)
+    run = Run(tmp_path)
+    np.testing.assert_allclose(run.time, [0.0, 0.5, 1.0, 1.5, 2.0], atol=1e-12)
+    assert run["newton_iterations"].size == 22
+    extremes = run.summary["stages"][1]["extremes"]["touchdown_arc"]
+    assert extremes["t_min"] == pytest.approx(1.6)
+    assert extremes["t_max"] == 0.0
+
+
+def test_only_the_wanted_fields(tmp_path: Path) -> None:
+    record(tmp_path, mesh=block(4, 3, 2), fields=("bending_moment", "von_mises_stress"))
+    run = Run(tmp_path)
+    assert run["bending_moment"].ndim == 2
+    with pytest.raises(ResultsError, match="no curvature"):
+        run["curvature"]
+    assert set(run.soil_frame().fields) == {"von_mises_stress"}
+
+
+def test_an_unknown_field_leaves_no_folder(tmp_path: Path) -> None:
+    with pytest.raises(
+        SceneError, match=r'output.fields: "shear" is not a field; allowed: effective_tension, '
+    ):
+        record(tmp_path / "run", fields=("shear",))
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_finished_run_is_not_overwritten_without_force(tmp_path: Path) -> None:
+    record(tmp_path, duration=1.0)
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    with pytest.raises(SceneError, match="finished run"):
+        record(tmp_path)
+    assert {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()} == before
+    record(tmp_path, duration=0.5, force=True)
+    assert Run(tmp_path).time[-1] == pytest.approx(0.5)
+
+
+def test_an_unfinished_run_is_overwritten_and_its_soil_goes(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("mine")
+    record(tmp_path, mesh=block(4, 3, 2), finish=False)
+    assert Run(tmp_path).has_soil
+    assert not Run(tmp_path).finished
+    record(tmp_path)
+    assert sorted(p.name for p in tmp_path.iterdir()) == [
+        "notes.txt",
+        "results.nc",
+        "riser.h5",
+        "riser.xdmf",
+        "scene.yaml",
+        "summary.json",
+    ]
+
+
+def test_a_file_in_the_folder_s_place(tmp_path: Path) -> None:
+    (tmp_path / "taken").write_text("")
+    with pytest.raises(SceneError, match="cannot be used as the output folder"):
+        record(tmp_path / "taken")
+
+
+def test_an_error_keeps_the_accepted_steps_and_marks_them_unfinished(tmp_path: Path) -> None:
+    record(tmp_path, duration=1.0, finish=False)
+    run = Run(tmp_path)
+    assert not run.finished
+    assert run.time.size == 11
+    assert run.summary["stages"][1]["final"] is not None
+    with h5py.File(tmp_path / "results.nc") as file:
+        assert file.attrs["finished"] == 0
+    assert (tmp_path / "scene.yaml").read_text() == SCENE
+
+
+def test_a_killed_run_leaves_a_readable_folder(tmp_path: Path) -> None:
+    endless = (
+        "from pathlib import Path\n"
+        "from tests.recorded_run import block, record\n"
+        f"folder = Path({str(tmp_path / 'run')!r})\n"
+        "record(folder, duration=1e4, interval=0.1, picture_interval=5.0, mesh=block(8, 4, 2))\n"
+    )
+    process = subprocess.Popen([sys.executable, "-c", endless], cwd=ROOT)
+    try:
+        _wait_for_steps(tmp_path / "run", process)
+    finally:
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+    run = Run(tmp_path / "run")
+    assert not run.finished
+    assert run.time.size == run["position"].shape[0] > 1
+    assert np.all(np.isfinite(run["position"]))
+    assert run.soil_frame().fields["displacement"].shape[1] == 3
+
+
+def _wait_for_steps(folder: Path, process: subprocess.Popen[bytes]) -> None:
+    for _ in range(600):
+        summary = folder / "summary.json"
+        if summary.is_file() and any(s["steps"] > 10 for s in json.loads(summary.read_text())["stages"]):
+            return
+        assert process.poll() is None, "the run ended by itself"
+        time.sleep(0.1)
+    raise AssertionError("the run wrote nothing within a minute")
+
+
+def test_recording_imports_no_drawing() -> None:
+    code = (
+        "import sys, riser_soil.record, riser_soil.progress, riser_soil.screen, riser_soil.results\n"
+        "heavy = {'pyvista', 'vtk', 'vtkmodules', 'matplotlib', 'scipy', 'dolfinx', 'xarray', 'pandas'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_a_folder_without_a_run(tmp_path: Path) -> None:
+    with pytest.raises(ResultsError, match="not the folder of a run"):
+        Run(tmp_path)
+
+
+def test_the_screen_tells_the_main_results(tmp_path: Path) -> None:
+    record(tmp_path, mesh=block(4, 3, 2))
+    console = Console(width=100, record=True, file=io.StringIO())
+    print_summary(Run(tmp_path).summary, 0.04, console)
+    text = console.export_text()
+    for words in (
+        "top tension",
+        "touchdown arc length",
+        "at 30 m",
+        "40 mm",
+        "3.00 on average",
+        "newton",
+        "1.25 s",
+    ):
+        assert words in text
+
+
+def test_progress_is_silent_off_a_terminal_and_on_other_ranks(capfd: pytest.CaptureFixture[str]) -> None:
+    for enabled, console in (
+        (True, Console(stderr=True)),
+        (False, Console(stderr=True, force_terminal=True)),
+    ):
+        with Progress(enabled, console) as progress:
+            progress.begin_stage("heave", "dynamic", 10.0)
+            progress.update(5.0, 0.1, 3)
+    captured = capfd.readouterr()
+    assert captured.out + captured.err == ""
+
+
+def test_progress_names_stage_time_step_and_iterations() -> None:
+    console = Console(force_terminal=True, width=120, record=True, file=io.StringIO())
+    with Progress(True, console) as progress:
+        progress.begin_stage("heave", "dynamic", 10.0)
+        progress.update(5.0, 0.1, 3)
+    text = console.export_text()
+    for words in ("heave", "t 5 s", "step 0.1 s", "Newton 3"):
+        assert words in text

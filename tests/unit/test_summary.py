@@ -1,0 +1,153 @@
+"""summary.json: its structure, its extremes, and that it is JSON."""
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from riser_soil.snapshot import Ledger, Touch
+from riser_soil.summary import Extremes, StageTally, Summary, angle_deg, final_state, pack, plain_json, unpack
+from tests.recorded_run import EI, FACTS, WEIGHT, Catenary, record
+
+ARC = np.linspace(0.0, 150.0, 301)
+LINE = Catenary(32.0, 30.0)
+END = {"position", "force", "moment", "effective_tension", "angle_deg"}
+WHOLE = {
+    "touchdown_arc",
+    "max_bending_moment",
+    "max_curvature",
+    "min_effective_tension",
+    "max_penetration",
+    "contact_force",
+}
+
+
+def strictly(text: str) -> Any:
+    """JSON without the NaN and Infinity that Python would take."""
+
+    def refuse(name: str) -> None:
+        raise ValueError(name)
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def test_final_state_of_a_catenary() -> None:
+    final = final_state(ARC, LINE.riser(ARC), LINE.touch())
+    assert set(final) == {"start", "end"} | WHOLE
+    assert set(final["start"]) == set(final["end"]) == END
+    assert final["start"]["force"] == pytest.approx([-WEIGHT * 32.0, 0.0, 0.0])
+    assert final["end"]["force"] == pytest.approx([WEIGHT * 32.0, 0.0, WEIGHT * 120.0])
+    assert final["end"]["effective_tension"] == pytest.approx(WEIGHT * math.hypot(32.0, 120.0))
+    assert final["end"]["angle_deg"] == pytest.approx(math.degrees(math.atan2(120.0, 32.0)))
+    assert final["start"]["angle_deg"] == 0.0
+    assert final["max_bending_moment"] == {"value": pytest.approx(EI / 32.0), "arc": 30.0}
+    assert final["max_curvature"] == {"value": pytest.approx(1.0 / 32.0), "arc": 30.0}
+    assert final["min_effective_tension"] == {"value": pytest.approx(WEIGHT * 32.0), "arc": 0.0}
+    assert final["contact_force"] == pytest.approx(WEIGHT * 30.0)
+    assert final["touchdown_arc"] == 30.0
+
+
+@pytest.mark.parametrize(
+    ("tangent", "angle"), [((0.0, 0.0, 1.0), 90.0), ((0.0, -1.0, 0.0), 0.0), ((-1.0, 0.0, -1.0), -45.0)]
+)
+def test_angle_from_the_horizontal(tangent: tuple[float, ...], angle: float) -> None:
+    assert angle_deg(np.array(tangent)) == pytest.approx(angle)
+
+
+def test_extremes_know_when() -> None:
+    extremes = Extremes()
+    for t, a in ((0.0, 32.0), (0.1, 35.0), (0.2, 30.0)):
+        extremes.update(t, pack(Catenary(a, 30.0).riser(ARC), LINE.touch()))
+    nested = extremes.nested()
+    assert nested["end"]["force"]["max"][0] == pytest.approx(WEIGHT * 35.0)
+    assert nested["end"]["force"]["t_max"][0] == 0.1
+    assert nested["end"]["force"]["min"][0] == pytest.approx(WEIGHT * 30.0)
+    assert nested["end"]["force"]["t_min"][0] == 0.2
+    assert nested["max_curvature"] == {
+        "min": pytest.approx(1.0 / 35.0),
+        "max": pytest.approx(1.0 / 30.0),
+        "t_min": 0.1,
+        "t_max": 0.2,
+    }
+
+
+def test_extremes_mirror_the_final_state() -> None:
+    extremes = Extremes()
+    extremes.update(0.0, pack(LINE.riser(ARC), LINE.touch()))
+    nested = extremes.nested()
+    assert set(nested) == {"start", "end"} | WHOLE
+    assert set(nested["start"]) == set(nested["end"]) == END
+    for name in WHOLE:
+        assert set(nested[name]) == {"min", "max", "t_min", "t_max"}
+
+
+def test_lifting_off_does_not_spoil_the_touchdown_extremes() -> None:
+    extremes = Extremes()
+    for t, arc in ((0.0, math.nan), (0.1, 20.0), (0.2, math.nan)):
+        extremes.update(t, pack(LINE.riser(ARC), replace(LINE.touch(), touchdown_arc=arc)))
+    assert extremes.nested()["touchdown_arc"] == {"min": 20.0, "max": 20.0, "t_min": 0.1, "t_max": 0.1}
+
+
+def test_never_touching_is_null(tmp_path: Path) -> None:
+    summary = Summary(FACTS)
+    stage = StageTally("hang", "static", steps=1)
+    free = Touch(math.nan, 0.0, np.zeros(3))
+    stage.extremes.update(1.0, pack(LINE.riser(ARC), free))
+    stage.final = final_state(ARC, LINE.riser(ARC), free)
+    summary.stages.append(stage)
+    summary.write(tmp_path / "summary.json")
+    written = strictly((tmp_path / "summary.json").read_text())["stages"][0]
+    assert written["final"]["touchdown_arc"] is None
+    assert written["extremes"]["touchdown_arc"] == {"min": None, "max": None, "t_min": None, "t_max": None}
+
+
+def test_packing_and_unpacking_agree() -> None:
+    vector = np.arange(28.0)
+    nested = unpack(vector)
+    assert nested["start"]["position"] == [0.0, 1.0, 2.0]
+    assert nested["end"]["angle_deg"] == 21.0
+    assert nested["contact_force"] == 27.0
+
+
+def test_plain_json() -> None:
+    value = {
+        "a": np.float64(1.5),
+        "b": [math.inf, np.nan],
+        "c": np.arange(2),
+        "d": np.bool_(True),
+        "e": (None, "x"),
+    }
+    assert plain_json(value) == {"a": 1.5, "b": [None, None], "c": [0, 1], "d": True, "e": [None, "x"]}
+
+
+def test_structure_of_the_file(tmp_path: Path) -> None:
+    record(tmp_path, duration=1.0)
+    summary = strictly((tmp_path / "summary.json").read_text())
+    assert set(summary) == {"title", "finished", "version", "ranks", "parts", "dofs", "stages", "seconds"}
+    assert summary["finished"] is True
+    assert summary["parts"] == {
+        "built": ["riser", "soil", "contact"],
+        "left_out": {"waves": "the scene has none"},
+    }
+    assert summary["dofs"] == {"riser": 900, "soil": 9000}
+    assert summary["seconds"] == {"newton": 1.25}
+    lay, heave = summary["stages"]
+    assert {
+        "name",
+        "kind",
+        "time",
+        "steps",
+        "newton_iterations",
+        "step_cuts",
+        "final",
+        "extremes",
+        "energy",
+    } <= set(lay)
+    assert (lay["kind"], lay["time"], lay["steps"], lay["newton_iterations"]) == ("static", 0.0, 2, 6)
+    assert (heave["kind"], heave["steps"]) == ("dynamic", 10)
+    assert heave["time"] == pytest.approx(1.0)
+    assert set(heave["energy"]) == set(vars(Ledger()))
