@@ -106,9 +106,15 @@ install_debian_packages() {
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"
 }
 
-make_venv() { # afresh when there is none, when its set-up was interrupted, when it was moved, or made with another Python
-    if [ "$(cat "$venv/origin" 2>/dev/null)" = "$(origin)" ] && "$venv/bin/python" -m pip --version; then return; fi
+make_venv() {
+    if venv_usable; then return; fi
     "$python" -m venv --clear --system-site-packages "$venv"
+}
+
+venv_usable() { # not when its set-up was interrupted, when it was moved, made with another Python, or lost modules since
+    [ "$(cat "$venv/origin" 2>/dev/null)" = "$(origin)" ] || return 1
+    [ "$(cat "$venv/stamp" 2>/dev/null)" != "$(fingerprint)" ] || return 1
+    "$venv/bin/python" -m pip --version
 }
 
 install_python_packages() {
@@ -135,9 +141,11 @@ compile_kernels() { # numba caches them beside the sources, so that the first ru
 }
 
 check_imports() {
-    cd / && MPLBACKEND=Agg OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
-        "$venv/bin/python" -c 'import importlib, sys
-for name in sys.argv[1:]: importlib.import_module(name)' "${modules[@]}"
+    cd / && MPLBACKEND=Agg "$venv/bin/python" -c 'import importlib, sys
+for name in sys.argv[1:]: importlib.import_module(name)' "${modules[@]}" && return
+    rm -f "$venv/origin"
+    echo "The next set-up makes .venv afresh."
+    return 1
 }
 
 main "$@"
