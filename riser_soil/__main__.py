@@ -56,7 +56,7 @@ def check(scene: SceneFile, overrides: Overrides = None) -> None:
     """Check a scene and tell what would be built, without computing anything."""
     with _expected_errors():
         checked = _read(scene, overrides)
-        from riser_soil.build import describe
+        from riser_soil.check import describe
 
         text = describe(checked)
         if _rank() == 0:

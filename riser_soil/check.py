@@ -1,0 +1,131 @@
+"""What a scene will be built of, before anything is computed: parts, unknowns, memory, and physical doubts with numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.build import World, build, surface_modulus
+from riser_soil.inventory import built, left_out, unknowns
+from riser_soil.scene.scene import Scene
+
+# Elements longer than this share of the boundary layer's length sqrt(EI/H) blur the bending at touchdown and at fixed ends.
+LONGEST_ELEMENT = 0.5
+# Bounds of the penalty stiffness over the soil's Young's modulus: below, the penalty hides the soil; above, it costs iterations.
+SOFT, STIFF = 1.0, 1e4
+
+PROCESS = 0.15e9  # bytes of a process with the packages that every scene needs
+SOIL_PROCESS = 0.15e9  # bytes that dolfinx and gmsh add
+PER_RISER_DOF = 2e3  # bytes: element and matrix arrays
+PER_CELL_ENTRY = 24.0  # bytes: value, place and matrix entry of one entry of a cell's matrix
+FACTOR = 10.0  # entries of the soil's factor: FACTOR n^(4/3), as nested dissection gives them in three dimensions
+
+
+def describe(scene: Scene) -> str:
+    """The report of `riser-soil check`; collective. Raises SceneError or MeshError."""
+    world = build(scene, MPI.COMM_WORLD)
+    lines = [*_parts(world), *_unknowns(world), _memory_line(world)]
+    doubts = list(physical_warnings(world))
+    return "\n".join([*lines, *(f"warning: {doubt}" for doubt in doubts), _verdict(doubts)])
+
+
+def _verdict(doubts: list[str]) -> str:
+    return f"{len(doubts)} warning{'s' if len(doubts) != 1 else ''}" if doubts else "no warnings"
+
+
+def _parts(world: World) -> Iterator[str]:
+    yield f"{world.scene.title}: {len(world.scene.stages)} stages, riser in {world.line.dimension} dimensions"
+    yield "built: " + ", ".join(built(world.scene))
+    yield from (f"left out: {name}: {reason}" for name, reason in left_out(world.scene).items())
+
+
+def _unknowns(world: World) -> Iterator[str]:
+    line = world.line
+    yield (
+        f"riser: {line.length.size} elements of {line.length.min():.4g} to {line.length.max():.4g} m, "
+        f"{unknowns(world.comm, line)} unknowns"
+    )
+    if world.soil is not None:
+        cells = world.comm.allreduce(world.soil.blocks()["soil"].shape[0])
+        yield f"soil: {cells} cells, {unknowns(world.comm, world.soil.field)} unknowns"
+    for ground, stiffness in world.contact_stiffness.items():
+        yield f"contact on the {ground}: {stiffness:.4g} N/m2"
+
+
+def _memory_line(world: World) -> str:
+    return f"estimated memory: {memory(world) / 1e6:.0f} MB in all, on {world.comm.size} rank(s)"
+
+
+def memory(world: World) -> float:
+    """Estimated bytes over all ranks; collective."""
+    comm = world.comm
+    total = comm.size * PROCESS + PER_RISER_DOF * unknowns(comm, world.line)
+    if world.soil is not None:
+        cells, rows, cols = world.soil.blocks()["soil"].shape
+        n = unknowns(comm, world.soil.field)
+        total += comm.size * SOIL_PROCESS + 8.0 * FACTOR * n ** (4.0 / 3.0)
+        total += PER_CELL_ENTRY * rows * cols * comm.allreduce(cells)
+    return total
+
+
+def physical_warnings(world: World) -> Iterator[str]:
+    """What a riser engineer would question, each with its numbers; collective."""
+    yield from _light_pipes(world)
+    yield from _coarse_elements(world)
+    yield from _penalty_against_soil(world)
+
+
+def _light_pipes(world: World) -> Iterator[str]:
+    weight, arc = world.elements.weight, world.line.arc
+    light = np.flatnonzero(weight < 0.0)
+    if light.size:
+        yield (
+            f"submerged weight is negative, {weight[light].min():.4g} N/m, from arc {arc[light[0]]:.4g} m on: the pipe floats; "
+            "check mass, contents and diameters, or give submerged_weight"
+        )
+
+
+def _coarse_elements(world: World) -> Iterator[str]:
+    """Elements beside a touchdown point or a held rotation against the boundary layer there."""
+    H, line = world.horizontal_tension, world.line
+    if H is None:
+        return
+    layer = np.sqrt(np.maximum(world.elements.EI_y, world.elements.EI_z) / H)
+    for place, e in _boundary_layers(world):
+        if line.length[e] > LONGEST_ELEMENT * layer[e]:
+            yield (
+                f"elements {place} are {line.length[e]:.4g} m long, but bending varies there over sqrt(EI/H) = {layer[e]:.4g} m "
+                f"(H = {H:.4g} N): take at most {LONGEST_ELEMENT * layer[e]:.3g} m"
+            )
+
+
+def _boundary_layers(world: World) -> Iterator[tuple[str, int]]:
+    """Where bending has boundary layers in the first shape, each with an element of the line."""
+    line = world.line
+    if line.start.rotation_fixed:
+        yield "at the start", 0
+    if line.end.rotation_fixed:
+        yield "at the end", line.length.size - 1
+    if world.contact is not None:
+        heights = line.to_global(line.x)[:, 2]
+        lying = np.flatnonzero(heights < heights.min() + 1e-6 * line.arc[-1])
+        if lying.size > 1:
+            yield f"at the touchdown point (arc {line.arc[lying[-1]]:.4g} m)", min(int(lying[-1]), line.length.size - 1)
+
+
+def _penalty_against_soil(world: World) -> Iterator[str]:
+    if world.scene.soil is None:
+        return
+    E, k = surface_modulus(world.scene.soil), world.contact_stiffness["soil"]
+    if k < SOFT * E:
+        yield (
+            f"contact.stiffness {k:.4g} N/m2 is below the soil's Young's modulus at the surface, {E:.4g} Pa: the pipe sinks "
+            f"through the penalty, not into the soil; take at least {10.0 * E:.4g} N/m2 or auto"
+        )
+    if k > STIFF * E:
+        yield (
+            f"contact.stiffness {k:.4g} N/m2 is {k / E:.2g} times the soil's Young's modulus at the surface, {E:.4g} Pa: "
+            "no more accurate than a tenth of that, and Newton needs more iterations; take auto"
+        )
