@@ -1,0 +1,1 @@
+"""What the numbers cost: run by `make bench`; ratios measured in one run, as machines are noisy."""

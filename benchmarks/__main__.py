@@ -1,0 +1,6 @@
+"""Run all benchmarks and print their figures."""
+
+from benchmarks import coupled, riser_only
+
+riser_only.report()
+coupled.report()

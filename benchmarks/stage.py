@@ -1,0 +1,76 @@
+"""A stage of a scene, set up for timing."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from statistics import median
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.build import World, build
+from riser_soil.march import March
+from riser_soil.newton import Newton, NewtonSettings
+from riser_soil.part import State
+from riser_soil.scene.reader import read_scene
+from riser_soil.scene.stages import DynamicStage, Stage
+from riser_soil.stepping import StepControl
+from riser_soil.system import Clock, System
+
+
+class TimedStage:
+    """One stage's system and march; `iterations` and `seconds` of all its Newton solves."""
+
+    def __init__(self, world: World, stage: Stage, before: State, clock: Clock) -> None:
+        solver = world.scene.solver
+        self.system = System(world.comm, world.begin(stage), clock)
+        settings = NewtonSettings(solver.tolerance, solver.max_iterations, world.force_floor)
+        self.newton = Newton(self.system, settings)
+        self.march = March(self.system, self.newton, world.scheme(stage), replace(before, t=0.0))
+        dynamic = isinstance(stage, DynamicStage)
+        self.control = StepControl(stage.duration, stage.time_step, 1e-5) if dynamic else StepControl(1.0, 1.0, 1e-3)
+        self.iterations, self.seconds = 0, 0.0
+
+    def walk(self, steps: int | None = None) -> State:
+        """Take this many steps, or all."""
+        while not self.control.finished and (steps is None or steps > 0):
+            began = time.perf_counter()
+            step = self.march.advance(self.control)
+            self.seconds += time.perf_counter() - began
+            self.iterations += step.solution.iterations
+            self.march.commit(step, self.control)
+            steps = None if steps is None else steps - 1
+        return self.march.before
+
+    def destroy(self) -> None:
+        self.newton.destroy()
+        self.system.destroy()
+
+
+def last_stage(scene_file: Path, overrides: tuple[str, ...], clock: Clock) -> TimedStage:
+    """The last stage of a scene, all before it computed."""
+    scene = read_scene(scene_file, overrides)
+    world = build(scene, MPI.COMM_SELF)
+    before = State.at_rest(0.0, world.size)
+    for stage in scene.stages[:-1]:
+        timed = TimedStage(world, stage, before, Clock.new())
+        before = timed.walk()
+        timed.destroy()
+    return TimedStage(world, scene.stages[-1], before, clock)
+
+
+def typical_seconds(action: Callable[[], object], repeats: int) -> float:
+    """Median seconds of an action."""
+    taken = []
+    for _ in range(repeats):
+        began = time.perf_counter()
+        action()
+        taken.append(time.perf_counter() - began)
+    return median(taken)
+
+
+def random_right_hand_side(size: int) -> np.ndarray:
+    return np.random.default_rng(1).normal(size=size)
