@@ -19,7 +19,7 @@ import numpy as np
 from numba import njit
 
 from riser_soil.arrays import Array, IntArray
-from riser_soil.contact.facets import shape
+from riser_soil.contact.facets import second_derivatives, shape
 
 
 @njit(cache=True)
@@ -28,7 +28,7 @@ def heights(facet: IntArray, xi: Array, facets: IntArray, points: Array) -> Arra
     out = np.full(len(facet), -np.inf)
     for i in range(len(facet)):
         if facet[i] >= 0:
-            N, _, _ = shape(facets.shape[1], xi[i, 0], xi[i, 1])
+            N, _ = shape(facets.shape[1], xi[i, 0], xi[i, 1])
             out[i] = 0.0
             for a, p in enumerate(facets[facet[i]]):
                 out[i] += N[a] * points[p, 2]
@@ -43,16 +43,17 @@ def gap_forms(facet: IntArray, xi: Array, facets: IntArray, points: Array) -> tu
     facet (n,), xi (n, 2): where the points are above. facets (nf, nv). points (np, 3): deformed [m].
     """
     n, nv = len(facet), facets.shape[1]
+    ddN = second_derivatives(nv)
     forms, H = np.empty((n, 5, 3 + 3 * nv)), np.empty((n, 2, 2))
     for i in range(n):
-        _forms_of_one(xi[i], points[facets[facet[i]]], forms[i], H[i])
+        _forms_of_one(xi[i], points[facets[facet[i]]], ddN, forms[i], H[i])
     return forms, H
 
 
 @njit(cache=True)
-def _forms_of_one(xi: Array, at: Array, forms: Array, H: Array) -> None:
+def _forms_of_one(xi: Array, at: Array, ddN: Array, forms: Array, H: Array) -> None:
     nv = len(at)
-    N, dN, ddN = shape(nv, xi[0], xi[1])
+    N, dN = shape(nv, xi[0], xi[1])
     grad = np.zeros((3, 2))
     for a in range(nv):
         for i in range(3):
@@ -72,8 +73,11 @@ def _forms_of_one(xi: Array, at: Array, forms: Array, H: Array) -> None:
             forms[0, column] = -n * normal[i]
             forms[1, column], forms[2, column] = n1 * normal[i], n2 * normal[i]
             forms[3, column], forms[4, column] = -n * inverse[0][i], -n * inverse[1][i]
-            if k > 0:
-                H += ddN[k - 1] * normal[i] * at[k - 1, i]
+    for a in range(nv):
+        height = at[a, 2] - sx * at[a, 0] - sy * at[a, 1]
+        for p in range(2):
+            for q in range(2):
+                H[p, q] += ddN[a, p, q] * height
 
 
 def penalty_hessian(forms: Array, H: Array, force: Array, slope: Array) -> Array:

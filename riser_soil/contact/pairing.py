@@ -7,11 +7,12 @@ from numba import njit
 from scipy.spatial import cKDTree
 
 from riser_soil.arrays import Array, IntArray
-from riser_soil.contact.facets import centre, inside, shape
+from riser_soil.contact.facets import centre, fill_shape, inside
 
 NEIGHBOURS = 8  # facets tried first; a point that none of them holds is looked for in all facets
 RIM = 1e-9  # widening of a facet in (ξ, η): round-off must not open a slit between neighbours
 MAX_ITERATIONS = 25
+DIVERGED = 100.0  # (ξ, η) of a point that is nowhere near
 CONVERGED = 1e-10  # step in (ξ, η) after which one more Newton step would be below round-off
 
 
@@ -35,50 +36,58 @@ class Pairing:
 
         points (np, 3): the deformed points [m].
         """
-        xy = np.ascontiguousarray(xy)
         _, near = self._tree.query(xy, self._tried)
-        boxes = bounds(points, self._facets)
-        found: tuple[IntArray, Array] = _locate(xy, near.astype(np.int64), self._facets, points, boxes)
+        found: tuple[IntArray, Array] = _locate(
+            np.ascontiguousarray(xy), near.astype(np.int64), self._facets, points
+        )
         return found
 
 
+@njit(cache=True)
 def bounds(points: Array, facets: IntArray) -> Array:
-    """Horizontal boxes (nf, 2, 2) around facets, [lowest, highest] × [x, y] in m.
-
-    They are widened by a fifth of their size: the sides of a curved facet may bulge out of the box of its
-    points.
-    """
-    at = points[facets][:, :, :2]
-    low, high = at.min(axis=1), at.max(axis=1)
-    margin = 0.2 * (high - low)
-    return np.stack((low - margin, high + margin), axis=1)
+    """Horizontal boxes (nf, 4) around facets: lowest x and y, highest x and y [m]; see `_box`."""
+    boxes = np.empty((len(facets), 4))
+    for i in range(len(facets)):
+        boxes[i] = _box(points, facets[i])
+    return boxes
 
 
 @njit(cache=True)
-def _locate(
-    xy: Array, near: IntArray, facets: IntArray, points: Array, boxes: Array
-) -> tuple[IntArray, Array]:
+def _box(points: Array, nodes: IntArray) -> tuple[float, float, float, float]:
+    """Horizontal box around points, wider by a fifth: curved facets may bulge out of their nodes' box."""
+    x0, y0, x1, y1 = np.inf, np.inf, -np.inf, -np.inf
+    for p in nodes:
+        x0, x1 = min(x0, points[p, 0]), max(x1, points[p, 0])
+        y0, y1 = min(y0, points[p, 1]), max(y1, points[p, 1])
+    dx, dy = 0.2 * (x1 - x0), 0.2 * (y1 - y0)
+    return x0 - dx, y0 - dy, x1 + dx, y1 + dy
+
+
+@njit(cache=True)
+def _locate(xy: Array, near: IntArray, facets: IntArray, points: Array) -> tuple[IntArray, Array]:
     facet, xi = np.full(len(xy), -1), np.zeros((len(xy), 2))
-    everything = np.arange(len(facets))
+    boxes = bounds(points, facets)
+    low_x, low_y, high_x, high_y = boxes[:, 0].min(), boxes[:, 1].min(), boxes[:, 2].max(), boxes[:, 3].max()
+    everything, work = np.arange(len(facets)), np.empty((facets.shape[1], 3))
     for i in range(len(xy)):
-        facet[i] = _lowest_holding(xy[i], near[i], facets, points, boxes, xi[i])
-        if facet[i] < 0:
-            facet[i] = _lowest_holding(xy[i], everything, facets, points, boxes, xi[i])
+        if low_x <= xy[i, 0] <= high_x and low_y <= xy[i, 1] <= high_y:
+            facet[i] = _lowest_holding(xy[i], near[i], facets, points, boxes, work, xi[i])
+            if facet[i] < 0:
+                facet[i] = _lowest_holding(xy[i], everything, facets, points, boxes, work, xi[i])
     return facet, xi
 
 
 @njit(cache=True)
 def _lowest_holding(
-    xy: Array, tried: IntArray, facets: IntArray, points: Array, boxes: Array, xi: Array
+    xy: Array, tried: IntArray, facets: IntArray, points: Array, boxes: Array, work: Array, xi: Array
 ) -> int:
     """The lowest-numbered facet among the tried ones that holds the point, else −1; its (ξ, η) go to xi."""
-    best = -1
+    best, x, y = -1, xy[0], xy[1]
     for f in tried:
-        box = boxes[f]
-        out_of_box = xy[0] < box[0, 0] or xy[0] > box[1, 0] or xy[1] < box[0, 1] or xy[1] > box[1, 1]
-        if out_of_box or (best >= 0 and f > best):
+        out_of_x, out_of_y = not boxes[f, 0] <= x <= boxes[f, 2], not boxes[f, 1] <= y <= boxes[f, 3]
+        if out_of_x or out_of_y or (best >= 0 and f > best):
             continue
-        converged, s, t = invert(xy, points, facets[f])
+        converged, s, t = invert(xy, points, facets[f], work)
         if converged and inside(facets.shape[1], s, t, RIM):
             best = f
             xi[0], xi[1] = s, t
@@ -86,27 +95,35 @@ def _lowest_holding(
 
 
 @njit(cache=True)
-def invert(xy: Array, points: Array, nodes: IntArray) -> tuple[bool, float, float]:
-    """Solve Σ N_a(ξ, η) p_a = xy for (ξ, η) by Newton's method from the facet's middle; the first value tells
-    success.
+def invert(xy: Array, points: Array, nodes: IntArray, work: Array) -> tuple[bool, float, float]:
+    """Solve Σ N_a(ξ, η) p_a = xy for (ξ, η) by Newton's method from the facet's middle.
+
+    nodes (nv,): the facet. work (nv, 3): scratch. The first value tells success.
     """
+    N, dN = work[:, 0], work[:, 1:]
     s, t = centre(len(nodes))
     for _ in range(MAX_ITERATIONS):
-        N, dN, _ = shape(len(nodes), s, t)
-        rx, ry = xy
-        a = b = c = d = 0.0
-        for i, p in enumerate(nodes):
-            x, y = points[p, 0], points[p, 1]
-            rx, ry = rx - N[i] * x, ry - N[i] * y
-            a, b = a + dN[i, 0] * x, b + dN[i, 1] * x
-            c, d = c + dN[i, 0] * y, d + dN[i, 1] * y
-        det = a * d - b * c
-        if det == 0.0:
-            return False, s, t
-        ds, dt = (d * rx - b * ry) / det, (a * ry - c * rx) / det
+        fill_shape(s, t, N, dN)
+        ds, dt = _newton_step(xy, points, nodes, N, dN)
         s, t = s + ds, t + dt
         if abs(ds) + abs(dt) < CONVERGED:
             return True, s, t
-        if abs(s) + abs(t) > 100.0:
+        if not abs(s) + abs(t) < DIVERGED:
             return False, s, t
     return False, s, t
+
+
+@njit(cache=True)
+def _newton_step(xy: Array, points: Array, nodes: IntArray, N: Array, dN: Array) -> tuple[float, float]:
+    """Step in (ξ, η); infinite where the map is singular."""
+    rx, ry = xy[0], xy[1]
+    a = b = c = d = 0.0
+    for i in range(len(nodes)):
+        x, y = points[nodes[i], 0], points[nodes[i], 1]
+        rx, ry = rx - N[i] * x, ry - N[i] * y
+        a, b = a + dN[i, 0] * x, b + dN[i, 1] * x
+        c, d = c + dN[i, 0] * y, d + dN[i, 1] * y
+    det = a * d - b * c
+    if det == 0.0:
+        return np.inf, np.inf
+    return (d * rx - b * ry) / det, (a * ry - c * rx) / det

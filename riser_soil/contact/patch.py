@@ -61,7 +61,7 @@ def around(nodes: IntArray, xy: Array, points: Array, facets: IntArray, distance
     if len(facets) == 0:
         return Patch(0, nodes, EMPTY)
     boxes = bounds(points, facets)
-    low, high = boxes[None, :, 0] - distance, boxes[None, :, 1] + distance
+    low, high = boxes[None, :, :2] - distance, boxes[None, :, 2:] + distance
     i, facet = np.nonzero(np.all((xy[:, None] >= low) & (xy[:, None] <= high), axis=2))
     return Patch(len(facets), nodes, np.unique(nodes[i] * len(facets) + facet))
 

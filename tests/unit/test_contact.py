@@ -257,7 +257,7 @@ def test_flat_soil_and_plane_give_the_law_itself(basis: Array) -> None:
         case = level_case(depth, surface, plane, basis)
         state = case.state()
         np.testing.assert_allclose(case.contact.force_per_length(state), LAW.force(depth), rtol=1e-10)
-        total = case.riser.tributary_length @ LAW.force(depth)
+        total = float(case.riser.tributary_length @ LAW.force(depth))
         np.testing.assert_allclose(case.contact.force_on_riser(state), [0.0, 0.0, total], atol=1e-9)
         assert case.contact.max_penetration(state) == pytest.approx(0.01, rel=1e-12)
 
