@@ -8,8 +8,8 @@ import numpy as np
 
 from riser_soil.arrays import Array
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.riser import uniform_load
 from riser_soil.riser.elastic import elastic_elements
-from riser_soil.riser.hermite import uniform_load
 from riser_soil.riser.line import EMPTY, Line, LoadTangent, Trial
 from riser_soil.riser.sections import Elements
 
@@ -33,17 +33,17 @@ class Beam:
         self.factor: Callable[[float], float] = lambda _: 1.0
         self._elastic = elastic_elements(line, elements)
         per_length = elements.weight[:, None] * DOWN + (np.zeros(3) if load is None else load)
-        self._pull = uniform_load(line.length)[:, :, None] * (per_length @ line.basis)[:, None]
+        self._load = np.ascontiguousarray(per_length @ line.basis)
 
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}
 
-    def _F(self, t: float) -> Array:
-        """Residual of the constant loads, conjugate to q (ne, 4, d)."""
-        return -self.factor(t) * self._pull
+    def _loaded(self, trial: Trial) -> tuple[Array, Array, Array, Array]:
+        """Arguments of `uniform_load`: chords, tangents, lengths and load."""
+        return trial.chord, trial.turn.tangent, self.line.length, self.factor(trial.state.t) * self._load
 
     def _element_forces(self, trial: Trial) -> Array:
-        return self._elastic.forces(trial) + trial.pull_back(self._F(trial.state.t))
+        return self._elastic.forces(trial) + trial.pull_back(uniform_load.residual(*self._loaded(trial)))
 
     def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
@@ -57,7 +57,8 @@ class Beam:
         if self.line.active:
             trial = self.line.trial(state)
             values["riser"] += weights.force * self._elastic.tangent(trial)
-            load = LoadTangent(self._F(state.t), EMPTY, EMPTY, EMPTY)
+            at = self._loaded(trial)
+            load = LoadTangent(uniform_load.residual(*at), uniform_load.stiffness(*at), EMPTY, EMPTY)
             trial.add_tangent(values["riser"], weights.force, weights, load)
 
     def energy(self, state: State) -> Energy:
@@ -65,7 +66,9 @@ class Beam:
         if not self.line.active:
             return Energy()
         trial = self.line.trial(state)
-        potential = float(np.sum(self._F(state.t) * trial.q))
+        chord, *rest = self._loaded(trial)
+        middle = 0.5 * (trial.x[:-1] + trial.x[1:])
+        potential = float(np.sum(uniform_load.potential(chord, middle, *rest)))
         return Energy(strain=self._elastic.energy(trial), potential=potential)
 
     def work(self, before: State, after: State) -> Work:

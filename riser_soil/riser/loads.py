@@ -42,7 +42,8 @@ class PointLoads:
 
     def __init__(self, line: Line, loads: list[Load]) -> None:
         self.line, self._loads = line, loads
-        self._places = [self._place(load) for load in loads]
+        self._places = {id(load): self._place(load) for load in loads}
+        self._within = [load for load in loads if self._inside(load)]
         self._moments = [(load, self._node(load)) for load in loads if load.moment is not None]
         self.symmetric = not (self._moments and line.dimension == 3)
 
@@ -66,34 +67,54 @@ class PointLoads:
             raise SceneError(
                 f"stages: loads: at arc {load.arc:.6g} m: the riser ends at {line.arc[-1]:.6g} m"
             )
-        e = min(max(int(np.searchsorted(line.arc, load.arc, side="right")) - 1, 0), line.length.size - 1)
-        xi = (load.arc - line.arc[e]) / line.length[e]
-        xi = np.round(xi) if abs(xi - np.round(xi)) < 1e-9 else xi
+        e, xi = self._element(load.arc)
         force = np.zeros(3) if load.force is None else load.force
         return slice(e, e + 1), hermite.shapes(np.array([xi]), line.length[e : e + 1])[:, :, None] * (
             force @ line.basis
         )
 
+    def _element(self, arc: float) -> tuple[int, float]:
+        """Element at an arc length and the place xi in it, exactly 0 or 1 at a node."""
+        line = self.line
+        e = min(max(int(np.searchsorted(line.arc, arc, side="right")) - 1, 0), line.length.size - 1)
+        xi = (arc - line.arc[e]) / line.length[e]
+        return e, float(np.round(xi)) if abs(xi - np.round(xi)) < 1e-9 else float(xi)
+
+    def _inside(self, load: Load) -> bool:
+        """Whether a load acts within elements rather than on a node."""
+        return load.distributed is not None or self._element(load.arc)[1] not in (0.0, 1.0)
+
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}
 
-    def _F(self, t: float) -> Array:
-        """Residual conjugate to q (ne, 4, d)."""
+    def _F(self, t: float, loads: list[Load]) -> Array:
+        """Residual of some of the loads, conjugate to q (ne, 4, d)."""
         F = np.zeros((self.line.length.size, 4, self.line.dimension))
-        for load, (at, share) in zip(self._loads, self._places, strict=True):
+        for load in loads:
+            at, share = self._places[id(load)]
             F[at] -= load.factor(t) * share
         return F
 
     def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
-        """Element residuals (inertia, force) of forces, each (ne, 2 ndof) or None; moments act on nodes."""
-        return None, self.line.trial(state).pull_back(self._F(state.t))
+        """Element residuals (inertia, force), each (ne, 2 ndof) or None, of what acts within elements, not on
+        nodes.
+        """
+        return None, self.line.trial(state).pull_back(self._F(state.t, self._within))
+
+    def nodal_forces(self, state: State) -> Array:
+        """Residual (nn, ndof) of what acts on nodes."""
+        out = np.zeros_like(state.u)
+        self._add(self.line.trial(state), out)
+        inside = np.zeros_like(state.u)
+        self.line.scatter(self.line.trial(state).pull_back(self._F(state.t, self._within)), inside)
+        return self.line.nodal(out - inside)
 
     def residual(self, state: State, forces: Forces) -> None:
         if self.line.active:
             self._add(self.line.trial(state), forces.force)
 
     def _add(self, trial: Trial, out: Array) -> None:
-        self.line.scatter(trial.pull_back(self._F(trial.state.t)), out)
+        self.line.scatter(trial.pull_back(self._F(trial.state.t, self._loads)), out)
         rotations = self.line.nodal(out)[:, self.line.dimension :]
         for load, node in self._moments:
             rotations[node] -= self._conjugate(trial, node, self._moment(load, trial.state.t))
@@ -111,7 +132,9 @@ class PointLoads:
         if not self.line.active:
             return
         trial, K = self.line.trial(state), values["riser"]
-        trial.add_tangent(K, weights.force, weights, LoadTangent(self._F(state.t), EMPTY, EMPTY, EMPTY))
+        trial.add_tangent(
+            K, weights.force, weights, LoadTangent(self._F(state.t, self._loads), EMPTY, EMPTY, EMPTY)
+        )
         if isinstance(trial.turn, SpatialTurn):
             for load, node in self._moments:
                 self._add_moment_stiffness(K, trial.turn, node, -weights.force * self._moment(load, state.t))

@@ -1,0 +1,141 @@
+"""Section forces, moments and reactions of the line, from the residuals of its elements.
+
+An element's residual, summed over the parts that act within it, is what its neighbours exert on its ends. So
+moments contain the fixed-end part of distributed loads and inertia; without it they are useless on coarse
+meshes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from riser_soil.arrays import Array, IntArray
+from riser_soil.part import State
+from riser_soil.riser.directors import SpatialTurn
+from riser_soil.riser.line import UP, Line, Trial
+from riser_soil.riser.sections import Elements
+
+
+class HasElementForces(Protocol):
+    """A part that acts within the line's elements."""
+
+    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
+        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class SectionForces:
+    """What the line after a node exerts on the line before it, at nodes and in global axes: (nn, 3) or (nn,).
+
+    force N, moment N m; effective_tension N, positive in tension; bending_moment N m and curvature 1/m,
+    magnitudes.
+    """
+
+    force: Array
+    moment: Array
+    effective_tension: Array
+    bending_moment: Array
+    curvature: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Reaction:
+    """Force (3,) N and moment (3,) N m exerted by the support on the riser, global axes."""
+
+    force: Array
+    moment: Array
+
+
+def element_residual(line: Line, parts: Sequence[HasElementForces], state: State) -> Array:
+    """Sum over parts and groups (ne, 2 ndof)."""
+    total = np.zeros((line.length.size, 2 * line.ndof))
+    for part in parts:
+        for group in part.element_forces(state):
+            if group is not None:
+                total += group
+    return total
+
+
+def section_forces(line: Line, elements: Elements, state: State, residual: Array) -> SectionForces:
+    """Section forces at the nodes, averaged over the two adjoining elements; residual from
+    `element_residual`.
+    """
+    trial = line.trial(state)
+    force, moment = _end_forces(line, trial, residual)
+    force, moment = _nodal(-force[:, 0], force[:, 1]), _nodal(-moment[:, 0], moment[:, 1])
+    tangent = _nodal(trial.turn.tangent[:, 0], trial.turn.tangent[:, 1]) @ line.basis.T
+    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
+    bending = moment - np.sum(moment * tangent, axis=1, keepdims=True) * tangent
+    return SectionForces(
+        force=force,
+        moment=moment,
+        effective_tension=np.sum(force * tangent, axis=1),
+        bending_moment=np.linalg.norm(bending, axis=1),
+        curvature=_curvature(trial, elements, bending),
+    )
+
+
+def end_reactions(
+    line: Line, state: State, residual: Array, nodal: Array | None = None
+) -> tuple[Reaction, Reaction]:
+    """Reactions at start and end.
+
+    residual: from `element_residual`. nodal: residual (nn, ndof) of what acts on nodes other than the
+    supports: point loads, contact. A spring is a support, so its moment belongs to the reaction.
+    """
+    force, moment = _end_forces(line, line.trial(state), residual)
+    at_nodes = np.zeros((line.nodes, line.ndof)) if nodal is None else nodal
+    extra_force, extra_moment = _global(line, line.trial(state), at_nodes[[0, -1]], np.array([0, -1]))
+    return (
+        Reaction(force[0, 0] + extra_force[0], moment[0, 0] + extra_moment[0]),
+        Reaction(force[-1, 1] + extra_force[1], moment[-1, 1] + extra_moment[1]),
+    )
+
+
+def _end_forces(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]:
+    """Force and moment on the elements' ends, each (ne, 2, 3), global axes."""
+    first, second = residual[:, : line.ndof], residual[:, line.ndof :]
+    nodes = np.arange(line.nodes, dtype=np.int64)
+    ends = [_global(line, trial, first, nodes[:-1]), _global(line, trial, second, nodes[1:])]
+    return np.stack([f for f, _ in ends], axis=1), np.stack([m for _, m in ends], axis=1)
+
+
+def _global(line: Line, trial: Trial, dofs: Array, nodes: IntArray) -> tuple[Array, Array]:
+    """Forces and moments (n, 3) in global axes from those conjugate to the dofs of the nodes (n, ndof)."""
+    force, rest = dofs[:, : line.dimension] @ line.basis.T, dofs[:, line.dimension :]
+    if isinstance(trial.turn, SpatialTurn):
+        H = trial.turn.H[nodes]
+        return force, np.linalg.solve(np.swapaxes(H, 1, 2), rest[..., None])[..., 0]
+    return force, rest * np.cross(line.direction, UP)
+
+
+def _nodal(first: Array, second: Array) -> Array:
+    """Mean (nn, ...) of what the elements have at their first and second ends; the only value at the line's
+    ends.
+    """
+    total = np.concatenate([first, second[-1:]])
+    total[1:-1] = 0.5 * (first[1:] + second[:-1])
+    return total
+
+
+def _curvature(trial: Trial, elements: Elements, bending: Array) -> Array:
+    """Bending moment over stiffness, about the section axes where there are two stiffnesses (nn,)."""
+    if isinstance(trial.turn, SpatialTurn):
+        sides = [
+            _section_curvature(trial.turn.frame1, bending[:-1], elements),
+            _section_curvature(trial.turn.frame2, bending[1:], elements),
+        ]
+    else:
+        magnitude = np.linalg.norm(bending, axis=1)
+        sides = [magnitude[:-1] / elements.EI_y, magnitude[1:] / elements.EI_y]
+    return _nodal(sides[0], sides[1])
+
+
+def _section_curvature(frame: Array, moment: Array, elements: Elements) -> Array:
+    about = np.einsum("eij,ei->ej", frame, moment)
+    return np.hypot(about[:, 1] / elements.EI_y, about[:, 2] / elements.EI_z)
