@@ -136,7 +136,7 @@ class Line:
         self.length = np.diff(layout.arc)
         self.direction = np.array([1.0, 0.0, 0.0]) if direction is None else direction
         self.basis, self.origin = self._axes(layout.position[0])
-        self.chord0 = layout.chord0 @ self.basis
+        self.chord0 = layout.chord0 @ (self.basis if dimension == 2 else layout.T0[0, 0])
         self.frames: Frames = (
             _planar_frames(layout, self.direction) if dimension == 2 else _spatial_frames(layout)
         )
