@@ -49,6 +49,7 @@ timed() { # title, command ...
 make_bare_debian() {
     debootstrap --variant=minbase --include=ca-certificates,git,make "$suite" "$fresh" \
         "${FRESH_MIRROR:-http://deb.debian.org/debian}" >"$fresh.log" 2>&1 || { tail -n 20 "$fresh.log"; return 1; }
+    chmod 755 "$fresh" # mktemp leaves it to root alone
     copy_host_configuration
 }
 
@@ -61,7 +62,7 @@ copy_host_configuration() {
         cp -a /usr/share/keyrings/. "$fresh/usr/share/keyrings/"
     fi
     cp -a /usr/local/share/ca-certificates/. "$fresh/usr/local/share/ca-certificates/"
-    chroot "$fresh" update-ca-certificates >/dev/null
+    chroot "$fresh" update-ca-certificates >/dev/null 2>&1
     for file in /etc/pip.conf /etc/xdg/pip/pip.conf "$HOME/.pip/pip.conf" "${XDG_CONFIG_HOME:-$HOME/.config}/pip/pip.conf"; do
         [ -f "$file" ] || continue
         case $file in
