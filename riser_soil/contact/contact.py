@@ -17,11 +17,13 @@ from riser_soil.contact.encounter import (
     add_blocks,
     add_shares,
 )
-from riser_soil.contact.ground import ContactPoints, Soil, SoilSurface
+from riser_soil.contact.ground import ASPECT, ContactPoints, Soil, SoilSurface
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.patch import Patch, around, nothing
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.seabed.plane import Plane
+
+FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
 
 
 @dataclass(frozen=True)
@@ -41,11 +43,11 @@ class Contact:
     it, else the plane, if there is one. All forces derive from the potential Σ ψ(δ_i)·length_i: the tangent
     is symmetric, and the forces on riser and soil sum to zero in all directions.
 
-    On soil each node stands on four points at ±footprint [m] along the riser and across it, on one where
-    footprint = 0. A node presses a kink into the surface where facets meet below it; there the slope, and
-    with it the horizontal force, jumps from side to side, and Newton finds no balance. Four points straddle
-    the kink. An eighth of the outer diameter is a good choice: half the chord by which a pipe touches once it
-    has sunk in 3 % of its radius.
+    On soil each node stands on four points around it, ±footprint [m] across the riser and a golden ratio more
+    along it; on one where footprint = 0. A node presses a kink into the surface where facets meet below it;
+    there the slope, and with it the horizontal force, jumps from side to side, and Newton finds no balance.
+    Four points straddle the kink. The default is an eighth of the outer diameter, half the chord by which a
+    pipe touches once it has sunk in by 3 % of its radius.
 
     radius (nn,): distance [m] from the axis to the line that touches, 0 for the axis itself. penalty: law on
     the soil; a plane brings its own numbers. reach: by default 1 % of the riser's length above the ground and
@@ -65,16 +67,18 @@ class Contact:
         plane: Plane | None = None,
         surface: SoilSurface | None = None,
         penalty: Penalty | None = None,
-        footprint: float = 0.0,
+        footprint: float | None = None,
         reach: Reach | None = None,
         active: bool = True,
     ) -> None:
         self.active, self.outgrown = active, False
-        self._riser, self._footprint, self._has_plane = riser, footprint, plane is not None
+        self._riser, self._has_plane = riser, plane is not None
         self._soil = Soil(surface) if surface is not None and active else None
         self._reach = reach or _default_reach(riser, self._soil)
-        footing = footprint if self._soil is not None else 0.0
-        points = ContactPoints.of_nodes(riser.tributary_length, footing, riser.basis[:2, 0])
+        self._footprint = 0.0
+        if self._soil is not None:
+            self._footprint = FOOTPRINT * float(radius.mean()) if footprint is None else footprint
+        points = ContactPoints.of_nodes(riser.tributary_length, self._footprint, riser.basis[:2, 0])
         level = plane.level if plane is not None else -np.inf
         laws = _laws(plane, self._soil, penalty)
         self._grounds = Grounds(riser, radius, points, laws, level, self._soil, self._reach.above)
@@ -212,7 +216,7 @@ class Contact:
         nodes = np.unique(met.points.node[met.gap < self._reach.above])
         xy = self._riser.positions3(state)[nodes, :2]
         facets = self._soil.facets if self._soil is not None else np.empty((0, 4), dtype=np.int64)
-        patch = around(nodes, xy, met.surface, facets, self._footprint + self._reach.around)
+        patch = around(nodes, xy, met.surface, facets, ASPECT * self._footprint + self._reach.around)
         return patch.joined(self._missed)
 
 

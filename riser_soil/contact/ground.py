@@ -11,6 +11,10 @@ from riser_soil.arrays import Array, BoolArray, IntArray
 from riser_soil.contact.pairing import Pairing
 from riser_soil.part import State
 
+ASPECT = (
+    1.618  # the golden ratio: sides of facets, also diagonals of simple grids, miss all four points of a node
+)
+
 
 class SoilSurface(Protocol):
     """The top of the soil.
@@ -49,9 +53,9 @@ class ContactPoints:
 
     @classmethod
     def of_nodes(cls, tributary: Array, footprint: float, along: Array) -> ContactPoints:
-        """Four points a node, at ±footprint along a horizontal unit vector and across; one where it is 0."""
+        """Four points a node, ±ASPECT·footprint along a horizontal unit vector, ±footprint across; for 0 one."""
         across = np.array([-along[1], along[0]])
-        corners = np.array([-along - across, along - across, -along + across, along + across])
+        corners = np.array([i * ASPECT * along + j * across for i in (-1.0, 1.0) for j in (-1.0, 1.0)])
         corners = footprint * corners if footprint > 0.0 else np.zeros((1, 2))
         node = np.repeat(np.arange(len(tributary)), len(corners))
         return cls(node, np.tile(corners, (len(tributary), 1)), tributary[node] / len(corners))

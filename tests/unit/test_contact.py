@@ -374,3 +374,56 @@ def test_committed_settlement_counts_and_memory_is_dropped() -> None:
     case.contact.commit(state)
     case.surface.committed[:, 2] -= 0.005
     np.testing.assert_allclose(case.contact.force_per_length(state), force - 0.005 * LAW.stiffness, rtol=1e-9)
+
+
+def soil_springs(surface: Top, stiffness: float) -> Array:
+    """Matrix of a soft bed: springs to the ground, and between all nodes of a facet, in each direction."""
+    n = len(surface.points)
+    K = np.zeros((n, n))
+    for nodes in surface.facets:
+        K[np.ix_(nodes, nodes)] += 0.1 * stiffness * (len(nodes) * np.eye(len(nodes)) - 1.0)
+        K[nodes, nodes] += 0.05 * stiffness
+    return np.kron(K, np.eye(3))
+
+
+def balance(kind: str, dimension: int, footprint: float) -> tuple[list[float], Array]:
+    """Newton's residual norms [N] and the force on the riser; weights press nodes into points of the mesh."""
+    position = np.column_stack([0.5 * np.arange(1, 6), np.zeros(5), np.full(5, RADIUS)])
+    basis = np.eye(3) if dimension == 3 else in_plane()
+    case = Case.build(Nodes(position, basis), top(kind), None, footprint)
+    assert case.surface is not None
+    rows, soil = case.riser.translation_dofs, slice(case.surface.offset, case.size)
+    K, weight = np.zeros((case.size, case.size)), np.zeros(case.size)
+    K[soil, soil] = soil_springs(case.surface, 1.2e6)
+    K[rows[:, :-1], rows[:, :-1]] = 1.0e3
+    weight[rows[:, -1]] = -728.0 * case.riser.tributary_length * np.linspace(1.0, 3.0, 5)
+    free = np.concatenate([rows.ravel(), np.arange(soil.start, soil.stop)])
+    u, norms = np.zeros(case.size), list[float]()
+    for _ in range(12):
+        R = K @ u + case.residual(u) - weight
+        norms.append(float(np.linalg.norm(R[free])))
+        u[free] -= np.linalg.solve((K + case.dense_tangent(u))[np.ix_(free, free)], R[free])
+    return norms, case.contact.force_on_riser(case.state(u))
+
+
+@KINDS
+@DIMENSIONS
+def test_newton_finds_the_balance_over_points_of_the_mesh(kind: str, dimension: int) -> None:
+    norms, force = balance(kind, dimension, FOOTPRINT)
+    assert min(norms[:9]) < 1e-9 * norms[0]
+    assert force[2] == pytest.approx(728.0 * 0.5 * (0.5 * 1.0 + 1.5 + 2.0 + 2.5 + 0.5 * 3.0), rel=1e-9)
+    assert abs(force[1]) < (1e-9 if kind == "quad4" else 1e-3) * force[2]
+
+
+@KINDS
+def test_one_point_on_a_kink_has_no_balance(kind: str) -> None:
+    norms, _ = balance(kind, 2, 0.0)
+    assert min(norms) > 1e-5 * norms[0]
+
+
+def test_default_footprint_is_an_eighth_of_the_diameter() -> None:
+    case = deformed_case("quad4", 3)
+    contact = Contact(case.riser, np.full(12, RADIUS), surface=case.surface, penalty=LAW)
+    np.testing.assert_allclose(
+        contact.meet(case.state()).points.offset[:4, 1], RADIUS / 4 * np.array([-1, 1, -1, 1])
+    )
