@@ -10,18 +10,21 @@ from pathlib import Path
 import numpy as np
 
 from riser_soil import __version__
+from riser_soil.arrays import Array
 from riser_soil.build import World
 from riser_soil.inventory import built, left_out, unknowns
 from riser_soil.march import Accepted
-from riser_soil.part import Energy
+from riser_soil.part import Energy, Forces
 from riser_soil.progress import Progress
 from riser_soil.record import Recorder
+from riser_soil.riser.section_forces import HasElementForces, element_residual, end_reactions, section_forces
+from riser_soil.riser.springs import EndSpring
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.schedule import Schedule
 from riser_soil.screen import print_summary
-from riser_soil.snapshot import Ledger, RiserSnapshot, RunFacts, SoilSnapshot, StepHealth, Touch
-from riser_soil.system import Clock, System
+from riser_soil.snapshot import Ledger, RiserSnapshot, RunFacts, StepHealth, Touch
+from riser_soil.system import Clock, System, total
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +59,7 @@ class Observer:
             ) as recorder:
                 yield cls(world, clock, recorder, progress)
 
-    def begin_stage(self, stage: Stage, system: System, energy: Energy) -> None:
+    def begin_stage(self, stage: Stage, energy: Energy) -> None:
         """energy: stored at the stage's beginning."""
         self._schedule.begin_stage(stage.kind)
         self._static = isinstance(stage, StaticStage)
@@ -92,7 +95,7 @@ class Observer:
         if self._recorder is not None:
             self._recorder.add_seconds(self._clock.seconds)
             self._recorder.finish()
-            print_summary(self._recorder.summary)
+            print_summary(self._recorder.summary.as_dict(), self._recorder.settlement)
 
     def _balance(self, step: Accepted) -> Ledger:
         """The ledger after a step. A static stage balances no energy: its first shape need not be an equilibrium."""
@@ -100,6 +103,47 @@ class Observer:
         dissipated, work = before.dissipated + step.dissipated, before.work + step.work
         residual = np.nan if self._static else e.total - self._begun.total + dissipated - work
         return Ledger(e.kinetic, e.strain, e.potential, dissipated, work, residual)
+
+
+def riser_snapshot(world: World, system: System, step: Accepted) -> RiserSnapshot:
+    """The riser at the end of a step that isn't committed yet; on the rank that holds it."""
+    line, state = world.line, step.solution.state
+    residual = element_residual(line, [p for p in system.model.parts if isinstance(p, HasElementForces)], state)
+    inside = section_forces(line, world.elements, state, residual)
+    start, end = end_reactions(line, state, residual, _on_nodes(world, step, residual))
+    tangent = line.trial(state).turn.tangent @ line.basis.T
+    return RiserSnapshot(
+        position=line.positions3(state),
+        effective_tension=inside.effective_tension,
+        bending_moment=inside.bending_moment,
+        curvature=inside.curvature,
+        contact_force=_contact_force(world, step),
+        moment_vector=inside.moment,
+        start_force=start.force,
+        end_force=end.force,
+        start_moment=start.moment,
+        end_moment=end.moment,
+        start_tangent=tangent[0, 0],
+        end_tangent=tangent[-1, 1],
+    )
+
+
+def _on_nodes(world: World, step: Accepted, residual: Array) -> Array:
+    """What acts on nodes but isn't a support (nn, ndof): all forces less those of elements and of end springs."""
+    line, forces = world.line, step.solution.forces
+    inside = np.zeros_like(forces.force)
+    line.scatter(residual, inside)
+    springs = Forces.zeros(forces.force.size)
+    for part in world.riser_parts:
+        if isinstance(part, EndSpring):
+            part.residual(step.solution.state, springs)
+    return line.nodal(total(forces) - inside - springs.force)
+
+
+def _contact_force(world: World, step: Accepted) -> Array:
+    if world.contact is None:
+        return np.zeros(world.line.nodes)
+    return world.contact.force_per_length(step.solution.state)
 
 
 def touch(world: World, step: Accepted) -> Touch:

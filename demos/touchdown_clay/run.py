@@ -1,0 +1,25 @@
+"""A riser comes down on soft clay while the floater heaves: compute the scene beside this file, then draw it.
+
+Usage: python run.py [FOLDER], by default `results` beside this file. Leaves the run's files and touchdown.png there.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from riser_soil.plots import picture
+from riser_soil.run import run
+from riser_soil.scene.reader import read_scene
+
+HERE = Path(__file__).parent
+
+
+def main(folder: Path) -> None:
+    run(read_scene(HERE / "scene.yaml"), folder, force=True)
+    picture(folder, folder / "touchdown.png")
+    print(f"results and touchdown.png are in {folder}; open riser.xdmf and soil.xdmf in ParaView")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "results")
