@@ -57,16 +57,13 @@ def parse(text: str, name: str) -> Document:
     """The document in a YAML text; SceneError with the line when the text is not plain YAML."""
     yaml = YAML(typ="safe", pure=True)
     try:
-        node = yaml.compose(text)
+        return _Builder(yaml, name).document(yaml.compose(text))
     except MarkedYAMLError as err:
         raise SceneError(_broken(err, name)) from err
     except YAMLError as err:
         raise SceneError(f"{name}: not valid YAML: {' '.join(str(err).split())}; correct the file") from err
     except RecursionError as err:
         raise SceneError(f"{name}: nested too deeply; a scene is at most some ten levels deep") from err
-    if node is None:
-        raise SceneError(f"{name}: the scene is empty; it needs at least line_types, riser and stages")
-    return _Builder(yaml, name).document(node)
 
 
 def _broken(err: MarkedYAMLError, name: str) -> str:
@@ -85,7 +82,9 @@ class _Builder:
         self._open: list[int] = []
         self._count = 0
 
-    def document(self, node: Node) -> Document:
+    def document(self, node: Node | None) -> Document:
+        if node is None:
+            raise SceneError(f"{self._out.name}: the scene is empty; it needs line_types, riser and stages")
         self._out.lines[()] = node.start_mark.line + 1
         self._out.data = self._value(node, ())
         return self._out
@@ -120,7 +119,7 @@ class _Builder:
             return node.value
         try:
             return self._constructor.construct_object(node)
-        except (ValueError, KeyError, YAMLError) as err:
+        except (ValueError, LookupError, YAMLError) as err:
             raise self._error(
                 node, path, f"value {node.value!r} can't be read; write a plain number or word"
             ) from err

@@ -139,8 +139,15 @@ def _kind(failure: Failure) -> Problem:
     words, value = failure.context["text"], failure.value
     if not isinstance(value, dict):
         return failure.problem(f"must be a mapping with kind: {words}")
-    remedy = "choose one" + hint(value.get("kind"), words.split(", "))
-    return Problem((*failure.path, "kind"), f"must be one of {words}", remedy)
+    near = hint(value["kind"], words.split(", ")) if "kind" in value else _misspelt_kind(failure)
+    return Problem((*failure.path, "kind"), f"must be one of {words}", f"choose one{near}")
+
+
+def _misspelt_kind(failure: Failure) -> str:
+    """Without its kind a mapping can't be read: tell an unknown key that may have been meant for it."""
+    unknown = [key for key in failure.value if key not in failure.here.keys]
+    meant = [key for key in unknown if did_you_mean(key, ["kind"])]
+    return f' ("{meant[0]}" is no key: did you mean "kind"?)' if meant else ""
 
 
 def _said_by_a_check(failure: Failure) -> Problem:

@@ -21,10 +21,19 @@ def _override(document: Document, assignment: str) -> None:
         raise SceneError(
             f"--set {assignment}: must be path=value; write for example --set riser.segments.0.elements=70"
         )
-    value = parse(text, f"--set {assignment}").data if text.strip() else None
+    value = _value(text, assignment)
     path = _store(document, words, value, assignment)
     _forget_places_below(document, path)
     document.overrides[path] = assignment
+
+
+def _value(text: str, assignment: str) -> Any:
+    try:
+        return parse(text, "--set").data if text.strip() else None
+    except SceneError as err:
+        raise SceneError(
+            f"--set {assignment}: not plain YAML; write a number, a word, a [list] or {{mapping}}"
+        ) from err
 
 
 def _store(document: Document, words: list[str], value: Any, assignment: str) -> Path:

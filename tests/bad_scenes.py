@@ -1,0 +1,326 @@
+"""A good scene, and changes of it that are wrong: where the message points and what it says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+GOOD = """\
+title: base
+gravity: 9.81
+water: {density: 1025.0}
+line_types:
+  pipe:
+    outer_diameter: 0.3
+    inner_diameter: 0.2
+    mass: 120.0
+    EA: 3.0e8
+    EI: 5.0e4
+    GJ: 4.0e4
+    drag: {normal: 1.1, tangential: 0.05}
+riser:
+  contents: {density: 850.0}
+  segments:
+    - {line_type: pipe, length: 148.0, elements: 74}
+  start: {position: [0.0, 0.0, 0.15], rotation: free}
+  end: {position: [80.0, 0.0, 100.0], rotation: free}
+  initial: catenary
+seabed: {kind: spring, level: 0.0, stiffness: 1.0e5}
+soil:
+  block: {x: [10.0, 50.0], y: [-2.5, 2.5], depth: 2.5}
+  mesh: {kind: hex, size_at_riser: 0.5, size_far: 1.5}
+  law: {kind: von-mises, su: 4.0e3, su_gradient: 1.5e3, E_over_su: 300.0, nu: 0.49}
+  submerged_unit_weight: 5.0e3
+contact: {method: node, stiffness: auto, smoothing: 1.0e-3}
+stages:
+  - {name: lay, kind: static}
+  - name: heave
+    kind: dynamic
+    duration: 15.0
+    time_step: 0.1
+    motion:
+      end: {harmonic: {amplitude: [0.0, 0.0, 1.5], period: 10.0, ramp: 5.0}}
+solver: {max_iterations: 20}
+output: {interval: 0.1}
+"""
+
+
+@dataclass(frozen=True)
+class Bad:
+    """A change of the good scene and the parts of the message that it must cause."""
+
+    old: str
+    new: str
+    line: int
+    path: str
+    value: str
+    says: str
+    lines: int = 1
+
+
+KEYS = [
+    Bad("length: 148.0", "lenght: 148.0", 16, "riser.segments.0.lenght", "148.0", 'did you mean "length"?'),
+    Bad("gravity: 9.81", "gravitiy: 9.81", 2, "gravitiy", "9.81", 'did you mean "gravity"?'),
+    Bad("    EA:", "    ea:", 9, "line_types.pipe.ea", "300000000.0", 'did you mean "EA"?'),
+    Bad("period:", "perod:", 34, "stages.1.motion.end.harmonic.perod", "10.0", 'did you mean "period"?'),
+    Bad("su: 4.0e3", "sus: 4.0e3", 24, "soil.law.sus", "4000.0", 'did you mean "su"?'),
+    Bad("solver:", "slover:", 35, "slover", '{"max_iterations": 20}', 'did you mean "solver"?'),
+    Bad("time_step: 0.1", "timestep: 0.1", 32, "stages.1.timestep", "0.1", 'did you mean "time_step"?'),
+    Bad("{interval: 0.1}", "{intervall: 0.1}", 36, "output.intervall", "0.1", 'did you mean "interval"?'),
+    Bad("smoothing:", "colour:", 26, "contact.colour", "0.001", "known are method, stiffness, smoothing"),
+]
+
+VALUES = [
+    Bad("gravity: 9.81", "gravity: down", 2, "gravity", '"down"', "must be a number"),
+    Bad("gravity: 9.81", "gravity:", 2, "gravity", "null", "must be a number"),
+    Bad("gravity: 9.81", "gravity: -9.81", 2, "gravity", "-9.81", "must be at least 0"),
+    Bad("gravity: 9.81", "gravity: .nan", 2, "gravity", "NaN", "must be a finite number"),
+    Bad("gravity: 9.81", "gravity: .inf", 2, "gravity", "Infinity", "must be a finite number"),
+    Bad("gravity: 9.81", "gravity: true", 2, "gravity", "true", "must be a number"),
+    Bad("gravity: 9.81", "gravity: 9.81\ndimension: 4", 3, "dimension", "4", "must be one of auto, 2, 3"),
+    Bad("title: base", "title: [1]", 1, "title", "[1]", "must be a text"),
+    Bad("length: 148.0", 'length: "148 m"', 16, "riser.segments.0.length", '"148 m"', "without a unit"),
+    Bad("length: 148.0", "length: 0", 16, "riser.segments.0.length", "0", "must be greater than 0"),
+    Bad("elements: 74", "elements: 7.5", 16, "riser.segments.0.elements", "7.5", "must be a whole number"),
+    Bad("elements: 74", "elements: 0", 16, "riser.segments.0.elements", "0", "must be at least 1"),
+    Bad("mass: 120.0", "mass: 12o.0", 8, "line_types.pipe.mass", '"12o.0"', "mass per length"),
+    Bad(
+        "inner_diameter: 0.2",
+        "inner_diameter: 0.4",
+        7,
+        "line_types.pipe.inner_diameter",
+        "0.4",
+        "smaller than",
+    ),
+    Bad("{density: 1025.0}", "1025.0", 3, "water", "1025.0", "must be a mapping with the keys density"),
+    Bad("{density: 1025.0}", "{density: 0}", 3, "water.density", "0", "must be greater than 0"),
+    Bad("[0.0, 0.0, 0.15]", "[0.0, 0.15]", 17, "riser.start.position", "[0.0, 0.15]", "a list of 3 values"),
+    Bad("[0.0, 0.0, 0.15]", "[0, 0, 0, 1]", 17, "riser.start.position", "[0, 0, 0, 1]", "a list of 3 values"),
+    Bad("[0.0, 0.0, 0.15]", "0.15", 17, "riser.start.position", "0.15", "must be a list of 3 values"),
+    Bad("[0.0, 0.0, 0.15]", "[0, 0, x]", 17, "riser.start.position.2", '"x"', "must be a number"),
+    Bad("rotation: free}\n  end", "rotation: fre}\n  end", 17, "riser.start.rotation", '"fre"', '"free"'),
+    Bad("initial: catenary", "initial: catinary", 19, "riser.initial", '"catinary"', '"catenary"'),
+    Bad("initial: catenary", "initial: 3", 19, "riser.initial", "3", "straight, catenary, unstressed or"),
+    Bad("kind: spring", "kind: springs", 20, "seabed.kind", '"springs"', 'did you mean "spring"?'),
+    Bad("kind: spring, ", "", 20, "seabed.kind", "missing", "must be one of rigid, spring"),
+    Bad("kind: hex", "kind: hexa", 23, "soil.mesh.kind", '"hexa"', 'did you mean "hex"?'),
+    Bad(
+        "size_far: 1.5", "size_far: 0.1", 23, "soil.mesh.size_far", "0.1", "must not be smaller than size_at"
+    ),
+    Bad(
+        "x: [10.0, 50.0]",
+        "x: [50.0, 10.0]",
+        22,
+        "soil.block.x",
+        "[50.0, 10.0]",
+        "first bound must be smaller",
+    ),
+    Bad("nu: 0.49", "nu: 0.5", 24, "soil.law.nu", "0.5", "must be less than 0.5"),
+    Bad("kind: von-mises", "kind: mohr", 24, "soil.law.kind", '"mohr"', "linear-elastic, von-mises"),
+    Bad("su_gradient: 1.5e3", "su_gradient: -2.0e3", 24, "soil.law", '{"kind"', "su must stay positive"),
+    Bad("stiffness: auto", "stiffness: automatic", 26, "contact.stiffness", '"automatic"', '"auto"'),
+    Bad("stiffness: auto", "stiffness: -1", 26, "contact.stiffness", "-1", "must be greater than 0"),
+    Bad("kind: dynamic", "kind: dynamics", 30, "stages.1.kind", '"dynamics"', 'did you mean "dynamic"?'),
+    Bad(
+        "time_step: 0.1",
+        "time_step: 20",
+        32,
+        "stages.1.time_step",
+        "20",
+        "must not exceed the stage's duration",
+    ),
+    Bad("{interval: 0.1}", "{interval: 0}", 36, "output.interval", "0", "must be greater than 0"),
+    Bad("{interval: 0.1}", "{fields: [tension]}", 36, "output.fields.0", '"tension"', '"effective_tension"'),
+    Bad("{interval: 0.1}", "{fields: all}", 36, "output.fields", '"all"', "must be a list"),
+]
+
+MISSING = [
+    Bad("length: 148.0, ", "", 16, "riser.segments.0.length", "missing", "add it: unstressed length [m]"),
+    Bad("    EA: 3.0e8\n", "", 5, "line_types.pipe.EA", "missing", "add it: axial stiffness [N]"),
+    Bad("    EI: 5.0e4\n", "", 5, "line_types.pipe.EI", "missing", "give EI, or both EI_y and EI_z"),
+    Bad(", elements: 74", "", 16, "riser.segments.0.elements", "missing", "elements or element_length"),
+    Bad(", stiffness: 1.0e5", "", 20, "seabed.stiffness", "missing", "the key is required here"),
+    Bad("    duration: 15.0\n", "", 29, "stages.1.duration", "missing", "add it: duration [s]"),
+]
+
+CONFLICTS = [
+    Bad(
+        "{line_type: pipe",
+        "{line_type: pip",
+        16,
+        "riser.segments.0.line_type",
+        '"pip"',
+        'did you mean "pipe"?',
+    ),
+    Bad(
+        "elements: 74", "elements: 74, element_length: 2", 16, "riser.segments.0.elements", "74", "both given"
+    ),
+    Bad("    mass: 120.0\n", "", 5, "line_types.pipe.mass", "missing", "a dynamic stage needs the mass"),
+    Bad("    outer_diameter: 0.3\n", "", 5, "line_types.pipe.outer_diameter", "missing", "buoyancy follows"),
+    Bad("    EI: 5", "    EI_y: 1.0\n    EI: 5", 11, "line_types.pipe.EI", "50000.0", "given twice"),
+    Bad("water: {density: 1025.0}\n", "", 11, "line_types.pipe.drag", '{"normal"', "the scene has no water"),
+    Bad(
+        "    inner_diameter: 0.2\n",
+        "",
+        13,
+        "riser.contents",
+        '{"density"',
+        "no line type of the riser has room",
+    ),
+    Bad("length: 148.0", "length: 120.0", 18, "riser.end.position", "[80.0, 0.0, 100.0]", "only 120 m long"),
+    Bad(
+        "[0.0, 0.0, 0.15]",
+        "[0.0, 0.0, -1.0]",
+        17,
+        "riser.start.position",
+        "[0.0, 0.0, -1.0]",
+        "below the seabed",
+    ),
+    Bad(
+        "  end: {position: [80.0, 0.0, 100.0], rotation: free}",
+        "  end: free",
+        19,
+        "riser.initial",
+        '"catenary"',
+        "hold",
+        lines=2,
+    ),
+    Bad("gravity: 9.81", "gravity: 0", 19, "riser.initial", '"catenary"', "no catenary without gravity"),
+    Bad("name: heave", "name: lay", 29, "stages.1.name", '"lay"', "another stage has the same name"),
+    Bad("y: [-2.5, 2.5]", "y: [7.5, 9.5]", 22, "soil.block", '{"x"', "never passes over"),
+    Bad(
+        "hex, size_at",
+        "hex, file: none.msh, size_at",
+        23,
+        "soil.mesh.kind",
+        '"hex"',
+        "no such key here",
+        lines=4,
+    ),
+    Bad(
+        "{kind: hex, size_at_riser: 0.5, size_far: 1.5}",
+        "{file: a.msh}",
+        23,
+        "soil.mesh.file",
+        '"a.msh"',
+        "no such file",
+    ),
+    Bad("{max_iterations: 20}", "{min_time_step: 1}", 32, "stages.1.time_step", "0.1", "min_time_step (1 s)"),
+    Bad(
+        "kind: static}",
+        "kind: static, move: {}}\n  - {name: b, kind: static, move: {end: [900, 0, 9]}}",
+        29,
+        "stages.1.move",
+        '{"end"',
+        "pulls the ends",
+    ),
+    Bad(
+        "kind: static}",
+        "kind: static, loads: [{at: 999.0, force: [0, 0, 1]}]}",
+        28,
+        "stages.0.loads.0.at",
+        "999.0",
+        "exceed",
+    ),
+    Bad(
+        "kind: static}",
+        "kind: static, loads: [{at: 3.0, moment: [0, 1, 0]}]}",
+        28,
+        "stages.0.loads.0.at",
+        "3.0",
+        "nearest",
+    ),
+    Bad(
+        "kind: static}",
+        "kind: static, loads: [{force: [0, 0, 1]}]}",
+        28,
+        "stages.0.loads.0.at",
+        "missing",
+        "a place",
+    ),
+    Bad(
+        "kind: static}",
+        "kind: static, loads: [{at: end}]}",
+        28,
+        "stages.0.loads.0.force",
+        "missing",
+        "distributed",
+    ),
+    Bad(
+        "kind: static}",
+        "kind: static, loads: [{at: end, force: [1, 0, 0], history: [[1, 0], [0, 1]]}]}",
+        28,
+        "stages.0.loads.0.history",
+        "[[1, 0], [0, 1]]",
+        "times must increase",
+    ),
+    Bad(
+        "gravity: 9.81\n",
+        "dimension: 2\n",
+        34,
+        "stages.1.motion.end.harmonic.amplitude",
+        "[0.0, 1.0, 1.5]",
+        "dimension is 2",
+    ),
+]
+
+NOT_YET = [
+    Bad("{density: 1025.0}", "{surface_level: 9.0}", 3, "water.surface_level", "9.0", "not supported yet"),
+    Bad(
+        "{density: 1025.0}",
+        "{current: {profile: []}}",
+        3,
+        "water.current",
+        '{"profile": []}',
+        "not supported yet",
+    ),
+    Bad("{density: 1025.0}", "{waves: {airy: {}}}", 3, "water.waves", '{"airy": {}}', "not supported yet"),
+    Bad("    EA:", "    damping: 0.1\n    EA:", 9, "line_types.pipe.damping", "0.1", "not supported yet"),
+    Bad(
+        "    EA:",
+        "    rotary_inertia: 2\n    EA:",
+        9,
+        "line_types.pipe.rotary_inertia",
+        "2",
+        "not supported yet",
+    ),
+    Bad("kind: spring", "kind: hysteretic", 20, "seabed.kind", '"hysteretic"', "not supported yet"),
+    Bad("soil:\n", "soil:\n  inertia: true\n", 22, "soil.inertia", "true", "not supported yet"),
+    Bad("method: node", "method: surface", 26, "contact.method", '"surface"', "not supported yet"),
+    Bad("method: node", "friction: 0.5", 26, "contact.friction", "0.5", "not supported yet"),
+    Bad("method: node", "suction: {cap: 1}", 26, "contact.suction", '{"cap": 1}', "not supported yet"),
+    Bad("time_step: 0.1", "time_step: auto", 32, "stages.1.time_step", '"auto"', "not supported yet"),
+    Bad(
+        "time_step: 0.1",
+        "time_step: 0.1\n    tolerance: 0.1",
+        33,
+        "stages.1.tolerance",
+        "0.1",
+        "not supported yet",
+    ),
+    Bad(
+        "time_step: 0.1",
+        "time_step: 0.1\n    initial_velocity: [1, 0, 0]",
+        33,
+        "stages.1.initial_velocity",
+        "[1, 0, 0]",
+        "not supported yet",
+    ),
+    Bad(
+        "{harmonic: {amplitude: [0.0, 0.0, 1.5], period: 10.0, ramp: 5.0}}",
+        "{table: t.csv}",
+        34,
+        "stages.1.motion.end.table",
+        '"t.csv"',
+        "not supported yet",
+    ),
+    Bad(
+        "{harmonic: {amplitude: [0.0, 0.0, 1.5], period: 10.0, ramp: 5.0}}",
+        "{arc: {period: 10.0}}",
+        34,
+        "stages.1.motion.end.arc",
+        '{"period": 10.0}',
+        "not supported yet",
+    ),
+]
+
+ALL = KEYS + VALUES + MISSING + CONFLICTS + NOT_YET

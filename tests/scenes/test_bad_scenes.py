@@ -1,0 +1,215 @@
+"""Wrong scenes: file, line, key path, value and remedy are told; status 2, no traceback, no folder."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from riser_soil.__main__ import app
+from tests.bad_scenes import ALL, GOOD, Bad
+
+
+def run(arguments: list[str]) -> Result:
+    return CliRunner().invoke(app, arguments)
+
+
+def write(folder: Path, text: str) -> Path:
+    file = folder / "case.yaml"
+    file.write_text(text, encoding="utf-8")
+    return file
+
+
+def refused(folder: Path, file: Path, *options: str) -> list[str]:
+    """The lines of the message; asserts the status, no traceback and that nothing was left behind."""
+    before = sorted(folder.rglob("*"))
+    result = run(["run", str(file), "-o", str(folder / "out"), *options])
+    assert result.exit_code == 2, result.output
+    assert isinstance(result.exception, SystemExit)
+    assert "Traceback" not in result.output
+    assert sorted(folder.rglob("*")) == before
+    return result.stderr.splitlines()
+
+
+@pytest.mark.parametrize("bad", ALL, ids=lambda bad: f"{bad.path}={bad.value}")
+def test_message_gives_file_line_path_value_and_remedy(bad: Bad, tmp_path: Path) -> None:
+    assert bad.old in GOOD
+    text = GOOD.replace(bad.old, bad.new, 1)
+    if "dimension is 2" in bad.says:
+        text = text.replace("[0.0, 0.0, 1.5]", "[0.0, 1.0, 1.5]")
+    file = write(tmp_path, text)
+    lines = refused(tmp_path, file)
+    given = "missing" if bad.value == "missing" else f"value {bad.value}"
+    place = f"{file}:{bad.line}: {bad.path}: {given}"
+    matching = [line for line in lines if line.startswith(place)]
+    assert matching, "\n".join([f"wanted {place}", *lines])
+    assert bad.says in matching[0]
+    assert "; " in matching[0]
+
+
+@pytest.mark.parametrize("bad", ALL, ids=lambda bad: f"{bad.path}={bad.value}")
+def test_one_mistake_gives_one_line(bad: Bad, tmp_path: Path) -> None:
+    text = GOOD.replace(bad.old, bad.new, 1)
+    if "dimension is 2" in bad.says:
+        text = text.replace("[0.0, 0.0, 1.5]", "[0.0, 1.0, 1.5]")
+    lines = refused(tmp_path, write(tmp_path, text))
+    assert len(lines) == bad.lines, "\n".join(lines)
+
+
+def test_the_good_scene_is_good(tmp_path: Path) -> None:
+    from riser_soil.scene.reader import read_scene
+
+    assert read_scene(write(tmp_path, GOOD)).title == "base"
+
+
+def test_every_wrong_key_is_told_in_the_order_of_the_file(tmp_path: Path) -> None:
+    text = (
+        GOOD.replace("gravity", "gravitiy")
+        .replace("period", "perod")
+        .replace("    mass: 120.0", "    mass: no")
+    )
+    lines = refused(tmp_path, write(tmp_path, text))
+    assert [line.split(":")[1] for line in lines] == ["2", "8", "34"]
+
+
+def test_very_many_mistakes_are_cut_short(tmp_path: Path) -> None:
+    wrong_keys = "".join(f"wrong_{n}: 1\n" for n in range(50))
+    lines = refused(tmp_path, write(tmp_path, GOOD + wrong_keys))
+    assert len(lines) == 21
+    assert lines[-1] == "... and 30 more problems"
+
+
+BROKEN = {
+    "": "the scene is empty",
+    "# only a comment\n": "the scene is empty",
+    "- a\n- b\n": "scene: value [\"a\", \"b\"]: must be a mapping",
+    "just a text": 'scene: value "just a text": must be a mapping',
+    "42": "scene: value 42: must be a mapping",
+    "null": "scene: value null: must be a mapping",
+    "title: [1, 2\ngravity: 9.81\n": ":2: not valid YAML",
+    "title: a\n  gravity: 9.81\n": ":2: not valid YAML",
+    "title: 'open\n": "not valid YAML",
+    "title: a\n\tgravity: 1\n": ":2: not valid YAML",
+    "title: a\n---\ntitle: b\n": ":2: not valid YAML",
+    "title: a\ntitle: b\n": ":2: title: the key is given twice",
+    "title: !!python/object:os.system [ls]\n": ":1: title: tag",
+    "title: !!python/object/apply:os.system ['ls']\n": "tags are not allowed",
+    "gravity: !force 3\n": "tags are not allowed",
+    "gravity: !!float abc\n": ":1: gravity: value 'abc' can't be read",
+    "elements: !!int ''\n": ":1: elements: value '' can't be read",
+    "water: !!set {a, b}\n": "tags are not allowed",
+    "water: &a {density: *a}\n": "water.density: refers to itself",
+    "? [1, 2]\n: 3\n": "a key must be one plain word",
+    "water: *nothing\n": ":1: not valid YAML",
+    "title: \x01\n": "not valid YAML",
+    "<<: 3\n": "<< must be followed by an alias",
+    "[" * 3000: "nested too deeply",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", BROKEN, ids=lambda text: repr(text[:30]))
+def test_files_that_are_not_scenes(text: str, tmp_path: Path) -> None:
+    lines = refused(tmp_path, write(tmp_path, text))
+    assert len(lines) == 1
+    assert lines[0].startswith(str(tmp_path / "case.yaml"))
+    assert BROKEN[text] in lines[0]
+
+
+def test_a_flood_of_aliases_is_refused(tmp_path: Path) -> None:
+    levels = ["a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]"]
+    levels += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 10)}]" for n in range(1, 9)]
+    assert "more than 1000000 values" in refused(tmp_path, write(tmp_path, "\n".join(levels)))[0]
+
+
+def test_numbers_too_large_are_refused(tmp_path: Path) -> None:
+    for number in ("1.0e400", "1" + "0" * 400, "1" * 5000):
+        lines = refused(tmp_path, write(tmp_path, GOOD.replace("gravity: 9.81", f"gravity: {number}")))
+        assert len(lines) == 1
+        assert ":2: gravity: value" in lines[0]
+
+
+def test_missing_file_and_folder(tmp_path: Path) -> None:
+    assert refused(tmp_path, tmp_path / "none.yaml") == [
+        f"{tmp_path / 'none.yaml'}: there is no such file; correct the name of the scene file"
+    ]
+    assert "is a folder" in refused(tmp_path, tmp_path)[0]
+
+
+def test_text_must_be_utf8(tmp_path: Path) -> None:
+    file = tmp_path / "case.yaml"
+    file.write_bytes(b"gravity: 9.81\ntitle: Fl\xe4che\n")
+    assert refused(tmp_path, file) == [f"{file}:2: not UTF-8 text; save the scene as UTF-8"]
+
+
+OVERRIDES = {
+    "riser.segments.0.elments=3": 'riser.segments.0.elments: value 3: no such key here',
+    "riser.segmets.0.elements=3": 'did you mean "segments"?',
+    "riser.segments.7.elements=3": "riser.segments: a number from 0 to 0 must follow, not \"7\"",
+    "riser.segments.x.elements=3": "riser.segments: a number from 0 to 0 must follow, not \"x\"",
+    "title.a=3": 'title: value "base": has no parts',
+    "gravity=heavy": 'gravity: value "heavy": must be a number',
+    "gravity": "must be path=value",
+    "=3": "must be path=value",
+    "riser..x=3": "must be path=value",
+    "gravity=[1": "not plain YAML",
+    "gravity=": "gravity: value null: must be a number",
+    "riser.segments.0.element_length=1.0": "leave one out",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("assignment", OVERRIDES)
+def test_overrides_are_checked_like_the_file(assignment: str, tmp_path: Path) -> None:
+    lines = refused(tmp_path, write(tmp_path, GOOD), "--set", assignment)
+    assert len(lines) == 1
+    assert OVERRIDES[assignment] in lines[0]
+    if "leave one out" not in lines[0]:
+        assert lines[0].startswith(f"--set {assignment}: ")
+
+
+def test_restart_is_named_as_not_supported(tmp_path: Path) -> None:
+    assert "--restart: not supported yet" in refused(tmp_path, write(tmp_path, GOOD), "--restart")[0]
+
+
+def test_finished_run_is_not_overwritten(tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    folder.mkdir()
+    (folder / "summary.json").write_text('{"finished": true}', encoding="utf-8")
+    assert "--force" in refused(tmp_path, write(tmp_path, GOOD))[0]
+
+
+def test_result_folder_must_not_be_a_file(tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("mine", encoding="utf-8")
+    assert "is a file, not a folder" in refused(tmp_path, write(tmp_path, GOOD))[0]
+
+
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_the_true_command(command: str, tmp_path: Path) -> None:
+    file = write(tmp_path, GOOD.replace("length:", "lenght:"))
+    call = [sys.executable, "-m", "riser_soil", command, "case.yaml"]
+    done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.splitlines() == [
+        "case.yaml:16: riser.segments.0.lenght: value 148.0: no such key here, known are line_type, length, "
+        'elements, element_length; correct or remove it (did you mean "length"?)'
+    ]
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_only_the_first_rank_tells(tmp_path: Path) -> None:
+    write(tmp_path, "title: [\n")
+    call = [sys.executable, "-m", "riser_soil", "run", "case.yaml"]
+    told = []
+    for rank in ("0", "1"):
+        env = {**os.environ, "OMPI_COMM_WORLD_RANK": rank}
+        done = subprocess.run(
+            call, cwd=tmp_path, env=env, capture_output=True, text=True, timeout=60, check=False
+        )
+        assert done.returncode == 2
+        told.append(done.stderr)
+    assert "not valid YAML" in told[0]
+    assert told[1] == ""

@@ -1,0 +1,161 @@
+"""Exit statuses, the result folder and what the command line imports."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from riser_soil.__main__ import app
+from riser_soil.errors import MeshError, ResultsError, RiserSoilError, SceneError, SolveError
+from riser_soil.scene.scene import Scene
+
+ROOT = Path(__file__).parents[2]
+SCENE = ROOT / "tests/scenes/catenary.yaml"
+
+
+class Calls:
+    """Stands in for the computation: keeps what it is asked for."""
+
+    def __init__(self, failure: Exception | None = None) -> None:
+        self.failure = failure
+        self.folders: list[Path] = []
+        self.scenes: list[Scene] = []
+        self.forces: list[bool] = []
+
+    def run(self, scene: Scene, folder: Path, force: bool) -> None:
+        self.scenes.append(scene)
+        self.folders.append(folder)
+        self.forces.append(force)
+        if self.failure:
+            raise self.failure
+
+    def describe(self, scene: Scene) -> str:
+        self.scenes.append(scene)
+        return "built: riser"
+
+
+Invoke = Callable[..., tuple[Result, Calls]]
+
+
+@pytest.fixture
+def invoke(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Invoke:
+    """Runs the command in an empty folder with the computation replaced."""
+    monkeypatch.chdir(tmp_path)
+
+    def call(*arguments: str, failure: Exception | None = None) -> tuple[Result, Calls]:
+        calls = Calls(failure)
+        monkeypatch.setitem(sys.modules, "riser_soil.run", SimpleNamespace(run=calls.run))
+        monkeypatch.setitem(sys.modules, "riser_soil.check", SimpleNamespace(describe=calls.describe))
+        return CliRunner().invoke(app, list(arguments)), calls
+
+    return call
+
+
+def test_run_hands_over_scene_folder_and_force(invoke: Invoke) -> None:
+    result, calls = invoke("run", str(SCENE), "--set", "riser.segments.0.elements=70", "--force")
+    assert result.exit_code == 0
+    assert calls.folders == [Path("catenary")]
+    assert calls.forces == [True]
+    assert calls.scenes[0].riser.segments[0].elements == 70
+
+
+@pytest.mark.parametrize(
+    ("options", "folder"),
+    [
+        (("-o", "a/b"), "a/b"),
+        (("--output", "c"), "c"),
+        (("--set", "output.directory=d"), "d"),
+        (("--set", "output.directory=d", "-o", "e"), "e"),
+        ((), "catenary"),
+    ],
+)
+def test_result_folder(invoke: Invoke, options: tuple[str, ...], folder: str) -> None:
+    _, calls = invoke("run", str(SCENE), *options)
+    assert calls.folders == [Path(folder)]
+
+
+@pytest.mark.parametrize(
+    ("failure", "status"),
+    [
+        (SceneError("wrong scene"), 2),
+        (MeshError("wrong mesh"), 2),
+        (ResultsError("wrong folder"), 2),
+        (SolveError("no convergence at arc 24.0 m"), 3),
+    ],
+)
+def test_exit_status_tells_the_kind_of_failure(invoke: Invoke, failure: RiserSoilError, status: int) -> None:
+    result, _ = invoke("run", str(SCENE), failure=failure)
+    assert result.exit_code == status
+    assert result.stderr == f"{failure}\n"
+    assert result.stdout == ""
+
+
+def test_unexpected_errors_keep_their_traceback(invoke: Invoke) -> None:
+    result, _ = invoke("run", str(SCENE), failure=ZeroDivisionError("bug"))
+    assert isinstance(result.exception, ZeroDivisionError)
+
+
+def test_finished_run_needs_force(invoke: Invoke, tmp_path: Path) -> None:
+    (tmp_path / "catenary").mkdir()
+    (tmp_path / "catenary/summary.json").write_text('{"finished": true}', encoding="utf-8")
+    result, calls = invoke("run", str(SCENE))
+    assert result.exit_code == 2
+    assert calls.folders == []
+    assert invoke("run", str(SCENE), "--force")[0].exit_code == 0
+
+
+def test_unfinished_run_is_taken_over(invoke: Invoke, tmp_path: Path) -> None:
+    (tmp_path / "catenary").mkdir()
+    (tmp_path / "catenary/summary.json").write_text('{"finished": false}', encoding="utf-8")
+    assert invoke("run", str(SCENE))[0].exit_code == 0
+
+
+def test_check_prints_what_would_be_built(invoke: Invoke) -> None:
+    result, calls = invoke("check", str(SCENE), "--set", "title=other")
+    assert result.exit_code == 0
+    assert result.stdout == "built: riser\n"
+    assert calls.scenes[0].title == "other"
+
+
+@pytest.mark.parametrize("arguments", [["run"], ["run", "a.yaml", "--colour"], ["fly"], ["run", "a", "b"]])
+def test_wrong_usage_is_bad_input(invoke: Invoke, arguments: list[str]) -> None:
+    assert invoke(*arguments)[0].exit_code == 2
+
+
+@pytest.mark.parametrize("option", ["--help", "--version"])
+def test_help_is_fast_and_imports_nothing_heavy(option: str) -> None:
+    code = (
+        "import sys\n"
+        f"sys.argv = ['riser-soil', '{option}']\n"
+        "from riser_soil.__main__ import main\n"
+        "try:\n    main()\n"
+        "except SystemExit as leave:\n    assert not leave.code\n"
+        "heavy = {'numpy', 'scipy', 'numba', 'petsc4py', 'mpi4py', 'dolfinx', 'pydantic', 'ruamel.yaml'}\n"
+        "assert not heavy & set(sys.modules), heavy & set(sys.modules)\n"
+    )
+    began = time.perf_counter()
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert time.perf_counter() - began < 5.0
+
+
+def test_a_scene_is_read_without_numerics() -> None:
+    code = (
+        "import sys\n"
+        "from riser_soil.scene.reader import read_scene\n"
+        f"read_scene({str(SCENE)!r})\n"
+        "assert not {'numpy', 'petsc4py', 'mpi4py', 'dolfinx'} & set(sys.modules)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stderr
