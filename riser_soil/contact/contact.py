@@ -28,9 +28,7 @@ FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
 
 @dataclass(frozen=True)
 class Reach:
-    """How far the candidates go: nodes up to `above` [m] over the ground, facets up to `around` [m] beside a
-    node.
-    """
+    """Candidates: nodes up to `above` [m] over the ground, facets up to `around` [m] beside a node."""
 
     above: float
     around: float = 0.0
@@ -71,6 +69,8 @@ class Contact:
         reach: Reach | None = None,
         active: bool = True,
     ) -> None:
+        if surface is not None and penalty is None:
+            raise ValueError("contact with a soil surface needs its penalty law")
         self.active, self.outgrown = active, False
         self._riser, self._has_plane = riser, plane is not None
         self._soil = Soil(surface) if surface is not None and active else None
@@ -87,17 +87,13 @@ class Contact:
         self._met: Encounter | None = None
 
     def meet(self, state: State) -> Encounter:
-        """Riser and ground at a state; kept for the state asked last, whose arrays must not change from then
-        on.
-        """
+        """Riser and ground at a state; kept for the state asked last, whose arrays must not change then."""
         if self._met is None or self._met.state is not state:
             self._met = self._grounds.meet(state)
         return self._met
 
     def blocks(self) -> dict[str, Block]:
-        """Translations of the candidate nodes (over a plane); the same with a facet's dofs, pair by pair (on
-        soil).
-        """
+        """On a plane the translations of candidate nodes; on soil, pair by pair, with the facet's dofs."""
         if not self.active:
             return {}
         patch, translations = self._present_patch(), self._riser.translation_dofs
@@ -153,9 +149,7 @@ class Contact:
         return np.asarray(total / self._riser.tributary_length)
 
     def max_penetration(self, state: State) -> float:
-        """Largest penetration [m], 0 where nothing has sunk in; an error, except into a plane that stands for
-        springs.
-        """
+        """Largest penetration [m], ≥ 0: an error, except into a plane that stands for springs."""
         return max(0.0, -float(self.meet(state).gap.min(initial=np.inf))) if self.active else 0.0
 
     def force_on_riser(self, state: State) -> Array:
@@ -191,9 +185,7 @@ class Contact:
         return self.meet(state).touching if self.active else []
 
     def _clearance(self, state: State) -> Array:
-        """Gap (nn,) less the gap at which the force begins [m]; the least of a node's points, inf far from
-        the ground.
-        """
+        """Gap (nn,) less that at which the force begins [m], the least of a node's points; inf far away."""
         met = self.meet(state)
         least = np.full(len(self._riser.arc), np.inf)
         np.minimum.at(least, met.points.node, met.gap - self._grounds.starts(met.facet))

@@ -53,7 +53,7 @@ class ContactPoints:
 
     @classmethod
     def of_nodes(cls, tributary: Array, footprint: float, along: Array) -> ContactPoints:
-        """Four points a node, ±ASPECT·footprint along a horizontal unit vector, ±footprint across; for 0 one."""
+        """Four points a node, ±ASPECT·footprint along a horizontal unit vector, ±footprint across; or one."""
         across = np.array([-along[1], along[0]])
         corners = np.array([i * ASPECT * along + j * across for i in (-1.0, 1.0) for j in (-1.0, 1.0)])
         corners = footprint * corners if footprint > 0.0 else np.zeros((1, 2))

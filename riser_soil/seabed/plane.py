@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from riser_soil.arrays import Array
-
 
 @dataclass(frozen=True)
 class Plane:
@@ -21,10 +19,3 @@ class Plane:
     level: float
     stiffness: float
     smoothing: float = 0.0
-
-    def gap(self, z: Array, radius: Array) -> Array:
-        """Height [m] of the riser's underside over the plane, negative when it has sunk in.
-
-        z: height of the axis [m]. radius: outer radius [m], or 0 where the axis is what touches.
-        """
-        return z - radius - self.level

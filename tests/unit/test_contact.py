@@ -427,3 +427,21 @@ def test_default_footprint_is_an_eighth_of_the_diameter() -> None:
     np.testing.assert_allclose(
         contact.meet(case.state()).points.offset[:4, 1], RADIUS / 4 * np.array([-1, 1, -1, 1])
     )
+
+
+def test_riser_far_above_touches_nothing() -> None:
+    case = level_case(np.full(4, -20.0), top("quad4"), FLOOR)
+    assert not case.residual(np.zeros(case.size)).any()
+    assert {key: block.shape[0] for key, block in case.contact.blocks().items()} == {
+        "contact.plane": 0,
+        "contact.soil": 0,
+    }
+    assert not case.outgrows(np.zeros(case.size))
+    assert case.contact.max_penetration(case.state()) == 0.0
+    assert np.isnan(case.contact.touchdown_arc(case.state()))
+
+
+def test_soil_without_a_law_is_refused() -> None:
+    case = deformed_case("quad4", 3)
+    with pytest.raises(ValueError, match="penalty"):
+        Contact(case.riser, np.full(12, RADIUS), surface=case.surface)

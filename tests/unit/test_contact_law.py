@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from riser_soil.contact.law import Penalty, automatic_stiffness
-from riser_soil.seabed.plane import Plane
 
 K, S = 2.0e5, 1.5e-3
 LAWS = [Penalty(K, S), Penalty(K, 0.0)]
@@ -54,8 +53,3 @@ def test_automatic_stiffness_takes_the_stiffer_of_soil_and_weight() -> None:
     assert automatic_stiffness(None, 147.0, 0.147) == pytest.approx(1.0e6)
     assert automatic_stiffness(1.2e6, 728.0, 0.30) == pytest.approx(1.2e7)
     assert automatic_stiffness(1.0e3, 728.0, 0.30) == pytest.approx(728.0 / 3e-4)
-
-
-def test_plane_measures_from_the_underside() -> None:
-    gap = Plane(level=-2.0, stiffness=1e5).gap(np.array([-1.85, -1.9]), np.array([0.15, 0.15]))
-    np.testing.assert_allclose(gap, [0.0, -0.05], atol=1e-15)
