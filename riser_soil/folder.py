@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
-import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from riser_soil.errors import SceneError
@@ -18,8 +20,20 @@ _OWN = (SERIES, RISER_XDMF, "riser.h5", SOIL_XDMF, "soil.h5", SCENE, SUMMARY)
 
 def write_atomically(path: Path, text: str) -> None:
     """Replaces the file at once: a reader, or a kill, meets the old text or the new one."""
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    draft = _draft(path)
     draft.write_text(text, encoding="utf-8")
+    draft.replace(path)
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Gives a copy of the file to change, which takes the file's place when the block ends without an error.
+
+    An HDF5 file torn in mid-write cannot be opened at all: a kill must meet it as it was or as it is to be.
+    """
+    draft = _draft(path)
+    shutil.copyfile(path, draft)
+    yield draft
     draft.replace(path)
 
 
@@ -49,5 +63,10 @@ def prepare_folder(folder: Path, force: bool) -> None:
         (folder / SUMMARY).unlink(missing_ok=True)
         for name in _OWN:
             (folder / name).unlink(missing_ok=True)
+            _draft(folder / name).unlink(missing_ok=True)
     except OSError as err:
         raise SceneError(f"{folder}: cannot be used as the output folder: {err.strerror or err}") from err
+
+
+def _draft(path: Path) -> Path:
+    return path.with_name(f".{path.name}.draft")

@@ -1,7 +1,7 @@
 """results.nc: time series of one run (netCDF-4), readable at any moment, also after a kill.
 
-The file is laid out once by h5netcdf. Rows are gathered in memory; `flush` appends them in one short
-open-write-close, so that between flushes the file on disk is closed and whole.
+The file is laid out once by h5netcdf. Rows are gathered in memory; `flush` appends them to a
+copy that takes the file's place, so that the file on disk is whole at every moment.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import h5py
 import numpy as np
 
 from riser_soil.arrays import Array
+from riser_soil.folder import replacing
 
 _ON_RISER = "exerted by the support on the riser; global axes, z up"
 _RIGHT_HAND = "right-hand rule; " + _ON_RISER
@@ -113,8 +114,7 @@ class SeriesFile:
 
     def flush(self, finished: bool = False) -> None:
         """Appends the gathered rows to the file."""
-        # Without locks: somebody who looks at the file meanwhile must not bring the run down.
-        with h5py.File(self._path, "r+", locking=False) as file:
+        with replacing(self._path) as draft, h5py.File(draft, "r+") as file:
             for name, rows in self._rows.items():
                 _append(file[name], rows)
             file.attrs["finished"] = np.int8(finished)

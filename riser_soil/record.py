@@ -24,8 +24,8 @@ FIELDS = RISER_FIELDS + SOIL_FIELDS
 # Equilibria of static stages take no time; those that would share an instant are set this far apart [s],
 # because readers of time series want time to grow.
 TICK = 1e-6
-# A killed run loses at most this much wall time of results [s].
-_FLUSH_EVERY = 1.0
+# A killed run loses this much wall time of results [s]; more where flushing would take more than this share.
+_FLUSH_EVERY, _FLUSH_SHARE = 1.0, 0.05
 
 
 class Clock:
@@ -89,7 +89,7 @@ class Recorder:
         self._clock = Clock()
         self._latest: Array | None = None
         self._settlement: float | None = None
-        self._flushed = time.monotonic()
+        self._next_flush = 0.0
         self._closed = False
 
     @classmethod
@@ -130,6 +130,8 @@ class Recorder:
 
     def begin_stage(self, name: str, kind: str) -> None:
         """kind: `static` or `dynamic`. A dynamic stage's extremes include the state that it begins with."""
+        if self.summary.stages:
+            self.flush()
         self._clock.begin_stage(kind)
         stage = StageTally(name, kind)
         if kind == "dynamic" and self._latest is not None:
@@ -160,7 +162,7 @@ class Recorder:
             self._series.record(_series_row(stamp, riser, touch))
             if due.pictures:
                 self._picture(stamp, riser, soil)
-        if time.monotonic() - self._flushed > _FLUSH_EVERY:
+        if time.monotonic() > self._next_flush:
             self.flush()
 
     def add_seconds(self, seconds: Mapping[str, float]) -> None:
@@ -169,12 +171,14 @@ class Recorder:
 
     def flush(self) -> None:
         """Brings everything told so far to disk, the summary last."""
+        begun = time.monotonic()
         self._series.flush(self.summary.finished)
         self._riser_frames.flush()
         if self._soil_frames is not None:
             self._soil_frames.flush()
         self.summary.write(self._folder / run_folder.SUMMARY)
-        self._flushed = time.monotonic()
+        now = time.monotonic()
+        self._next_flush = now + max(_FLUSH_EVERY, (now - begun) / _FLUSH_SHARE)
 
     def finish(self) -> None:
         """Marks the run finished; nothing may be added afterwards."""

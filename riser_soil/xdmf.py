@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from riser_soil.arrays import Array, IntArray
-from riser_soil.folder import write_atomically
+from riser_soil.folder import replacing, write_atomically
 
 Table = npt.NDArray[np.float64] | npt.NDArray[np.int64]
 _CELLS = {4: "Tetrahedron", 8: "Hexahedron", 10: "Tetrahedron_10"}
@@ -72,7 +72,7 @@ class XdmfFile:
         """Writes the waiting frames: first the numbers, then the XML."""
         if not self._waiting:
             return
-        with h5py.File(self._heavy, "r+", locking=False) as store:
+        with replacing(self._heavy) as draft, h5py.File(draft, "r+") as store:
             grids = [self._grid(store, len(self._grids) + i, frame) for i, frame in enumerate(self._waiting)]
         self._grids += grids
         self._waiting.clear()

@@ -75,7 +75,8 @@ def test_the_file_on_disk_is_whole_after_each_flush(tmp_path: Path) -> None:
 
 def test_a_reader_does_not_stop_the_writer(tmp_path: Path) -> None:
     file = a_file(tmp_path)
-    hold = f"import h5py; f = h5py.File({str(tmp_path / 'results.nc')!r}, 'r'); print('open', flush=True); input()"
+    path = str(tmp_path / "results.nc")
+    hold = f"import h5py; f = h5py.File({path!r}, 'r'); print('open', flush=True); input()"
     with subprocess.Popen(
         [sys.executable, "-c", hold], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     ) as reader:
