@@ -72,7 +72,10 @@ HEALTH: dict[str, Variable] = {
     "newton_iterations": Variable(("step",), "1", "Newton iterations", dtype="i4"),
     "time_step": Variable(("step",), "s", "time step; in static stages the increment of the load factor"),
     "energy_residual": Variable(
-        ("step",), "J", "residual of the step's energy balance", "positive when energy appears from nowhere"
+        ("step",),
+        "J",
+        "residual of the step's energy balance; nan in static stages",
+        "positive when energy appears from nowhere",
     ),
     "step_cuts": Variable(("step",), "1", "failed attempts before the step was accepted", dtype="i4"),
 }

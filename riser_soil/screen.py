@@ -54,7 +54,7 @@ def _stage_rows(stage: dict[str, Any]) -> list[Row]:
         ("deepest penetration", _span(final["max_penetration"], extremes["max_penetration"], "mm", 1e3)),
         ("steps, cut", f"{stage['steps']}, {stage['step_cuts']}"),
         ("Newton iterations per step", _newton(stage)),
-        ("energy residual", f"{stage['energy']['residual']:.3g} J of {_turnover(stage['energy']):.3g} J"),
+        ("energy residual", _residual(stage["energy"])),
     ]
 
 
@@ -69,6 +69,10 @@ def _run_rows(summary: dict[str, Any], settlement: float | None) -> Iterator[Row
 def _newton(stage: dict[str, Any]) -> str:
     mean = stage["newton_iterations"] / max(1, stage["steps"])
     return f"{mean:.2f} on average, at most {stage['most_newton_iterations']}"
+
+
+def _residual(energy: dict[str, float]) -> str:
+    return f"{_number(energy['residual'], 'J', 1.0)} of {_turnover(energy):.3g} J"
 
 
 def _turnover(energy: dict[str, float]) -> float:

@@ -63,7 +63,7 @@ class StepHealth:
 
     newton_iterations: int
     time_step: float  # s; in a static stage the increment of the load factor
-    energy_residual: float  # J, of this step's energy balance
+    energy_residual: float  # J, of this step's energy balance; nan in a static stage
     step_cuts: int  # failed attempts before this step was accepted
 
 
@@ -71,7 +71,8 @@ class StepHealth:
 class Ledger:
     """Energy of the whole model [J]: stored now, and turned over since the stage began.
 
-    residual = change of (kinetic + strain + potential) + dissipated - work.
+    residual = change of (kinetic + strain + potential) + dissipated - work; nan in a static
+    stage, whose first shape need not be an equilibrium.
     """
 
     kinetic: float = 0.0

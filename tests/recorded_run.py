@@ -131,7 +131,7 @@ def record(
                     line.riser(arc),
                     line.touch(),
                     StepHealth(3, 0.1, 1e-6, 0),
-                    Ledger(kinetic=heave, work=heave + 1.0, residual=1e-6),
+                    Ledger(kinetic=heave, work=heave + 1.0, residual=1e-6 if heave else np.nan),
                     None if mesh is None else soil(mesh, line.s0),
                 )
         recorder.add_seconds({"newton": 1.25})

@@ -204,6 +204,7 @@ def test_the_screen_tells_the_main_results(tmp_path: Path) -> None:
     console = Console(width=100, record=True, file=io.StringIO())
     print_summary(Run(tmp_path).summary, 0.04, console)
     text = console.export_text()
+    assert "- of 1 J" in text  # no energy balance in statics
     for words in (
         "top tension",
         "touchdown arc length",
