@@ -50,7 +50,7 @@ def lagrange_nodes(mesh: Any, degree: int, comm: MPI.Intracomm) -> Nodes:
     The arrays outlive the mesh; `comm` is the caller's, since the mesh frees its own copy.
     """
     _quiet_compiler_log()
-    _remove_stale_locks(comm)
+    remove_stale_locks(comm)
     space = _function_space(mesh, degree)
     index_map = space.dofmap.index_map
     owned_cells = mesh.topology.index_map(mesh.topology.dim).size_local
@@ -96,7 +96,7 @@ def _quiet_compiler_log() -> None:
         handler.setLevel(max(handler.level, logging.WARNING))
 
 
-def _remove_stale_locks(comm: MPI.Intracomm) -> None:
+def remove_stale_locks(comm: MPI.Intracomm) -> None:
     """A process killed while it compiled leaves a lock on which every later run waits and then fails."""
     if comm.rank == 0:
         for source in jit_cache().glob("libffcx_*.c"):

@@ -8,8 +8,6 @@ from riser_soil.arrays import Array, BoolArray, IntArray
 from riser_soil.part import State
 from riser_soil.soil.grid import Grid
 
-_DIRECTION = ("x", "y", "z")
-
 
 class SoilField:
     """Field "soil": three displacements at every node of this rank, ghosts included.
@@ -44,8 +42,8 @@ class SoilField:
 
     def describe(self, entry: int) -> str:
         node, direction = divmod(entry, 3)
-        x, y, z = self.points[node]
-        return f"soil node at ({x:.3g}, {y:.3g}, {z:.3g}) m, {_DIRECTION[direction]} displacement"
+        x, y, z = np.round(self.points[node], 3) + 0.0
+        return f"soil node at ({x:g}, {y:g}, {z:g}) m, {'xyz'[direction]} displacement"
 
 
 def components(nodes: IntArray) -> IntArray:

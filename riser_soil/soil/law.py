@@ -15,7 +15,10 @@ from riser_soil.arrays import Array
 class Law(Protocol):
     """A rate-independent law with isotropic elasticity."""
 
-    symmetric: bool
+    @property
+    def symmetric(self) -> bool:
+        """Whether the tangent is symmetric."""
+        ...
 
     def start(self) -> Array:
         """History (n, nh) of undisturbed soil."""

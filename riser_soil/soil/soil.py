@@ -160,7 +160,7 @@ class Soil:
 def _check_level(grid: Grid, level: float) -> None:
     low, high = float(grid.low[2]), float(grid.high[2])
     slack = 1e-6 * (high - low)
-    if not low < level <= high + slack:
+    if not low + slack < level <= high + slack:
         raise MeshError(
             f"soil mesh: it spans z = {low:.4g} to {high:.4g} m, which misses seabed.level = {level:.4g} m; "
             "move the mesh or the level"

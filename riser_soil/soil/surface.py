@@ -44,5 +44,5 @@ class Surface:
 
     def describe(self, entry: int) -> str:
         node, direction = divmod(entry, 3)
-        x, y, _ = self.points[node]
-        return f"soil surface at ({x:.3g}, {y:.3g}) m, {'xyz'[direction]} displacement"
+        x, y, _ = np.round(self.points[node], 3) + 0.0
+        return f"soil surface at ({x:g}, {y:g}) m, {'xyz'[direction]} displacement"

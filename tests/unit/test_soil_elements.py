@@ -1,0 +1,138 @@
+"""Element integration: patch test, exact tangent, energy balance, on both families with distorted cells."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from riser_soil.arrays import Array
+from riser_soil.part import Forces, State
+from riser_soil.soil import kernels, mandel
+from riser_soil.soil.element import cell_gradients
+from riser_soil.soil.grid import Grid
+from riser_soil.soil.soil import Soil
+from tests.soil_bench import assemble
+from tests.soil_cases import CLAY, ELASTIC, KINDS, clay_block, distorted, inner, moved, small_block
+
+GRADIENT = 1e-3 * np.array([[1.0, 0.4, -0.2], [0.7, -0.5, 0.3], [-0.6, 0.1, 0.8]])
+
+
+def strain_of(grid: Grid, displacement: Array) -> Array:
+    g = cell_gradients(grid.family, grid.nodes.points, grid.nodes.cells)
+    out = np.empty((*g.weights.shape, 6))
+    kernels.strain(g.full, g.volume, grid.nodes.cells, displacement.ravel(), out)
+    return out
+
+
+def force(soil: Soil, state: State) -> Array:
+    forces = Forces.zeros(soil.field.size)
+    soil.residual(state, forces)
+    assert not forces.force.any()
+    assert not forces.inertia.any()
+    return forces.end
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_linear_displacement_gives_constant_strain(kind: str) -> None:
+    grid = distorted(small_block(kind))
+    strain = strain_of(grid, grid.nodes.points @ GRADIENT.T)
+    e, root = 0.5 * (GRADIENT + GRADIENT.T), np.sqrt(2.0)
+    exact = [e[0, 0], e[1, 1], e[2, 2], root * e[0, 1], root * e[0, 2], root * e[1, 2]]
+    np.testing.assert_allclose(strain, np.broadcast_to(exact, strain.shape), atol=1e-15)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_patch_test_inner_nodes_are_in_equilibrium(kind: str) -> None:
+    grid = distorted(small_block(kind))
+    soil = Soil(grid, ELASTIC, level=0.0, unit_weight=0.0)
+    u = (grid.nodes.points @ GRADIENT.T).ravel()
+    nodal = force(soil, State(1.0, u, u, u)).reshape(-1, 3)
+    assert np.count_nonzero(inner(grid)) >= 4
+    assert np.abs(nodal[inner(grid)]).max() < 1e-12 * np.abs(nodal).max()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_volume_and_rigid_rotation(kind: str) -> None:
+    grid = distorted(small_block(kind))
+    g = cell_gradients(grid.family, grid.nodes.points, grid.nodes.cells)
+    assert g.weights.sum() == pytest.approx(3.0, rel=1e-13)
+    turn = np.cross(np.array([0.1, -0.2, 0.3]), grid.nodes.points)
+    assert np.abs(strain_of(grid, turn)).max() < 1e-14
+
+
+def test_mean_dilatation_makes_the_volume_change_uniform_in_a_hexahedron() -> None:
+    grid = distorted(small_block("hex"))
+    rng = np.random.default_rng(4)
+    u = rng.standard_normal(grid.nodes.points.shape)
+    volume = 3.0 * mandel.mean(strain_of(grid, u))
+    assert np.ptp(volume, axis=1).max() < 1e-13 * np.abs(volume).max()
+    full = 3.0 * mandel.mean(strain_of(replace(grid, family=replace(grid.family, mean_dilatation=False)), u))
+    assert np.ptp(full, axis=1).min() > 1e-3 * np.abs(full).max()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_tangent_matches_finite_differences_in_the_plastic_range(kind: str) -> None:
+    soil = clay_block(kind)
+    soil.commit(moved(soil, 2e-3, seed=1))
+    state = moved(soil, 5e-3, seed=2)
+    tangent, scale = assemble(soil, state), 1e-7
+    without_flow = assemble(
+        Soil(soil.grid, CLAY, level=0.0, unit_weight=0.0), State.at_rest(1.0, len(state.u))
+    )
+    for seed in range(3):
+        direction = moved(soil, 1.0, seed=10 + seed).u
+        ahead, behind = (force(soil, replace(state, u=state.u + s * scale * direction)) for s in (1.0, -1.0))
+        numeric = (ahead - behind) / (2.0 * scale)
+        assert np.linalg.norm(tangent @ direction - numeric) < 1e-8 * np.linalg.norm(numeric)
+        assert np.linalg.norm(without_flow @ direction - numeric) > 1e-2 * np.linalg.norm(numeric)
+    assert abs(tangent - tangent.T).max() < 1e-12 * abs(tangent).max()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_residual_has_no_memory(kind: str) -> None:
+    soil = clay_block(kind)
+    state = moved(soil, 5e-3)
+    first = force(soil, state)
+    force(soil, moved(soil, 5e-2, seed=8))
+    soil.energy(moved(soil, 5e-2, seed=8))
+    np.testing.assert_array_equal(force(soil, state), first)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_elastic_residual_is_the_gradient_of_the_energy(kind: str) -> None:
+    soil = Soil(distorted(small_block(kind)), ELASTIC, level=0.0, unit_weight=5.0e3, start="unstressed")
+    state, direction = moved(soil, 1e-3), moved(soil, 1.0, seed=3).u
+    ahead, behind = (soil.energy(replace(state, u=state.u + s * 1e-4 * direction)).total for s in (1, -1))
+    assert (ahead - behind) / 2e-4 == pytest.approx(float(force(soil, state) @ direction), rel=1e-8)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("K0", [1.0, 0.9])
+def test_energy_given_to_the_soil_is_stored_or_dissipated(kind: str, K0: float) -> None:
+    """Force at the end of a step times increment = change of the stored energy + dissipation."""
+    soil = clay_block(kind, K0=K0)
+    for seed in range(4):
+        start, after = State.at_rest(1.0, soil.field.size), moved(soil, 3e-3, seed=20 + seed)
+        given = float(force(soil, after) @ after.u)
+        stored = soil.energy(after).total - soil.energy(start).total
+        dissipated = soil.work(start, after).dissipated
+        assert dissipated > 0.0
+        assert given == pytest.approx(stored + dissipated, rel=1e-9)
+        soil.commit(after)
+        soil.field.commit(after)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_committed_state_is_where_the_next_step_starts(kind: str) -> None:
+    soil = clay_block(kind)
+    state = moved(soil, 5e-3)
+    before, energy = force(soil, state), soil.energy(state).total
+    soil.commit(state)
+    soil.field.commit(state)
+    rest = State.at_rest(1.0, soil.field.size)
+    np.testing.assert_allclose(force(soil, rest), before, atol=1e-9 * np.abs(before).max())
+    assert soil.energy(rest).total == pytest.approx(energy, rel=1e-9)
+    np.testing.assert_array_equal(soil.output_fields().displacement.ravel(), state.u)
+    assert soil.output_fields().plastic_strain.max() > 0.0

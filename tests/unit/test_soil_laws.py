@@ -1,0 +1,143 @@
+"""Constitutive laws against closed forms, and tangents against finite differences."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from riser_soil.arrays import Array
+from riser_soil.soil import mandel
+from riser_soil.soil.law import Law
+from riser_soil.soil.linear_elastic import LinearElastic
+from riser_soil.soil.von_mises import VonMises
+
+SU, E, NU = 4.0e3, 1.2e6, 0.49
+
+
+def clay(depth: Array, nu: float = NU) -> VonMises:
+    return VonMises.at_depth(depth, su=SU, su_gradient=1.5e3, E_over_su=300.0, nu=nu)
+
+
+def shear_strain(gamma: Array) -> Array:
+    """Simple shear in the plane xz: engineering strain gamma (n,)."""
+    strain = np.zeros((len(gamma), 6))
+    strain[:, 4] = gamma / np.sqrt(2.0)
+    return strain
+
+
+def load_path(law: Law, path: Array) -> tuple[Array, Array]:
+    """Stress and history (n, ..) after the increments path (steps, n, 6) from an unstressed start."""
+    stress, history = np.zeros(path.shape[1:]), law.start()
+    for increment in path:
+        stress, history = law.stress(increment, stress, history)
+    return stress, history
+
+
+def central_difference(law: Law, increment: Array, stress: Array, history: Array, step: float) -> Array:
+    columns = []
+    for j in range(6):
+        shift = step * np.eye(6)[j]
+        ahead, behind = (law.stress(increment + s * shift, stress, history)[0] for s in (1.0, -1.0))
+        columns.append((ahead - behind) / (2.0 * step))
+    return np.stack(columns, axis=2)
+
+
+def test_elastic_uniaxial_tension_has_modulus_and_contraction() -> None:
+    law = LinearElastic.at_depth(np.zeros(1), E=E, nu=0.3)
+    strain = 1e-3 * np.array([[1.0, -0.3, -0.3, 0.0, 0.0, 0.0]])
+    stress, _ = law.stress(strain, np.zeros((1, 6)), law.start())
+    np.testing.assert_allclose(stress, [[E * 1e-3, 0, 0, 0, 0, 0]], atol=1e-9 * E)
+
+
+def test_elastic_modulus_grows_with_depth() -> None:
+    law = LinearElastic.at_depth(np.array([0.0, 2.0]), E=E, nu=0.3, E_gradient=0.5 * E)
+    stress, _ = law.stress(shear_strain(np.full(2, 1e-3)), np.zeros((2, 6)), law.start())
+    G = E / 2.6
+    np.testing.assert_allclose(stress[:, 4] / np.sqrt(2.0), [1e-3 * G, 2e-3 * G], rtol=1e-14)
+
+
+@pytest.mark.parametrize("law", [LinearElastic.at_depth(np.array([1.0]), E=E, nu=NU), clay(np.array([1.0]))])
+def test_elastic_strain_inverts_the_elastic_stress(law: Law) -> None:
+    strain = 1e-6 * np.random.default_rng(1).standard_normal((1, 6))
+    stress, _ = law.stress(strain, np.zeros((1, 6)), law.start())
+    np.testing.assert_allclose(law.elastic_strain(stress), strain, rtol=1e-12)
+
+
+def test_simple_shear_yields_at_su_of_the_depth() -> None:
+    depth = np.array([0.0, 1.0, 2.5])
+    law = clay(depth)
+    stress, history = load_path(law, np.stack([shear_strain(np.full(3, 2e-3))] * 10))
+    su = SU + 1.5e3 * depth
+    np.testing.assert_allclose(stress[:, 4] / np.sqrt(2.0), su, rtol=1e-13)
+    G = 300.0 * su / (2.0 * (1.0 + NU))
+    np.testing.assert_allclose(law.plastic_strain(history), (0.02 - su / G) / np.sqrt(3.0), rtol=1e-12)
+
+
+def test_uniaxial_strain_splits_into_limit_and_pressure() -> None:
+    """Confined compression: q stops at √3 su while the pressure goes on as K times the volume."""
+    law = clay(np.zeros(1))
+    strain = np.array([[0.0, 0.0, -0.05, 0.0, 0.0, 0.0]])
+    stress, _ = load_path(law, np.stack([0.1 * strain] * 10))
+    pressure = float(law.bulk[0]) * 0.05
+    q = np.sqrt(3.0) * SU
+    expected = [-pressure + q / 3.0, -pressure + q / 3.0, -pressure - 2.0 * q / 3.0, 0.0, 0.0, 0.0]
+    np.testing.assert_allclose(stress[0], expected, rtol=1e-12, atol=1e-9)
+
+
+def test_unloading_is_elastic() -> None:
+    law = clay(np.zeros(1))
+    stress, history = load_path(law, np.stack([shear_strain(np.array([0.05]))]))
+    back, after = law.stress(shear_strain(np.array([-1e-3])), stress, history)
+    np.testing.assert_allclose((stress - back)[0, 4], np.sqrt(2.0) * law.shear * 1e-3, rtol=1e-12)
+    np.testing.assert_array_equal(after, history)
+
+
+def test_stress_never_exceeds_the_limit_and_slip_never_shrinks() -> None:
+    law, rng = clay(np.linspace(0.0, 2.5, 50)), np.random.default_rng(2)
+    stress, history = np.zeros((50, 6)), law.start()
+    for _ in range(20):
+        stress, after = law.stress(5e-3 * rng.standard_normal((50, 6)), stress, history)
+        assert np.all(after >= history)
+        assert law.overstress(stress).max() <= 1.0 + 1e-12
+        history = after
+
+
+def test_nothing_happens_at_zero_strain() -> None:
+    law = clay(np.zeros(2))
+    stress, history = law.stress(np.zeros((2, 6)), np.zeros((2, 6)), law.start())
+    assert not stress.any()
+    assert not history.any()
+    np.testing.assert_array_equal(
+        law.tangent(np.zeros((2, 6)), stress, history), mandel.stiffness(law.bulk, law.shear)
+    )
+
+
+def test_tangent_matches_finite_differences_in_the_plastic_range() -> None:
+    law, rng = clay(np.linspace(0.0, 2.5, 20)), np.random.default_rng(3)
+    stress, history = law.stress(5e-3 * rng.standard_normal((20, 6)), np.zeros((20, 6)), law.start())
+    increment = 8e-3 * rng.standard_normal((20, 6))
+    _, after = law.stress(increment, stress, history)
+    assert np.all(after > history)
+    tangent = law.tangent(increment, stress, history)
+    scale = 2.0 * law.shear.max()
+    np.testing.assert_allclose(
+        tangent / scale, central_difference(law, increment, stress, history, 1e-7) / scale, atol=1e-7
+    )
+    without_flow = mandel.stiffness(law.bulk, law.shear)
+    assert np.abs(tangent - without_flow).max() > 0.1 * scale
+
+
+def test_continuum_tangent_differs_from_the_consistent_one() -> None:
+    """A tangent without the shrink factor would be wrong by the size of the step."""
+    law, increment = clay(np.zeros(1)), shear_strain(np.array([0.05]))
+    tangent = law.tangent(increment, np.zeros((1, 6)), law.start())
+    transverse = tangent[0, 3, 3] / (2.0 * law.shear[0])
+    shrink = SU / (law.shear[0] * 0.05)
+    assert transverse == pytest.approx(shrink, rel=1e-12)
+
+
+def test_von_mises_stress_of_uniaxial_and_shear_states() -> None:
+    uniaxial = np.array([-3.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    shear = np.array([0.0, 0.0, 0.0, np.sqrt(2.0) * 2.0, 0.0, 0.0])
+    assert mandel.von_mises(uniaxial) == pytest.approx(3.0)
+    assert mandel.von_mises(shear) == pytest.approx(2.0 * np.sqrt(3.0))

@@ -1,0 +1,233 @@
+"""Soil meshes, supports, the top surface and the output mesh."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import gmsh
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from meshes.block import main as write_block
+from riser_soil.errors import MeshError, SceneError
+from riser_soil.part import State
+from riser_soil.soil.block import BlockSpec, graded
+from riser_soil.soil.element import cell_gradients
+from riser_soil.soil.grid import Grid, block_grid, file_grid, silent_gmsh
+from riser_soil.soil.soil import Soil
+from tests.soil_cases import CLAY, ELASTIC, KINDS, clay_block, small_block
+
+COMM = MPI.COMM_SELF
+DEMO = BlockSpec((10.0, 50.0), (-2.5, 2.5), 2.5, 0.5, 1.5, riser=((0.0, 0.0), (80.0, 0.0)))
+
+
+def soil_on(grid: Grid) -> Soil:
+    return Soil(grid, ELASTIC, level=0.0, unit_weight=5.0e3)
+
+
+def test_graded_levels_are_fine_at_the_riser_and_reach_the_far_size() -> None:
+    y = graded(-10.0, 10.0, (-0.25, 0.25), 0.5, 2.0)
+    steps = np.diff(y)
+    assert y[0] == -10.0
+    assert y[-1] == 10.0
+    assert np.isclose(steps[np.searchsorted(y, 0.0) - 1], 0.5)
+    assert 1.5 < steps[0] < 2.0
+    np.testing.assert_allclose(steps, steps[::-1])
+    assert np.all(np.diff(steps[len(steps) // 2 + 1 :]) > 0.0)
+
+
+def test_block_of_hexahedra_is_a_graded_grid_with_a_cell_centred_under_the_riser() -> None:
+    grid = block_grid(COMM, DEMO)
+    x, y, z = (np.unique(np.round(grid.nodes.points[:, i], 9)) for i in range(3))
+    assert len(grid.nodes.cells) == (len(x) - 1) * (len(y) - 1) * (len(z) - 1)
+    np.testing.assert_allclose(np.diff(x), 0.5)
+    assert {-0.25, 0.25} <= set(y)
+    assert z[-1] - z[-2] < 0.6 < z[1] - z[0]
+
+
+def test_block_of_tetrahedra_grows_away_from_the_riser() -> None:
+    spec = BlockSpec((0.0, 10.0), (-5.0, 5.0), 5.0, 0.5, 2.5, kind="tet", riser=((0.0, 0.0), (10.0, 0.0)))
+    grid = block_grid(COMM, spec)
+    g = cell_gradients(grid.family, grid.nodes.points, grid.nodes.cells)
+    volume, centre = g.weights.sum(axis=1), g.points.mean(axis=1)
+    near = np.hypot(centre[:, 1], centre[:, 2]) < 0.7
+    far = np.hypot(centre[:, 1], centre[:, 2]) > 4.0
+    assert volume.sum() == pytest.approx(500.0, rel=1e-12)
+    assert np.median(volume[far]) > 10.0 * np.median(volume[near])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_nothing_is_printed(kind: str, capfd: pytest.CaptureFixture[str]) -> None:
+    small_block(kind)
+    with pytest.raises(MeshError):
+        file_grid(COMM, Path("absent.msh"))
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_mesh_file_gives_the_same_soil_as_the_block(kind: str, tmp_path: Path) -> None:
+    file = tmp_path / "block.msh"
+    write_block(
+        [str(file), "--x", "0", "4", "--depth", "2", "--size", "1", "--size-far", "2", "--kind", kind]
+    )
+    grid = file_grid(COMM, file)
+    assert grid.family.corners == {"hex": 4, "tet": 3}[kind]
+    np.testing.assert_allclose(np.r_[grid.low, grid.high], [0.0, -2.5, -2.0, 4.0, 2.5, 0.0], atol=1e-9)
+    g = cell_gradients(grid.family, grid.nodes.points, grid.nodes.cells)
+    assert g.weights.sum() == pytest.approx(40.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_supports_hold_bottom_and_sides_and_leave_the_top_free(kind: str) -> None:
+    field = soil_on(small_block(kind)).field
+    held, p = field.prescribed.reshape(-1, 3), field.points
+    bottom = p[:, 2] < -1.0 + 1e-9
+    assert held[bottom].all()
+    assert not held[~bottom, 2].any()
+    side = (p[:, 0] < 1e-9) | (p[:, 0] > 2.0 - 1e-9)
+    np.testing.assert_array_equal(held[~bottom, 0], side[~bottom])
+    u = np.ones(field.size)
+    field.prescribe(0.0, u, u.copy(), u.copy())
+    assert not u[field.prescribed].any()
+    assert u[~field.prescribed].all()
+
+
+def test_messages_name_the_node() -> None:
+    soil = soil_on(small_block("hex"))
+    entry = 3 * int(np.argmin(np.linalg.norm(soil.field.points - [2.0, 0.0, -0.5], axis=1))) + 2
+    assert soil.field.describe(entry) == "soil node at (2, 0, -0.5) m, z displacement"
+    surface_entry = 3 * int(np.argmin(np.linalg.norm(soil.surface.points - [2.0, 0.0, 0.0], axis=1)))
+    assert soil.surface.describe(surface_entry) == "soil surface at (2, 0) m, x displacement"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_surface_tiles_the_top_counter_clockwise(kind: str) -> None:
+    surface = soil_on(small_block(kind)).surface
+    corners = surface.points[surface.facets[:, : 4 if kind == "hex" else 3]]
+    assert surface.kind == {"hex": "quad4", "tet": "tri6"}[kind]
+    np.testing.assert_allclose(surface.points[:, 2], 0.0, atol=1e-12)
+    x, y = corners[..., 0], corners[..., 1]
+    area = 0.5 * (x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum(axis=1)
+    assert area.min() > 0.0
+    assert area.sum() == pytest.approx(3.0, rel=1e-12)
+    if kind == "tet":
+        middle = 0.5 * (corners + np.roll(corners, -1, axis=1))
+        np.testing.assert_allclose(surface.points[surface.facets[:, 3:]], middle, atol=1e-12)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_surface_entries_are_the_soil_dofs_at_the_same_place(kind: str) -> None:
+    soil = clay_block(kind)
+    surface, field = soil.surface, soil.field
+    place = {int(n): i for i, n in enumerate(field.global_index)}
+    local = np.array([place[int(n)] for n in surface.global_index])
+    np.testing.assert_array_equal(field.points[local[::3] // 3], surface.points)
+    np.testing.assert_array_equal(field.prescribed[local], surface.prescribed)
+    assert not surface.owned.any()
+    u = np.arange(float(surface.size))
+    surface.commit(State(0.0, u, u, u))
+    surface.commit(State(0.0, u, u, u))
+    np.testing.assert_array_equal(surface.committed.ravel(), 2.0 * u)
+
+
+def test_surface_of_a_trench_leaves_out_its_upright_walls(tmp_path: Path) -> None:
+    with silent_gmsh():
+        block = gmsh.model.occ.addBox(0.0, 0.0, -2.0, 4.0, 4.0, 2.0)
+        trench = gmsh.model.occ.addBox(0.0, 1.5, -1.0, 4.0, 1.0, 1.0)
+        gmsh.model.occ.cut([(3, block)], [(3, trench)])
+        gmsh.model.occ.synchronize()
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 0.7)
+        gmsh.model.mesh.generate(3)
+        gmsh.write(str(tmp_path / "trench.msh"))
+    soil = soil_on(file_grid(COMM, tmp_path / "trench.msh"))
+    corners = soil.surface.points[soil.surface.facets[:, :3]]
+    area = 0.5 * np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
+    assert area.sum() == pytest.approx(16.0, rel=1e-12)
+    assert set(np.round(corners[..., 2].ravel(), 9)) == {0.0, -1.0}
+
+
+def test_output_cells_are_in_vtk_order() -> None:
+    mesh = soil_on(small_block("hex")).output_mesh()
+    p = mesh.points[mesh.cells]
+    np.testing.assert_allclose(p[:, 0] - p[:, 1] + p[:, 2] - p[:, 3], 0.0, atol=1e-12)
+    lift = p[:, 4:] - p[:, :4]
+    np.testing.assert_allclose(lift - lift[:, :1], 0.0, atol=1e-12)
+    mesh = soil_on(small_block("tet")).output_mesh()
+    p = mesh.points[mesh.cells]
+    for place, (a, b) in enumerate(((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)), start=4):
+        np.testing.assert_allclose(p[:, place], 0.5 * (p[:, a] + p[:, b]), atol=1e-12)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_geostatic_start_is_in_equilibrium_and_undeformed(kind: str) -> None:
+    soil = clay_block(kind, K0=0.9)
+    fields, mesh = soil.output_fields(), soil.output_mesh()
+    assert not fields.displacement.any()
+    assert not fields.plastic_strain.any()
+    assert len(fields.von_mises) == len(mesh.cells)
+    depth = -mesh.points[mesh.cells].mean(axis=1)[:, 2]
+    assert np.corrcoef(fields.von_mises, depth)[0, 1] > 0.99
+    assert fields.von_mises.max() < 0.1 * 5.0e3 * 1.0
+
+
+def test_initial_stress_beyond_yield_is_refused_with_numbers() -> None:
+    with pytest.raises(SceneError, match=r"soil.K0 = 0.1: at depth 0\.\d+ m .* 1\.\d+ times") as caught:
+        Soil(small_block("hex"), CLAY, level=0.0, unit_weight=20.0e3, K0=0.1)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("level", [-1.0, 0.5])
+def test_level_outside_the_mesh_is_refused(level: float) -> None:
+    with pytest.raises(MeshError, match=r"misses seabed\.level"):
+        Soil(small_block("hex"), ELASTIC, level=level, unit_weight=0.0)
+
+
+def test_inverted_cell_is_refused() -> None:
+    grid = small_block("hex")
+    inside = int(np.argmin(np.linalg.norm(grid.nodes.points - [1.0, 0.5, -0.5], axis=1)))
+    grid.nodes.points[inside] += [0.9, 0.0, 0.0]
+    with pytest.raises(MeshError, match=r"the cell at \(.*\) m is inverted or flat"):
+        soil_on(grid)
+
+
+def write_model(path: Path, shape: str) -> Path:
+    """Meshes that can't be used."""
+    with silent_gmsh():
+        if shape == "plane":
+            gmsh.model.occ.addRectangle(0.0, 0.0, 0.0, 1.0, 1.0)
+        elif shape == "ball":
+            gmsh.model.occ.addSphere(0.0, 0.0, -1.0, 1.0)
+        else:
+            gmsh.model.occ.addBox(0.0, 0.0, -1.0, 1.0, 1.0, 1.0)
+        gmsh.model.occ.synchronize()
+        gmsh.model.mesh.generate(3)
+        if shape == "second order":
+            gmsh.model.mesh.setOrder(2)
+        gmsh.write(str(path))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("shape", "message"),
+    [
+        ("plane", "no volume"),
+        ("second order", "first-order tetrahedra only or hexahedra only"),
+        ("ball", "only 1 nodes on the plane"),
+    ],
+)
+def test_unfit_mesh_is_refused_in_one_line(shape: str, message: str, tmp_path: Path) -> None:
+    with pytest.raises(MeshError, match=message) as caught:
+        file_grid(COMM, write_model(tmp_path / "mesh.msh", shape))
+    assert "\n" not in str(caught.value)
+
+
+def test_missing_and_broken_files_are_refused_in_one_line(tmp_path: Path) -> None:
+    (tmp_path / "broken.msh").write_text("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 9 nonsense\n")
+    (tmp_path / "empty.msh").write_text("")
+    for name in ("absent.msh", "broken.msh", "empty.msh", "."):
+        with pytest.raises(MeshError, match=r"soil mesh") as caught:
+            file_grid(COMM, tmp_path / name)
+        assert "\n" not in str(caught.value)

@@ -1,0 +1,98 @@
+"""Figures of one soil on any number of ranks, as JSON from rank 0: run by test_soil.py under mpirun."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.arrays import Array
+from riser_soil.part import Forces, State, Weights
+from riser_soil.soil.block import BlockSpec
+from riser_soil.soil.grid import block_grid
+from riser_soil.soil.soil import Soil
+from tests.soil_cases import CLAY
+
+COMM = MPI.COMM_WORLD
+
+
+def assembled(soil: Soil, local: Array) -> Array:
+    """The ranks' contributions summed by global number, on every rank."""
+    largest = COMM.allreduce(int(soil.field.global_index.max()), MPI.MAX)
+    total = np.zeros(largest + 1)
+    np.add.at(total, soil.field.global_index, soil.field.own(local))
+    return np.asarray(COMM.allreduce(total))
+
+
+def pushed(soil: Soil, factor: float) -> State:
+    """An increment that is a smooth function of position, well into the plastic range."""
+    x, y, z = soil.field.points.T
+    u = factor * np.column_stack((np.sin(x + y), np.cos(2.0 * x) * y, np.sin(x) * np.cos(y) * (z + 1.0)))
+    u[soil.field.prescribed.reshape(-1, 3)] = 0.0
+    return State(1.0, u.ravel(), u.ravel(), u.ravel())
+
+
+def tangent_times(soil: Soil, state: State, u: Array) -> Array:
+    block = soil.blocks()["soil"]
+    values = {"soil": np.zeros(block.shape)}
+    soil.tangent(state, Weights(0.0, 1.0, 0.0, 0.0), values)
+    out = np.zeros_like(u)
+    np.add.at(out, block.rows, np.einsum("mij,mj->mi", values["soil"], u[block.cols]))
+    return out
+
+
+def figures(kind: str) -> dict[str, float]:
+    spec = BlockSpec((0.0, 4.0), (-1.0, 1.0), 1.0, 0.4, 0.6, kind="tet" if kind == "tet" else "hex")
+    soil = Soil(block_grid(COMM, spec), CLAY, level=0.0, unit_weight=5.0e3, K0=0.9)
+    start = State.at_rest(1.0, soil.field.size)
+    first, second = pushed(soil, 4e-3), pushed(soil, -3e-3)
+    out: dict[str, float] = {"work": COMM.allreduce(soil.work(start, first).dissipated)}
+    soil.commit(first)
+    soil.field.commit(first)
+    soil.surface.commit(State(1.0, *(np.full(soil.surface.size, 0.5),) * 3))
+    forces = Forces.zeros(soil.field.size)
+    soil.residual(second, forces)
+    residual = assembled(soil, forces.end)
+    product = assembled(soil, tangent_times(soil, second, first.u))
+    energy = soil.energy(second)
+    out |= {"residual": float(np.linalg.norm(residual)), "product": float(np.linalg.norm(product))}
+    out |= {"strain": COMM.allreduce(energy.strain), "potential": COMM.allreduce(energy.potential)}
+    out |= {"dofs": COMM.allreduce(int(np.count_nonzero(soil.field.owned & ~soil.field.prescribed)))}
+    return out | surface_figures(soil, residual) | output_figures(soil)
+
+
+def surface_figures(soil: Soil, residual: Array) -> dict[str, float]:
+    """Sums over the surface, which rank 0 alone holds."""
+    surface, on_root = soil.surface, COMM.rank == 0
+    assert surface.facets.size == 0 or on_root
+    at_top = residual[surface.global_index].reshape(-1, 3)
+    moment = (surface.points[:, :1] * at_top).sum() if on_root else 0.0
+    return {
+        "facets": COMM.allreduce(len(surface.facets)),
+        "surface_points": COMM.allreduce(len(surface.points)),
+        "surface_moment": COMM.allreduce(float(moment)),
+        "surface_held": COMM.allreduce(int(np.count_nonzero(surface.prescribed))),
+        "surface_committed": COMM.allreduce(float(surface.committed.sum())),
+    }
+
+
+def output_figures(soil: Soil) -> dict[str, float]:
+    """Output fields weighted with positions, so that a wrong order shows."""
+    mesh, fields = soil.output_mesh(), soil.output_fields()
+    assert mesh.points.size == fields.displacement.size
+    assert len(mesh.cells) == len(fields.von_mises) == len(fields.plastic_strain)
+    centre = mesh.points[mesh.cells].mean(axis=1)
+    return {
+        "cells": COMM.allreduce(len(mesh.cells)),
+        "displacement": COMM.allreduce(float((fields.displacement * mesh.points[:, ::-1]).sum())),
+        "von_mises": COMM.allreduce(float((fields.von_mises * centre[:, 0]).sum())),
+        "plastic_strain": COMM.allreduce(float((fields.plastic_strain * centre[:, 2]).sum())),
+    }
+
+
+if __name__ == "__main__":
+    result = figures(sys.argv[1])
+    if COMM.rank == 0:
+        print(json.dumps(result))

@@ -1,0 +1,144 @@
+"""The soil against closed forms: settlement under its weight, Prandtl's collapse load; and on more ranks."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from riser_soil.arrays import Array
+from riser_soil.soil.block import BlockSpec
+from riser_soil.soil.families import Family
+from riser_soil.soil.grid import Grid, block_grid
+from riser_soil.soil.soil import Soil
+from riser_soil.soil.von_mises import VonMises
+from tests.soil_bench import Bench
+from tests.soil_cases import ELASTIC, KINDS, small_block
+
+ROOT = Path(__file__).parents[2]
+PRANDTL = 2.0 + np.pi
+SU = 1.0e3
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_block_settles_under_its_weight_as_a_column(kind: str) -> None:
+    """w = −γ (H² − z²) / 2M, z from the top, M = E(1−ν)/((1+ν)(1−2ν)); both families are exact at the nodes."""
+    H, gamma, nu = 1.0, 5.0e3, 0.49
+    M = 1.2e6 * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    soil = settled(kind)
+    z = soil.field.points[:, 2]
+    exact = -gamma * (H**2 - z**2) / (2.0 * M)
+    total = soil.field.total.reshape(-1, 3)
+    np.testing.assert_allclose(total[:, 2], exact, atol=1e-9 * np.abs(exact).max())
+    assert np.abs(total[:, :2]).max() < 1e-9 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_settled_block_carries_the_stress_of_a_column(kind: str) -> None:
+    """At rest sideways, so σh/σv = ν/(1−ν); the von Mises stress is the difference of the two."""
+    soil = settled(kind)
+    mesh, fields = soil.output_mesh(), soil.output_fields()
+    depth = -mesh.points[mesh.cells].mean(axis=1)[:, 2]
+    np.testing.assert_allclose(fields.von_mises, 5.0e3 * depth * (1.0 - 0.49 / 0.51), rtol=1e-6)
+
+
+def settled(kind: str) -> Soil:
+    """An elastic block, 1 m deep, at first without stress, under its weight."""
+    soil = Soil(small_block(kind), ELASTIC, level=0.0, unit_weight=5.0e3, start="unstressed")
+    Bench(soil, np.zeros(soil.field.size, dtype=bool)).step(np.zeros(soil.field.size))
+    return soil
+
+
+@dataclass(frozen=True, eq=False)
+class Strip:
+    """Load of a rough rigid strip of half width 1 m, over su, and residual norms, step by step."""
+
+    load: Array
+    norms: list[list[float]]
+
+
+def press_strip(kind: str, cells: int, family: Family | None = None, far: float = 0.5) -> Strip:
+    """Press half of a strip 0.15 m into a plane-strain block 5 m wide, 3 m deep; `cells` under the strip."""
+    soil, under = strip_soil(kind, cells, family, far)
+    driven = np.zeros((len(under), 3), dtype=bool)
+    driven[under] = True
+    bench = Bench(soil, driven.ravel())
+    given = np.where(under, -0.01, 0.0)[:, None] * np.array([0.0, 0.0, 1.0])
+    loads, norms = [], []
+    for _ in range(15):
+        bench.step(given.ravel())
+        norms.append(bench.norms)
+        reaction = bench.force(np.zeros(soil.field.size)).reshape(-1, 3)[under, 2].sum()
+        loads.append(-reaction * cells / SU)
+    return Strip(np.array(loads), norms)
+
+
+def strip_soil(kind: str, cells: int, family: Family | None, far: float) -> tuple[Soil, Array]:
+    """A slice one cell thick, and which nodes lie under the strip."""
+    h = 1.0 / cells
+    fine = ((-1.0, 0.0), (1.25 - 0.5 * h, 0.0))  # cells of size h from the symmetry plane to x = 1.25
+    spec = BlockSpec((0.0, 5.0), (0.0, h), 3.0, h, far, kind="tet" if kind == "tet" else "hex", riser=fine)
+    grid: Grid = block_grid(MPI.COMM_SELF, spec)
+    law = partial(VonMises.at_depth, su=SU, su_gradient=0.0, E_over_su=300.0, nu=0.49)
+    soil = Soil(replace(grid, family=family or grid.family), law, level=0.0, unit_weight=0.0)
+    x, _, z = grid.nodes.points.T
+    return soil, (z > -1e-9) & (x < 1.0 + 1e-9)
+
+
+@pytest.mark.parametrize(("kind", "cells", "far"), [("hex", 16, 0.25), ("tet", 8, 0.5)])
+def test_strip_collapses_at_prandtl_load(kind: str, cells: int, far: float) -> None:
+    strip = press_strip(kind, cells, far=far)
+    assert 0.0 < strip.load[-1] / PRANDTL - 1.0 < 0.05
+    assert strip.load[-1] - strip.load[-2] < 1e-3 * PRANDTL, "the load still rises: the mesh locks"
+    assert_quadratic(strip.norms[-1])
+
+
+def test_strip_error_shrinks_with_the_cells() -> None:
+    """The strip's singular edge costs half a cell of width: first order."""
+    errors = [press_strip("hex", n, far=4.0 / n).load[-1] / PRANDTL - 1.0 for n in (4, 8)]
+    assert 0.8 < np.log2(errors[0] / errors[1]) > 0.8
+
+
+def test_strip_on_full_integration_locks() -> None:
+    """What the mean dilatation cures: without it the load is far off and still rising."""
+    grid_family = small_block("hex").family
+    strip = press_strip("hex", 4, replace(grid_family, mean_dilatation=False))
+    sound = press_strip("hex", 4)
+    assert strip.load[-1] > 1.15 * sound.load[-1]
+    assert strip.load[-1] - strip.load[-2] > 1e-2 * PRANDTL
+
+
+def assert_quadratic(norms: list[float]) -> None:
+    """Of the last three residual norms, each drop is by at least the power 1.5 of the one before."""
+    a, b, c = norms[-3:]
+    assert c < max(1e-10, b * (b / a) ** 1.5)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_one_and_two_ranks_agree(kind: str) -> None:
+    assert on_ranks(2, kind) == pytest.approx(on_ranks(1, kind), rel=1e-10)
+
+
+def on_ranks(ranks: int, kind: str) -> dict[str, float]:
+    environment = os.environ | {
+        "OMP_NUM_THREADS": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        "OMPI_MCA_rmaps_base_oversubscribe": "1",
+        "OMPI_MCA_mpi_yield_when_idle": "1",
+        "PYTHONPATH": str(ROOT),
+    }
+    script = Path(__file__).with_name("soil_on_ranks.py")
+    command = ["mpirun", "-n", str(ranks), "--bind-to", "none", sys.executable, str(script), kind]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    result: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
+    return result
