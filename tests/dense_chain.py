@@ -34,9 +34,9 @@ def tangent(parts: Sequence[Part], state: State, weights: Weights = STATIC) -> A
     return K
 
 
-def solve(line: Line, parts: Sequence[Part], t: float = 1.0, tolerance: float = 1e-11, most: int = 60) -> int:
-    """Newton from the committed configuration to static balance at load factor t, then commit; iterations
-    taken.
+def solve(line: Line, parts: Sequence[Part], t: float = 1.0, tolerance: float = 1e-10, most: int = 60) -> int:
+    """Newton from the committed configuration to static balance at load factor t, then commit; its
+    iterations.
 
     tolerance: of the free residual, relative to the largest single force in the line.
     """
@@ -53,11 +53,8 @@ def solve(line: Line, parts: Sequence[Part], t: float = 1.0, tolerance: float = 
         K = tangent(parts, state)[np.ix_(free, free)]
         step = np.zeros(line.size)
         step[free] = np.linalg.solve(K, -r[free])
-        u = (
-            u
-            + min(1.0, 0.5 / max(np.abs(step.reshape(line.nodes, -1)[:, line.dimension :]).max(), 1e-9))
-            * step
-        )
+        turn = np.abs(line.nodal(step)[:, line.dimension :]).max()
+        u = u + min(1.0, 0.5 / max(turn, 1e-9)) * step
     raise AssertionError(
         f"no balance after {most} iterations: residual {np.abs(r[free]).max():.3g} of {scale:.3g}"
     )

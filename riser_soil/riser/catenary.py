@@ -85,8 +85,8 @@ def _rope(arc: Array, start: Array, end: Array, weight: float, EA: float, level:
         )
     if distance * (1.0 + 1e-9) >= rope.L:
         raise SceneError(
-            f"riser: too short: its length of {rope.L:.6g} m must exceed the {distance:.6g} m between its ends "
-            "for a catenary"
+            f"riser: too short for a catenary: its length of {rope.L:.6g} m must exceed "
+            f"the {distance:.6g} m between its ends"
         )
     if h < 1e-6 * rope.L:
         raise SceneError(

@@ -52,7 +52,7 @@ class PointLoads:
         if abs(self.line.arc[node] - load.arc) > 1e-9 * self.line.arc[-1]:
             raise SceneError(
                 f"stages: loads: a moment at arc {load.arc:.9g} m lies between nodes; "
-                f"move it to the nearest, {self.line.arc[node]:.9g} m, or choose elements that put a node there"
+                f"move it to the nearest, {self.line.arc[node]:.9g} m, or put a node there by other elements"
             )
         return node
 

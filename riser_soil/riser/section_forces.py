@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from riser_soil.riser.line import UP, Line, Trial
 from riser_soil.riser.sections import Elements
 
 
+@runtime_checkable
 class HasElementForces(Protocol):
     """A part that acts within the line's elements."""
 

@@ -18,15 +18,13 @@ from numba import njit
 
 from riser_soil.arrays import Array
 
-SERIES_BELOW = (
-    0.05  # 1 - cos(theta) under which the closed forms lose digits and the power series has converged
-)
-SERIES = np.cumprod([1.0] + [2.0 * n / (2.0 * n + 1.0) for n in range(1, 13)])[::-1].copy()
+SERIES_BELOW = 0.05  # 1 - cos(theta) under which closed forms lose digits and the series has converged
+SERIES: Array = np.cumprod([1.0] + [2.0 * n / (2.0 * n + 1.0) for n in range(1, 13)])[::-1].copy()
 
 
 @njit(cache=True)
 def angle_over_sine(c: float) -> tuple[float, float, float]:
-    """g = theta/sin(theta) and its first two derivatives with respect to c = cos(theta), for theta below pi."""
+    """g = theta/sin(theta) and its first two derivatives by c = cos(theta), for theta below pi."""
     g, slope, bend = 0.0, 0.0, 0.0
     if 1.0 - c < SERIES_BELOW:
         x = 0.5 * (1.0 - c)  # sin^2(theta/2)

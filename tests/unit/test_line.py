@@ -1,0 +1,210 @@
+"""The line's dofs, ends, plane and configuration, and the forces recovered from its elements."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from riser_soil.arrays import Array
+from riser_soil.errors import SceneError
+from riser_soil.part import State
+from riser_soil.riser import shapes
+from riser_soil.riser.beam import Beam
+from riser_soil.riser.line import End, Kinematics, Line
+from riser_soil.riser.loads import Load, PointLoads
+from riser_soil.riser.section_forces import element_residual, end_reactions, section_forces
+from riser_soil.riser.sections import Elements, LineType, Segment, Surroundings, elements
+from riser_soil.riser.springs import EndSpring
+from tests.dense_chain import solve
+from tests.sample_line import DIRECTION, START, sample
+
+both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
+
+
+def prescribed(line: Line, t: float) -> tuple[Array, Array, Array]:
+    u, v, a = np.full((3, line.size), np.nan)
+    line.prescribe(t, u, v, a)
+    return line.nodal(u), line.nodal(v), line.nodal(a)
+
+
+@both_dimensions
+def test_held_ends_follow_their_motion_and_nothing_else_is_written(dimension: int) -> None:
+    def motion(t: float) -> Kinematics:
+        return START + 2.0 * t * DIRECTION, 2.0 * DIRECTION, 0.5 * DIRECTION
+
+    line = sample(dimension, (End(True, rotation_fixed=True, motion=motion), End(True))).line
+    u, v, a = prescribed(line, 3.0)
+    assert line.to_global(line.x[0] + u[0, :dimension]) == pytest.approx(START + 6.0 * DIRECTION, abs=1e-14)
+    assert line.basis @ v[0, :dimension] == pytest.approx(2.0 * DIRECTION)
+    assert line.basis @ a[0, :dimension] == pytest.approx(0.5 * DIRECTION)
+    assert not np.any(u[0, dimension:])
+    assert not np.any(u[-1, :dimension])
+    assert np.all(np.isnan(u[1:-1]))
+    assert np.all(np.isnan(u[-1, dimension:]))
+    assert np.array_equal(np.isfinite(u.ravel()), line.prescribed)
+
+
+def test_spin_is_held_at_the_start_about_the_pipes_axis() -> None:
+    made = sample(3, shaken=False).line
+    tangent = made.trial(State.at_rest(0.0, made.size)).turn.tangent[0, 0]
+    held = Line(3, shapes_layout(), End(True), End(True), hold_spin=True)
+    assert np.flatnonzero(held.prescribed).tolist() == [0, 1, 2, 3, *range(held.size - 6, held.size - 3)]
+    spin = np.zeros((made.nodes, 3))
+    spin[0, 0] = 0.4
+    assert made.frames.turn(spin).tangent[0, 0] == pytest.approx(tangent, abs=1e-15)
+
+
+def shapes_layout() -> shapes.Layout:
+    arc = np.linspace(0.0, 4.0, 3)
+    line = shapes.straight(arc)
+    return shapes.layout(arc, np.zeros(2), line, line)
+
+
+@both_dimensions
+def test_commits_keep_position_chord_and_orientation_together(dimension: int) -> None:
+    line = sample(dimension, shaken=False).line
+    for seed in range(50):
+        u = np.random.default_rng(seed).normal(scale=0.3, size=line.size)
+        line.commit(State(0.0, u, 0.0 * u, 0.0 * u))
+    assert line.chord == pytest.approx(np.diff(line.x, axis=0), abs=1e-13)
+    tangent = line.trial(State.at_rest(0.0, line.size)).turn.tangent
+    assert np.linalg.norm(tangent, axis=-1) == pytest.approx(1.0, abs=1e-14)
+
+
+def test_planar_angles_grow_beyond_a_full_turn() -> None:
+    line = sample(2, shaken=False).line
+    before = line.frames.turn(np.zeros((line.nodes, 1))).tangent
+    u = np.zeros(line.size)
+    line.nodal(u)[:, 2] = 1.0
+    for _ in range(8):
+        line.commit(State(0.0, u, 0.0 * u, 0.0 * u))
+    after = line.frames.turn(np.full((line.nodes, 1), 4.0 * np.pi - 8.0)).tangent
+    assert after == pytest.approx(before, abs=1e-13)
+
+
+@both_dimensions
+def test_global_positions_start_at_the_start(dimension: int) -> None:
+    line = sample(dimension, shaken=False).line
+    position = line.positions3(State.at_rest(0.0, line.size))
+    assert position[0] == pytest.approx(START, abs=1e-14)
+    across = np.cross(DIRECTION, [0.0, 0.0, 1.0])
+    assert (position - START) @ across == pytest.approx(0.0, abs=1e-14)
+    if dimension == 2:
+        assert line.x[:, 1] == pytest.approx(position[:, 2], abs=1e-14)
+
+
+def test_entries_describe_themselves() -> None:
+    line = sample(3).line
+    assert line.describe(6 * 2 + 2) == "riser node at arc 3 m, vertical force"
+    assert sample(2).line.describe(3 * 1 + 2) == "riser node at arc 1.5 m, moment"
+
+
+def test_tributary_lengths_add_up() -> None:
+    line = sample(2).line
+    assert line.tributary_length.sum() == pytest.approx(8.0)
+    assert line.tributary_length[0] == pytest.approx(0.75)
+
+
+BAR = LineType(EA=1.0e7, EI_y=2.0e4, EI_z=2.0e4, GJ=1.0e4, outer_diameter=0.2, submerged_weight=50.0)
+
+
+def bar(dimension: int, start: End, end: End, count: int = 6, kind: LineType = BAR) -> tuple[Line, Elements]:
+    """A straight bar of 12 m along x."""
+    e = elements([Segment(kind, 12.0, count)], Surroundings())
+    straight = shapes.straight(e.arc)
+    return Line(dimension, shapes.layout(e.arc, e.outer_diameter, straight, straight), start, end), e
+
+
+@both_dimensions
+def test_cantilever_reactions_balance_weight_and_tip_load(dimension: int) -> None:
+    line, e = bar(dimension, End(True, rotation_fixed=True), End(False))
+    tip, moment = np.array([100.0, 0.0, 80.0]), np.array([0.0, 60.0, 0.0])
+    loads = PointLoads(line, [Load(lambda t: t, 12.0, tip, moment), Load(lambda t: t, 5.0, tip)])
+    beam = Beam(line, e)
+    solve(line, [beam, loads])
+    state = State.at_rest(1.0, line.size)
+    r = element_residual(line, [beam, loads], state)
+    start, end = end_reactions(line, state, r, loads.nodal_forces(state))
+    weight = np.array([0.0, 0.0, -600.0])
+    assert start.force == pytest.approx(-weight - 2.0 * tip, abs=1e-6)
+    assert np.abs([end.force, end.moment]).max() < 1e-5
+    at_tip = section_forces(line, e, state, r)
+    assert at_tip.force[-1] == pytest.approx(tip, abs=1e-6)
+    assert at_tip.moment[-1] == pytest.approx(moment, abs=1e-6)
+    assert at_tip.force[0] == pytest.approx(-start.force, abs=1e-6)
+
+
+def test_small_deflections_give_textbook_section_forces() -> None:
+    fixed, kind = End(True, rotation_fixed=True), replace(BAR, EI_y=2.0e6, EI_z=2.0e6)
+    line, e = bar(3, fixed, fixed, kind=kind)
+    beam = Beam(line, e)
+    solve(line, [beam])
+    state = State.at_rest(1.0, line.size)
+    found = section_forces(line, e, state, element_residual(line, [beam], state))
+    middle = 50.0 * 12.0**2 / 24.0
+    assert found.bending_moment[[0, 3, -1]] == pytest.approx([2.0 * middle, middle, 2.0 * middle], rel=1e-3)
+    assert found.curvature == pytest.approx(found.bending_moment / 2.0e6, rel=1e-12)
+    assert found.moment[3, 1] < 0.0 < found.moment[0, 1]  # sagging turns the tangent up, about -y
+
+
+def test_curvature_is_resolved_in_section_axes() -> None:
+    kind = LineType(EA=1.0e7, EI_y=2.0e4, EI_z=8.0e4, GJ=1.0e4)
+    line, e = bar(3, End(True, rotation_fixed=True), End(False), kind=kind)
+    moment = np.array([0.0, 30.0, 40.0])
+    parts = (Beam(line, e), PointLoads(line, [Load(lambda t: t, 12.0, moment=moment)]))
+    solve(line, parts, tolerance=1e-9)
+    state = State.at_rest(1.0, line.size)
+    found = section_forces(line, e, state, element_residual(line, parts, state))
+    assert found.bending_moment == pytest.approx(50.0, rel=1e-3)
+    assert found.curvature == pytest.approx(np.hypot(30.0 / 2.0e4, 40.0 / 8.0e4), rel=1e-3)
+
+
+@both_dimensions
+def test_a_spring_holds_the_end_like_its_stiffness_says(dimension: int) -> None:
+    line, _ = bar(dimension, End(True), End(False))
+    loads = PointLoads(line, [Load(lambda t: t, 12.0, moment=np.array([0.0, -200.0, 0.0]))])
+    kind = LineType(EA=1.0e7, EI_y=2.0e4, EI_z=2.0e4, GJ=1.0e4)
+    weightless = Beam(line, elements([Segment(kind, 12.0, 6)], Surroundings()))
+    spring = EndSpring(line, 0, 1000.0)
+    solve(line, [weightless, loads, spring])
+    state = State.at_rest(1.0, line.size)
+    tangent = line.trial(state).turn.tangent[0, 0] @ line.basis.T
+    assert tangent == pytest.approx([np.cos(0.2), 0.0, np.sin(0.2)], abs=1e-9)
+    r = element_residual(line, [weightless], state)
+    start, _ = end_reactions(line, state, r)
+    assert start.moment == pytest.approx([0.0, 200.0, 0.0], abs=1e-6)
+    assert spring.energy(state).strain == pytest.approx(0.5 * 1000.0 * 0.2**2)
+
+
+def test_a_moment_between_nodes_is_refused() -> None:
+    line = sample(2).line
+    with pytest.raises(SceneError, match=r"arc 2 m lies between nodes; move it to the nearest, 1\.5 m"):
+        PointLoads(line, [Load(lambda t: t, 2.0, moment=np.ones(3))])
+
+
+def test_a_load_off_the_riser_is_refused() -> None:
+    with pytest.raises(SceneError, match=r"at arc 9 m: the riser ends at 8 m"):
+        PointLoads(sample(2).line, [Load(lambda t: t, 9.0, force=np.ones(3))])
+
+
+@both_dimensions
+def test_loads_work_is_force_times_way(dimension: int) -> None:
+    at = sample(dimension)
+    force = np.array([30.0, 40.0, 25.0])
+    loads = PointLoads(at.line, [Load(lambda t: 2.0, at.line.arc[-1], force)])
+    before, after = State.at_rest(0.0, at.line.size), at.state(1)
+    way = at.line.basis @ at.line.nodal(after.u)[-1, :dimension]
+    assert loads.work(before, after).external == pytest.approx(2.0 * force @ way)
+
+
+def test_a_fixed_axis_moment_works_on_the_turn_about_its_axis() -> None:
+    at = sample(3)
+    moment = np.array([7.0, -3.0, 5.0])
+    loads = PointLoads(at.line, [Load(lambda t: 1.0, at.line.arc[-1], moment=moment)])
+    before, after = State.at_rest(0.0, at.line.size), at.state(1)
+    turn = at.line.trial(after).turn
+    assert hasattr(turn, "Rn")
+    expected = moment @ (turn.Rn[-1] @ at.line.nodal(after.u)[-1, 3:])
+    assert loads.work(before, after).external == pytest.approx(expected, rel=1e-12)

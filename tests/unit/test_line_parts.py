@@ -1,0 +1,261 @@
+"""Residuals and tangents of the riser's parts, in the plane and in space, with rates and accelerations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+import pytest
+
+from riser_soil.arrays import Array
+from riser_soil.part import Forces, Part, State, Weights
+from riser_soil.riser import hermite, loads, springs
+from riser_soil.riser.beam import Beam
+from riser_soil.riser.directors import PlanarTurn, SpatialTurn
+from riser_soil.riser.inertia import Inertia
+from riser_soil.riser.loads import PointLoads
+from riser_soil.riser.section_forces import element_residual
+from riser_soil.sea.morison import Morison
+from tests.dense_chain import residual, tangent
+from tests.sample_line import Sample, sample
+
+WEIGHTS = Weights(inertia=0.7, force=1.3, shift_v=4.0, shift_a=9.0)
+MAKERS: dict[str, Callable[[Sample], Part]] = {
+    "beam": Sample.beam,
+    "inertia": Sample.inertia,
+    "morison": Sample.morison,
+    "spring": Sample.spring,
+    "forces": Sample.forces,
+    "moments": Sample.moments,
+}
+every_part = pytest.mark.parametrize("name", list(MAKERS))
+both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
+STENCIL = ((1, 3.0 / 4.0), (2, -3.0 / 20.0), (3, 1.0 / 60.0))
+
+
+def moved(state: State, du: Array, weights: Weights) -> State:
+    return State(state.t, state.u + du, state.v + weights.shift_v * du, state.a + weights.shift_a * du)
+
+
+def slope(f: Callable[[float], Array], h: float) -> Array:
+    """Central difference of sixth order."""
+    return np.asarray(sum(c * (f(k * h) - f(-k * h)) for k, c in STENCIL) / h)
+
+
+def difference_tangent(part: Part, state: State, weights: Weights, h: float = 2e-3) -> Array:
+    """dR/du by differences, rates following by the shifts."""
+    columns = []
+    for direction in np.eye(state.u.size):
+
+        def along(s: float, direction: Array = direction) -> Array:
+            return residual([part], moved(state, s * direction, weights), weights)
+
+        columns.append(slope(along, h))
+    return np.stack(columns, axis=1)
+
+
+def error(K: Array, expected: Array) -> float:
+    return float(np.abs(K - expected).max() / np.abs(expected).max())
+
+
+@both_dimensions
+@every_part
+def test_tangent_is_the_derivative_of_the_residual(name: str, dimension: int) -> None:
+    at = sample(dimension)
+    part, state = MAKERS[name](at), at.state(1)
+    K = tangent([part], state, WEIGHTS)
+    expected = difference_tangent(part, state, WEIGHTS)
+    if name == "moments" and dimension == 2:
+        assert not np.any(K)
+    else:
+        assert error(K, expected) < 1e-7
+
+
+@both_dimensions
+@every_part
+def test_symmetric_parts_say_so(name: str, dimension: int) -> None:
+    at = sample(dimension)
+    part, state = MAKERS[name](at), at.state(1)
+    K = tangent([part], state, WEIGHTS)
+    symmetric = bool(np.abs(K - K.T).max() <= 1e-11 * np.abs(K).max())
+    assert symmetric == part.symmetric
+
+
+def no_operation(*_: object) -> None:
+    pass
+
+
+def without_geometric(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
+    monkeypatch.setattr(hermite, "add_geometric", no_operation)
+
+
+def without_turning_moments(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
+    for module in (loads, springs):
+        monkeypatch.setattr(module, "moment_stiffness", lambda *_: np.zeros((3, 3)))
+
+
+def without_direction_changes(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
+    assert isinstance(part, Morison)
+    monkeypatch.setattr(part, "_NdN", 0.0 * part._NdN)
+
+
+def without_director_rates(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
+    for turn in (PlanarTurn, SpatialTurn):
+        original = turn.maps
+
+        def still(self: object, v: Array, a: Array, *shifts: float, original: Callable = original) -> object:
+            return original(self, 0.0 * v, 0.0 * a, *shifts)
+
+        monkeypatch.setattr(turn, "maps", still)
+
+
+@pytest.mark.parametrize(
+    ("name", "dimension", "leave_out"),
+    [
+        ("beam", 2, without_geometric),
+        ("beam", 3, without_geometric),
+        ("inertia", 2, without_geometric),
+        ("inertia", 3, without_geometric),
+        ("inertia", 2, without_director_rates),
+        ("inertia", 3, without_director_rates),
+        ("morison", 2, without_direction_changes),
+        ("morison", 3, without_direction_changes),
+        ("morison", 3, without_director_rates),
+        ("forces", 2, without_geometric),
+        ("forces", 3, without_geometric),
+        ("moments", 3, without_turning_moments),
+        ("spring", 3, without_turning_moments),
+    ],
+)
+def test_each_term_of_the_tangent_matters(
+    name: str, dimension: int, leave_out: Callable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    at = sample(dimension)
+    part, state = MAKERS[name](at), at.state(1)
+    whole = tangent([part], state, WEIGHTS)
+    leave_out(monkeypatch, part)
+    at.line._trial = None
+    assert error(tangent([part], state, WEIGHTS), whole) > 1e-5
+
+
+@both_dimensions
+@pytest.mark.parametrize("name", ["beam", "spring"])
+def test_conservative_forces_are_the_gradient_of_the_energy(name: str, dimension: int) -> None:
+    at = sample(dimension)
+    part, state = MAKERS[name](at), at.state(2)
+    static = Weights(0.0, 1.0, 0.0, 0.0)
+
+    def energy(s: float, direction: Array) -> Array:
+        return np.array(part.energy(moved(state, s * direction, static)).total)
+
+    gradient = [slope(partial(energy, direction=d), 2e-3) for d in np.eye(state.u.size)]
+    assert error(residual([part], state, static), np.array(gradient)) < 1e-8
+
+
+@both_dimensions
+def test_inertia_takes_up_the_rate_of_kinetic_energy(dimension: int) -> None:
+    at = sample(dimension)
+    part, start = at.inertia(), at.state(3)
+    start = State(0.0, 0.0 * start.u, start.v, start.a)
+
+    def kinetic(h: float) -> Array:
+        later = State(h, h * start.v + 0.5 * h * h * start.a, start.v + h * start.a, start.a)
+        return np.array(part.energy(later).kinetic)
+
+    power = residual([part], start, Weights(1.0, 0.0, 0.0, 0.0)) @ start.v
+    # the increments hold to second order only, so the difference must be small itself
+    assert (kinetic(1e-5) - kinetic(-1e-5)) / 2e-5 == pytest.approx(power, rel=1e-7)
+
+
+@every_part
+def test_plane_and_space_agree_in_a_plane(name: str) -> None:
+    plane, space = sample(2, shaken=False), sample(3, shaken=False)
+    flat = plane.state(4)
+    state = State(flat.t, *(in_space(plane, values) for values in (flat.u, flat.v, flat.a)))
+    parts = [MAKERS[name](s) for s in (plane, space)]
+    r2, r3 = residual(parts[:1], flat, WEIGHTS), residual(parts[1:], state, WEIGHTS)
+    lift = lifting(plane)
+    assert np.abs(lift.T @ r3 - r2).max() <= 1e-12 * np.abs(r2).max()
+    K2, K3 = tangent(parts[:1], flat, WEIGHTS), tangent(parts[1:], state, WEIGHTS)
+    assert np.abs(lift.T @ K3 @ lift - K2).max() <= 1e-12 * max(np.abs(K2).max(), 1.0)
+
+
+def lifting(plane: Sample) -> Array:
+    """Matrix from planar to spatial dofs: the angle turns about d x z, which is minus the second body axis."""
+    node = np.zeros((6, 3))
+    node[:3, :2] = plane.line.basis
+    node[4, 2] = -1.0
+    return np.kron(np.eye(plane.line.nodes), node)
+
+
+def in_space(plane: Sample, values: Array) -> Array:
+    return np.asarray(lifting(plane) @ values)
+
+
+@both_dimensions
+@every_part
+def test_residual_survives_a_commit(name: str, dimension: int) -> None:
+    at = sample(dimension)
+    part, state = MAKERS[name](at), at.state(5)
+    rates = Weights(0.0, 1.0, 0.0, 0.0) if name != "inertia" else Weights(1.0, 0.0, 0.0, 0.0)
+    still = State(state.t, state.u, 0.0 * state.v, 0.0 * state.a)
+    before = forces_in_global_axes(at, still, part, rates)
+    at.line.commit(still)
+    after = forces_in_global_axes(
+        at, State(state.t, 0.0 * state.u, 0.0 * state.v, 0.0 * state.a), part, rates
+    )
+    assert np.abs(after - before).max() <= 1e-11 * max(np.abs(before).max(), 1.0)
+
+
+def forces_in_global_axes(at: Sample, state: State, part: Part, weights: Weights) -> Array:
+    """Residual with spatial moments instead of those conjugate to the rotation increment."""
+    out = at.line.nodal(residual([part], state, weights)).copy()
+    turn = at.line.trial(state).turn
+    if isinstance(turn, SpatialTurn):
+        out[:, 3:] = np.linalg.solve(np.swapaxes(turn.H, 1, 2), out[:, 3:, None])[..., 0]
+    return out
+
+
+@both_dimensions
+@pytest.mark.parametrize("name", ["beam", "inertia", "morison", "forces"])
+def test_element_forces_add_up_to_the_residual(name: str, dimension: int) -> None:
+    at = sample(dimension)
+    part, state = MAKERS[name](at), at.state(6)
+    total = np.zeros(at.line.size)
+    assert isinstance(part, Beam | Inertia | Morison | PointLoads)
+    at.line.scatter(element_residual(at.line, [part], state), total)
+    nodal = part.nodal_forces(state).ravel() if isinstance(part, PointLoads) else 0.0
+    assert total + nodal == pytest.approx(
+        residual([part], state, Weights(1.0, 1.0, 0.0, 0.0)), rel=1e-13, abs=1e-12
+    )
+
+
+@both_dimensions
+@every_part
+def test_parts_keep_to_their_slice(name: str, dimension: int) -> None:
+    near, far = sample(dimension), sample(dimension, offset=7)
+    state = near.state(1)
+    shifted = State(
+        state.t, *(np.concatenate([np.full(7, np.nan), x, [np.nan] * 2]) for x in (state.u, state.v, state.a))
+    )
+    forces = Forces.zeros(state.u.size + 9)
+    part = MAKERS[name](far)
+    part.residual(shifted, forces)
+    total = WEIGHTS.inertia * forces.inertia + WEIGHTS.force * forces.force
+    assert not np.any(total[:7])
+    assert not np.any(total[-2:])
+    assert total[7:-2] == pytest.approx(residual([MAKERS[name](near)], state, WEIGHTS), rel=1e-14)
+    assert all(block.rows.min() >= 7 for block in part.blocks().values())
+
+
+@both_dimensions
+def test_an_inactive_rank_adds_nothing(dimension: int) -> None:
+    at = sample(dimension)
+    parts = [make(at) for make in MAKERS.values()]
+    at.line.active = False
+    state = at.state(1)
+    assert not np.any(residual(parts, state, WEIGHTS))
+    assert all(part.blocks() == {} for part in parts)
+    assert all(part.energy(state).total == 0.0 for part in parts)
+    assert all(part.work(state, state).external == 0.0 for part in parts)

@@ -1,0 +1,67 @@
+"""Line types to element properties."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from riser_soil.errors import SceneError
+from riser_soil.part import State, Weights
+from riser_soil.riser.sections import LineType, Segment, Surroundings, elements, submerged_weight
+from tests.dense_chain import residual
+from tests.sample_line import sample
+
+FLEXIBLE = LineType(
+    EA=15.38e8, EI_y=20.96e3, EI_z=20.96e3, outer_diameter=0.26, inner_diameter=0.20, mass=57.5
+)
+FLOODED = Surroundings(gravity=9.81, contents=1025.0, water=1025.0)
+
+
+def test_submerged_weight_of_the_flexible_riser() -> None:
+    assert submerged_weight(FLEXIBLE, FLOODED) == pytest.approx(346.1, abs=0.05)
+
+
+def test_a_given_submerged_weight_wins() -> None:
+    assert submerged_weight(replace(FLEXIBLE, submerged_weight=364.2), FLOODED) == 364.2
+
+
+def test_in_air_nothing_floats() -> None:
+    assert submerged_weight(FLEXIBLE, Surroundings()) == pytest.approx(57.5 * 9.81)
+
+
+def test_segments_become_elements_in_order() -> None:
+    thin = replace(FLEXIBLE, EA=1.0, drag=(1.1, 0.1))
+    found = elements([Segment(FLEXIBLE, 10.0, 2), Segment(thin, 3.0, 3)], FLOODED)
+    assert found.arc.tolist() == [0.0, 5.0, 10.0, 11.0, 12.0, 13.0]
+    assert found.EA.tolist() == [15.38e8, 15.38e8, 1.0, 1.0, 1.0]
+    assert found.drag.tolist() == [[0.0, 0.0]] * 2 + [[1.1, 0.1]] * 3
+    assert found.mass[0] == pytest.approx(57.5 + 1025.0 * 0.25 * np.pi * 0.2**2)
+
+
+def test_no_segments_is_an_error() -> None:
+    with pytest.raises(SceneError, match="at least one"):
+        elements([], FLOODED)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_weight_adds_up_whatever_the_shape(dimension: int) -> None:
+    at = sample(dimension)
+    beam, state = at.beam(), at.state(1)
+    nodal = at.line.nodal(residual([beam], state, Weights(0.0, 1.0, 0.0, 0.0)))
+    down = at.elements.weight @ at.line.length
+    expected = np.array([12.0, -7.0, 3.0]) * 8.0 - [0.0, 0.0, down]
+    total = -nodal[:, :dimension].sum(axis=0)
+    assert total == pytest.approx((0.5 + 0.7) * expected @ at.line.basis, rel=1e-10)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_mass_adds_up(dimension: int) -> None:
+    at = sample(dimension)
+    a = np.zeros(at.line.size)
+    at.line.nodal(a)[:, :dimension] = np.arange(1.0, 1.0 + dimension)
+    state = State(0.0, 0.0 * a, 0.0 * a, a)
+    nodal = at.line.nodal(residual([at.inertia()], state, Weights(1.0, 0.0, 0.0, 0.0)))
+    total = at.elements.mass @ at.line.length
+    assert nodal[:, :dimension].sum(axis=0) == pytest.approx(total * np.arange(1.0, 1.0 + dimension))
