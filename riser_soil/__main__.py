@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from riser_soil import __version__
-from riser_soil.errors import RiserSoilError, SceneError
+from riser_soil.errors import MeshError, RiserSoilError, SceneError
 
 if TYPE_CHECKING:
     from riser_soil.scene.scene import Scene
@@ -48,7 +48,8 @@ def run(
         folder = _result_folder(scene, checked, output, force)
         from riser_soil.run import run as compute
 
-        compute(checked, folder, force)
+        with _placed(scene, overrides):
+            compute(checked, folder, force)
 
 
 @app.command()
@@ -58,7 +59,8 @@ def check(scene: SceneFile, overrides: Overrides = None) -> None:
         checked = _read(scene, overrides)
         from riser_soil.check import describe
 
-        text = describe(checked)
+        with _placed(scene, overrides):
+            text = describe(checked)
         if _rank() == 0:
             typer.echo(text)
 
@@ -86,6 +88,17 @@ def _result_folder(file: str, scene: "Scene", output: Path | None, force: bool) 
         raise SceneError(f"{folder}: is a file, not a folder; choose another result folder with -o FOLDER")
     refuse_finished(folder, force)
     return folder
+
+
+@contextmanager
+def _placed(file: str, overrides: list[str] | None) -> Iterator[None]:
+    """Parts that find a scene impossible know its keys; file and line are added here."""
+    try:
+        yield
+    except (SceneError, MeshError) as err:
+        from riser_soil.scene.reader import with_place
+
+        raise type(err)(with_place(str(err), file, overrides or ())) from err
 
 
 @contextmanager

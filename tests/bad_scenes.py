@@ -261,6 +261,46 @@ CONFLICTS = [
         "[0.0, 1.0, 1.5]",
         "dimension is 2",
     ),
+    Bad(
+        "initial: catenary",
+        "initial: unstressed",
+        18,
+        "riser.end.position",
+        "[80.0, 0.0, 100.0]",
+        "has its end at",
+    ),
+    Bad(
+        "initial: catenary",
+        "initial: {points: [[0, 0, 0.15], [1, 0, 1]]}",
+        18,
+        "riser.end.position",
+        "[80.0",
+        "has its end at",
+    ),
+    Bad(
+        "initial: catenary",
+        "initial: {points: [[0, 0, 0], [0, 0, 0]]}",
+        19,
+        "riser.initial.points",
+        "[[0, 0",
+        "coincide",
+    ),
+    Bad(
+        "initial: catenary",
+        "unstressed: {arc: {centre: [0, 0, 9], from: [0, 0, 0], angle_deg: 9, axis: [0, 1, 0]}}",
+        19,
+        "riser.unstressed.arc",
+        '{"centre"',
+        "1.41372 m long",
+    ),
+    Bad(
+        "initial: catenary",
+        "unstressed: {arc: {centre: [0, 0, 9], from: [0, 0, 0], angle_deg: 9, axis: [0, 0, 1]}}",
+        19,
+        "riser.unstressed.arc.from",
+        "[0, 0, 0]",
+        "axis",
+    ),
 ]
 
 NOT_YET = [

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterator
 
+from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
 from riser_soil.scene.problem import Problem, dotted, hint
@@ -16,6 +17,8 @@ from riser_soil.scene.stage_checks import stage_conflicts
 # A given unstressed shape may differ from the segments' length by this part; points leave out the curve.
 _ARC_TOLERANCE = 1e-3
 _POINTS_TOLERANCE = 0.05
+# Distance between an end's position and the initial shape, relative to the riser's length.
+_MEETING = 1e-6
 # Strain of a riser pulled straight between its ends beyond which the positions must be a mistake.
 _GREATEST_STRAIN = 0.1
 
@@ -151,11 +154,9 @@ def _unstressed_shape_fits(scene: Scene) -> Iterator[Problem]:
     shape, length = scene.riser.unstressed, scene.riser.length
     if isinstance(shape, ArcShape):
         yield from _same_length(("riser", "unstressed", "arc"), shape.arc.length, length, _ARC_TOLERANCE)
-        yield from _starts_at_support(scene, ("riser", "unstressed", "arc", "from"), shape.arc.from_point)
     if isinstance(shape, PointsShape):
         along = math.fsum(map(math.dist, shape.points, shape.points[1:]))
         yield from _same_length(("riser", "unstressed", "points"), along, length, _POINTS_TOLERANCE)
-        yield from _starts_at_support(scene, ("riser", "unstressed", "points", 0), shape.points[0])
 
 
 def _same_length(path: tuple[str, ...], along: float, length: float, tolerance: float) -> Iterator[Problem]:
@@ -164,24 +165,14 @@ def _same_length(path: tuple[str, ...], along: float, length: float, tolerance: 
         yield Problem(path, allowed, "correct the shape or the segments' lengths")
 
 
-def _starts_at_support(scene: Scene, path: tuple[str | int, ...], point: Vector) -> Iterator[Problem]:
-    start = scene.riser.start
-    if scene.riser.initial != "unstressed" or not isinstance(start, Support):
-        return
-    if math.dist(start.position, point) > 1e-6 * scene.riser.length:
-        yield Problem(
-            path, "must be riser.start.position, since initial is unstressed", "make the two points equal"
-        )
-
-
-def _points_run_between_the_ends(scene: Scene) -> Iterator[Problem]:
-    shape = scene.riser.initial
-    if not isinstance(shape, PointsShape):
-        return
-    for n, key, end in ((0, "start", scene.riser.start), (len(shape.points) - 1, "end", scene.riser.end)):
-        if isinstance(end, Support) and math.dist(end.position, shape.points[n]) > 1e-6 * scene.riser.length:
-            path = ("riser", "initial", "points", n)
-            yield Problem(path, f"must be riser.{key}.position", "make the two points equal")
+def _initial_shape_meets_the_supports(scene: Scene) -> Iterator[Problem]:
+    ends = {"start": scene.riser.start, "end": scene.riser.end}
+    for (key, end), point in zip(ends.items(), initial_ends(scene.riser), strict=True):
+        if isinstance(end, Support) and math.dist(end.position, point) > _MEETING * scene.riser.length:
+            place = ", ".join(f"{x:.6g}" for x in point)
+            allowed = f"the riser's initial shape has its {key} at [{place}]"
+            remedy = "make the two equal, or choose another initial shape (straight, catenary, points)"
+            yield Problem(("riser", key, "position"), allowed, remedy)
 
 
 def _passes_over_block(scene: Scene) -> Iterator[Problem]:
@@ -218,7 +209,7 @@ _CHECKS: tuple[_Check, ...] = (
     _initial_shape_possible,
     _long_enough,
     _unstressed_shape_fits,
-    _points_run_between_the_ends,
+    _initial_shape_meets_the_supports,
     _passes_over_block,
     stage_conflicts,
 )

@@ -11,6 +11,7 @@ from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.shapes import ArcShape, PointsShape
 from riser_soil.scene.stages import DynamicStage, StaticStage
+from riser_soil.scene.vectors import cross, dot, minus, plus
 
 # Relative distance from the plane that round-off may leave.
 _FLAT = 1e-9
@@ -30,10 +31,10 @@ class Plane:
 
     def offset(self, vector: Vector) -> float:
         """Component of a vector across the plane."""
-        return _dot(self.normal, vector)
+        return dot(self.normal, vector)
 
     def holds_point(self, point: Vector) -> bool:
-        arm = _minus(point, self.origin)
+        arm = minus(point, self.origin)
         return abs(self.offset(arm)) <= _FLAT * max(1.0, math.hypot(*arm))
 
     def holds_vector(self, vector: Vector) -> bool:
@@ -42,7 +43,7 @@ class Plane:
     def holds_axis(self, axis: Vector) -> bool:
         """Whether a rotation or moment about the axis stays in the plane."""
         along = self.offset(axis)
-        across = _minus(axis, (along * self.normal[0], along * self.normal[1], 0.0))
+        across = minus(axis, (along * self.normal[0], along * self.normal[1], 0.0))
         return math.hypot(*across) <= _FLAT * math.hypot(*axis)
 
 
@@ -77,12 +78,12 @@ def _ends(scene: Scene) -> tuple[Vector, ...]:
         return riser.unstressed.points
     if isinstance(riser.unstressed, ArcShape):
         arc = riser.unstressed.arc
-        return arc.from_point, _plus(arc.from_point, _cross(arc.axis, (0.0, 0.0, 1.0)))
+        return arc.from_point, plus(arc.from_point, cross(arc.axis, (0.0, 0.0, 1.0)))
     return held or ((0.0, 0.0, 0.0),)
 
 
 def _direction(points: tuple[Vector, ...]) -> Vector:
-    chord = _minus(points[-1], points[0])
+    chord = minus(points[-1], points[0])
     span = math.hypot(chord[0], chord[1])
     if span <= _FLAT * math.hypot(*chord) or span == 0.0:
         return (1.0, 0.0, 0.0)
@@ -126,19 +127,3 @@ def _axes(scene: Scene) -> Iterator[tuple[Path, Vector]]:
                 yield ("stages", n, "loads", m, "moment"), load.moment
     if isinstance(scene.riser.unstressed, ArcShape):
         yield ("riser", "unstressed", "arc", "axis"), scene.riser.unstressed.arc.axis
-
-
-def _dot(a: Vector, b: Vector) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _cross(a: Vector, b: Vector) -> Vector:
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-
-
-def _plus(a: Vector, b: Vector) -> Vector:
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
-
-
-def _minus(a: Vector, b: Vector) -> Vector:
-    return a[0] - b[0], a[1] - b[1], a[2] - b[2]

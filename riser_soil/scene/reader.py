@@ -1,5 +1,6 @@
 """From a scene file to a checked scene."""
 
+import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,17 @@ def read_scene(file: str | Path, overrides: Sequence[str] = ()) -> Scene:
 def scene_from_mapping(data: dict[str, Any], folder: Path = Path()) -> Scene:
     """A scene from plain data as a file would give it; relative file names are sought in `folder`."""
     return _checked(Document("scene", data), folder)
+
+
+def with_place(message: str, file: str | Path, overrides: Sequence[str] = ()) -> str:
+    """A message that begins with a path of the scene, as the parts write it, after the place of that path."""
+    words = re.split(r"[^\w.]", message, maxsplit=1)[0].split(".")
+    if words[0] not in Scene.model_fields:
+        return message
+    document = parse(read_text(Path(file)), str(file))
+    override(document, overrides)
+    _, place = document.where(tuple(int(word) if word.isdecimal() else word for word in words))
+    return f"{place}: {message}"
 
 
 def _checked(document: Document, folder: Path) -> Scene:

@@ -1,6 +1,7 @@
 """Shapes of the whole riser: unstressed, and at the beginning of the run."""
 
 import math
+from itertools import pairwise
 from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
@@ -16,6 +17,12 @@ class PointsShape(BaseModel):
     points: tuple[Vector, ...] = Field(
         min_length=2, description="points from start to end, [[x, y, z], ...] [m]"
     )
+
+    @model_validator(mode="after")
+    def _goes_on(self) -> Self:
+        if any(a == b for a, b in pairwise(self.points)):
+            raise wrong("points", "two points in a row must not coincide", "remove one of the two")
+        return self
 
 
 class Arc(BaseModel):

@@ -97,6 +97,22 @@ def test_exit_status_tells_the_kind_of_failure(invoke: Invoke, failure: RiserSoi
     assert result.stdout == ""
 
 
+@pytest.mark.parametrize(
+    ("message", "options", "told"),
+    [
+        ("riser.initial: catenary: too short", (), f"{SCENE}:21: riser.initial: catenary: too short"),
+        ("riser: too long", (), f"{SCENE}:15: riser: too long"),
+        ("gravity = 3: no", ("--set", "gravity=3"), "--set gravity=3: gravity = 3: no"),
+        ("folder: is full", (), "folder: is full"),
+    ],
+)
+def test_problems_found_by_the_parts_get_their_place(
+    invoke: Invoke, message: str, options: tuple[str, ...], told: str
+) -> None:
+    result, _ = invoke("run", str(SCENE), *options, failure=SceneError(message))
+    assert result.stderr == f"{told}\n"
+
+
 def test_unexpected_errors_keep_their_traceback(invoke: Invoke) -> None:
     result, _ = invoke("run", str(SCENE), failure=ZeroDivisionError("bug"))
     assert isinstance(result.exception, ZeroDivisionError)

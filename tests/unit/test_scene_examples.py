@@ -13,6 +13,7 @@ from riser_soil import __version__
 from riser_soil.__main__ import app
 from riser_soil.record import FIELDS
 from riser_soil.scene.dump import dump_scene
+from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.output import ALL_FIELDS
 from riser_soil.scene.plane import resolved_dimension, vertical_plane
 from riser_soil.scene.reader import read_scene, scene_from_mapping
@@ -162,19 +163,42 @@ def test_what_can_be_touched_brings_contact() -> None:
     assert catenary_with("seabed={kind: rigid, level: -200.0}").contact is not None
 
 
-def test_initial_follows_from_ends_and_gravity() -> None:
-    held = {"position": [0.0, 0.0, 0.0]}
+@pytest.mark.parametrize(
+    ("gravity", "end", "initial"),
+    [(9.81, 10.0, "catenary"), (0.0, 20.0, "unstressed"), (9.81, None, "unstressed")],
+)
+def test_initial_follows_from_ends_and_gravity(gravity: float, end: float | None, initial: str) -> None:
     scene = {
+        "gravity": gravity,
         "line_types": {"a": {"EA": 1e6, "EI": 1e3, "mass": 1.0, "GJ": 1e3}},
         "riser": {
             "segments": [{"line_type": "a", "length": 20, "elements": 2}],
-            "start": held,
-            "end": {"position": [10.0, 0.0, 0.0]},
+            "start": {"position": [0.0, 0.0, 0.0]},
+            "end": "free" if end is None else {"position": [end, 0.0, 0.0]},
         },
         "stages": [{"name": "a", "kind": "static"}],
     }
-    assert scene_from_mapping(scene).riser.initial == "catenary"
-    assert scene_from_mapping({**scene, "gravity": 0.0}).riser.initial == "unstressed"
+    assert scene_from_mapping(scene).riser.initial == initial
+
+
+@pytest.mark.parametrize(
+    ("overrides", "ends"),
+    [
+        ((), ((0, 0, 0), (70.710678, 29.289322, 0))),
+        (("riser.unstressed.arc.axis=[0, 0, -3]",), ((0, 0, 0), (-70.710678, 29.289322, 0))),
+        (("riser.unstressed=straight",), ((0, 0, 0), (78.539816, 0, 0))),
+        (("riser.unstressed={points: [[0, 0, 0], [0, 78, 0]]}",), ((0, 0, 0), (0, 78, 0))),
+        (("riser.initial={points: [[0, 0, 0], [0, 0, 78]]}",), ((0, 0, 0), (0, 0, 78))),
+        (
+            ("riser.initial=straight", "riser.unstressed=straight", "riser.end={position: [0, 78, 0]}"),
+            ((0, 0, 0), (0, 78, 0)),
+        ),
+    ],
+)
+def test_initial_shape_has_its_ends_where_they_are_held(overrides: tuple[str, ...], ends: Any) -> None:
+    start, end = initial_ends(read_scene(SCENES["bend"], overrides).riser)
+    assert start == pytest.approx(ends[0], abs=1e-6)
+    assert end == pytest.approx(ends[1], abs=1e-6)
 
 
 def test_mesh_file_is_sought_beside_the_scene(tmp_path: Path) -> None:
