@@ -21,20 +21,23 @@ _CELL_TYPES = {4: pv.CellType.TETRA, 8: pv.CellType.HEXAHEDRON, 10: pv.CellType.
 _MOMENT = "bending moment [kN m]"
 _STRESS = "von Mises stress [kPa]"
 # Unless told, the soil's largest displacement is drawn as about this share of the soil's depth.
-_VISIBLE_SHARE = 0.2
+_VISIBLE_SHARE = 0.1
+# Upper ends of colour scales within a decade, each with the number of labels that makes round steps.
+_SCALES = ((1, 6), (1.2, 5), (1.6, 5), (2, 5), (3, 4), (4, 5), (5, 6), (6, 4), (8, 5), (10, 6))
 _UP = np.array([0.0, 0.0, 1.0])
 _MOMENT_COLOURS, _STRESS_COLOURS = "viridis", "YlOrBr"
 
 
 @dataclass(frozen=True, eq=False)
 class _Still:
-    """What is drawn of one instant: the axis (nn, 3) m, the moment (nn,) N.m, and the touchdown point (3,) m.
+    """What is drawn of one instant: arc (nn,) m, axis (nn, 3) m, moment (nn,) N.m, touchdown point (3,) m.
 
     Where nothing touches, the riser's lowest point stands in for the touchdown point, and its arc is nan.
     """
 
     title: str
     time: float
+    arc: Array
     position: Array
     moment: Array
     radius: float
@@ -73,15 +76,16 @@ def _read(run: Run) -> _Still:
         raise ResultsError(f"{run.folder}: nothing was recorded, so there is nothing to draw")
     frame = run.soil_frame() if run.has_soil and run.soil_times.size else None
     at = -1 if frame is None else int(np.abs(run.time - frame.time).argmin())
-    position, arc = run["position"][at], float(run["touchdown_arc"][at])
+    position, touchdown_arc = run["position"][at], float(run["touchdown_arc"][at])
     return _Still(
         title=run.summary["title"],
         time=float(run.time[at]),
+        arc=run.arc,
         position=position,
         moment=run["bending_moment"][at],
         radius=_radius(run),
-        touchdown=_touchdown(arc, run.arc, position),
-        touchdown_arc=arc,
+        touchdown=_touchdown(touchdown_arc, run.arc, position),
+        touchdown_arc=touchdown_arc,
         soil=None if frame is None else _grid(frame),
     )
 
@@ -102,6 +106,11 @@ def _touchdown(arc_length: float, arc: Array, position: Array) -> Array:
 
 
 def _grid(frame: SoilFrame) -> pv.UnstructuredGrid:
+    missing = {"displacement", "von_mises_stress"} - frame.fields.keys()
+    if missing:
+        raise ResultsError(
+            f"the picture needs {min(missing)}: add it to output.fields of the scene and run again"
+        )
     grid = pv.UnstructuredGrid({_CELL_TYPES[frame.cells.shape[1]]: frame.cells}, frame.points)
     grid.point_data["displacement"] = frame.fields["displacement"]
     grid.cell_data[_STRESS] = 1e-3 * frame.fields["von_mises_stress"]
@@ -134,7 +143,7 @@ def _draw_close(plotter: pv.Plotter, still: _Still, factor: float) -> None:
     else:
         opened = still.soil.clip(normal=-side, origin=still.touchdown)
         _add_soil(plotter, opened.warp_by_vector("displacement", factor=factor))
-        _add_tube(plotter, still.position + (factor - 1.0) * _sunk(still.soil, still.position), still)
+        _add_tube(plotter, still.position + (factor - 1.0) * _sunk(still.soil, still), still)
     plotter.add_text(_caption(still, factor), position="upper_left", font_size=12, color="black")
     if not math.isnan(still.touchdown_arc):
         _mark(
@@ -159,28 +168,35 @@ def _caption(still: _Still, factor: float) -> str:
     words = f"{still.title}\nt = {still.time:.4g} s"
     if still.soil is None:
         return words
-    return f"{words}\nsoil cut open along the riser; its deformation is drawn \u00d7 {factor:g}"
+    return f"{words}\nsoil cut open along the riser; its deformation is drawn \u00d7 {factor:g} and carries it along"
 
 
 def _add_soil(plotter: pv.Plotter, soil: pv.UnstructuredGrid) -> None:
+    top, labels = colour_scale(soil.cell_data[_STRESS])
     plotter.add_mesh(
         soil,
         scalars=_STRESS,
         cmap=_STRESS_COLOURS,
-        clim=(0.0, round_up(soil.cell_data[_STRESS])),
+        clim=(0.0, top),
         show_edges=True,
         edge_opacity=0.25,
         ambient=0.55,
         diffuse=0.5,
-        scalar_bar_args=_bar(_STRESS, 0.55),
+        scalar_bar_args=_bar(_STRESS, 0.55, labels),
     )
 
 
-def _sunk(soil: pv.UnstructuredGrid, position: Array) -> Array:
-    """The soil's displacement (nn, 3) m under each node of the riser; 0 beside the block."""
+def _sunk(soil: pv.UnstructuredGrid, still: _Still) -> Array:
+    """The soil's displacement (nn, 3) m under each node of the riser; 0 beside the block.
+
+    Averaged along a few diameters: magnified, the soil's steps from cell to cell would kink the pipe.
+    """
     inside = soil.bounds[5] - 1e-6 * soil.length
-    below = pv.PolyData(np.column_stack([position[:, :2], np.full(len(position), inside)]))
-    return np.asarray(below.sample(soil).point_data["displacement"])
+    below = pv.PolyData(np.column_stack([still.position[:, :2], np.full(len(still.position), inside)]))
+    under = np.asarray(below.sample(soil).point_data["displacement"])
+    apart = (still.arc[:, None] - still.arc) / (6.0 * still.radius)
+    weights = np.exp(-(apart**2))
+    return np.asarray(weights @ under / weights.sum(axis=1, keepdims=True))
 
 
 def _reach(still: _Still) -> float:
@@ -192,13 +208,14 @@ def _reach(still: _Still) -> float:
 
 
 def _add_tube(plotter: pv.Plotter, position: Array, still: _Still) -> None:
+    top, labels = colour_scale(1e-3 * still.moment)
     plotter.add_mesh(
         _tube(position, still.moment, still.radius),
         scalars=_MOMENT,
         cmap=_MOMENT_COLOURS,
-        clim=(0.0, round_up(1e-3 * still.moment)),
+        clim=(0.0, top),
         smooth_shading=True,
-        scalar_bar_args=_bar(_MOMENT, 0.05),
+        scalar_bar_args=_bar(_MOMENT, 0.05, labels),
     )
 
 
@@ -208,18 +225,24 @@ def _tube(position: Array, moment: Array, radius: float) -> pv.PolyData:
     return line.tube(radius=radius, n_sides=24)
 
 
-def round_up(values: Array) -> float:
-    """Upper end of a colour scale: the largest value rounded up to two digits; 1 where all is zero."""
+def colour_scale(values: Array) -> tuple[float, int]:
+    """Upper end of a colour scale from 0 that holds all values, and how many labels make it read well."""
     largest = float(values.max(initial=0.0))
     if not largest > 0.0:
-        return 1.0
-    unit = 10.0 ** (math.floor(math.log10(largest)) - 1)
-    return unit * math.ceil(largest / unit - 1e-9)
+        return 1.0, 2
+    decade = 10.0 ** math.floor(math.log10(largest))
+    return next((top * decade, labels) for top, labels in _SCALES if top * decade >= largest * (1.0 - 1e-9))
 
 
-def _bar(title: str, left: float) -> dict[str, object]:
+def _bar(title: str, left: float, labels: int) -> dict[str, object]:
     place = {"position_x": left, "position_y": 0.03, "width": 0.4, "height": 0.11}
-    fonts = {"title_font_size": 22, "label_font_size": 18, "color": "black", "fmt": "%.3g", "n_labels": 5}
+    fonts = {
+        "title_font_size": 22,
+        "label_font_size": 18,
+        "color": "black",
+        "fmt": "%.3g",
+        "n_labels": labels,
+    }
     # The blank line keeps the title clear of the labels.
     return {"title": title + "\n", **place, **fonts}
 

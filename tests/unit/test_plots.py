@@ -1,6 +1,5 @@
 """Pictures from result files, looked at by their pixels."""
 
-import math
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +7,7 @@ import pytest
 from PIL import Image
 
 from riser_soil.errors import ResultsError
-from riser_soil.plots import picture, round_up
+from riser_soil.plots import colour_scale, picture
 from riser_soil.record import Recorder
 from tests.recorded_run import FACTS, SCENE, block, record
 
@@ -52,8 +51,14 @@ def test_nothing_recorded_is_said(tmp_path: Path) -> None:
         picture(tmp_path, tmp_path / "nothing.png")
 
 
-def test_colour_scales_end_at_round_numbers() -> None:
-    assert round_up(np.array([0.0, 1531.0])) == pytest.approx(1600.0)
-    assert round_up(np.array([3.0])) == pytest.approx(3.0)
-    assert round_up(np.zeros(2)) == 1.0
-    assert math.isfinite(round_up(np.array([])))
+def test_a_field_left_out_of_the_run_is_named(tmp_path: Path) -> None:
+    record(tmp_path, mesh=block(4, 3, 2), fields=("bending_moment", "von_mises_stress"))
+    with pytest.raises(ResultsError, match=r"needs displacement: add it to output\.fields"):
+        picture(tmp_path, tmp_path / "no.png")
+
+
+@pytest.mark.parametrize(
+    ("largest", "scale"), [(1531.0, (1600.0, 5)), (3.0, (3.0, 4)), (0.0095, (0.01, 6)), (0.0, (1.0, 2))]
+)
+def test_colour_scales_end_at_round_numbers(largest: float, scale: tuple[float, int]) -> None:
+    assert colour_scale(np.array([0.0, largest])) == pytest.approx(scale)
