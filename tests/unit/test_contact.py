@@ -336,7 +336,7 @@ def test_pattern_is_outgrown_and_rebuilt() -> None:
     assert case.contact.blocks()["contact.plane"].shape == (3, 3, 3)
     u = np.zeros(case.size)
     u[case.riser.translation_dofs[2, 2]] = -1.01
-    assert not case.dense_tangent(u)[case.riser.translation_dofs[2, 2]].any()
+    np.testing.assert_array_equal(case.dense_tangent(u), case.dense_tangent(np.zeros(case.size)))
     assert case.outgrows(u)
     case.contact.rebuild(case.state())
     assert not case.outgrows(u), "the node that was missed belongs to the new pattern"
