@@ -168,7 +168,8 @@ def _caption(still: _Still, factor: float) -> str:
     words = f"{still.title}\nt = {still.time:.4g} s"
     if still.soil is None:
         return words
-    return f"{words}\nsoil cut open along the riser; its deformation is drawn \u00d7 {factor:g} and carries it along"
+    words += "\nsoil cut open along the riser"
+    return f"{words}; its deformation is drawn \u00d7 {factor:g} and carries it along"
 
 
 def _add_soil(plotter: pv.Plotter, soil: pv.UnstructuredGrid) -> None:
