@@ -144,12 +144,12 @@ def _stretched(rope: Rope, a: float, s0: float) -> tuple[float, float]:
     """Newton from the inextensible catenary to the elastic one, in log(a) and s0."""
     for _ in range(50):
         misfit, jacobian = _misfit(rope, a, s0)
-        if np.linalg.norm(misfit) < 1e-13 * rope.L:
-            break
+        if np.linalg.norm(misfit) < 1e-12 * rope.L:
+            return float(a), float(s0)
         step = np.linalg.solve(jacobian, -misfit)
-        step *= min(1.0, 1.0 / abs(step[0]), rope.L / abs(step[1])) if np.all(step) else 1.0
+        step /= max(1.0, abs(step[0]), abs(step[1]) / rope.L)
         a, s0 = a * np.exp(step[0]), s0 + step[1]
-    return float(a), float(s0)
+    raise SceneError("riser.initial: catenary: found none between the ends; give initial points")
 
 
 def _misfit(rope: Rope, a: float, s0: float) -> tuple[Array, Array]:
