@@ -2,6 +2,7 @@
 
 import os
 import sys
+import time
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,6 +16,9 @@ from riser_soil.errors import MeshError, RiserSoilError, SceneError
 
 if TYPE_CHECKING:
     from riser_soil.scene.scene import Scene
+
+# Seconds that a rank leaves to the first one to tell an error that both have met.
+_PATIENCE = 5.0
 
 app = typer.Typer(
     help="Static and dynamic analysis of a riser on the seabed.",
@@ -103,30 +107,47 @@ def _placed(file: str, overrides: list[str] | None) -> Iterator[None]:
 
 @contextmanager
 def _expected_errors() -> Iterator[None]:
-    """Tell expected errors by their message alone, on the first rank; every rank leaves with their status."""
+    """Tell expected errors by their message alone and leave with their status."""
     try:
         yield
     except RiserSoilError as err:
-        if _rank() == 0:
-            typer.echo(str(err), err=True)
+        _tell_once(str(err))
+        _end_other_ranks(err.exit_status)
         raise typer.Exit(err.exit_status) from err
     except Exception:
-        _abort_other_ranks()
+        if _size() > 1:
+            traceback.print_exc()
+        _end_other_ranks(1)
         raise
 
 
 def _rank() -> int:
     """This process's number under mpirun, without importing MPI; 0 alone."""
-    names = ("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK")
-    return next((int(os.environ[name]) for name in names if os.environ.get(name, "").isdecimal()), 0)
+    return _from_environment("OMPI_COMM_WORLD_RANK", "PMI_RANK") or 0
 
 
-def _abort_other_ranks() -> None:
-    """After an unexpected error: ranks that wait for this one would wait for ever."""
+def _size() -> int:
+    """Number of processes under mpirun, without importing MPI; 1 alone."""
+    return _from_environment("OMPI_COMM_WORLD_SIZE", "PMI_SIZE") or 1
+
+
+def _from_environment(*names: str) -> int | None:
+    return next((int(os.environ[name]) for name in names if os.environ.get(name, "").isdecimal()), None)
+
+
+def _tell_once(message: str) -> None:
+    """Print an error. As a rule all ranks meet it: the first tells it and ends the job, the others wait."""
+    if _rank() > 0:
+        time.sleep(_PATIENCE)
+    typer.echo(message, err=True)
+
+
+def _end_other_ranks(status: int) -> None:
+    """Ranks that wait in a collective call for this one would wait for ever."""
     mpi = sys.modules.get("mpi4py.MPI")
-    if mpi is not None and mpi.COMM_WORLD.size > 1:
-        traceback.print_exc()
-        mpi.COMM_WORLD.Abort(1)
+    if mpi is not None and _size() > 1:
+        sys.stderr.flush()
+        mpi.COMM_WORLD.Abort(status)
 
 
 def _print_version(wanted: bool) -> None:

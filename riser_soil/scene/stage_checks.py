@@ -67,7 +67,7 @@ def _static(scene: Scene, n: int, stage: StaticStage) -> Iterator[Problem]:
     elif _swings_freely(scene):
         remedy = "set rotation: fixed or a stiffness, hold the other end, or let gravity act"
         yield Problem(
-            ("stages", n), "a riser held at one freely rotating end, without gravity, has none", remedy
+            ("stages", n), "held at one freely rotating end, without gravity, it has no equilibrium", remedy
         )
     if stage.move:
         targets = {"start": stage.move.start, "end": stage.move.end}

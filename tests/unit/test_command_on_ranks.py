@@ -1,0 +1,71 @@
+"""Failures under mpirun: told once, and no rank is left waiting."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SCENE = ROOT / "tests/scenes/catenary.yaml"
+
+# The command with a computation that fails on some ranks while the others wait in a collective call.
+DRIVER = f"""
+import sys
+from types import SimpleNamespace
+from mpi4py import MPI
+import riser_soil.__main__ as command
+from riser_soil.errors import SolveError
+
+def compute(scene, folder, force):
+    if MPI.COMM_WORLD.rank in FAILING:
+        raise FAILURE
+    MPI.COMM_WORLD.Barrier()
+
+command._PATIENCE = 0.5
+sys.modules["riser_soil.run"] = SimpleNamespace(run=compute)
+sys.argv = ["riser-soil", "run", {str(SCENE)!r}]
+command.main()
+"""
+
+
+def mpirun(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
+    environment = os.environ | {
+        "OMP_NUM_THREADS": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        "OMPI_MCA_rmaps_base_oversubscribe": "1",
+        "OMPI_MCA_mpi_yield_when_idle": "1",
+        "PYTHONPATH": str(ROOT),
+    }
+    call = ["mpirun", "-n", "2", "--bind-to", "none", sys.executable, *command]
+    return subprocess.run(
+        call, cwd=folder, env=environment, capture_output=True, text=True, timeout=60, check=False
+    )
+
+
+def test_wrong_scene_is_told_once(tmp_path: Path) -> None:
+    (tmp_path / "case.yaml").write_text("title: [\n", encoding="utf-8")
+    done = mpirun(tmp_path, "-m", "riser_soil", "run", "case.yaml")
+    assert done.returncode == 2
+    assert done.stderr.count("case.yaml:2: not valid YAML") == 1
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("failing", ["(0, 1)", "(0,)", "(1,)"])
+def test_failed_solve_ends_all_ranks_and_is_told_once(failing: str, tmp_path: Path) -> None:
+    script = DRIVER.replace("FAILING", failing).replace("FAILURE", "SolveError('no convergence at arc 24 m')")
+    done = mpirun(tmp_path, "-c", script)
+    assert done.returncode == 3
+    assert done.stderr.count("no convergence at arc 24 m") == 1
+    assert "Traceback" not in done.stderr
+
+
+def test_unexpected_error_of_one_rank_ends_all(tmp_path: Path) -> None:
+    script = DRIVER.replace("FAILING", "(1,)").replace("FAILURE", "ZeroDivisionError('bug')")
+    done = mpirun(tmp_path, "-c", script)
+    assert done.returncode == 1
+    assert "ZeroDivisionError: bug" in done.stderr
