@@ -1,5 +1,7 @@
 """Pictures from result files, looked at by their pixels."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -7,7 +9,8 @@ import pytest
 from PIL import Image
 
 from riser_soil.errors import ResultsError
-from riser_soil.plots import colour_scale, picture
+from riser_soil.plots import picture
+from riser_soil.plots.scales import colour_scale, magnification
 from riser_soil.record import Recorder
 from tests.recorded_run import FACTS, SCENE, block, record
 
@@ -51,6 +54,29 @@ def test_nothing_recorded_is_said(tmp_path: Path) -> None:
         picture(tmp_path, tmp_path / "nothing.png")
 
 
+def test_drawing_works_after_dolfinx_and_imports_no_vtk(tmp_path: Path) -> None:
+    record(tmp_path, mesh=block(4, 3, 2))
+    code = (
+        "import sys, dolfinx\n"
+        "from riser_soil.plots import picture\n"
+        f"picture({str(tmp_path)!r}, {str(tmp_path / 'a.png')!r})\n"
+        "assert not {'pyvista', 'vtk', 'vtkmodules', 'matplotlib'} & set(sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+    assert (tmp_path / "a.png").is_file()
+
+
+def test_a_picture_that_cannot_be_written(tmp_path: Path) -> None:
+    record(tmp_path)
+    with pytest.raises(ResultsError, match="nowhere"):
+        picture(tmp_path, tmp_path / "nowhere" / "a.png")
+
+
+def test_no_run_is_said(tmp_path: Path) -> None:
+    with pytest.raises(ResultsError, match="not the folder of a run"):
+        picture(tmp_path, tmp_path / "a.png")
+
+
 def test_a_field_left_out_of_the_run_is_named(tmp_path: Path) -> None:
     record(tmp_path, mesh=block(4, 3, 2), fields=("bending_moment", "von_mises_stress"))
     with pytest.raises(ResultsError, match=r"needs displacement: add it to output\.fields"):
@@ -62,3 +88,10 @@ def test_a_field_left_out_of_the_run_is_named(tmp_path: Path) -> None:
 )
 def test_colour_scales_end_at_round_numbers(largest: float, scale: tuple[float, int]) -> None:
     assert colour_scale(np.array([0.0, largest])) == pytest.approx(scale)
+
+
+@pytest.mark.parametrize(
+    ("largest", "factor"), [(0.04, 5.0), (0.00137, 100.0), (0.25, 1.0), (3.0, 1.0), (0.0, 1.0)]
+)
+def test_soil_is_magnified_by_a_round_factor(largest: float, factor: float) -> None:
+    assert magnification(largest, depth=2.5) == factor

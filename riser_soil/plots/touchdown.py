@@ -1,8 +1,9 @@
-"""Pictures of a run, drawn off screen from the files in its folder."""
+"""Draws the touchdown zone off screen: python -m riser_soil.plots.touchdown FOLDER PNG [MAGNIFY]."""
 
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,16 +15,13 @@ from ruamel.yaml.error import YAMLError
 from riser_soil.arrays import Array
 from riser_soil.errors import ResultsError
 from riser_soil.folder import SCENE
+from riser_soil.plots.scales import colour_scale, magnification
 from riser_soil.results import Run, SoilFrame
 
 _SIZE = (1600, 900)
 _CELL_TYPES = {4: pv.CellType.TETRA, 8: pv.CellType.HEXAHEDRON, 10: pv.CellType.QUADRATIC_TETRA}
 _MOMENT = "bending moment [kN m]"
 _STRESS = "von Mises stress [kPa]"
-# Unless told, the soil's largest displacement is drawn as about this share of the soil's depth.
-_VISIBLE_SHARE = 0.1
-# Upper ends of colour scales within a decade, each with the number of labels that makes round steps.
-_SCALES = ((1, 6), (1.2, 5), (1.6, 5), (2, 5), (3, 4), (4, 5), (5, 6), (6, 4), (8, 5), (10, 6))
 _UP = np.array([0.0, 0.0, 1.0])
 _MOMENT_COLOURS, _STRESS_COLOURS = "viridis", "YlOrBr"
 
@@ -46,14 +44,8 @@ class _Still:
     soil: pv.UnstructuredGrid | None
 
 
-def picture(folder: Path | str, png: Path | str, magnify: float | None = None) -> Path:
-    """Draws the last recorded instant: the touchdown zone from close by, and the whole riser beside it.
-
-    The riser is coloured by bending moment, the soil by von Mises stress. The soil is cut open along the
-    riser, and its displacement is drawn `magnify` times (None: by a round factor that makes it visible); the
-    riser sinks with it.
-    Raises ResultsError when nothing was recorded.
-    """
+def draw(folder: Path, png: Path, magnify: float | None = None) -> None:
+    """Writes the picture; see `riser_soil.plots.picture`."""
     still = _read(Run(folder))
     factor = _factor(still.soil) if magnify is None else magnify
     # VTK tries a display first and warns when there is none, although it then draws without.
@@ -68,7 +60,17 @@ def picture(folder: Path | str, png: Path | str, magnify: float | None = None) -
         _draw_whole(plotter, still)
         plotter.screenshot(str(png))
         plotter.close()
-    return Path(png)
+
+
+def main(arguments: list[str]) -> int:
+    """FOLDER PNG [MAGNIFY]; a failure is one line on standard error."""
+    folder, png, *factor = arguments
+    try:
+        draw(Path(folder), Path(png), float(factor[0]) if factor else None)
+    except (ResultsError, OSError) as err:
+        print(err, file=sys.stderr)
+        return 1
+    return 0
 
 
 def _read(run: Run) -> _Still:
@@ -118,14 +120,10 @@ def _grid(frame: SoilFrame) -> pv.UnstructuredGrid:
 
 
 def _factor(soil: pv.UnstructuredGrid | None) -> float:
-    """A round factor (1, 2, 5, 10, ...) that makes the largest displacement visible."""
     if soil is None:
         return 1.0
     largest = float(np.linalg.norm(soil.point_data["displacement"], axis=1).max())
-    depth = soil.bounds[5] - soil.bounds[4]
-    wanted = _VISIBLE_SHARE * depth / largest if largest > 0.0 else 1.0
-    decade = 10.0 ** math.floor(math.log10(max(1.0, wanted)))
-    return decade * max(m for m in (1.0, 2.0, 5.0) if m * decade <= max(1.0, wanted))
+    return magnification(largest, soil.bounds[5] - soil.bounds[4])
 
 
 def _along(position: Array) -> Array:
@@ -226,15 +224,6 @@ def _tube(position: Array, moment: Array, radius: float) -> pv.PolyData:
     return line.tube(radius=radius, n_sides=24)
 
 
-def colour_scale(values: Array) -> tuple[float, int]:
-    """Upper end of a colour scale from 0 that holds all values, and how many labels make it read well."""
-    largest = float(values.max(initial=0.0))
-    if not largest > 0.0:
-        return 1.0, 2
-    decade = 10.0 ** math.floor(math.log10(largest))
-    return next((top * decade, labels) for top, labels in _SCALES if top * decade >= largest * (1.0 - 1e-9))
-
-
 def _bar(title: str, left: float, labels: int) -> dict[str, object]:
     place = {"position_x": left, "position_y": 0.03, "width": 0.4, "height": 0.11}
     fonts = {
@@ -265,3 +254,7 @@ def _draw_whole(plotter: pv.Plotter, still: _Still) -> None:
     plotter.camera.up = _UP
     plotter.reset_camera()
     plotter.camera.zoom(1.25)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,29 @@
+"""Round numbers for colour bars and magnified deformations."""
+
+from __future__ import annotations
+
+import math
+
+from riser_soil.arrays import Array
+
+# Upper ends of colour scales within a decade, each with the number of labels that makes round steps.
+_TOPS = ((1, 6), (1.2, 5), (1.6, 5), (2, 5), (3, 4), (4, 5), (5, 6), (6, 4), (8, 5), (10, 6))
+_FACTORS = (5.0, 2.0, 1.0)
+# A magnified displacement that is this share of the body's depth is well visible, and not absurd.
+_VISIBLE_SHARE = 0.1
+
+
+def colour_scale(values: Array) -> tuple[float, int]:
+    """Upper end of a colour scale from 0 that holds all values, and how many labels make it read well."""
+    largest = float(values.max(initial=0.0))
+    if not largest > 0.0:
+        return 1.0, 2
+    decade = 10.0 ** math.floor(math.log10(largest))
+    return next((top * decade, labels) for top, labels in _TOPS if top * decade >= largest * (1.0 - 1e-9))
+
+
+def magnification(largest: float, depth: float) -> float:
+    """Factor 1, 2, 5, 10, ... that draws the largest displacement [m] visibly on a body of this depth [m]."""
+    wanted = max(1.0, _VISIBLE_SHARE * depth / largest) if largest > 0.0 else 1.0
+    decade = 10.0 ** math.floor(math.log10(wanted))
+    return next(factor * decade for factor in _FACTORS if factor * decade <= wanted * (1.0 + 1e-9))
