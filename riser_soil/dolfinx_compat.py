@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import importlib
 import logging
-import os
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +15,7 @@ from typing import Any
 
 import dolfinx
 import numpy as np
-from dolfinx import fem
+from dolfinx import fem, jit
 from mpi4py import MPI
 
 from riser_soil.arrays import Array, IntArray
@@ -41,7 +40,8 @@ class Nodes:
 
 def mesh_from_gmsh(model: Any, comm: MPI.Intracomm) -> Any:
     """dolfinx mesh of the gmsh model that lives on rank 0, distributed over the ranks (collective)."""
-    return _gmsh_module().model_to_mesh(model, comm, 0, gdim=3)[0]
+    made = _gmsh_module().model_to_mesh(model, comm, 0, gdim=3)
+    return made.mesh if hasattr(made, "mesh") else made[0]
 
 
 def lagrange_nodes(mesh: Any, degree: int, comm: MPI.Intracomm) -> Nodes:
@@ -57,7 +57,7 @@ def lagrange_nodes(mesh: Any, degree: int, comm: MPI.Intracomm) -> Nodes:
     local = np.arange(index_map.size_local + index_map.num_ghosts, dtype=np.int32)
     return Nodes(
         comm,
-        _table(space.dofmap.list)[:owned_cells].astype(np.int64),
+        _table(space.dofmap)[:owned_cells].astype(np.int64),
         np.array(space.tabulate_dof_coordinates(), dtype=np.float64),
         np.asarray(index_map.local_to_global(local), dtype=np.int64),
         int(index_map.size_local),
@@ -66,8 +66,8 @@ def lagrange_nodes(mesh: Any, degree: int, comm: MPI.Intracomm) -> Nodes:
 
 def jit_cache() -> Path:
     """Folder in which dolfinx keeps its compiled code."""
-    root = os.environ.get("XDG_CACHE_HOME")
-    return (Path(root) if root else Path.home() / ".cache") / "fenics"
+    options = jit.get_options() if hasattr(jit, "get_options") else jit.get_parameters()
+    return Path(options["cache_dir"])
 
 
 def _gmsh_module() -> Any:
@@ -85,9 +85,10 @@ def _function_space(mesh: Any, degree: int) -> Any:
     return make(mesh, ("Lagrange", degree))
 
 
-def _table(dofs: Any) -> Any:
-    """Dofs by cell as a 2-d array: an adjacency list in 0.5, an array since."""
-    return dofs.array.reshape(dofs.num_nodes, -1) if hasattr(dofs, "num_nodes") else np.asarray(dofs)
+def _table(dofmap: Any) -> Any:
+    """Dofs by cell as a 2-d array: an adjacency list in 0.5, an array since; a rank may have no cells."""
+    dofs = dofmap.list.array if hasattr(dofmap.list, "array") else dofmap.list
+    return np.asarray(dofs).reshape(-1, dofmap.dof_layout.num_dofs)
 
 
 def _quiet_compiler_log() -> None:

@@ -48,4 +48,4 @@ class SoilField:
 
 def components(nodes: IntArray) -> IntArray:
     """Numbers of the three components of each node: (..., n) to (..., 3n)."""
-    return (3 * nodes[..., None] + np.arange(3)).reshape(*nodes.shape[:-1], -1)
+    return (3 * nodes[..., None] + np.arange(3)).reshape(*nodes.shape[:-1], 3 * nodes.shape[-1])

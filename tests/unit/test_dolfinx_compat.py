@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -54,10 +56,8 @@ def test_nodes_of_a_quadratic_tetrahedron_are_vertices_then_edges() -> None:
 
 def test_stale_locks_are_removed_and_fresh_ones_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A killed compilation leaves a source without its `cached` mark; another job may compile now."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    cache = dolfinx_compat.jit_cache()
-    cache.mkdir()
-    old, done, fresh = (cache / f"libffcx_elements_{name}.c" for name in ("old", "done", "fresh"))
+    monkeypatch.setattr(dolfinx_compat, "jit_cache", lambda: tmp_path)
+    old, done, fresh = (tmp_path / f"libffcx_elements_{name}.c" for name in ("old", "done", "fresh"))
     for file in (old, done, fresh):
         file.touch()
     done.with_suffix(".c.cached").touch()
@@ -67,8 +67,16 @@ def test_stale_locks_are_removed_and_fresh_ones_kept(tmp_path: Path, monkeypatch
     assert [f.exists() for f in (old, done, fresh)] == [False, True, True]
 
 
-def test_cache_folder_is_the_one_dolfinx_uses() -> None:
-    import dolfinx.jit
-
-    options = getattr(dolfinx.jit, "get_parameters", None) or dolfinx.jit.get_options
-    assert Path(options()["cache_dir"]) == dolfinx_compat.jit_cache()
+def test_first_compilation_is_silent(tmp_path: Path) -> None:
+    """In a process of its own, with an empty cache: 0.5 logs each compiler command unless told not to."""
+    code = (
+        "from mpi4py import MPI; from riser_soil.soil.block import BlockSpec\n"
+        "from riser_soil.soil.grid import block_grid\n"
+        "block_grid(MPI.COMM_SELF, BlockSpec((0.0, 1.0), (0.0, 1.0), 1.0, 1.0, 1.0))"
+    )
+    environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path), "HOME": str(tmp_path)}
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=120
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert list(tmp_path.rglob("libffcx_*.so"))

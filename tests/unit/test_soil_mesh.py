@@ -224,10 +224,13 @@ def test_unfit_mesh_is_refused_in_one_line(shape: str, message: str, tmp_path: P
     assert "\n" not in str(caught.value)
 
 
-def test_missing_and_broken_files_are_refused_in_one_line(tmp_path: Path) -> None:
+def test_missing_and_broken_files_are_refused_in_one_line(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "broken.msh").write_text("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 9 nonsense\n")
     (tmp_path / "empty.msh").write_text("")
     for name in ("absent.msh", "broken.msh", "empty.msh", "."):
         with pytest.raises(MeshError, match=r"soil mesh") as caught:
             file_grid(COMM, tmp_path / name)
         assert "\n" not in str(caught.value)
+    assert capfd.readouterr() == ("", "")

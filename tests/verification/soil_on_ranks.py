@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 import sys
+from pathlib import Path
 
 import numpy as np
+import pytest
 from mpi4py import MPI
 
 from riser_soil.arrays import Array
+from riser_soil.errors import MeshError
 from riser_soil.part import Forces, State, Weights
 from riser_soil.soil.block import BlockSpec
-from riser_soil.soil.grid import block_grid
+from riser_soil.soil.grid import block_grid, file_grid
 from riser_soil.soil.soil import Soil
 from tests.soil_cases import CLAY
 
@@ -20,7 +23,7 @@ COMM = MPI.COMM_WORLD
 
 def assembled(soil: Soil, local: Array) -> Array:
     """The ranks' contributions summed by global number, on every rank."""
-    largest = COMM.allreduce(int(soil.field.global_index.max()), MPI.MAX)
+    largest = COMM.allreduce(int(soil.field.global_index.max(initial=-1)), MPI.MAX)
     total = np.zeros(largest + 1)
     np.add.at(total, soil.field.global_index, soil.field.own(local))
     return np.asarray(COMM.allreduce(total))
@@ -43,8 +46,8 @@ def tangent_times(soil: Soil, state: State, u: Array) -> Array:
     return out
 
 
-def figures(kind: str) -> dict[str, float]:
-    spec = BlockSpec((0.0, 4.0), (-1.0, 1.0), 1.0, 0.4, 0.6, kind="tet" if kind == "tet" else "hex")
+def figures(kind: str, size: float) -> dict[str, float]:
+    spec = BlockSpec((0.0, 4.0), (-1.0, 1.0), 1.0, size, 1.5 * size, kind="tet" if kind == "tet" else "hex")
     soil = Soil(block_grid(COMM, spec), CLAY, level=0.0, unit_weight=5.0e3, K0=0.9)
     start = State.at_rest(1.0, soil.field.size)
     first, second = pushed(soil, 4e-3), pushed(soil, -3e-3)
@@ -92,7 +95,19 @@ def output_figures(soil: Soil) -> dict[str, float]:
     }
 
 
+def check_refusals() -> None:
+    """Every rank raises the error that one rank meets: none is left waiting."""
+    with pytest.raises(MeshError, match="there is no such file"):
+        file_grid(COMM, Path("absent.msh"))
+    grid = block_grid(COMM, BlockSpec((0.0, 4.0), (0.0, 4.0), 4.0, 1.0, 1.0))
+    if COMM.rank == COMM.size - 1:
+        grid.nodes.points[grid.nodes.cells[0]] = 0.0
+    with pytest.raises(MeshError, match="inverted or flat"):
+        Soil(grid, CLAY, level=0.0, unit_weight=0.0)
+
+
 if __name__ == "__main__":
-    result = figures(sys.argv[1])
+    check_refusals()
+    result = figures(sys.argv[1], float(sys.argv[2]))
     if COMM.rank == 0:
         print(json.dumps(result))
