@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
@@ -16,6 +16,7 @@ NEAR_PI = np.pi - 1e-9
 component = st.floats(-1.0, 1.0)
 axes = st.tuples(component, component, component).filter(lambda a: np.linalg.norm(a) > 1e-3)
 angles = st.one_of(st.floats(0.0, NEAR_PI), st.floats(0.0, 1e-6), st.floats(3.14, NEAR_PI))
+UNHURRIED = settings(deadline=None)  # the first call compiles
 STENCIL = {-3: -1 / 60, -2: 3 / 20, -1: -3 / 4, 1: 3 / 4, 2: -3 / 20, 3: 1 / 60}
 
 
@@ -41,6 +42,7 @@ def as_arrays(function: Callable[[Vec], Mat]) -> Callable[[Vec], Array]:
 
 
 @given(axis=axes, angle=st.floats(0.0, 20.0))
+@UNHURRIED
 def test_exponential_is_the_matrix_exponential(axis: Vec, angle: float) -> None:
     rotation = turned(axis, angle)
     R = as_array(rotations.exp(rotation))
@@ -49,6 +51,7 @@ def test_exponential_is_the_matrix_exponential(axis: Vec, angle: float) -> None:
 
 
 @given(axis=axes, angle=angles)
+@UNHURRIED
 @example(axis=(1.0, 0.0, 0.0), angle=0.0)
 @example(axis=(0.0, -1.0, 0.0), angle=NEAR_PI)
 @example(axis=(0.0, 0.0, 1.0), angle=NEAR_PI)
@@ -79,6 +82,7 @@ def test_tangent_maps_are_the_spin_of_the_exponential(angle: float) -> None:
 
 
 @given(axis=axes, angle=st.floats(0.0, 5.5))
+@UNHURRIED
 def test_inverse_tangent_maps(axis: Vec, angle: float) -> None:
     rotation = turned(axis, angle)
     left = as_array(rotations.left_tangent(rotation)) @ as_array(rotations.left_tangent_inverse(rotation))

@@ -1,0 +1,179 @@
+"""Strains of a two-node element in space, and the stresses that they cause.
+
+The ends of the element have turned from its frame by twists tau_i and swings (y_i, z_i), see
+`swing_twist`. Between them the swing is the quadratic whose mean vanishes, since the frame follows the
+chord, and the twist is linear:
+
+    axial strain  l/L + bow(y) + bow(z), the mean over the element (see `bending`);
+    twist         tau_2 - tau_1 + (y_1 z_2 - z_1 y_2)/2, as the plane of bending turns along the element;
+    curvatures    (y', z') in the section's axes, which tau turns, at the two Gauss stations.
+
+Where curvature and moment point different ways (unequal stiffnesses, curved unstressed shape), the
+torque varies along the element by P = (curvature x moment)_x per length. The deviation of the twist from
+the line between the ends that this causes is condensed; its energy is -P^2 L^3/(24 GJ). All these terms
+together make the element fourth-order accurate; without any of them it is second-order.
+
+The strains do not change when the frame turns about the chord.
+"""
+
+import math
+from typing import NamedTuple
+
+from numba import njit
+
+from riser_soil.riser.bending import bow, bow_slopes
+from riser_soil.riser.vectors import Vec, add, dot, scale
+
+ROOT3 = math.sqrt(3.0)
+Pair = tuple[float, float]  # components along the second and third section axis
+
+
+class Stiffness(NamedTuple):
+    """Section stiffnesses and length of one element."""
+
+    L: float  # arc length, m
+    EA: float  # N
+    EIy: float  # N m2, about the second section axis
+    EIz: float  # N m2, about the third section axis
+    GJ: float  # N m2
+
+
+class Station(NamedTuple):
+    """Section axes and curvature at a Gauss station."""
+
+    cosine: float  # of the twist
+    sine: float
+    curvature: Pair
+
+
+class Strain(NamedTuple):
+    """Strains, or their change, of one element."""
+
+    axial: float
+    twist: float  # over the whole element, rad
+    first: Pair  # curvature at the first Gauss station, 1/m
+    second: Pair  # at the second
+
+
+class Stress(NamedTuple):
+    """Derivatives of the strain energy by the four strains."""
+
+    axial: float
+    twist: float
+    first: Pair
+    second: Pair
+
+
+@njit(cache=True)
+def _at_station(side: float, L: float, a: Vec, b: Vec) -> Vec:
+    """(tau, y', z') at the first (side = -1) or second (+1) station; linear in the ends' angles a and b."""
+    first, second = (side * ROOT3 - 1.0) / L, (side * ROOT3 + 1.0) / L
+    tau = 0.5 * (a[0] + b[0]) + side / (2.0 * ROOT3) * (b[0] - a[0])
+    return (tau, first * a[1] + second * b[1], first * a[2] + second * b[2])
+
+
+@njit(cache=True)
+def _to_ends(side: float, L: float, v: Vec) -> tuple[Vec, Vec]:
+    """Transpose of `_at_station`."""
+    first, second = (side * ROOT3 - 1.0) / L, (side * ROOT3 + 1.0) / L
+    share = side / (2.0 * ROOT3)
+    return (
+        ((0.5 - share) * v[0], first * v[1], first * v[2]),
+        ((0.5 + share) * v[0], second * v[1], second * v[2]),
+    )
+
+
+@njit(cache=True)
+def _station(side: float, L: float, a: Vec, b: Vec) -> Station:
+    tau, y, z = _at_station(side, L, a, b)
+    c, s = math.cos(tau), math.sin(tau)
+    return Station(c, s, (y * c + z * s, z * c - y * s))
+
+
+@njit(cache=True)
+def _curvature_change(at: Station, side: float, L: float, da: Vec, db: Vec) -> Pair:
+    dtau, dy, dz = _at_station(side, L, da, db)
+    ky, kz = at.curvature
+    return dy * at.cosine + dz * at.sine + dtau * kz, dz * at.cosine - dy * at.sine - dtau * ky
+
+
+@njit(cache=True)
+def _station_force(at: Station, M: Pair) -> Vec:
+    """Generalised force on (tau, y', z') of the moment pair M conjugate to the curvature."""
+    ky, kz = at.curvature
+    return (M[0] * kz - M[1] * ky, M[0] * at.cosine - M[1] * at.sine, M[0] * at.sine + M[1] * at.cosine)
+
+
+@njit(cache=True)
+def _station_force_change(at: Station, M: Pair, dtau: float, dk: Pair) -> Vec:
+    """Change of `_station_force` at fixed M."""
+    _, y, z = _station_force(at, M)
+    return (M[0] * dk[1] - M[1] * dk[0], -dtau * z, dtau * y)
+
+
+@njit(cache=True)
+def stations(L: float, a: Vec, b: Vec) -> tuple[Station, Station]:
+    """Both Gauss stations for the angles a and b of the ends."""
+    return _station(-1.0, L, a, b), _station(1.0, L, a, b)
+
+
+@njit(cache=True)
+def strain(L: float, length: float, a: Vec, b: Vec, at: tuple[Station, Station]) -> Strain:
+    """Strains for a chord of `length` and the ends' angles a and b; the axial one starts at 1."""
+    axial = length / L + bow(a[1], b[1]) + bow(a[2], b[2])
+    twist = b[0] - a[0] + 0.5 * (a[1] * b[2] - a[2] * b[1])
+    return Strain(axial, twist, at[0].curvature, at[1].curvature)
+
+
+@njit(cache=True)
+def _gradients(a: Vec, b: Vec) -> tuple[Vec, Vec, Vec, Vec]:
+    """Gradients by a and b of the axial strain and of the twist's quadratic part; all linear in (a, b)."""
+    y1, y2 = bow_slopes(a[1], b[1])
+    z1, z2 = bow_slopes(a[2], b[2])
+    twist1, twist2 = (0.0, 0.5 * b[2], -0.5 * b[1]), (0.0, -0.5 * a[2], 0.5 * a[1])
+    return (0.0, y1, z1), (0.0, y2, z2), twist1, twist2
+
+
+@njit(cache=True)
+def strain_change(
+    L: float, a: Vec, b: Vec, at: tuple[Station, Station], stretch: float, da: Vec, db: Vec
+) -> Strain:
+    """Change of `strain` when the chord lengthens by `stretch` and the angles change by da and db."""
+    axial1, axial2, twist1, twist2 = _gradients(a, b)
+    axial = stretch / L + dot(axial1, da) + dot(axial2, db)
+    twist = db[0] - da[0] + dot(twist1, da) + dot(twist2, db)
+    first, second = _curvature_change(at[0], -1.0, L, da, db), _curvature_change(at[1], 1.0, L, da, db)
+    return Strain(axial, twist, first, second)
+
+
+@njit(cache=True)
+def conjugate(L: float, a: Vec, b: Vec, at: tuple[Station, Station], s: Stress) -> tuple[Vec, Vec]:
+    """Generalised moments mu_1, mu_2 conjugate to the angles a and b, for the stresses s."""
+    axial1, axial2, twist1, twist2 = _gradients(a, b)
+    first1, first2 = _to_ends(-1.0, L, _station_force(at[0], s.first))
+    second1, second2 = _to_ends(1.0, L, _station_force(at[1], s.second))
+    end1 = add(scale(s.axial, axial1), scale(s.twist, add(twist1, (-1.0, 0.0, 0.0))))
+    end2 = add(scale(s.axial, axial2), scale(s.twist, add(twist2, (1.0, 0.0, 0.0))))
+    return add(end1, add(first1, second1)), add(end2, add(first2, second2))
+
+
+@njit(cache=True)
+def conjugate_change(
+    L: float, at: tuple[Station, Station], s: Stress, change: Strain, da: Vec, db: Vec
+) -> tuple[Vec, Vec]:
+    """Change of `conjugate` at fixed stresses, for the change of the strains that da and db bring about."""
+    axial1, axial2, twist1, twist2 = _gradients(da, db)
+    dtau1, dtau2 = _at_station(-1.0, L, da, db)[0], _at_station(1.0, L, da, db)[0]
+    first1, first2 = _to_ends(-1.0, L, _station_force_change(at[0], s.first, dtau1, change.first))
+    second1, second2 = _to_ends(1.0, L, _station_force_change(at[1], s.second, dtau2, change.second))
+    end1 = add(scale(s.axial, axial1), scale(s.twist, twist1))
+    end2 = add(scale(s.axial, axial2), scale(s.twist, twist2))
+    return add(end1, add(first1, second1)), add(end2, add(first2, second2))
+
+
+@njit(cache=True)
+def difference(a: Strain, b: Strain) -> Strain:
+    """a - b."""
+    first = (a.first[0] - b.first[0], a.first[1] - b.first[1])
+    second = (a.second[0] - b.second[0], a.second[1] - b.second[1])
+    return Strain(a.axial - b.axial, a.twist - b.twist, first, second)

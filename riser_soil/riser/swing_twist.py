@@ -1,0 +1,94 @@
+"""A rotation as a twist about the first axis followed by a swing: A = exp[(0, y, z)] exp[(tau, 0, 0)].
+
+The swing turns e1 into t = A e1 by the shortest way; t alone fixes it:
+
+    (y, z) = f (-t_z, t_y),   f = alpha/sin(alpha),   cos(alpha) = t_x.
+
+When A spins by w, t changes by w x t and the twist by dtau = w.(e1 + t)/(1 + t_x). Neither is defined at
+t = -e1. A `mu` is the generalised moment conjugate to (tau, y, z), m the moment conjugate to w.
+"""
+
+import math
+from typing import NamedTuple
+
+from numba import njit
+
+from riser_soil.riser.vectors import Mat, Vec, add, cross, dot, scale
+
+SERIES_BELOW = 0.03  # 1 - cos(alpha) under which the closed form of f'' loses digits
+SERIES_TERMS = 10
+
+
+class Swing(NamedTuple):
+    """A rotation split into twist and swing."""
+
+    angles: Vec  # (tau, y, z), rad
+    t: Vec  # A e1
+    f: float
+    df: float  # by t_x
+    ddf: float
+
+
+@njit(cache=True)
+def swing_coefficients(cosine: float, sine: float) -> tuple[float, float, float]:
+    """f = alpha/sin(alpha) and its first two derivatives by cos(alpha)."""
+    if cosine > 1.0 - SERIES_BELOW:
+        x = 1.0 - cosine
+        f, df, ddf = 1.0, 0.0, 0.0
+        for n in range(SERIES_TERMS, 0, -1):
+            ratio = n / (2.0 * n + 1.0)
+            f, df, ddf = 1.0 + ratio * x * f, ratio * (f + x * df), ratio * (2.0 * df + x * ddf)
+        return f, -df, ddf
+    f = math.atan2(sine, cosine) / sine
+    df = (cosine * f - 1.0) / (sine * sine)
+    return f, df, (f + 3.0 * cosine * df) / (sine * sine)
+
+
+@njit(cache=True)
+def split(A: Mat) -> Swing:
+    """Twist and swing of the rotation matrix A."""
+    t = (A[0][0], A[1][0], A[2][0])
+    f, df, ddf = swing_coefficients(t[0], math.sqrt(t[1] * t[1] + t[2] * t[2]))
+    tau = math.atan2(A[2][1] - A[1][2], A[1][1] + A[2][2])
+    return Swing((tau, -f * t[2], f * t[1]), t, f, df, ddf)
+
+
+@njit(cache=True)
+def rate(at: Swing, w: Vec) -> Vec:
+    """Change of (tau, y, z) for the spin w."""
+    dt = cross(w, at.t)
+    df = at.df * dt[0]
+    dtau = (w[0] + dot(w, at.t)) / (1.0 + at.t[0])
+    return (dtau, -at.f * dt[2] - df * at.t[2], at.f * dt[1] + df * at.t[1])
+
+
+@njit(cache=True)
+def _twist_direction(at: Swing) -> Vec:
+    """(e1 + t)/(1 + t_x)."""
+    per = 1.0 / (1.0 + at.t[0])
+    return (1.0, per * at.t[1], per * at.t[2])
+
+
+@njit(cache=True)
+def _swing_force(at: Swing, mu: Vec) -> Vec:
+    """Gradient of mu_y y + mu_z z by t."""
+    return (at.df * (mu[2] * at.t[1] - mu[1] * at.t[2]), at.f * mu[2], -at.f * mu[1])
+
+
+@njit(cache=True)
+def moment(at: Swing, mu: Vec) -> Vec:
+    """m = the transpose of `rate` times mu."""
+    return add(scale(mu[0], _twist_direction(at)), cross(at.t, _swing_force(at, mu)))
+
+
+@njit(cache=True)
+def moment_variation(at: Swing, mu: Vec, w: Vec) -> Vec:
+    """Change of m at fixed mu for the spin w."""
+    dt = cross(w, at.t)
+    per = mu[0] / (1.0 + at.t[0])
+    falling = dt[0] / (1.0 + at.t[0])
+    twisting = (0.0, per * (dt[1] - falling * at.t[1]), per * (dt[2] - falling * at.t[2]))
+    lever, dlever = mu[2] * at.t[1] - mu[1] * at.t[2], mu[2] * dt[1] - mu[1] * dt[2]
+    df = at.df * dt[0]
+    change = (at.ddf * dt[0] * lever + at.df * dlever, df * mu[2], -df * mu[1])
+    return add(twisting, add(cross(dt, _swing_force(at, mu)), cross(at.t, change)))
