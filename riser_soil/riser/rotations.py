@@ -16,17 +16,18 @@ import math
 
 from numba import njit
 
-from riser_soil.riser.vectors import Mat, Vec, cross, dot, isotropic, matadd, matscale, outer, scale, skew
+from riser_soil.riser.vectors import Mat, Vec, cross, dot, isotropic, matadd, matscale, outer, skew
 
 SERIES_BELOW = 0.25  # theta^2 under which the closed forms lose digits and the power series have converged
-BERNOULLI = (  # |B_2n| / (2n)! for n = 2, 3, ..., the coefficients of theta^(2n-2) in k
-    1.0 / 720.0,
-    1.0 / 30240.0,
-    1.0 / 1209600.0,
-    1.0 / 47900160.0,
-    691.0 / 1307674368000.0,
-    1.0 / 74724249600.0,
+BERNOULLI = (  # |B_2n| / (2n)!, n = 8, 7, ..., 1: the coefficients of theta^(2n-2) in k
     3617.0 / 10670622842880000.0,
+    1.0 / 74724249600.0,
+    691.0 / 1307674368000.0,
+    1.0 / 47900160.0,
+    1.0 / 1209600.0,
+    1.0 / 30240.0,
+    1.0 / 720.0,
+    1.0 / 12.0,
 )
 SMALLEST_SINE_SQUARED = 1e-20  # sin^2(theta/2) under which its arc sine equals it to round-off
 
@@ -58,20 +59,15 @@ def exp_slopes(x: float) -> tuple[float, float]:
 
 
 @njit(cache=True)
-def inverse_coefficients(x: float) -> tuple[float, float]:
-    """(k, (dk/dtheta)/theta) of the inverse tangent maps at x = theta^2; singular at theta = 2 pi."""
+def inverse_coefficient(x: float) -> float:
+    """k of the inverse tangent map at x = theta^2; singular at theta = 2 pi."""
     if x < SERIES_BELOW:
-        k, slope, power = 1.0 / 12.0, 0.0, 1.0
-        for n, coefficient in enumerate(BERNOULLI):
-            slope += (n + 1) * coefficient * power
-            power *= x
-            k += coefficient * power
-        return k, 2.0 * slope
+        k = 0.0
+        for coefficient in BERNOULLI:
+            k = k * x + coefficient
+        return k
     theta = math.sqrt(x)
-    sine = math.sin(0.5 * theta)
-    cotangent = math.cos(0.5 * theta) / sine
-    k = (1.0 - 0.5 * theta * cotangent) / x
-    return k, (0.25 / (sine * sine) + 0.5 * cotangent / theta - 2.0 / x) / x
+    return (1.0 - 0.5 * theta / math.tan(0.5 * theta)) / x
 
 
 @njit(cache=True)
@@ -111,15 +107,7 @@ def right_tangent(rotation: Vec) -> Mat:
 @njit(cache=True)
 def left_tangent_inverse(rotation: Vec) -> Mat:
     """Inverse of T_L, for rotations below 2 pi."""
-    k, _ = inverse_coefficients(dot(rotation, rotation))
-    return _polynomial(1.0, -0.5, k, rotation)
-
-
-@njit(cache=True)
-def right_tangent_inverse(rotation: Vec) -> Mat:
-    """Inverse of T_R, the inverse transpose of T_L, for rotations below 2 pi."""
-    k, _ = inverse_coefficients(dot(rotation, rotation))
-    return _polynomial(1.0, 0.5, k, rotation)
+    return _polynomial(1.0, -0.5, inverse_coefficient(dot(rotation, rotation)), rotation)
 
 
 @njit(cache=True)
@@ -132,15 +120,6 @@ def right_tangent_derivative(rotation: Vec, m: Vec) -> Mat:
     change = (dc * twice[0] - db * once[0], dc * twice[1] - db * once[1], dc * twice[2] - db * once[2])
     linear = matadd(matscale(b, skew(m)), matscale(c, _double_cross_derivative(rotation, m)))
     return matadd(linear, outer(change, rotation))
-
-
-@njit(cache=True)
-def right_tangent_inverse_derivative(rotation: Vec, m: Vec) -> Mat:
-    """d(T_R^-1(Theta) m)/dTheta at fixed m."""
-    k, dk = inverse_coefficients(dot(rotation, rotation))
-    twice = cross(rotation, cross(rotation, m))
-    linear = matadd(matscale(-0.5, skew(m)), matscale(k, _double_cross_derivative(rotation, m)))
-    return matadd(linear, outer(scale(dk, twice), rotation))
 
 
 @njit(cache=True)

@@ -83,31 +83,24 @@ def test_tangent_maps_are_the_spin_of_the_exponential(angle: float) -> None:
 
 @given(axis=axes, angle=st.floats(0.0, 5.5))
 @UNHURRIED
-def test_inverse_tangent_maps(axis: Vec, angle: float) -> None:
+def test_inverse_tangent_map(axis: Vec, angle: float) -> None:
     rotation = turned(axis, angle)
     left = as_array(rotations.left_tangent(rotation)) @ as_array(rotations.left_tangent_inverse(rotation))
-    right = as_array(rotations.right_tangent(rotation)) @ as_array(rotations.right_tangent_inverse(rotation))
     assert np.abs(left - np.eye(3)).max() < 1e-12
-    assert np.abs(right - np.eye(3)).max() < 1e-12
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-5, 0.3, 0.499, 0.501, 1.5, 3.0, 5.0])
-def test_derivatives_of_the_tangent_maps(angle: float) -> None:
+def test_derivative_of_the_tangent_map(angle: float) -> None:
     rotation, m = turned((0.3, -0.7, 0.5), angle), (0.4, 1.1, -0.2)
-    maps = [
-        (rotations.right_tangent, rotations.right_tangent_derivative),
-        (rotations.right_tangent_inverse, rotations.right_tangent_inverse_derivative),
-    ]
-    for function, function_derivative in maps:
-        found = as_array(function_derivative(rotation, m))
-        expected = np.einsum("ijk,j->ik", derivative(as_arrays(function), rotation), m)
-        assert np.abs(found - expected).max() < 2e-10
+    found = as_array(rotations.right_tangent_derivative(rotation, m))
+    expected = np.einsum("ijk,j->ik", derivative(as_arrays(rotations.right_tangent), rotation), m)
+    assert np.abs(found - expected).max() < 2e-10
 
 
 @pytest.mark.parametrize(
-    "coefficients", [rotations.exp_coefficients, rotations.exp_slopes, rotations.inverse_coefficients]
+    "coefficients", [rotations.exp_coefficients, rotations.exp_slopes, rotations.inverse_coefficient]
 )
-def test_power_series_meet_the_closed_forms(coefficients: Callable[[float], tuple[float, ...]]) -> None:
+def test_power_series_meet_the_closed_forms(coefficients: Callable[[float], object]) -> None:
     x = rotations.SERIES_BELOW
     below, above = np.array(coefficients(np.nextafter(x, 0.0))), np.array(coefficients(x))
     assert np.abs(below / above - 1.0).max() < 3e-12
