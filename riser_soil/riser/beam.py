@@ -10,7 +10,7 @@ from riser_soil.arrays import Array
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.riser import uniform_load
 from riser_soil.riser.elastic import elastic_elements
-from riser_soil.riser.line import EMPTY, Line, LoadTangent, Trial
+from riser_soil.riser.line import Line, Trial
 from riser_soil.riser.sections import Elements
 
 DOWN = np.array([0.0, 0.0, -1.0])
@@ -55,11 +55,10 @@ class Beam:
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:
-            trial = self.line.trial(state)
-            values["riser"] += weights.force * self._elastic.tangent(trial)
-            at = self._loaded(trial)
-            load = LoadTangent(uniform_load.residual(*at), uniform_load.stiffness(*at), EMPTY, EMPTY)
-            trial.add_tangent(values["riser"], weights.force, weights, load)
+            trial, K, at = self.line.trial(state), values["riser"], self._loaded(self.line.trial(state))
+            K += weights.force * self._elastic.tangent(trial)
+            trial.add_turning(K, weights.force, uniform_load.residual(*at))
+            trial.add_blocks(K, weights.force, trial.columns(weights)[0], uniform_load.stiffness(*at))
 
     def energy(self, state: State) -> Energy:
         """Strain energy, and the potential of weight and load, zero at the origin of the axes."""

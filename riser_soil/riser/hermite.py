@@ -75,59 +75,35 @@ def pull_back(F: Array, P: Array) -> Array:
 
 
 @njit(cache=True)
-def _add_right(S: Array, K: Array, column_map: Array, translation: bool, shift: float) -> None:
-    """S += K times the derivative of one entry of q, q' or q'' with respect to its node's dofs."""
-    d = K.shape[0]
-    for i in range(d):
-        for j in range(d):
-            if translation:
-                S[i, j] += shift * K[i, j]
-            else:
-                for k in range(column_map.shape[1]):
-                    S[i, k] += K[i, j] * column_map[j, k]
+def add_blocks(out: Array, scale: float, P: Array, columns: Array, shift: float, K: Array) -> None:
+    """Add scale P^T K D to out (ne, n, n), D being the derivative of q, q' or q'' by the dofs.
 
-
-@njit(cache=True)
-def _add_left(
-    out: Array, S: Array, row_map: Array, translation: bool, scale: float, row: int, col: int, columns: int
-) -> None:
-    """out[row:, col:] += scale times S, its rows brought to the dofs of their node."""
-    for i in range(S.shape[0]):
-        for k in range(columns):
-            if translation:
-                out[row + i, col + k] += scale * S[i, k]
-            else:
-                for m in range(row_map.shape[1]):
-                    out[row + m, col + k] += scale * row_map[i, m] * S[i, k]
-
-
-@njit(cache=True)
-def add_tangent(
-    out: Array,
-    scale: float,
-    maps: tuple[Array, Array, Array],
-    shifts: tuple[float, float],
-    blocks: tuple[Array, Array, Array],
-) -> None:
-    """Add scale dF/du to out (ne, n, n), without the part that comes from turning P.
-
-    maps: P, dt'/dTheta, dt''/dTheta, each (ne, 2, d, r), the latter two with the shifts included.
-    shifts: dv/du, da/du. blocks: dF/dq, dF/dq', dF/dq'' (ne, 4, 4, d, d); an empty array stands for zero.
+    K: (ne, 4, 4, d, d). D: `shift` for positions, `columns` (ne, 2, d, r) for tangents; P and 1 where K
+    belongs to q.
     """
-    d, r = maps[0].shape[2], maps[0].shape[3]
-    factors = (1.0, shifts[0], shifts[1])
+    ne, d, r = P.shape[0], P.shape[2], P.shape[3]
     S = np.empty((d, max(d, r)))
-    for e in range(out.shape[0]):
-        for b in range(4):
-            moves, right = b % 2 == 0, b // 2
-            col, columns = right * (d + r) + (0 if moves else d), d if moves else r
-            for a in range(4):
-                S[:] = 0.0
-                for level in range(3):
-                    if blocks[level].shape[0] > 0:
-                        _add_right(S, blocks[level][e, a, b], maps[level][e, right], moves, factors[level])
-                row = (a // 2) * (d + r) + (0 if a % 2 == 0 else d)
-                _add_left(out[e], S, maps[0][e, a // 2], a % 2 == 0, scale, row, col, columns)
+    for e in range(ne):
+        for a in range(4):
+            for b in range(4):
+                row = (a // 2) * (d + r) + (a % 2) * d
+                col = (b // 2) * (d + r) + (b % 2) * d
+                width = r if b % 2 else d
+                for i in range(d):
+                    for k in range(width):
+                        if b % 2 == 0:
+                            S[i, k] = scale * shift * K[e, a, b, i, k]
+                        else:
+                            S[i, k] = 0.0
+                            for j in range(d):
+                                S[i, k] += scale * K[e, a, b, i, j] * columns[e, b // 2, j, k]
+                for i in range(d):
+                    for k in range(width):
+                        if a % 2 == 0:
+                            out[e, row + i, col + k] += S[i, k]
+                        else:
+                            for m in range(r):
+                                out[e, row + m, col + k] += P[e, a // 2, i, m] * S[i, k]
 
 
 @njit(cache=True)

@@ -5,7 +5,7 @@ import numpy as np
 from riser_soil.arrays import Array
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.riser.hermite import consistent_mass
-from riser_soil.riser.line import EMPTY, Line, LoadTangent
+from riser_soil.riser.line import Line
 
 
 class Inertia:
@@ -22,7 +22,7 @@ class Inertia:
     def __init__(self, line: Line, mass: Array) -> None:
         self.line = line
         self.M = consistent_mass(line.length, mass)
-        self.blockwise = np.ascontiguousarray(self.M[..., None, None] * np.eye(line.dimension))
+        self._blocks = np.ascontiguousarray(self.M[..., None, None] * np.eye(line.dimension))
 
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}
@@ -40,8 +40,9 @@ class Inertia:
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:
-            load = LoadTangent(self._F(state), EMPTY, EMPTY, self.blockwise)
-            self.line.trial(state).add_tangent(values["riser"], weights.inertia, weights, load)
+            trial, K = self.line.trial(state), values["riser"]
+            trial.add_turning(K, weights.inertia, self._F(state))
+            trial.add_blocks(K, weights.inertia, trial.columns(weights)[2], self._blocks)
 
     def energy(self, state: State) -> Energy:
         if not self.line.active:

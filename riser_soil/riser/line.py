@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,7 +25,6 @@ axes.
 """
 
 UP = np.array([0.0, 0.0, 1.0])
-EMPTY: Array = np.zeros((0, 4, 4, 0, 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,16 +55,13 @@ class End:
     motion: Motion | None = None
 
 
-@dataclass(frozen=True)
-class LoadTangent:
-    """A load's residual F (ne, 4, d), conjugate to q, and its derivatives in blocks (ne, 4, 4, d, d); empty
-    means zero.
+class Columns(NamedTuple):
+    """Derivatives of q, q' or q'' by the dofs: `tangent` (ne, 2, d, r) for the tangents, `shift` for the
+    positions.
     """
 
-    F: Array
-    stiffness: Array
-    damping: Array
-    mass: Array
+    tangent: Array
+    shift: float
 
 
 class Trial:
@@ -73,6 +70,7 @@ class Trial:
     def __init__(self, state: State, x: Array, chord: Array, turn: Turn, rates: tuple[Array, Array]) -> None:
         self.state, self.x, self.chord, self.turn = state, x, chord, turn
         self._v, self._a = rates
+        self._columns: dict[tuple[float, float], tuple[Columns, Columns, Columns]] = {}
 
     @cached_property
     def _director_rates(self) -> tuple[Array, Array]:
@@ -98,15 +96,26 @@ class Trial:
         """Element residual in the dofs (ne, 2 ndof) of F (ne, 4, d) conjugate to q."""
         return np.asarray(hermite.pull_back(F, self.turn.P))
 
-    def add_tangent(self, out: Array, weight: float, weights: Weights, load: LoadTangent) -> None:
-        """Add weight times dF/du, rates following by the shifts, to out (ne, 2 ndof, 2 ndof)."""
-        d = self.x.shape[1]
-        blocks = (load.stiffness, load.damping, load.mass)
-        if any(block.size for block in blocks):
-            shifts = (weights.shift_v, weights.shift_a)
+    def columns(self, weights: Weights) -> tuple[Columns, Columns, Columns]:
+        """Derivatives of q, q' and q'' by the dofs, rates following by the shifts."""
+        shifts = float(weights.shift_v), float(weights.shift_a)
+        if shifts not in self._columns:
+            d = self.x.shape[1]
             maps = self.turn.maps(self._v[:, d:], self._a[:, d:], *shifts)
-            hermite.add_tangent(out, weight, maps, shifts, blocks)
-        hermite.add_geometric(out, weight, self.turn.geometric(load.F[:, 1::2]), d)
+            q, rate, acceleration = map(Columns, maps, (1.0, *shifts))
+            self._columns[shifts] = q, rate, acceleration
+        return self._columns[shifts]
+
+    def add_turning(self, out: Array, weight: float, F: Array) -> None:
+        """Add to out (ne, 2 ndof, 2 ndof) weight times the derivative of `pull_back` at fixed F (ne, 4, d)."""
+        geometric = self.turn.geometric(F[:, 1::2])
+        hermite.add_geometric(out, weight, geometric, self.x.shape[1])
+
+    def add_blocks(self, out: Array, weight: float, columns: Columns, K: Array) -> None:
+        """Add weight times the pulled back dF/dq, dF/dq' or dF/dq'', K (ne, 4, 4, d, d), `columns` being of
+        the same.
+        """
+        hermite.add_blocks(out, weight, self.turn.P, columns.tangent, columns.shift, K)
 
 
 class Line:

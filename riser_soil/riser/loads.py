@@ -12,7 +12,7 @@ from riser_soil.errors import SceneError
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import SpatialTurn, moment_stiffness
-from riser_soil.riser.line import EMPTY, UP, Line, LoadTangent, Trial
+from riser_soil.riser.line import UP, Line, Trial
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ class PointLoads:
 
     def __init__(self, line: Line, loads: list[Load]) -> None:
         self.line, self._loads = line, loads
-        self._places = {id(load): self._place(load) for load in loads}
+        self._places = {load: self._place(load) for load in loads}
         self._within = [load for load in loads if self._inside(load)]
         self._moments = [(load, self._node(load)) for load in loads if load.moment is not None]
         self.symmetric = not (self._moments and line.dimension == 3)
@@ -91,7 +91,7 @@ class PointLoads:
         """Residual of some of the loads, conjugate to q (ne, 4, d)."""
         F = np.zeros((self.line.length.size, 4, self.line.dimension))
         for load in loads:
-            at, share = self._places[id(load)]
+            at, share = self._places[load]
             F[at] -= load.factor(t) * share
         return F
 
@@ -132,9 +132,7 @@ class PointLoads:
         if not self.line.active:
             return
         trial, K = self.line.trial(state), values["riser"]
-        trial.add_tangent(
-            K, weights.force, weights, LoadTangent(self._F(state.t, self._loads), EMPTY, EMPTY, EMPTY)
-        )
+        trial.add_turning(K, weights.force, self._F(state.t, self._loads))
         if isinstance(trial.turn, SpatialTurn):
             for load, node in self._moments:
                 self._add_moment_stiffness(K, trial.turn, node, -weights.force * self._moment(load, state.t))

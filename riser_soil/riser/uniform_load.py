@@ -22,8 +22,11 @@ SERIES_BELOW = 0.05  # 1 - cos(theta) under which closed forms lose digits and t
 SERIES: Array = np.cumprod([1.0] + [2.0 * n / (2.0 * n + 1.0) for n in range(1, 13)])[::-1].copy()
 
 
+Three = tuple[float, float, float]
+
+
 @njit(cache=True)
-def angle_over_sine(c: float) -> tuple[float, float, float]:
+def angle_over_sine(c: float) -> Three:
     """g = theta/sin(theta) and its first two derivatives by c = cos(theta), for theta below pi."""
     g, slope, bend = 0.0, 0.0, 0.0
     if 1.0 - c < SERIES_BELOW:
@@ -57,28 +60,26 @@ def _axis(chord: Array, e: Array) -> float:
 
 
 @njit(cache=True)
-def _psi_slopes(e: Array, t: Array, w: Array, by_t: Array, by_e: Array) -> None:
-    """Gradient of psi with respect to t and e, both varied freely."""
+def _psi_slopes(e: Array, t: Array, w: Array, g: Three, by_t: Array, by_e: Array) -> None:
+    """Gradient of psi with respect to t and e, both varied freely; g from `angle_over_sine`."""
     c, along = _dot(e, t), _dot(w, e)
-    g, g1, _ = angle_over_sine(c)
-    P = g1 * (_dot(w, t) - c * along) - g * along
+    P = g[1] * (_dot(w, t) - c * along) - g[0] * along
     for i in range(e.size):
-        by_t[i] = P * e[i] + g * w[i]
-        by_e[i] = P * t[i] - g * c * w[i]
+        by_t[i] = P * e[i] + g[0] * w[i]
+        by_e[i] = P * t[i] - g[0] * c * w[i]
 
 
 @njit(cache=True)
-def _psi_bends(e: Array, t: Array, w: Array, tt: Array, te: Array, ee: Array) -> None:
+def _psi_bends(e: Array, t: Array, w: Array, g: Three, tt: Array, te: Array, ee: Array) -> None:
     """Second derivatives of psi with respect to t and e (te: rows t, columns e)."""
     c, along = _dot(e, t), _dot(w, e)
-    g, g1, g2 = angle_over_sine(c)
     across = _dot(w, t) - c * along
-    P, Q, S = g1 * across - g * along, g2 * across - 2.0 * g1 * along, g1 * c + g
+    P, Q, S = g[1] * across - g[0] * along, g[2] * across - 2.0 * g[1] * along, g[1] * c + g[0]
     for i in range(e.size):
         for j in range(e.size):
-            tt[i, j] = Q * e[i] * e[j] + g1 * (e[i] * w[j] + w[i] * e[j])
+            tt[i, j] = Q * e[i] * e[j] + g[1] * (e[i] * w[j] + w[i] * e[j])
             ee[i, j] = Q * t[i] * t[j] - S * (t[i] * w[j] + w[i] * t[j])
-            te[i, j] = Q * e[i] * t[j] - S * e[i] * w[j] + g1 * w[i] * t[j] + (P if i == j else 0.0)
+            te[i, j] = Q * e[i] * t[j] - S * e[i] * w[j] + g[1] * w[i] * t[j] + (P if i == j else 0.0)
 
 
 @njit(cache=True)
@@ -103,14 +104,15 @@ def potential(chord: Array, middle: Array, tangent: Array, L: Array, w: Array) -
 def residual(chord: Array, tangent: Array, L: Array, w: Array) -> Array:
     """F = dV/dq (ne, 4, d); arguments as in `potential`."""
     ne, d = chord.shape
-    F, e, by_t, by_e = np.empty((ne, 4, d)), np.empty(d), np.empty(d), np.empty(d)
+    F, e, t, by_t, by_e = np.empty((ne, 4, d)), np.empty(d), np.empty(d), np.empty(d), np.empty(d)
     for k in range(ne):
-        l = _axis(chord[k], e)
+        l, load = _axis(chord[k], e), w[k]
         for i in range(d):
             F[k, 0, i] = F[k, 2, i] = -0.5 * L[k] * w[k, i]
         for end in range(2):
             factor = (2 * end - 1) * L[k] * L[k] / 12.0
-            _psi_slopes(e, tangent[k, end], w[k], by_t, by_e)
+            t[:] = tangent[k, end]
+            _psi_slopes(e, t, load, angle_over_sine(_dot(e, t)), by_t, by_e)
             along = _dot(e, by_e)
             for i in range(d):
                 F[k, 2 * end + 1, i] = factor * by_t[i]
@@ -120,54 +122,58 @@ def residual(chord: Array, tangent: Array, L: Array, w: Array) -> Array:
 
 
 @njit(cache=True)
-def _project(A: Array, e: Array, l: float, out: Array) -> None:
-    """A (I - e e)/l, row by row."""
-    for i in range(A.shape[0]):
-        along = _dot(A[i], e)
+def _chord_bend(ee: Array, by_e: Array, e: Array, l: float, out: Array) -> None:
+    """Second derivative of psi by the chord, out (d, d): (I - e e) ee (I - e e)/l^2 and the turn of e."""
+    along, twice = _dot(e, by_e), 0.0
+    for i in range(e.size):
         for j in range(e.size):
-            out[i, j] = (A[i, j] - along * e[j]) / l
+            twice += e[i] * ee[i, j] * e[j]
+    for i in range(e.size):
+        for j in range(e.size):
+            row, col = 0.0, 0.0
+            for k in range(e.size):
+                row += ee[i, k] * e[k]
+                col += e[k] * ee[k, j]
+            inner = ee[i, j] - row * e[j] - e[i] * col + (twice + 3.0 * along) * e[i] * e[j]
+            inner -= by_e[i] * e[j] + e[i] * by_e[j]
+            out[i, j] = (inner - (along if i == j else 0.0)) / (l * l)
 
 
 @njit(cache=True)
-def _add_chord_block(out: Array, factor: float, ee: Array, by_e: Array, e: Array, l: float) -> None:
-    """Add to the blocks of x1, x2 the second derivative by the chord: (I - e e) ee (I - e e)/l^2 and the turn
-    of e.
-    """
-    d = e.size
-    half, whole = np.empty((d, d)), np.empty((d, d))
-    _project(ee, e, l, half)
-    _project(half.T.copy(), e, l, whole)
-    along = _dot(e, by_e)
-    for i in range(d):
-        for j in range(d):
-            one = 1.0 if i == j else 0.0
-            turn = 3.0 * along * e[i] * e[j] - along * one - by_e[i] * e[j] - e[i] * by_e[j]
-            value = factor * (whole[i, j] + turn / (l * l))
-            out[0, 0, i, j] += value
-            out[2, 2, i, j] += value
-            out[0, 2, i, j] -= value
-            out[2, 0, i, j] -= value
+def _project(A: Array, e: Array, l: float) -> None:
+    """A becomes A (I - e e)/l: derivatives by e become those by the chord."""
+    for i in range(e.size):
+        along = 0.0
+        for j in range(e.size):
+            along += A[i, j] * e[j]
+        for j in range(e.size):
+            A[i, j] = (A[i, j] - along * e[j]) / l
 
 
 @njit(cache=True)
 def stiffness(chord: Array, tangent: Array, L: Array, w: Array) -> Array:
     """Second derivatives of V in blocks (ne, 4, 4, d, d); arguments as in `potential`."""
     ne, d = chord.shape
-    K, e, by_t, by_e = np.zeros((ne, 4, 4, d, d)), np.empty(d), np.empty(d), np.empty(d)
-    tt, te, ee, td = np.empty((d, d)), np.empty((d, d)), np.empty((d, d)), np.empty((d, d))
+    K = np.zeros((ne, 4, 4, d, d))
+    e, t, by_t, by_e = np.empty(d), np.empty(d), np.empty(d), np.empty(d)
+    tt, te, ee, dd = np.empty((d, d)), np.empty((d, d)), np.empty((d, d)), np.empty((d, d))
     for k in range(ne):
-        l = _axis(chord[k], e)
+        l, load = _axis(chord[k], e), w[k]
         for end in range(2):
             factor, a = (2 * end - 1) * L[k] * L[k] / 12.0, 2 * end + 1
-            _psi_slopes(e, tangent[k, end], w[k], by_t, by_e)
-            _psi_bends(e, tangent[k, end], w[k], tt, te, ee)
-            _project(te, e, l, td)
-            _add_chord_block(K[k], factor, ee, by_e, e, l)
+            t[:] = tangent[k, end]
+            g = angle_over_sine(_dot(e, t))
+            _psi_slopes(e, t, load, g, by_t, by_e)
+            _psi_bends(e, t, load, g, tt, te, ee)
+            _project(te, e, l)
+            _chord_bend(ee, by_e, e, l, dd)
             for i in range(d):
                 for j in range(d):
                     K[k, a, a, i, j] = factor * tt[i, j]
-                    K[k, a, 2, i, j] = factor * td[i, j]
-                    K[k, a, 0, i, j] = -factor * td[i, j]
-                    K[k, 2, a, j, i] = factor * td[i, j]
-                    K[k, 0, a, j, i] = -factor * td[i, j]
+                    K[k, a, 2, i, j] = K[k, 2, a, j, i] = factor * te[i, j]
+                    K[k, a, 0, i, j] = K[k, 0, a, j, i] = -factor * te[i, j]
+                    K[k, 0, 0, i, j] += factor * dd[i, j]
+                    K[k, 2, 2, i, j] += factor * dd[i, j]
+                    K[k, 0, 2, i, j] -= factor * dd[i, j]
+                    K[k, 2, 0, i, j] -= factor * dd[i, j]
     return K

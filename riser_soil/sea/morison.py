@@ -6,12 +6,9 @@ import numpy as np
 
 from riser_soil.arrays import Array
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
-from riser_soil.riser import hermite
-from riser_soil.riser.line import EMPTY, Line, LoadTangent, Trial
+from riser_soil.riser import stations
+from riser_soil.riser.line import Columns, Line, Trial
 from riser_soil.sea import morison_law as law
-
-POINTS = 0.5 + np.sqrt(0.6) * np.array([-0.5, 0.0, 0.5])
-GAUSS = np.array([5.0, 8.0, 5.0]) / 18.0
 
 
 class Morison:
@@ -26,22 +23,8 @@ class Morison:
     symmetric = False
 
     def __init__(self, line: Line, drag: Array, mass: Array) -> None:
-        self.line, self._drag, self._mass = line, drag[:, None], mass[:, None]
-        self._N = np.stack(
-            [hermite.shapes(np.full(line.length.size, p), line.length) for p in POINTS], axis=1
-        )
-        self._dN = np.stack(
-            [hermite.slopes(np.full(line.length.size, p), line.length) for p in POINTS], axis=1
-        )
-        weight = GAUSS[:, None] * line.length[:, None, None]
-        self._test = np.ascontiguousarray(np.swapaxes(weight * self._N, 1, 2))
-        self._NN = self._products(self._N)
-        self._NdN = self._products(self._dN)
-
-    def _products(self, trial: Array) -> Array:
-        """Weighted N_a times shape functions of the trial (ne, 16, 3)."""
-        products = self._test[:, :, None, :] * np.swapaxes(trial, 1, 2)[:, None]
-        return np.ascontiguousarray(products.reshape(-1, 16, POINTS.size))
+        self.line, self._drag, self._mass = line, drag, mass
+        self._at = stations.stations(line.length)
 
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}
@@ -62,28 +45,41 @@ class Morison:
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if not self.line.active:
             return
-        trial = self.line.trial(state)
-        tau, stretch = self._tangents(trial)
-        inertia, force = self._q_forces(trial)
-        by_rate, by_tau = law.drag_derivatives(self._N @ trial.q_rate, tau, self._drag)
-        load = LoadTangent(force, self._by_q(by_tau, tau, stretch), self._by_rate(by_rate), EMPTY)
-        trial.add_tangent(values["riser"], weights.force, weights, load)
-        by_rate, by_tau = law.added_derivatives(self._N @ trial.q_acceleration, tau, self._mass)
-        load = LoadTangent(inertia, self._by_q(by_tau, tau, stretch), EMPTY, self._by_rate(by_rate))
-        trial.add_tangent(values["riser"], weights.inertia, weights, load)
+        trial, K = self.line.trial(state), values["riser"]
+        tau, _ = self._tangents(trial)
+        inertia, drag = self._q_forces(trial)
+        _, rate, acceleration = trial.columns(weights)
+        v, a = (stations.interpolate(self._at, q) for q in (trial.q_rate, trial.q_acceleration))
+        self._add_group(trial, K, weights.force, drag, law.drag_derivatives(v, tau, self._drag), rate)
+        by = law.added_derivatives(a, tau, self._mass)
+        self._add_group(trial, K, weights.inertia, inertia, by, acceleration)
+
+    def _add_group(
+        self, trial: Trial, K: Array, weight: float, F: Array, by: tuple[Array, Array], columns: Columns
+    ) -> None:
+        """F: residual conjugate to q; by: derivatives at the stations by the rate with these columns, and by
+        tau.
+        """
+        by_rate, by_tau = by
+        P, at = trial.turn.P, self._at
+        by_slope = stations.follow_slope(by_tau, *self._tangents(trial))
+        trial.add_turning(K, weight, F)
+        stations.add_tangent(K, weight, P, P, 1.0, at.weighted, at.dN, by_slope)
+        stations.add_tangent(K, weight, P, columns.tangent, columns.shift, at.weighted, at.N, by_rate)
 
     def energy(self, state: State) -> Energy:
         """Kinetic energy of the added mass."""
         if not self.line.active:
             return Energy()
         trial = self.line.trial(state)
-        momentum = law.added(self._N @ trial.q_rate, self._tangents(trial)[0], self._mass)
-        return Energy(kinetic=0.5 * float(np.sum(trial.q_rate * (self._test @ momentum))))
+        rate = stations.interpolate(self._at, trial.q_rate)
+        momentum = law.added(rate, self._tangents(trial)[0], self._mass)
+        return Energy(kinetic=0.5 * float(np.sum(trial.q_rate * stations.integrate(self._at, momentum))))
 
     def work(self, before: State, after: State) -> Work:
-        """Drag dissipates. The added mass turns with the pipe, so its force does other work than its kinetic
-        energy
-        takes up; the difference counts as the water's work."""
+        """Drag dissipates; what the added mass takes besides its kinetic energy, as it turns, is the water's
+        work.
+        """
         if not self.line.active:
             return Work()
         increment = self.line.nodal(after.u) - self.line.nodal(before.u)
@@ -107,26 +103,11 @@ class Morison:
 
     def _q_forces(self, trial: Trial) -> tuple[Array, Array]:
         """Residuals conjugate to q (ne, 4, d): inertia, drag."""
-        tau = self._tangents(trial)[0]
-        inertia = law.added(self._N @ trial.q_acceleration, tau, self._mass)
-        drag = law.drag(self._N @ trial.q_rate, tau, self._drag)
-        return self._test @ inertia, self._test @ drag
+        tau, _ = self._tangents(trial)
+        inertia = law.added(stations.interpolate(self._at, trial.q_acceleration), tau, self._mass)
+        drag = law.drag(stations.interpolate(self._at, trial.q_rate), tau, self._drag)
+        return stations.integrate(self._at, inertia), stations.integrate(self._at, drag)
 
     def _tangents(self, trial: Trial) -> tuple[Array, Array]:
-        """Unit tangents at the points (ne, 3, d) and the stretch |x'| there (ne, 3, 1)."""
-        dN, directors = self._dN, trial.turn.tangent
-        along = dN[:, :, 2:3] * trial.chord[:, None] + dN[:, :, 1::2] @ directors
-        stretch = np.linalg.norm(along, axis=-1, keepdims=True)
-        return along / stretch, stretch
-
-    def _by_rate(self, derivative: Array) -> Array:
-        """Blocks of q' or q'' (ne, 4, 4, d, d) from derivatives at the points (ne, 3, d, d)."""
-        d = derivative.shape[-1]
-        return np.asarray((self._NN @ derivative.reshape(-1, 3, d * d)).reshape(-1, 4, 4, d, d))
-
-    def _by_q(self, derivative: Array, tau: Array, stretch: Array) -> Array:
-        """Blocks of q from derivatives by tau, which follows x' = sum of dN q by (I - tau tau)/|x'|."""
-        d = derivative.shape[-1]
-        lengthwise = np.sum(derivative * tau[..., None, :], axis=-1)
-        turning = (derivative - lengthwise[..., None] * tau[..., None, :]) / stretch[..., None]
-        return np.asarray((self._NdN @ turning.reshape(-1, 3, d * d)).reshape(-1, 4, 4, d, d))
+        tau, stretch = stations.unit_tangents(self._at, trial.chord, trial.turn.tangent)
+        return tau, stretch

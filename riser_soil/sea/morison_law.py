@@ -5,13 +5,18 @@ With the pipe's rate v, acceleration a, unit tangent tau, v_t = v.tau and v_n = 
     drag        -(D/2) rho Cdn |v_n| v_n - (pi D/2) rho Cdt |v_t| v_t tau
     added mass  -rho (pi D^2/4) [Can (a - (a.tau) tau) + Cat (a.tau) tau]
 
-The functions return the resistance, that is the negative of these forces (N/m), and its derivatives, tau
-being varied freely. v, a, tau: (..., d); c: coefficient (..., 2), normal and tangential.
+The functions return the resistance, that is the negative of these forces (N/m), and its derivatives (..., d,
+d), tau
+being varied freely, at ng points of each element: v, a, tau (ne, ng, d); c, m: coefficients (ne, 2), normal
+and tangential.
 Source: Morison et al., Petroleum Transactions 189 (1950); tangential drag on the wetted perimeter as in DNV-
 RP-C205.
 """
 
+import math
+
 import numpy as np
+from numba import njit
 
 from riser_soil.arrays import Array
 
@@ -26,46 +31,77 @@ def added_masses(rho: float, diameter: Array, normal: Array, tangential: Array) 
     return rho * (0.25 * np.pi * diameter**2)[:, None] * np.stack([normal, tangential], axis=-1)
 
 
+@njit(cache=True)
+def _split(v: Array, tau: Array, e: int, g: int) -> tuple[float, float]:
+    """Speed along tau and speed across it at one point."""
+    along, square = 0.0, 0.0
+    for i in range(v.shape[2]):
+        along += v[e, g, i] * tau[e, g, i]
+    for i in range(v.shape[2]):
+        square += (v[e, g, i] - along * tau[e, g, i]) ** 2
+    return along, math.sqrt(square)
+
+
+@njit(cache=True)
 def drag(v: Array, tau: Array, c: Array) -> Array:
-    """Resistance to the rate (..., d)."""
-    along, across, speed = _split(v, tau)
-    return np.asarray(c[..., :1] * speed * across + c[..., 1:] * np.abs(along) * along * tau)
+    """Resistance to the rate (ne, ng, d)."""
+    f = np.empty_like(v)
+    for e in range(v.shape[0]):
+        for g in range(v.shape[1]):
+            along, speed = _split(v, tau, e, g)
+            across, lengthwise = c[e, 0] * speed, c[e, 1] * abs(along) * along
+            for i in range(v.shape[2]):
+                f[e, g, i] = across * (v[e, g, i] - along * tau[e, g, i]) + lengthwise * tau[e, g, i]
+    return f
 
 
+@njit(cache=True)
 def drag_derivatives(v: Array, tau: Array, c: Array) -> tuple[Array, Array]:
-    """d drag/dv and d drag/dtau (..., d, d); at rest both are zero."""
-    along, across, speed = _split(v, tau)
-    unit = np.divide(across, speed, out=np.zeros_like(across), where=speed > 0.0)
-    normal, tangential = c[..., :1, None], 2.0 * c[..., 1:, None] * np.abs(along)[..., None]
-    eye, speed, along = np.eye(v.shape[-1]), speed[..., None], along[..., None]
-    bend = _outer(across, unit)
-    by_v = normal * (speed * (eye - _outer(tau, tau)) + bend) + tangential * _outer(tau, tau)
-    turned = _outer(tau, v)
-    by_tau = tangential * (turned + 0.5 * along * eye) - normal * (
-        speed * (turned + along * eye) + along * bend
-    )
+    """d drag/dv and d drag/dtau; at rest both are zero."""
+    ne, ng, d = v.shape
+    by_v, by_tau = np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d))
+    for e in range(ne):
+        for g in range(ng):
+            along, speed = _split(v, tau, e, g)
+            normal, tangential = c[e, 0] * speed, 2.0 * c[e, 1] * abs(along)
+            bend = c[e, 0] / speed if speed > 0.0 else 0.0
+            for i in range(d):
+                across_i = v[e, g, i] - along * tau[e, g, i]
+                for j in range(d):
+                    dyad = bend * across_i * (v[e, g, j] - along * tau[e, g, j])
+                    one = 1.0 if i == j else 0.0
+                    both = tau[e, g, i] * tau[e, g, j]
+                    turned = tau[e, g, i] * v[e, g, j]
+                    by_v[e, g, i, j] = normal * (one - both) + dyad + tangential * both
+                    by_tau[e, g, i, j] = tangential * (turned + 0.5 * along * one)
+                    by_tau[e, g, i, j] -= normal * (turned + along * one) + along * dyad
     return by_v, by_tau
 
 
+@njit(cache=True)
 def added(a: Array, tau: Array, m: Array) -> Array:
-    """Resistance to the acceleration (..., d)."""
-    along = np.sum(a * tau, axis=-1, keepdims=True)
-    return np.asarray(m[..., :1] * a + (m[..., 1:] - m[..., :1]) * along * tau)
+    """Resistance to the acceleration (ne, ng, d)."""
+    f = np.empty_like(a)
+    for e in range(a.shape[0]):
+        for g in range(a.shape[1]):
+            along, _ = _split(a, tau, e, g)
+            for i in range(a.shape[2]):
+                f[e, g, i] = m[e, 0] * a[e, g, i] + (m[e, 1] - m[e, 0]) * along * tau[e, g, i]
+    return f
 
 
+@njit(cache=True)
 def added_derivatives(a: Array, tau: Array, m: Array) -> tuple[Array, Array]:
-    """d added/da and d added/dtau (..., d, d)."""
-    across, excess = m[..., :1, None], (m[..., 1:] - m[..., :1])[..., None]
-    along, eye = np.sum(a * tau, axis=-1)[..., None, None], np.eye(a.shape[-1])
-    return across * eye + excess * _outer(tau, tau), excess * (_outer(tau, a) + along * eye)
-
-
-def _split(v: Array, tau: Array) -> tuple[Array, Array, Array]:
-    """Speed along tau, velocity across it and that velocity's magnitude."""
-    along = np.sum(v * tau, axis=-1, keepdims=True)
-    across = v - along * tau
-    return along, across, np.linalg.norm(across, axis=-1, keepdims=True)
-
-
-def _outer(a: Array, b: Array) -> Array:
-    return np.asarray(a[..., :, None] * b[..., None, :])
+    """d added/da and d added/dtau."""
+    ne, ng, d = a.shape
+    by_a, by_tau = np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d))
+    for e in range(ne):
+        excess = m[e, 1] - m[e, 0]
+        for g in range(ng):
+            along, _ = _split(a, tau, e, g)
+            for i in range(d):
+                for j in range(d):
+                    one = 1.0 if i == j else 0.0
+                    by_a[e, g, i, j] = m[e, 0] * one + excess * tau[e, g, i] * tau[e, g, j]
+                    by_tau[e, g, i, j] = excess * (tau[e, g, i] * a[e, g, j] + along * one)
+    return by_a, by_tau
