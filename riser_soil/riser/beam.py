@@ -10,8 +10,9 @@ from riser_soil.arrays import Array
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.riser import uniform_load
 from riser_soil.riser.elastic import elastic_elements
-from riser_soil.riser.line import Line, Trial
+from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
+from riser_soil.riser.trial import Trial
 
 DOWN = np.array([0.0, 0.0, -1.0])
 

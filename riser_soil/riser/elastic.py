@@ -9,8 +9,9 @@ import numpy as np
 from riser_soil.arrays import Array
 from riser_soil.riser import beam2d, beam3d, increments
 from riser_soil.riser.directors import PlanarFrames, PlanarTurn, SpatialFrames, SpatialTurn
-from riser_soil.riser.line import Line, Trial
+from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
+from riser_soil.riser.trial import Trial
 
 
 class PlanarElements:

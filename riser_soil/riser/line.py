@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.arrays import Array, BoolArray, IntArray
-from riser_soil.part import Block, State, Weights
-from riser_soil.riser import hermite
-from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames, Turn
+from riser_soil.errors import SceneError
+from riser_soil.part import Block, State
+from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames
+from riser_soil.riser.trial import Trial
 
 Kinematics = tuple[Array, Array, Array]
 Motion = Callable[[float], Kinematics]
@@ -55,69 +55,6 @@ class End:
     motion: Motion | None = None
 
 
-class Columns(NamedTuple):
-    """Derivatives of q, q' or q'' by the dofs: `tangent` (ne, 2, d, r) for the tangents, `shift` for the
-    positions.
-    """
-
-    tangent: Array
-    shift: float
-
-
-class Trial:
-    """The line at a trial state: x (nn, d), chord (ne, d), orientation `turn`; rates of q on demand."""
-
-    def __init__(self, state: State, x: Array, chord: Array, turn: Turn, rates: tuple[Array, Array]) -> None:
-        self.state, self.x, self.chord, self.turn = state, x, chord, turn
-        self._v, self._a = rates
-        self._columns: dict[tuple[float, float], tuple[Columns, Columns, Columns]] = {}
-
-    @cached_property
-    def _director_rates(self) -> tuple[Array, Array]:
-        d = self.x.shape[1]
-        return self.turn.rates(self._v[:, d:], self._a[:, d:])
-
-    @cached_property
-    def q_rate(self) -> Array:
-        """q' (ne, 4, d)."""
-        return _interleave(self._v, self._director_rates[0])
-
-    @cached_property
-    def q_acceleration(self) -> Array:
-        """q'' (ne, 4, d)."""
-        return _interleave(self._a, self._director_rates[1])
-
-    @cached_property
-    def q(self) -> Array:
-        """q (ne, 4, d)."""
-        return _interleave(self.x, self.turn.tangent)
-
-    def pull_back(self, F: Array) -> Array:
-        """Element residual in the dofs (ne, 2 ndof) of F (ne, 4, d) conjugate to q."""
-        return np.asarray(hermite.pull_back(F, self.turn.P))
-
-    def columns(self, weights: Weights) -> tuple[Columns, Columns, Columns]:
-        """Derivatives of q, q' and q'' by the dofs, rates following by the shifts."""
-        shifts = float(weights.shift_v), float(weights.shift_a)
-        if shifts not in self._columns:
-            d = self.x.shape[1]
-            maps = self.turn.maps(self._v[:, d:], self._a[:, d:], *shifts)
-            q, rate, acceleration = map(Columns, maps, (1.0, *shifts))
-            self._columns[shifts] = q, rate, acceleration
-        return self._columns[shifts]
-
-    def add_turning(self, out: Array, weight: float, F: Array) -> None:
-        """Add to out (ne, 2 ndof, 2 ndof) weight times the derivative of `pull_back` at fixed F (ne, 4, d)."""
-        geometric = self.turn.geometric(F[:, 1::2])
-        hermite.add_geometric(out, weight, geometric, self.x.shape[1])
-
-    def add_blocks(self, out: Array, weight: float, columns: Columns, K: Array) -> None:
-        """Add weight times the pulled back dF/dq, dF/dq' or dF/dq'', K (ne, 4, 4, d, d), `columns` being of
-        the same.
-        """
-        hermite.add_blocks(out, weight, self.turn.P, columns.tangent, columns.shift, K)
-
-
 class Line:
     """Field "riser": committed configuration, dofs and ends of the line; see the module's text and `Layout`.
 
@@ -145,6 +82,7 @@ class Line:
         self.length = np.diff(layout.arc)
         self.direction = np.array([1.0, 0.0, 0.0]) if direction is None else direction
         self.basis, self.origin = self._axes(layout.position[0])
+        self._check_plane(layout)
         self.chord0 = layout.chord0 @ (self.basis if dimension == 2 else layout.T0[0, 0])
         self.frames: Frames = (
             _planar_frames(layout, self.direction) if dimension == 2 else _spatial_frames(layout)
@@ -162,6 +100,17 @@ class Line:
         if self.dimension == 3:
             return np.eye(3), np.zeros(3)
         return np.stack([self.direction, UP], axis=1), np.array([first[0], first[1], 0.0])
+
+    def _check_plane(self, layout: Layout) -> None:
+        """A planar line must not leave its plane."""
+        off = np.cross(self.direction, UP)
+        away = max(
+            np.abs((layout.position - layout.position[0]) @ off).max(), np.abs(layout.chord0 @ off).max()
+        )
+        if self.dimension == 2 and away > 1e-9 * layout.arc[-1]:
+            raise SceneError(
+                f"dimension: 2: the riser's shapes leave the vertical plane by {away:.3g} m; use 3"
+            )
 
     def _number(self, hold_spin: bool) -> None:
         self.ndof = self.dimension + self.frames.dofs
@@ -257,15 +206,6 @@ class Line:
             else ("force x", "force y", "vertical force", "moment 1", "moment 2", "moment 3")
         )
         return f"riser node at arc {self.arc[node]:.6g} m, {names[dof]}"
-
-
-def _interleave(nodal: Array, directors: Array) -> Array:
-    """(ne, 4, d) from nodal translations (nn, ≥ d) and end directors (ne, 2, d), as q orders them."""
-    ne, _, d = directors.shape
-    q = np.empty((ne, 4, d))
-    q[:, 0], q[:, 2] = nodal[:-1, :d], nodal[1:, :d]
-    q[:, 1], q[:, 3] = directors[:, 0], directors[:, 1]
-    return q
 
 
 def _planar_frames(layout: Layout, direction: Array) -> PlanarFrames:

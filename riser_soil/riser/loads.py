@@ -12,7 +12,8 @@ from riser_soil.errors import SceneError
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import SpatialTurn, moment_stiffness
-from riser_soil.riser.line import UP, Line, Trial
+from riser_soil.riser.line import UP, Line
+from riser_soil.riser.trial import Trial
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,8 +16,9 @@ import numpy as np
 from riser_soil.arrays import Array, IntArray
 from riser_soil.part import State
 from riser_soil.riser.directors import SpatialTurn
-from riser_soil.riser.line import UP, Line, Trial
+from riser_soil.riser.line import UP, Line
 from riser_soil.riser.sections import Elements
+from riser_soil.riser.trial import Trial
 
 
 @runtime_checkable

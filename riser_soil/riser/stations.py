@@ -19,7 +19,7 @@ GAUSS = np.array([5.0, 8.0, 5.0]) / 18.0
 
 
 class Stations(NamedTuple):
-    """Shape functions N, their derivatives dN by arc length, and N times quadrature weight, each (ne, ng, 4)."""
+    """Shape functions N, their derivatives dN by arc length, N times quadrature weight; each (ne, ng, 4)."""
 
     N: Array
     dN: Array
@@ -48,7 +48,7 @@ def interpolate(at: Stations, q: Array) -> Array:
 
 @njit(cache=True)
 def unit_tangents(at: Stations, chord: Array, ends: Array) -> tuple[Array, Array]:
-    """Unit tangents (ne, ng, d) and stretch |x'| (ne, ng); chord (ne, d), tangents at ends (ne, 2, d)."""
+    """Unit tangents (ne, ng, d) and stretch |x'| (ne, ng); chord (ne, d), ends: end tangents (ne, 2, d)."""
     ne, ng, d = chord.shape[0], at.N.shape[1], chord.shape[1]
     tau, stretch = np.empty((ne, ng, d)), np.empty((ne, ng))
     for e in range(ne):

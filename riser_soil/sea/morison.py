@@ -7,7 +7,8 @@ import numpy as np
 from riser_soil.arrays import Array
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.riser import stations
-from riser_soil.riser.line import Columns, Line, Trial
+from riser_soil.riser.line import Line
+from riser_soil.riser.trial import Columns, Trial
 from riser_soil.sea import morison_law as law
 
 

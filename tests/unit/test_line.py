@@ -208,3 +208,11 @@ def test_a_fixed_axis_moment_works_on_the_turn_about_its_axis() -> None:
     assert hasattr(turn, "Rn")
     expected = moment @ (turn.Rn[-1] @ at.line.nodal(after.u)[-1, 3:])
     assert loads.work(before, after).external == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_planar_line_must_stay_in_its_plane() -> None:
+    arc = np.linspace(0.0, 4.0, 3)
+    straight = shapes.straight(arc)
+    bent = shapes.through(arc, [[0.0, 0.0, 0.0], [2.0, 0.1, 0.0], [4.0, 0.0, 0.0]])
+    with pytest.raises(SceneError, match=r"leave the vertical plane by 0\.1 m; use 3"):
+        Line(2, shapes.layout(arc, np.zeros(2), straight, bent), End(True), End(True))

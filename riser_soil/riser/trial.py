@@ -1,0 +1,85 @@
+"""The line at a trial state, and how loads on it reach its dofs."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.part import State, Weights
+from riser_soil.riser import hermite
+from riser_soil.riser.directors import Turn
+
+
+class Columns(NamedTuple):
+    """Derivatives of q, q' or q'' by the dofs: `tangent` (ne, 2, d, r) for the tangents, `shift` for the
+    positions.
+    """
+
+    tangent: Array
+    shift: float
+
+
+class Trial:
+    """The line at a trial state: x (nn, d), chord (ne, d), orientation `turn`; rates of q on demand."""
+
+    def __init__(self, state: State, x: Array, chord: Array, turn: Turn, rates: tuple[Array, Array]) -> None:
+        self.state, self.x, self.chord, self.turn = state, x, chord, turn
+        self._v, self._a = rates
+        self._columns: dict[tuple[float, float], tuple[Columns, Columns, Columns]] = {}
+
+    @cached_property
+    def _director_rates(self) -> tuple[Array, Array]:
+        d = self.x.shape[1]
+        return self.turn.rates(self._v[:, d:], self._a[:, d:])
+
+    @cached_property
+    def q_rate(self) -> Array:
+        """q' (ne, 4, d)."""
+        return _interleave(self._v, self._director_rates[0])
+
+    @cached_property
+    def q_acceleration(self) -> Array:
+        """q'' (ne, 4, d)."""
+        return _interleave(self._a, self._director_rates[1])
+
+    @cached_property
+    def q(self) -> Array:
+        """q (ne, 4, d)."""
+        return _interleave(self.x, self.turn.tangent)
+
+    def pull_back(self, F: Array) -> Array:
+        """Element residual in the dofs (ne, 2 ndof) of F (ne, 4, d) conjugate to q."""
+        return np.asarray(hermite.pull_back(F, self.turn.P))
+
+    def columns(self, weights: Weights) -> tuple[Columns, Columns, Columns]:
+        """Derivatives of q, q' and q'' by the dofs, rates following by the shifts."""
+        shifts = float(weights.shift_v), float(weights.shift_a)
+        if shifts not in self._columns:
+            d = self.x.shape[1]
+            maps = self.turn.maps(self._v[:, d:], self._a[:, d:], *shifts)
+            q, rate, acceleration = map(Columns, maps, (1.0, *shifts))
+            self._columns[shifts] = q, rate, acceleration
+        return self._columns[shifts]
+
+    def add_turning(self, out: Array, weight: float, F: Array) -> None:
+        """Add to out (ne, n, n) weight times the derivative of `pull_back` at fixed F (ne, 4, d)."""
+        geometric = self.turn.geometric(F[:, 1::2])
+        hermite.add_geometric(out, weight, geometric, self.x.shape[1])
+
+    def add_blocks(self, out: Array, weight: float, columns: Columns, K: Array) -> None:
+        """Add weight times pulled back K = dF/dq, dF/dq' or dF/dq'', K (ne, 4, 4, d, d), `columns` being of
+        the same.
+        """
+        hermite.add_blocks(out, weight, self.turn.P, columns.tangent, columns.shift, K)
+
+
+def _interleave(nodal: Array, directors: Array) -> Array:
+    """(ne, 4, d) from nodal translations (nn, ≥ d) and end directors (ne, 2, d), as q orders them."""
+    ne, _, d = directors.shape
+    q = np.empty((ne, 4, d))
+    q[:, 0], q[:, 2] = nodal[:-1, :d], nodal[1:, :d]
+    q[:, 1], q[:, 3] = directors[:, 0], directors[:, 1]
+    return q
