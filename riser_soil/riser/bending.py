@@ -6,8 +6,8 @@ half its square slope, averaged over the element, is the shallow-arch term of th
     strain = (l - l0)/L + bow(a, b) - bow(a0, b0),    bow(a, b) = (2 a^2 - a b + 2 b^2)/30,
 
 which makes the two-node element fourth-order accurate on curved lines.
-Source: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), section
-7.3.
+Source: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), chapter
+7.
 """
 
 from numba import njit
