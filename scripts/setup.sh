@@ -39,7 +39,6 @@ main() {
     step venv "environment .venv on $python" make_venv
     step packages "Python packages at pinned versions" install_python_packages
     step project "riser_soil itself" install_project
-    step kernels "compiled kernels" compile_kernels
     step check "check that everything imports" check_imports
     fingerprint >"$venv/stamp"
     echo "set-up: done in $SECONDS s"
@@ -133,11 +132,6 @@ PYTHON
 
 install_project() {
     "$venv/bin/python" -m pip install --disable-pip-version-check --no-deps --no-index --no-build-isolation -e "$root"
-}
-
-compile_kernels() { # numba caches them beside the sources, so that the first run does not wait
-    [ -f "$root/riser_soil/compile_kernels.py" ] || return 0
-    cd / && "$venv/bin/python" -m riser_soil.compile_kernels
 }
 
 check_imports() {

@@ -32,7 +32,6 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("study",),
     ("plots",),
     ("report",),
-    ("compile_kernels",),
     ("__main__",),
 ]
 RANK = {module: rank for rank, layer in enumerate(LAYERS) for module in layer}
