@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from riser_soil.soil.soil import Soil
 
 FORCE_FLOOR = 1e-14  # of EA: a residual below this is round-off even where all forces vanish
-FOOTPRINT = 0.125  # of the outer diameter, see Contact
 
 
 @dataclass(eq=False)
@@ -340,7 +339,6 @@ def _add_contact(world: World) -> None:
         plane=_plane(scene, world.contact_stiffness, smoothing),
         surface=world.soil.surface if world.soil is not None else None,
         penalty=Penalty(on_soil, smoothing) if on_soil is not None else None,
-        footprint=FOOTPRINT * float(world.elements.outer_diameter.max()),
         active=world.comm.rank == 0,
     )
 

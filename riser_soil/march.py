@@ -29,6 +29,13 @@ class Adaptive(Protocol):
     def rebuild(self, state: State) -> None: ...
 
 
+@runtime_checkable
+class Foreseeing(Protocol):
+    """A part or field that knows a better first guess of a step than the last increment."""
+
+    def improve(self, guess: State) -> Array: ...
+
+
 @dataclass(frozen=True, eq=False)
 class Accepted:
     """An accepted step, before its configuration is committed."""
@@ -88,7 +95,7 @@ class March:
         return self._account(solution, control, cuts)
 
     def _solve(self, t: float, dt: float) -> Solution:
-        step = Step(self.scheme, self.before, t, dt, self._history, self._guess(dt))
+        step = Step(self.scheme, self.before, t, dt, self._history, self._guess(t, dt))
         try:
             return self.newton.solve(step)
         except NotConverged:
@@ -96,9 +103,13 @@ class March:
                 raise
             return self.newton.solve(step)
 
-    def _guess(self, dt: float) -> Array:
-        """The last increment, scaled to the step."""
-        return self._increment * (dt / self._dt if self._dt > 0.0 else 0.0)
+    def _guess(self, t: float, dt: float) -> Array:
+        """The last increment, scaled to the step, as fields and parts improve it."""
+        guess = self._increment * (dt / self._dt if self._dt > 0.0 else 0.0)
+        for owner in (*self.system.model.fields, *self.system.model.parts):
+            if isinstance(owner, Foreseeing):
+                guess = owner.improve(State(t, guess, self.before.v, self.before.a))
+        return guess
 
     def _renew_pattern(self) -> bool:
         """Rebuild what the motion has outgrown; whether anything was."""

@@ -81,6 +81,7 @@ class Contact:
         points = ContactPoints.of_nodes(riser.tributary_length, self._footprint, riser.basis[:2, 0])
         level = plane.level if plane is not None else -np.inf
         laws = _laws(plane, self._soil, penalty)
+        self._rounding = max((law.smoothing for law in laws.values()), default=0.0)
         self._grounds = Grounds(riser, radius, points, laws, level, self._soil, self._reach.above)
         self._patch: Patch | None = None
         self._missed = nothing(0)
@@ -180,6 +181,20 @@ class Contact:
         if not np.isfinite(beyond):
             return float(arc[i])
         return float(arc[i] + (arc[i + 1] - arc[i]) * clearance[i] / (clearance[i] - beyond))
+
+    def improve(self, guess: State) -> Array:
+        """First guess of a step: the guess's increment, lifted where a node would sink below its present depth.
+
+        The motion of the last step carries landing nodes deep into the ground, where the law is far stiffer than
+        at the depth at which they come to rest. They start instead from half the law's rounded corner.
+        """
+        if not self.active:
+            return guess.u
+        now = np.minimum(self._clearance(State.at_rest(guess.t, guess.u.size)), -0.5 * self._rounding)
+        improved = guess.u.copy()
+        lift = np.maximum(now - self._clearance(guess), 0.0)
+        improved[self._riser.translation_dofs[:, -1]] += lift
+        return improved
 
     def _touching(self, state: State) -> list[Touching]:
         return self.meet(state).touching if self.active else []

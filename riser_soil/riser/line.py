@@ -178,6 +178,20 @@ class Line:
         self.frames.commit(self.nodal(state.u)[:, self.dimension :])
         self._trial = None
 
+    def improve(self, guess: State) -> Array:
+        """First guess of a step: the guess's increment, with what the held ends move beyond it spread along the line.
+
+        Left to the last element alone, that remainder stretches it, and its false tension spoils the first iteration. The
+        cube of the distance from the other end keeps the far part, often lying on the seabed, where it is.
+        """
+        improved = guess.u.copy()
+        moved = State(guess.t, guess.u.copy(), guess.v.copy(), guess.a.copy())
+        self.prescribe(guess.t, *(array[self.part] for array in (moved.u, moved.v, moved.a)))
+        beyond = (self.nodal(moved.u) - self.nodal(guess.u))[:, : self.dimension]
+        along = (self.arc / self.arc[-1])[:, None]
+        self.nodal(improved)[:, : self.dimension] += along**3 * beyond[-1] + (1.0 - along) ** 3 * beyond[0]
+        return improved
+
     def to_global(self, x: Array) -> Array:
         """Global positions (…, 3) of in-plane (or global) coordinates (…, d)."""
         return np.asarray(self.origin + x @ self.basis.T)

@@ -11,7 +11,7 @@ class Solver(BaseModel):
     model_config = FROZEN
 
     tolerance: Positive = Field(
-        default=1.0e-8, lt=1.0, description="residual at convergence, relative to the scene's own forces [-]"
+        default=1.0e-7, lt=1.0, description="residual at convergence, relative to the scene's own forces [-]"
     )
     max_iterations: Count = Field(default=25, description="Newton iterations before a step is cut [-]")
     load_steps: Count = Field(
