@@ -12,6 +12,7 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.build import World, build
+from riser_soil.build.stage import scheme_of
 from riser_soil.march import March
 from riser_soil.newton import Newton, NewtonSettings
 from riser_soil.part import State
@@ -29,9 +30,10 @@ class TimedStage:
         self.system = System(world.comm, world.begin(stage), clock)
         settings = NewtonSettings(solver.tolerance, solver.max_iterations, world.force_floor)
         self.newton = Newton(self.system, settings)
-        self.march = March(self.system, self.newton, world.scheme(stage), replace(before, t=0.0))
-        dynamic = isinstance(stage, DynamicStage)
-        self.control = StepControl(stage.duration, stage.time_step, 1e-5) if dynamic else StepControl(1.0, 1.0, 1e-3)
+        self.march = March(self.system, self.newton, scheme_of(stage), replace(before, t=0.0))
+        self.control = StepControl(1.0, 1.0, 1e-3)
+        if isinstance(stage, DynamicStage):
+            self.control = StepControl(stage.duration, stage.time_step, 1e-5)
         self.iterations, self.seconds = 0, 0.0
 
     def walk(self, steps: int | None = None) -> State:

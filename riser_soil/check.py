@@ -1,4 +1,4 @@
-"""What a scene will be built of, before anything is computed: parts, unknowns, memory, and physical doubts with numbers."""
+"""What a scene will be built of: parts, unknowns, memory, and physical doubts with their numbers."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from collections.abc import Iterator
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil.build import World, build, surface_modulus
+from riser_soil.build import World, build
+from riser_soil.build.ground import surface_modulus
 from riser_soil.inventory import built, left_out, unknowns
 from riser_soil.scene.scene import Scene
 
-# Elements longer than this share of the boundary layer's length sqrt(EI/H) blur the bending at touchdown and at fixed ends.
+# Elements longer than this share of the boundary layer sqrt(EI/H) blur the bending at touchdown and fixed ends.
 LONGEST_ELEMENT = 0.5
-# Bounds of the penalty stiffness over the soil's Young's modulus: below, the penalty hides the soil; above, it costs iterations.
+# Bounds of the penalty stiffness over the soil's Young's modulus: below it hides the soil, above it costs iterations.
 SOFT, STIFF = 1.0, 1e4
 
 PROCESS = 0.15e9  # bytes of a process with the packages that every scene needs
@@ -82,8 +83,8 @@ def _light_pipes(world: World) -> Iterator[str]:
     light = np.flatnonzero(weight < 0.0)
     if light.size:
         yield (
-            f"submerged weight is negative, {weight[light].min():.4g} N/m, from arc {arc[light[0]]:.4g} m on: the pipe floats; "
-            "check mass, contents and diameters, or give submerged_weight"
+            f"submerged weight is negative, {weight[light].min():.4g} N/m, from arc {arc[light[0]]:.4g} m on: the "
+            "pipe floats; check mass, contents and diameters, or give submerged_weight"
         )
 
 
@@ -96,8 +97,8 @@ def _coarse_elements(world: World) -> Iterator[str]:
     for place, e in _boundary_layers(world):
         if line.length[e] > LONGEST_ELEMENT * layer[e]:
             yield (
-                f"elements {place} are {line.length[e]:.4g} m long, but bending varies there over sqrt(EI/H) = {layer[e]:.4g} m "
-                f"(H = {H:.4g} N): take at most {LONGEST_ELEMENT * layer[e]:.3g} m"
+                f"elements {place} are {line.length[e]:.4g} m long, but bending varies there over sqrt(EI/H) = "
+                f"{layer[e]:.4g} m (H = {H:.4g} N): take at most {LONGEST_ELEMENT * layer[e]:.3g} m"
             )
 
 
@@ -121,11 +122,11 @@ def _penalty_against_soil(world: World) -> Iterator[str]:
     E, k = surface_modulus(world.scene.soil), world.contact_stiffness["soil"]
     if k < SOFT * E:
         yield (
-            f"contact.stiffness {k:.4g} N/m2 is below the soil's Young's modulus at the surface, {E:.4g} Pa: the pipe sinks "
-            f"through the penalty, not into the soil; take at least {10.0 * E:.4g} N/m2 or auto"
+            f"contact.stiffness {k:.4g} N/m2 is below the soil's Young's modulus at the surface, {E:.4g} Pa: the pipe "
+            f"sinks through the penalty, not into the soil; take at least {10.0 * E:.4g} N/m2 or auto"
         )
     if k > STIFF * E:
         yield (
-            f"contact.stiffness {k:.4g} N/m2 is {k / E:.2g} times the soil's Young's modulus at the surface, {E:.4g} Pa: "
-            "no more accurate than a tenth of that, and Newton needs more iterations; take auto"
+            f"contact.stiffness {k:.4g} N/m2 is {k / E:.2g} times the soil's Young's modulus at the surface, "
+            f"{E:.4g} Pa: no more accurate than a tenth of that, and Newton needs more iterations; take auto"
         )

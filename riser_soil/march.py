@@ -11,7 +11,7 @@ from mpi4py import MPI
 from riser_soil.arrays import Array
 from riser_soil.errors import SolveError
 from riser_soil.mass import RiserMass
-from riser_soil.newton import Newton, NotConverged, Solution, Step
+from riser_soil.newton import Newton, NotConvergedError, Solution, Step
 from riser_soil.part import Energy, Forces, State
 from riser_soil.stepping import StepControl
 from riser_soil.system import System, total
@@ -86,7 +86,7 @@ class March:
             try:
                 solution = self._solve(control.target, control.dt)
                 break
-            except NotConverged as failure:
+            except NotConvergedError as failure:
                 cuts += 1
                 if not control.cut():
                     raise SolveError(
@@ -98,7 +98,7 @@ class March:
         step = Step(self.scheme, self.before, t, dt, self._history, self._guess(t, dt))
         try:
             return self.newton.solve(step)
-        except NotConverged:
+        except NotConvergedError:
             if not self._renew_pattern():
                 raise
             return self.newton.solve(step)

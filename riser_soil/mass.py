@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import solveh_banded
 
-from riser_soil.arrays import Array
+from riser_soil.arrays import Array, BoolArray
 from riser_soil.part import Field, Part, State, Weights
 from riser_soil.system import System
 
@@ -51,7 +51,7 @@ class RiserMass:
         return values["riser"]
 
 
-def _masked(blocks: Array, free: Array, dofs: int) -> Array:
+def _masked(blocks: Array, free: BoolArray, dofs: int) -> Array:
     """Element matrices without the rows and columns of dofs that aren't free."""
     nodes = free.astype(float).reshape(-1, dofs)
     ends = np.concatenate([nodes[:-1], nodes[1:]], axis=1)

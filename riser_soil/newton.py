@@ -9,7 +9,7 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from riser_soil.arrays import Array
+from riser_soil.arrays import Array, BoolArray
 from riser_soil.part import Forces, State
 from riser_soil.system import System, total
 from riser_soil.time_scheme import Scheme
@@ -20,7 +20,7 @@ DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_DTOL
 ITERATING = PETSc.SNES.ConvergedReason.ITERATING
 
 
-class NotConverged(Exception):
+class NotConvergedError(Exception):
     """A step that Newton could not solve; its text says why and where the residual sits."""
 
 
@@ -81,7 +81,7 @@ class Newton:
         return snes
 
     def solve(self, step: Step) -> Solution:
-        """Solve a step or raise NotConverged; collective."""
+        """Solve a step or raise NotConvergedError; collective."""
         self._step, self._norms = step, list[float]()
         self._state: State | None = None
         self._restrict(step.guess)
@@ -89,7 +89,7 @@ class Newton:
         self._snes.solve(None, self._x)
         self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
         if self._snes.getConvergedReason() <= 0:
-            raise NotConverged(self._reason())
+            raise NotConvergedError(self._reason())
         state = self._trial(self._x)
         return Solution(state, self._forces, self._norms)
 
@@ -116,7 +116,7 @@ class Newton:
         return self._state
 
     @property
-    def _free(self) -> Array:
+    def _free(self) -> BoolArray:
         return ~self.system.prescribed
 
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
@@ -155,7 +155,8 @@ class Newton:
             str(reason),
         )
         norms = ", ".join(f"{n:.3g}" for n in self._norms[-3:])
-        return f"{name.lower()} after {len(self._norms) - 1} iterations (last residual norms {norms} N); {self._where()}"
+        count = len(self._norms) - 1
+        return f"{name.lower()} after {count} iterations (last residual norms {norms} N); {self._where()}"
 
     def _where(self) -> str:
         """The row with the largest residual, in words."""
@@ -176,7 +177,7 @@ class Newton:
 def _set_direct_solver(snes: PETSc.SNES, system: System) -> None:
     """PETSc's own banded LU where a serial system is a chain in its natural order, MUMPS otherwise."""
     banded = system.comm.size == 1 and len(system.model.fields) == 1
-    options = {"snes_linesearch_type": "basic", "ksp_type": "preonly"}
+    options: dict[str, object] = {"snes_linesearch_type": "basic", "ksp_type": "preonly"}
     if banded:
         options |= {"pc_type": "lu", "pc_factor_mat_ordering_type": "natural"}
     else:

@@ -67,7 +67,7 @@ class Observer:
         self._relaxed = 0
         if self._recorder is not None:
             self._recorder.begin_stage(stage.name, stage.kind)
-        self._progress.begin_stage(stage.name, stage.kind, 1.0 if self._static else stage.duration)
+        self._progress.begin_stage(stage.name, stage.kind, 1.0 if isinstance(stage, StaticStage) else stage.duration)
 
     def look(self, system: System, step: Accepted) -> Seen | None:
         if self._recorder is None:

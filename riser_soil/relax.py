@@ -9,7 +9,7 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.errors import SolveError
-from riser_soil.newton import Newton, NewtonSettings, NotConverged, Solution, Step
+from riser_soil.newton import Newton, NewtonSettings, NotConvergedError, Solution, Step
 from riser_soil.part import Model, State
 from riser_soil.riser.line import Line
 from riser_soil.riser.relaxation import Relaxation
@@ -64,7 +64,7 @@ def _try(system: System, newton: Newton, part: Relaxation, t: float, drag: float
     size = system.numbering.size
     try:
         solution = newton.solve(Step(Static(), State.at_rest(t, size), t, 0.0, None, np.zeros(size)))
-    except NotConverged:
+    except NotConvergedError:
         return None
     finally:
         part.drag = usual

@@ -8,6 +8,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 from riser_soil.build import World, build
+from riser_soil.build.stage import scheme_of
 from riser_soil.errors import SolveError
 from riser_soil.march import March
 from riser_soil.newton import Newton, NewtonSettings
@@ -41,7 +42,7 @@ def run_stage(world: World, stage: Stage, before: State, observer: Observer, clo
     system = System(world.comm, model, clock)
     newton = Newton(system, _settings(world))
     try:
-        march = March(system, newton, world.scheme(stage), replace(before, t=0.0))
+        march = March(system, newton, scheme_of(stage), replace(before, t=0.0))
         observer.begin_stage(stage, system.energy(march.before))
         return _walk(world, stage, march, observer)
     finally:

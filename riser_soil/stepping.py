@@ -15,7 +15,7 @@ class StepControl:
 
     def __init__(self, end: float, step: float, smallest: float) -> None:
         self.end, self.step = end, step
-        self._levels = min(LEVELS, max(0, int(math.floor(math.log2(step / smallest) + 1e-9))))
+        self._levels = min(LEVELS, max(0, math.floor(math.log2(step / smallest) + 1e-9)))
         self._tick = step / 2**self._levels
         self._last = math.ceil(end / step - 1e-9) * 2**self._levels
         self._at = 0

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil.arrays import Array, BoolArray
+from riser_soil.arrays import Array, BoolArray, IntArray
 from riser_soil.matrix import Matrix
 from riser_soil.numbering import Numbering
-from riser_soil.part import Block, Energy, Field, Forces, Model, State, Weights, Work
+from riser_soil.part import Block, Energy, Field, Forces, Model, Part, State, Weights, Work
 
 
 @dataclass
@@ -103,7 +103,8 @@ class System:
     def commit(self, state: State) -> None:
         """Accept a state: parts first, then the fields that they act on, each object once."""
         seen: set[int] = set()
-        for owner in (*self.model.parts, *self.model.fields):
+        owners: list[Part | Field] = [*self.model.parts, *self.model.fields]
+        for owner in owners:
             if id(owner) not in seen:
                 seen.add(id(owner))
                 owner.commit(state)
@@ -113,7 +114,7 @@ class System:
         entries = np.flatnonzero(self.numbering.index == row)
         return next(filter(None, self.comm.allgather(self._describe(entries))), f"row {row}")
 
-    def _describe(self, entries: Array) -> str:
+    def _describe(self, entries: IntArray) -> str:
         for entry in entries:
             field = self._field_of(int(entry))
             if field.owned[entry - field.offset]:

@@ -5,9 +5,10 @@ quasi-static soil), the residual of a step from n to n + 1 is
 
     R = W [(1 - am) I(n+1) + am I(n) + (1 - af) F(n+1) + af F(n)] + E(n+1),    W = 2 beta / (1 - am).
 
-E is treated fully implicitly (Kane, Repetto, Ortiz & Marsden 1999, doi:10.1002/(SICI)1097-0207(20000110)49:1<1::AID-NME>3.0.CO;2-W):
-the acceleration that it causes counts with 2 beta = 1, gamma = 1, whatever the bulk's beta and gamma are, so that impact
-takes energy out and never puts any in. W makes both meet in one equation with a symmetric coupling to the soil.
+E is treated fully implicitly (Kane, Repetto, Ortiz & Marsden, Finite element analysis of nonsmooth contact, Computer
+Methods in Applied Mechanics and Engineering 180, 1999): the acceleration that it causes counts with 2 beta = 1,
+gamma = 1, whatever the bulk's beta and gamma are, so that impact takes energy out and never puts any in. W makes both
+meet in one equation with a symmetric coupling to the soil.
 Generalised-alpha: Chung & Hulbert (1993), eqs 17 and 25; alpha_m = alpha_f = 0 is Newmark's scheme.
 """
 
@@ -73,7 +74,7 @@ class GeneralizedAlpha:
 
     @classmethod
     def from_rho_inf(cls, rho_inf: float) -> GeneralizedAlpha:
-        """Second order and unconditionally stable on linear systems; rho_inf = 1 keeps all, 0 kills the highest modes at once."""
+        """Second order; rho_inf is the spectral radius at infinite frequency: 1 keeps all, 0 kills it at once."""
         alpha_m = (2.0 * rho_inf - 1.0) / (rho_inf + 1.0)
         alpha_f = rho_inf / (rho_inf + 1.0)
         return cls(alpha_m, alpha_f, 0.25 * (1.0 - alpha_m + alpha_f) ** 2, 0.5 - alpha_m + alpha_f)
@@ -107,7 +108,7 @@ class GeneralizedAlpha:
         return self.bulk_weight * bulk + forces.end
 
     def split_contact(self, state: State, contact: Array, dt: float) -> State:
-        """State whose bulk acceleration excludes the contact's share `contact` [m/s2], and whose rate counts it in full."""
+        """The state with the contact's share `contact` [m/s2] out of its bulk acceleration and in full in its rate."""
         a = state.a - contact / (2.0 * self.beta)
         v = state.v + dt * (1.0 - self.gamma / (2.0 * self.beta)) * contact
         return State(state.t, state.u, v, a)

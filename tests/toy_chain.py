@@ -48,19 +48,19 @@ class Inertia:
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.chain.pairs()}
 
-    def _nodal(self) -> Array:
+    def nodal(self) -> Array:
         count = np.full(self.chain.size, 2.0)
         count[[0, -1]] = 1.0
         return self.mass * count
 
     def residual(self, state: State, forces: Forces) -> None:
-        forces.inertia += self._nodal() * state.a
+        forces.inertia += self.nodal() * state.a
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         values["riser"] += weights.inertia * weights.shift_a * self.mass * np.eye(2)
 
     def energy(self, state: State) -> Energy:
-        return Energy(kinetic=0.5 * float(self._nodal() @ state.v**2))
+        return Energy(kinetic=0.5 * float(self.nodal() @ state.v**2))
 
     def work(self, before: State, after: State) -> Work:
         return Work()

@@ -181,8 +181,8 @@ class Line:
     def improve(self, guess: State) -> Array:
         """First guess of a step: the guess's increment, with what the held ends move beyond it spread along the line.
 
-        Left to the last element alone, that remainder stretches it, and its false tension spoils the first iteration. The
-        cube of the distance from the other end keeps the far part, often lying on the seabed, where it is.
+        Left to the last element alone, that remainder stretches it, and its false tension spoils the first
+        iteration. The cube of the distance from the other end keeps the far part, often on the seabed, where it is.
         """
         improved = guess.u.copy()
         moved = State(guess.t, guess.u.copy(), guess.v.copy(), guess.a.copy())

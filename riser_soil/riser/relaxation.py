@@ -10,7 +10,7 @@ from riser_soil.riser.line import Line
 
 
 class Relaxation:
-    """Part "relaxation": resists the translations of a pseudo-time step by `drag` times tributary length times increment.
+    """Part "relaxation": resists a pseudo-time step by `drag` times tributary length times translation.
 
     drag: N/m2, force per length and displacement in one step; large values allow small steps only. It may be changed
     between steps. The forces vanish with the increment, so that what it converges to is an equilibrium without it.

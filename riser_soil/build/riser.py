@@ -1,0 +1,134 @@
+"""The riser's line, elements and end springs."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.part import Part
+from riser_soil.riser import sections, shapes
+from riser_soil.riser.line import End, Line
+from riser_soil.riser.springs import EndSpring
+from riser_soil.scene.line_types import LineType
+from riser_soil.scene.plane import resolved_dimension, vertical_plane
+from riser_soil.scene.riser import Riser, RotationSpring, Support
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.shapes import ArcShape, PointsShape
+
+
+def elements_of(scene: Scene) -> sections.Elements:
+    around = sections.Surroundings(
+        gravity=scene.gravity,
+        contents=scene.riser.contents.density if scene.riser.contents else 0.0,
+        water=scene.water.density if scene.water else 0.0,
+    )
+    types = {name: _line_type(t) for name, t in scene.used_line_types.items()}
+    segments = [
+        sections.Segment(types[s.line_type], s.length, s.number_of_elements) for s in scene.riser.segments
+    ]
+    return sections.elements(segments, around)
+
+
+def _line_type(given: LineType) -> sections.LineType:
+    EI_y, EI_z = given.bending_stiffness
+    return sections.LineType(
+        EA=given.EA,
+        EI_y=EI_y,
+        EI_z=EI_z,
+        GJ=given.GJ or 0.0,
+        outer_diameter=given.outer_diameter or 0.0,
+        inner_diameter=given.inner_diameter,
+        mass=given.mass or 0.0,
+        submerged_weight=given.submerged_weight,
+        drag=(given.drag.normal, given.drag.tangential) if given.drag else (0.0, 0.0),
+        added_mass=(given.added_mass.normal, given.added_mass.tangential) if given.added_mass else (0.0, 0.0),
+    )
+
+
+def line_of(scene: Scene, elements: sections.Elements, active: bool) -> tuple[Line, float | None]:
+    """The line in its initial shape, and the horizontal tension [N] where that is a catenary."""
+    unstressed = _unstressed(scene.riser, elements.arc)
+    initial, tension = _initial(scene, elements, unstressed)
+    layout = shapes.layout(elements.arc, elements.outer_diameter, unstressed, initial)
+    start, end = _end(scene.riser.start), _end(scene.riser.end)
+    line = Line(
+        resolved_dimension(scene),
+        layout,
+        start,
+        end,
+        direction=np.asarray(vertical_plane(scene).direction),
+        hold_spin=not _holds_spin(scene.riser),
+        active=active,
+    )
+    return line, tension
+
+
+def _end(given: str | Support) -> End:
+    return End(held=isinstance(given, Support), rotation_fixed=isinstance(given, Support) and given.rotation == "fixed")
+
+
+def _holds_spin(riser: Riser) -> bool:
+    """Whether an end keeps the riser from spinning about its own axis."""
+    return any(isinstance(end, Support) and end.rotation != "free" for end in (riser.start, riser.end))
+
+
+def springs_of(riser: Riser, line: Line) -> list[Part]:
+    ends = ((0, riser.start), (-1, riser.end))
+    return [
+        EndSpring(line, node, end.rotation.stiffness)
+        for node, end in ends
+        if isinstance(end, Support) and isinstance(end.rotation, RotationSpring)
+    ]
+
+
+def _ends(riser: Riser) -> tuple[Array | None, Array | None]:
+    start, end = (np.asarray(e.position) if isinstance(e, Support) else None for e in (riser.start, riser.end))
+    return start, end
+
+
+def _unstressed(riser: Riser, arc: Array) -> shapes.Curve:
+    if isinstance(riser.unstressed, ArcShape):
+        given = riser.unstressed.arc
+        return shapes.circle(arc, given.centre, given.from_point, np.radians(given.angle_deg), given.axis)
+    if isinstance(riser.unstressed, PointsShape):
+        return shapes.through(arc, riser.unstressed.points)
+    start, end = _ends(riser)
+    if start is None or end is None or np.array_equal(start, end):
+        return shapes.straight(arc, np.zeros(3) if start is None else start)
+    return shapes.straight(arc, start, end - start)
+
+
+def _initial(
+    scene: Scene, elements: sections.Elements, unstressed: shapes.Curve
+) -> tuple[shapes.Curve, float | None]:
+    given = scene.riser.initial
+    start, end = _ends(scene.riser)
+    if given == "catenary":
+        return _catenary(scene, elements, start, end)
+    if isinstance(given, PointsShape):
+        return shapes.through(elements.arc, given.points), None
+    if given == "straight" and start is not None and end is not None:
+        return shapes.between(elements.arc, start, end), None
+    if given == "straight":
+        return shapes.straight(elements.arc, np.zeros(3) if start is None else start), None
+    return unstressed, None
+
+
+def _catenary(
+    scene: Scene, elements: sections.Elements, start: Array | None, end: Array | None
+) -> tuple[shapes.Curve, float]:
+    from riser_soil.riser.catenary import catenary
+
+    assert start is not None, "the scene's checks let no catenary start without two held ends"
+    assert end is not None
+    weight = float(np.average(elements.weight, weights=elements.length))
+    EA = elements.arc[-1] / float(np.sum(elements.length / elements.EA))
+    has_ground = scene.seabed is not None or scene.soil is not None
+    level = scene.seabed_level + contact_radius(scene, elements).max() if has_ground else -np.inf
+    shape = catenary(elements.arc, start, end, weight, EA, level)
+    return shape.curve, shape.H
+
+
+def contact_radius(scene: Scene, elements: sections.Elements) -> Array:
+    """Distance (ne,) from the axis to the line of the pipe that touches [m]."""
+    return 0.5 * elements.outer_diameter * (scene.contact_at == "outer")

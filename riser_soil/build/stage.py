@@ -1,0 +1,87 @@
+"""What a stage adds: motions of the ends, loads, inertia, hydrodynamics, and its time scheme."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.motion.harmonic import Harmonic
+from riser_soil.motion.move import Move
+from riser_soil.part import Part
+from riser_soil.riser.line import Line, Motion
+from riser_soil.riser.sections import Elements
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import Load as LoadScene
+from riser_soil.scene.stages import NewmarkScheme, Stage, StaticStage
+from riser_soil.time_scheme import GeneralizedAlpha, Scheme, Static
+
+if TYPE_CHECKING:
+    from riser_soil.riser.loads import Load
+
+
+def scheme_of(stage: Stage) -> Scheme:
+    if isinstance(stage, StaticStage):
+        return Static()
+    if isinstance(stage.scheme, NewmarkScheme):
+        return GeneralizedAlpha.newmark(stage.scheme.newmark.beta, stage.scheme.newmark.gamma)
+    return GeneralizedAlpha.from_rho_inf(stage.scheme.generalized_alpha.rho_inf)
+
+
+def set_motions(line: Line, stage: Stage) -> None:
+    for end, node, name in ((line.start, 0, "start"), (line.end, -1, "end")):
+        end.motion = _motion(line.to_global(line.x[node]), stage, name) if end.held else None
+
+
+def _motion(origin: Array, stage: Stage, name: str) -> Motion | None:
+    if isinstance(stage, StaticStage):
+        target = getattr(stage.move, name, None)
+        return None if target is None else Move(origin, np.asarray(target))
+    given = getattr(stage.motion, name, None)
+    if given is None:
+        return None
+    h = given.harmonic
+    return Harmonic(origin, np.asarray(h.amplitude), h.period, h.ramp, np.radians(h.phase_deg))
+
+
+def loads_of(line: Line, stage: Stage) -> list[Part]:
+    if not stage.loads:
+        return []
+    from riser_soil.riser.loads import PointLoads
+
+    return [PointLoads(line, [_load(line, load, stage.kind == "static") for load in stage.loads])]
+
+
+def _load(line: Line, given: LoadScene, static: bool) -> Load:
+    from riser_soil.riser.loads import Load
+
+    places = {"start": 0.0, "end": float(line.arc[-1]), None: 0.0}
+    vectors = {k: getattr(given, k) for k in ("force", "moment", "distributed")}
+    return Load(
+        _factor(given, static),
+        places[given.at] if isinstance(given.at, str | None) else given.at,
+        **{k: np.asarray(v) for k, v in vectors.items() if v is not None},
+    )
+
+
+def _factor(given: LoadScene, static: bool) -> Callable[[float], float]:
+    if given.history is None:
+        return (lambda t: t) if static else (lambda t: 1.0)
+    times, factors = np.array(given.history).T
+    return lambda t: float(np.interp(t, times, factors))
+
+
+def dynamic_parts(scene: Scene, line: Line, elements: Elements) -> list[Part]:
+    from riser_soil.riser.inertia import Inertia
+
+    parts: list[Part] = [Inertia(line, elements.mass)]
+    if scene.water is not None and (elements.drag.any() or elements.added_mass.any()):
+        from riser_soil.sea import morison_law
+        from riser_soil.sea.morison import Morison
+
+        rho, D = scene.water.density, elements.outer_diameter
+        drag = morison_law.drag_coefficients(rho, D, *elements.drag.T)
+        parts.append(Morison(line, drag, morison_law.added_masses(rho, D, *elements.added_mass.T)))
+    return parts

@@ -1,0 +1,97 @@
+"""The parts of a scene that live through all its stages."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.build.riser import elements_of, line_of, springs_of
+from riser_soil.build.stage import dynamic_parts, loads_of, set_motions
+from riser_soil.part import Field, Model, Part
+from riser_soil.riser.beam import Beam
+from riser_soil.riser.line import Line
+from riser_soil.riser.sections import Elements
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage, Stage
+
+if TYPE_CHECKING:
+    from riser_soil.contact.contact import Contact
+    from riser_soil.soil.soil import Soil
+
+FORCE_FLOOR = 1e-14  # of EA: a residual below this is round-off even where all forces vanish
+LEAST_WEIGHT = 1e-6  # of EA/L: stands for the weight of a line that has none
+
+
+@dataclass(eq=False)
+class World:
+    """A scene's fields and lasting parts; soil and contact are None where the scene has none.
+
+    horizontal_tension [N]: of the initial catenary, None for other first shapes.
+    contact_stiffness [N/m2]: force per length and penetration, by ground (soil, plane).
+    """
+
+    scene: Scene
+    comm: MPI.Intracomm
+    line: Line
+    elements: Elements
+    riser_parts: list[Part]
+    horizontal_tension: float | None
+    soil: Soil | None = None
+    contact: Contact | None = None
+    contact_stiffness: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def fields(self) -> list[Field]:
+        soil: list[Field] = [self.soil.field, self.soil.surface] if self.soil is not None else []
+        return [self.line, *soil]
+
+    @property
+    def size(self) -> int:
+        """Entries of a local array on this rank."""
+        return sum(f.size for f in self.fields)
+
+    @property
+    def force_floor(self) -> float:
+        return FORCE_FLOOR * float(self.elements.EA.max())
+
+    @property
+    def weight(self) -> float:
+        """Typical force per length [N/m]."""
+        least = LEAST_WEIGHT * float(self.elements.EA.max() / self.line.arc[-1])
+        return max(float(np.abs(self.elements.weight).max()), least)
+
+    def begin(self, stage: Stage) -> Model:
+        """Set the ends in motion and name the parts of a stage."""
+        set_motions(self.line, stage)
+        parts = [*self.riser_parts, *loads_of(self.line, stage)]
+        if isinstance(stage, DynamicStage):
+            parts += dynamic_parts(self.scene, self.line, self.elements)
+        parts += [p for p in (self.soil, self.contact) if p is not None]
+        return Model(self.fields, parts)
+
+
+def build(scene: Scene, comm: MPI.Intracomm) -> World:
+    """Build the parts of a scene; collective. Raises SceneError or MeshError."""
+    elements = elements_of(scene)
+    line, tension = line_of(scene, elements, active=comm.rank == 0)
+    world = World(scene, comm, line, elements, [Beam(line, elements), *springs_of(scene.riser, line)], tension)
+    if scene.contact is not None:
+        _add_ground(world)
+    return world
+
+
+def _add_ground(world: World) -> None:
+    from riser_soil.build import ground
+
+    scene, settings = world.scene, world.scene.contact
+    assert settings is not None
+    if scene.soil is not None:
+        world.soil = ground.soil_of(scene, scene.soil, world.line, world.comm)
+    surface = world.soil.surface if world.soil is not None else None
+    world.contact_stiffness = ground.stiffnesses(scene, settings, world.elements, world.weight)
+    world.contact = ground.contact_of(
+        scene, settings, world.line, world.elements, surface, world.contact_stiffness, world.comm.rank == 0
+    )
