@@ -13,6 +13,7 @@ from riser_soil.part import Field, Part, State, Weights
 from riser_soil.system import System
 
 MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
+MASSLESS = 1e-12  # of a node's largest mass
 
 
 class RiserMass:
@@ -22,11 +23,12 @@ class RiserMass:
         self._system = system
         self._riser: Field = system.model.fields[0]
         self._parts: list[Part] = [p for p in system.model.parts if set(p.blocks()) == {"riser"}]
+        self._moving: Array | None = None
 
     def accelerations(self, t: float, force: Array) -> Array:
         """a with M a = force, in the accepted configuration at time t; local arrays, zero outside the riser.
 
-        Dofs without mass (twist of a line without rotary inertia) and prescribed dofs get none.
+        What has no mass (twist of a line without rotary inertia) and prescribed dofs get none.
         """
         at = slice(self._riser.offset, self._riser.offset + self._riser.size)
         mine = self._solve(t, force[at]) if self._system.comm.rank == 0 else None
@@ -36,12 +38,12 @@ class RiserMass:
 
     def _solve(self, t: float, force: Array) -> Array:
         blocks = self._element_matrices(t)
-        dofs = blocks.shape[1] // 2
-        free = ~self._riser.prescribed
-        banded = _banded(_masked(blocks, free, dofs), self._riser.size)
-        massless = banded[-1] == 0.0
-        banded[-1, massless] = 1.0
-        return np.asarray(solveh_banded(banded, np.where(free & ~massless, force, 0.0)))
+        if self._moving is None:
+            self._moving = _moving(blocks, ~self._riser.prescribed)
+        banded = _banded(_projected(blocks, self._moving), self._riser.size)
+        _add_nodal(banded, np.eye(self._moving.shape[1]) - self._moving)
+        nodal = force.reshape(len(self._moving), -1, 1)
+        return np.asarray(solveh_banded(banded, (self._moving @ nodal).ravel(), overwrite_ab=True))
 
     def _element_matrices(self, t: float) -> Array:
         state = State.at_rest(t, self._system.numbering.size)
@@ -51,11 +53,28 @@ class RiserMass:
         return values["riser"]
 
 
-def _masked(blocks: Array, free: BoolArray, dofs: int) -> Array:
-    """Element matrices without the rows and columns of dofs that aren't free."""
-    nodes = free.astype(float).reshape(-1, dofs)
-    ends = np.concatenate([nodes[:-1], nodes[1:]], axis=1)
-    return blocks * ends[:, :, None] * ends[:, None, :]
+def _moving(blocks: Array, free: BoolArray) -> Array:
+    """Projectors (nn, dofs, dofs) of the nodes onto what is free and has mass.
+
+    A node without rotary inertia has none about its tangents where they agree. That axis need not be an axis of the
+    dofs, but it stays where it is in the body axes, so that the projectors hold for all configurations.
+    """
+    dofs = blocks.shape[1] // 2
+    mass = np.zeros((len(blocks) + 1, dofs, dofs))
+    mass[:-1] += blocks[:, :dofs, :dofs]
+    mass[1:] += blocks[:, dofs:, dofs:]
+    mask = free.reshape(-1, dofs)
+    masses, axes = np.linalg.eigh(mass * mask[:, :, None] * mask[:, None, :])
+    kept = axes * (masses > MASSLESS * masses[:, -1:])[:, None, :]
+    return np.asarray(kept @ np.swapaxes(kept, 1, 2))
+
+
+def _projected(blocks: Array, moving: Array) -> Array:
+    """Element matrices of the projected accelerations."""
+    dofs = moving.shape[1]
+    both = np.zeros_like(blocks)
+    both[:, :dofs, :dofs], both[:, dofs:, dofs:] = moving[:-1], moving[1:]
+    return np.asarray(both @ blocks @ both)
 
 
 def _banded(blocks: Array, size: int) -> Array:
@@ -67,3 +86,11 @@ def _banded(blocks: Array, size: int) -> Array:
         for j in range(i, width):
             ab[width - 1 + i - j, j : j + dofs * count : dofs] += blocks[:, i, j]
     return ab
+
+
+def _add_nodal(ab: Array, nodal: Array) -> None:
+    """Add matrices of the nodes (nn, dofs, dofs) to the upper banded storage."""
+    dofs = nodal.shape[1]
+    for i in range(dofs):
+        for j in range(i, dofs):
+            ab[2 * dofs - 1 + i - j, j::dofs] += nodal[:, i, j]
