@@ -78,26 +78,32 @@ class Morison:
         return Energy(kinetic=0.5 * float(np.sum(trial.q_rate * stations.integrate(self._at, momentum))))
 
     def work(self, before: State, after: State) -> Work:
-        """Drag dissipates; what the added mass takes besides its kinetic energy, as it turns, is the water's
-        work.
-        """
+        """Drag dissipates; as the added mass turns with the pipe, the water does work on it."""
         if not self.line.active:
             return Work()
         increment = self.line.nodal(after.u) - self.line.nodal(before.u)
-        gained = self.energy(after).kinetic - self.energy(before).kinetic
-        resisted = [self._mean_work(group, before, after, increment) for group in (0, 1)]
-        return Work(dissipated=resisted[1], external=gained - resisted[0])
+        dissipated = sum(0.5 * self._resisted(state, increment) for state in (before, after))
+        return Work(dissipated=dissipated, external=self._turned(before, after))
 
-    def _mean_work(self, group: int, before: State, after: State, increment: Array) -> float:
-        """Work against the mean resistance of a group over the step."""
-        total = 0.0
-        for state in (before, after):
-            nodal = np.zeros(self.line.offset + self.line.size)
-            element = self.element_forces(state)[group]
-            assert element is not None
-            self.line.scatter(element, nodal)
-            total += 0.5 * float(np.sum(self.line.nodal(nodal) * increment))
-        return total
+    def _resisted(self, state: State, increment: Array) -> float:
+        """Work of a step's increment against the drag at a state."""
+        trial = self.line.trial(state)
+        nodal = np.zeros(self.line.offset + self.line.size)
+        self.line.scatter(trial.pull_back(self._q_forces(trial)[1]), nodal)
+        return float(np.sum(self.line.nodal(nodal) * increment))
+
+    def _turned(self, before: State, after: State) -> float:
+        """What turning by dtau adds to the added mass's kinetic energy beyond the work of its force.
+
+        That force is m(tau) a, so the remainder is 1/2 v.dm v = (Cat - Can) (v.tau) (v.dtau) per length. Written in
+        rates alone it owes nothing to the accelerations, which generalised-alpha knows to first order only.
+        """
+        seen = [self.line.trial(state) for state in (before, after)]
+        tau = [self._tangents(trial)[0] for trial in seen]
+        rate = [stations.interpolate(self._at, trial.q_rate) for trial in seen]
+        pull = 0.5 * sum(np.sum(v * t, axis=-1, keepdims=True) * v for v, t in zip(rate, tau, strict=True))
+        excess = (self._mass[:, 1] - self._mass[:, 0])[:, None, None]
+        return float(np.sum(stations.integrate(self._at, excess * pull * (tau[1] - tau[0]))[:, [0, 2]]))
 
     def commit(self, state: State) -> None:
         pass
