@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -70,12 +71,17 @@ class Observer:
         self._progress.begin_stage(stage.name, stage.kind, 1.0 if isinstance(stage, StaticStage) else stage.duration)
 
     def look(self, system: System, step: Accepted) -> Seen | None:
+        """The riser at the end of a step that isn't committed yet."""
         if self._recorder is None:
             return None
-        return Seen(riser_snapshot(self._world, system, step), touch(self._world, step))
+        since = time.perf_counter()
+        seen = Seen(riser_snapshot(self._world, system, step), touch(self._world, step))
+        self._clock.add("output", since)
+        return seen
 
     def record(self, step: Accepted, seen: Seen | None, last: bool) -> None:
         """Tell the recorder of a step that has been committed; collective."""
+        since = time.perf_counter()
         due = self._schedule.due(step.t, last)
         wanted = due.pictures and self._world.soil is not None
         soil = self._world.soil.output_fields() if wanted and self._world.soil is not None else None
@@ -86,6 +92,7 @@ class Observer:
             health = StepHealth(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
             self._recorder.accept(step.t, due, seen.riser, seen.touch, health, self._ledger, soil)
         self._relaxed = 0
+        self._clock.add("output", since)
 
     def relaxed(self, iterations: int) -> None:
         """Dynamic relaxation was needed; its Newton iterations count with the next step."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from mpi4py import MPI
 from riser_soil.build import World, build
 from riser_soil.build.stage import scheme_of
 from riser_soil.errors import SolveError
+from riser_soil.folder import refuse_finished
 from riser_soil.march import March
 from riser_soil.newton import Newton, NewtonSettings
 from riser_soil.observe import Observer
@@ -27,8 +29,10 @@ def run(scene: Scene, folder: Path, force: bool = False) -> None:
     force: overwrite a finished run. Raises SceneError, MeshError or SolveError; after the last the folder keeps
     everything up to the last accepted step, marked unfinished.
     """
-    comm, clock = MPI.COMM_WORLD, Clock.new()
+    refuse_finished(folder, force)
+    comm, clock, since = MPI.COMM_WORLD, Clock.new(), time.perf_counter()
     world = build(scene, comm)
+    clock.add("build", since)
     with Observer.open(world, clock, folder, force) as observer:
         before = State.at_rest(0.0, world.size)
         for stage in scene.stages:

@@ -76,8 +76,8 @@ def _residual(energy: dict[str, float]) -> str:
 
 
 def _turnover(energy: dict[str, float]) -> float:
-    """J, the largest share of the balance: what its residual is to be measured by."""
-    return max(abs(energy[key]) for key in ("kinetic", "strain", "potential", "dissipated", "work"))
+    """J, what the residual is to be measured by; not the potential, whose zero is anywhere."""
+    return max(abs(energy[key]) for key in ("kinetic", "strain", "dissipated", "work"))
 
 
 def _span(value: float | None, extremes: dict[str, float | None], unit: str, scale: float = 1.0) -> str:
