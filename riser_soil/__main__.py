@@ -22,6 +22,7 @@ _PATIENCE = 5.0
 
 app = typer.Typer(
     help="Static and dynamic analysis of a riser on the seabed.",
+    epilog="Exit status: 0 done, 2 bad input, 3 the solve failed (what was computed until then is kept).",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -30,7 +31,12 @@ app = typer.Typer(
 SceneFile = Annotated[str, typer.Argument(metavar="SCENE", help="scene file (.yaml)")]
 Overrides = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="PATH=VALUE", help="override a value, e.g. riser.segments.0.elements=70"),
+    typer.Option(
+        "--set",
+        metavar="PATH=VALUE",
+        help="override a value of the scene, e.g. riser.segments.0.elements=70; may be repeated; "
+        "list items are counted from 0",
+    ),
 ]
 
 
@@ -38,13 +44,22 @@ Overrides = Annotated[
 def run(
     scene: SceneFile,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="FOLDER", help="result folder")
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FOLDER",
+            help="result folder; else output.directory of the scene, else the scene file's name without "
+            "its ending, in the current folder",
+        ),
     ] = None,
-    restart: Annotated[bool, typer.Option("--restart", help="continue from the last checkpoint")] = False,
-    force: Annotated[bool, typer.Option("--force", help="overwrite a finished run")] = False,
+    restart: Annotated[bool, typer.Option("--restart", help="not supported yet")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="overwrite a finished run, which is refused otherwise")
+    ] = False,
     overrides: Overrides = None,
 ) -> None:
-    """Compute a scene. FOLDER is by default named after the scene file, in the current folder."""
+    """Compute a scene and leave its results in a folder."""
     with _expected_errors():
         if restart:
             raise SceneError("--restart: not supported yet; run the scene from its beginning")
@@ -58,7 +73,7 @@ def run(
 
 @app.command()
 def check(scene: SceneFile, overrides: Overrides = None) -> None:
-    """Check a scene and tell what would be built, without computing anything."""
+    """Check a scene: tell what would be built, what is left out and why, what looks doubtful; solve nothing."""
     with _expected_errors():
         checked = _read(scene, overrides)
         from riser_soil.check import describe
@@ -71,7 +86,7 @@ def check(scene: SceneFile, overrides: Overrides = None) -> None:
 
 @app.command()
 def schema() -> None:
-    """Print the JSON schema of scene files, for editors."""
+    """Print the JSON schema of scene files: every key with its meaning, unit and default; editors use it."""
     from riser_soil.scene.schema import schema_text
 
     typer.echo(schema_text())

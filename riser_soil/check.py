@@ -33,11 +33,16 @@ def describe(scene: Scene) -> str:
 
 
 def _verdict(doubts: list[str]) -> str:
-    return f"{len(doubts)} warning{'s' if len(doubts) != 1 else ''}" if doubts else "no warnings"
+    return _counted(len(doubts), "warning") if doubts else "no warnings"
+
+
+def _counted(number: int, name: str) -> str:
+    return f"{number} {name}" if number == 1 else f"{number} {name}s"
 
 
 def _parts(world: World) -> Iterator[str]:
-    yield f"{world.scene.title}: {len(world.scene.stages)} stages, riser in {world.line.dimension} dimensions"
+    stages = len(world.scene.stages)
+    yield f"{world.scene.title}: {_counted(stages, 'stage')}, riser in {world.line.dimension} dimensions"
     yield "built: " + ", ".join(built(world.scene))
     yield from (f"left out: {name}: {reason}" for name, reason in left_out(world.scene).items())
 
@@ -52,11 +57,12 @@ def _unknowns(world: World) -> Iterator[str]:
         cells = world.comm.allreduce(world.soil.blocks()["soil"].shape[0])
         yield f"soil: {cells} cells, {unknowns(world.comm, world.soil.field)} unknowns"
     for ground, stiffness in world.contact_stiffness.items():
-        yield f"contact on the {ground}: {stiffness:.4g} N/m2"
+        name = "seabed" if ground == "plane" else ground
+        yield f"contact stiffness on the {name}: {stiffness:.4g} N/m2"
 
 
 def _memory_line(world: World) -> str:
-    return f"estimated memory: {memory(world) / 1e6:.0f} MB in all, on {world.comm.size} rank(s)"
+    return f"estimated memory: {memory(world) / 1e6:.0f} MB on {_counted(world.comm.size, 'rank')}"
 
 
 def memory(world: World) -> float:

@@ -28,8 +28,11 @@ class Contact(BaseModel):
         default="node", description="where contact is evaluated: at the riser's nodes"
     )
     stiffness: Stiffness = Field(
-        default="auto", description="force per length of pipe and penetration [N/m2], or auto"
+        default="auto",
+        description="force per length of pipe and penetration [N/m2], or auto: the larger of 10 times the "
+        "soil's Young's modulus at the surface and (submerged weight)/(0.001 outer diameter); a spring "
+        "seabed has its own",
     )
     smoothing: NonNegative = Field(
-        default=1.0e-3, description="half width of the smooth onset of contact, in penetration [m]"
+        default=1.0e-3, description="contact sets in smoothly between this gap and this penetration [m]"
     )

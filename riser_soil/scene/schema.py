@@ -7,4 +7,5 @@ from riser_soil.scene.scene import Scene
 
 def schema_text() -> str:
     """The schema of a scene file; every key with its description, unit, bounds and default."""
-    return json.dumps(Scene.model_json_schema(by_alias=True), indent=2)
+    dialect = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
+    return json.dumps(dialect | Scene.model_json_schema(by_alias=True), indent=2)

@@ -11,11 +11,14 @@ class Solver(BaseModel):
     model_config = FROZEN
 
     tolerance: Positive = Field(
-        default=1.0e-7, lt=1.0, description="residual at convergence, relative to the scene's own forces [-]"
+        default=1.0e-7,
+        lt=1.0,
+        description="norm of the residual at convergence, relative to the largest of the norms of support "
+        "reactions, inertia and contact forces [-]",
     )
     max_iterations: Count = Field(default=25, description="Newton iterations before a step is cut [-]")
     load_steps: Count = Field(
-        default=1, description="steps into which a static stage is divided at first [-]"
+        default=1, description="equal load steps that a static stage is divided into; a step that fails is halved [-]"
     )
     min_load_step: Positive = Field(
         default=1.0e-4,
