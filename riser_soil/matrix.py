@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-import numba
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
 from riser_soil.arrays import Array, IntArray
+from riser_soil.compiled import njit
 from riser_soil.numbering import Numbering
 from riser_soil.part import Block
 
@@ -75,7 +75,7 @@ class Matrix:
         self.mat.destroy()
 
 
-@numba.njit(cache=True)
+@njit
 def _add_at(data: Array, places: IntArray, values: Array) -> None:
     for k in range(places.size):
         data[places[k]] += values[k]

@@ -7,9 +7,9 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from numba import njit
 
 from riser_soil.arrays import Array, IntArray
+from riser_soil.compiled import njit
 from riser_soil.contact.gap import gap_forms, heights, penalty_hessian
 from riser_soil.contact.ground import ContactPoints, Soil
 from riser_soil.contact.law import Penalty
@@ -173,7 +173,7 @@ class Grounds:
         return forms
 
 
-@njit(cache=True)
+@njit
 def add_shares(values: Array, rows: IntArray, shares: Array) -> None:
     """Add shares (n, nr) to values at rows (n, nr), which may repeat."""
     for i in range(rows.shape[0]):
@@ -181,7 +181,7 @@ def add_shares(values: Array, rows: IntArray, shares: Array) -> None:
             values[rows[i, j]] += shares[i, j]
 
 
-@njit(cache=True)
+@njit
 def add_blocks(values: Array, places: IntArray, blocks: Array) -> None:
     """Add blocks (n, nr, nr) to values[places], which may repeat; blocks at −1 are left out."""
     for i in range(places.size):

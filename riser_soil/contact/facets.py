@@ -8,15 +8,15 @@ Both are the node orders of Gmsh and VTK. The number of nodes, 4 or 6, tells the
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from riser_soil.arrays import Array
+from riser_soil.compiled import njit
 
 QUAD = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))  # corners of quad4
 AREA = ((-1.0, -1.0), (1.0, 0.0), (0.0, 1.0))  # gradients of the area coordinates of tri6
 
 
-@njit(cache=True)
+@njit
 def shape(nodes: int, xi: float, eta: float) -> tuple[Array, Array]:
     """N (nodes,) and ∂N/∂ξ_α (nodes, 2) at (ξ, η)."""
     N, dN = np.empty(nodes), np.empty((nodes, 2))
@@ -24,7 +24,7 @@ def shape(nodes: int, xi: float, eta: float) -> tuple[Array, Array]:
     return N, dN
 
 
-@njit(cache=True)
+@njit
 def fill_shape(xi: float, eta: float, N: Array, dN: Array) -> None:
     """Write `shape` to N (nodes,) and dN (nodes, 2)."""
     if N.size == 4:
@@ -33,7 +33,7 @@ def fill_shape(xi: float, eta: float, N: Array, dN: Array) -> None:
         _tri6(xi, eta, N, dN)
 
 
-@njit(cache=True)
+@njit
 def second_derivatives(nodes: int) -> Array:
     """∂²N/∂ξ_α∂ξ_β (nodes, 2, 2), constant over the facet."""
     ddN = np.zeros((nodes, 2, 2))
@@ -50,7 +50,7 @@ def second_derivatives(nodes: int) -> Array:
     return ddN
 
 
-@njit(cache=True)
+@njit
 def inside(nodes: int, xi: float, eta: float, tolerance: float) -> bool:
     """Whether (ξ, η) lies on the facet, its rim widened by the tolerance."""
     if nodes == 4:
@@ -58,7 +58,7 @@ def inside(nodes: int, xi: float, eta: float, tolerance: float) -> bool:
     return min(xi, eta, 1.0 - xi - eta) >= -tolerance
 
 
-@njit(cache=True)
+@njit
 def centre(nodes: int) -> tuple[float, float]:
     """(ξ, η) of the facet's middle."""
     if nodes == 4:
@@ -66,14 +66,14 @@ def centre(nodes: int) -> tuple[float, float]:
     return (1.0 / 3.0, 1.0 / 3.0)
 
 
-@njit(cache=True)
+@njit
 def _quad4(xi: float, eta: float, N: Array, dN: Array) -> None:
     for a, (x, y) in enumerate(QUAD):
         N[a] = 0.25 * (1.0 + x * xi) * (1.0 + y * eta)
         dN[a, 0], dN[a, 1] = 0.25 * x * (1.0 + y * eta), 0.25 * y * (1.0 + x * xi)
 
 
-@njit(cache=True)
+@njit
 def _tri6(xi: float, eta: float, N: Array, dN: Array) -> None:
     """Corners N = L(2L − 1), sides N = 4·L·L', in the area coordinates L."""
     L = (1.0 - xi - eta, xi, eta)

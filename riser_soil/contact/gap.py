@@ -16,13 +16,13 @@ coefficients is zero in each direction: forces that derive from the gap balance 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from riser_soil.arrays import Array, IntArray
+from riser_soil.compiled import njit
 from riser_soil.contact.facets import second_derivatives, shape
 
 
-@njit(cache=True)
+@njit
 def heights(facet: IntArray, xi: Array, facets: IntArray, points: Array) -> Array:
     """Height [m] of the deformed surface at places xi (n, 2) on facets (n,); −inf where the facet is −1."""
     out = np.full(len(facet), -np.inf)
@@ -35,7 +35,7 @@ def heights(facet: IntArray, xi: Array, facets: IntArray, points: Array) -> Arra
     return out
 
 
-@njit(cache=True)
+@njit
 def gap_forms(facet: IntArray, xi: Array, facets: IntArray, points: Array) -> tuple[Array, Array]:
     """Linear forms (n, 5, 3 + 3·nv) and H (n, 2, 2).
 
@@ -50,7 +50,7 @@ def gap_forms(facet: IntArray, xi: Array, facets: IntArray, points: Array) -> tu
     return forms, H
 
 
-@njit(cache=True)
+@njit
 def _forms_of_one(xi: Array, at: Array, ddN: Array, forms: Array, H: Array) -> None:
     nv = len(at)
     N, dN = shape(nv, xi[0], xi[1])

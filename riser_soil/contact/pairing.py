@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from scipy.spatial import cKDTree
 
 from riser_soil.arrays import Array, IntArray
+from riser_soil.compiled import njit
 from riser_soil.contact.facets import centre, fill_shape, inside
 
 NEIGHBOURS = 8  # facets tried first; a point that none of them holds is looked for in all facets
@@ -43,7 +43,7 @@ class Pairing:
         return found
 
 
-@njit(cache=True)
+@njit
 def bounds(points: Array, facets: IntArray) -> Array:
     """Horizontal boxes (nf, 4) around facets: lowest x and y, highest x and y [m]; see `_box`."""
     boxes = np.empty((len(facets), 4))
@@ -52,7 +52,7 @@ def bounds(points: Array, facets: IntArray) -> Array:
     return boxes
 
 
-@njit(cache=True)
+@njit
 def _box(points: Array, nodes: IntArray) -> tuple[float, float, float, float]:
     """Horizontal box around points, wider by a fifth: curved facets may bulge out of their nodes' box."""
     x0, y0, x1, y1 = np.inf, np.inf, -np.inf, -np.inf
@@ -63,7 +63,7 @@ def _box(points: Array, nodes: IntArray) -> tuple[float, float, float, float]:
     return x0 - dx, y0 - dy, x1 + dx, y1 + dy
 
 
-@njit(cache=True)
+@njit
 def _locate(xy: Array, near: IntArray, facets: IntArray, points: Array) -> tuple[IntArray, Array]:
     facet, xi = np.full(len(xy), -1), np.zeros((len(xy), 2))
     boxes = bounds(points, facets)
@@ -77,7 +77,7 @@ def _locate(xy: Array, near: IntArray, facets: IntArray, points: Array) -> tuple
     return facet, xi
 
 
-@njit(cache=True)
+@njit
 def _lowest_holding(
     xy: Array, tried: IntArray, facets: IntArray, points: Array, boxes: Array, work: Array, xi: Array
 ) -> int:
@@ -94,7 +94,7 @@ def _lowest_holding(
     return best
 
 
-@njit(cache=True)
+@njit
 def invert(xy: Array, points: Array, nodes: IntArray, work: Array) -> tuple[bool, float, float]:
     """Solve Σ N_a(ξ, η) p_a = xy for (ξ, η) by Newton's method from the facet's middle.
 
@@ -113,7 +113,7 @@ def invert(xy: Array, points: Array, nodes: IntArray, work: Array) -> tuple[bool
     return False, s, t
 
 
-@njit(cache=True)
+@njit
 def _newton_step(xy: Array, points: Array, nodes: IntArray, N: Array, dN: Array) -> tuple[float, float]:
     """Step in (ξ, η); infinite where the map is singular."""
     rx, ry = xy[0], xy[1]

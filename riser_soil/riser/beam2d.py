@@ -15,9 +15,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from riser_soil.arrays import Array
+from riser_soil.compiled import njit
 from riser_soil.riser.bending import bow, bow_slopes, end_moments
 
 Vec2 = tuple[float, float]
@@ -67,21 +67,21 @@ class NodalForces(NamedTuple):
     moment2: float
 
 
-@njit(cache=True)
+@njit
 def _angle_from(axis: Vec2, direction: float) -> float:
     """Angle from a unit vector to a direction, in (-pi, pi]."""
     cosine, sine = math.cos(direction), math.sin(direction)
     return math.atan2(axis[0] * sine - axis[1] * cosine, axis[0] * cosine + axis[1] * sine)
 
 
-@njit(cache=True)
+@njit
 def _corotate(chord: Array, direction1: float, direction2: float) -> Corotated:
     length = math.sqrt(chord[0] * chord[0] + chord[1] * chord[1])
     axis = (chord[0] / length, chord[1] / length)
     return Corotated(axis, length, _angle_from(axis, direction1), _angle_from(axis, direction2))
 
 
-@njit(cache=True)
+@njit
 def reference(chord0: Array, direction0_1: Array, direction0_2: Array, L: Array) -> Reference:
     """Unstressed configuration from chords (ne, 2), tangent directions and arc lengths (each (ne,))."""
     ne = len(L)
@@ -92,19 +92,19 @@ def reference(chord0: Array, direction0_1: Array, direction0_2: Array, L: Array)
     return Reference(L, l0, theta1, theta2)
 
 
-@njit(cache=True)
+@njit
 def _element(ref: Reference, section: Section, e: int) -> Element:
     L = ref.L[e]
     return Element(L, section.EA[e], section.EI[e] / L, ref.l0[e], ref.theta1[e], ref.theta2[e])
 
 
-@njit(cache=True)
+@njit
 def _strain(element: Element, at: Corotated) -> float:
     stretch = (at.length - element.l0) / element.L
     return stretch + bow(at.theta1, at.theta2) - bow(element.theta1, element.theta2)
 
 
-@njit(cache=True)
+@njit
 def _stress(element: Element, at: Corotated) -> tuple[float, float, float]:
     """Derivatives of U by the chord's length and by theta_1 and theta_2."""
     N = element.EA * _strain(element, at)
@@ -113,7 +113,7 @@ def _stress(element: Element, at: Corotated) -> tuple[float, float, float]:
     return N, m1 + N * element.L * slope1, m2 + N * element.L * slope2
 
 
-@njit(cache=True)
+@njit
 def _stress_variation(
     element: Element, at: Corotated, N: float, stretch: float, dtheta1: float, dtheta2: float
 ) -> tuple[float, float, float]:
@@ -127,7 +127,7 @@ def _stress_variation(
     return dN, dm1, dm2
 
 
-@njit(cache=True)
+@njit
 def strain_energy(
     chord: Array, direction1: Array, direction2: Array, ref: Reference, section: Section
 ) -> Array:
@@ -142,13 +142,13 @@ def strain_energy(
     return U
 
 
-@njit(cache=True)
+@njit
 def _nodal_forces(at: Corotated, N: float, m1: float, m2: float) -> NodalForces:
     """Nodal forces from the chord force N and the moments m_i conjugate to theta_i."""
     return NodalForces((N, -(m1 + m2) / at.length), m1, m2)
 
 
-@njit(cache=True)
+@njit
 def _put_forces(axis: Vec2, forces: NodalForces, out: Array) -> None:
     """Write an element's forces, given along its frame, to `out` (6,) in the plane's axes."""
     along, across = forces.force
@@ -157,7 +157,7 @@ def _put_forces(axis: Vec2, forces: NodalForces, out: Array) -> None:
     out[3], out[4], out[5] = p, z, forces.moment2
 
 
-@njit(cache=True)
+@njit
 def forces(chord: Array, direction1: Array, direction2: Array, ref: Reference, section: Section) -> Array:
     """Internal forces f (ne, 6) for chords (ne, 2) and tangent directions (ne,) of both ends, rad."""
     f = np.empty((len(chord), 6))
@@ -168,13 +168,13 @@ def forces(chord: Array, direction1: Array, direction2: Array, ref: Reference, s
     return f
 
 
-@njit(cache=True)
+@njit
 def configuration_variation(at: Corotated, force: Vec2, stretch: float, spin: float) -> Vec2:
     """Variation of the force on node 2 at fixed N and m_i: the chord lengthens by `stretch` and spins."""
     return -spin * force[1], spin * force[0] - stretch / at.length * force[1]
 
 
-@njit(cache=True)
+@njit
 def _vary(
     element: Element, at: Corotated, N: float, force: Vec2, u: Vec2, w1: float, w2: float
 ) -> NodalForces:
@@ -187,7 +187,7 @@ def _vary(
     return NodalForces(total, change.moment1, change.moment2)
 
 
-@njit(cache=True)
+@njit
 def _tangent(element: Element, at: Corotated, N: float, force: Vec2, K: Array) -> None:
     """Write the element's tangent, column by column, to K (6, 6)."""
     c, s = at.axis
@@ -200,7 +200,7 @@ def _tangent(element: Element, at: Corotated, N: float, force: Vec2, K: Array) -
         K[i, 0], K[i, 1] = -K[i, 3], -K[i, 4]
 
 
-@njit(cache=True)
+@njit
 def forces_and_tangent(
     chord: Array, direction1: Array, direction2: Array, ref: Reference, section: Section
 ) -> tuple[Array, Array]:

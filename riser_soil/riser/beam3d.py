@@ -12,9 +12,9 @@ ends must stay less than half a turn from its chord, and the twist less than hal
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from riser_soil.arrays import Array
+from riser_soil.compiled import njit
 from riser_soil.riser.corotation import (
     Corotated,
     NodalForces,
@@ -82,7 +82,7 @@ class Response(NamedTuple):
     forces: NodalForces
 
 
-@njit(cache=True)
+@njit
 def _shape(L: float, chord: Vec, T1: Mat, T2: Mat) -> Shape:
     frame = corotate(chord, T1, T2)
     end1, end2 = split(frame.A1), split(frame.A2)
@@ -90,7 +90,7 @@ def _shape(L: float, chord: Vec, T1: Mat, T2: Mat) -> Shape:
     return Shape(frame, end1, end2, both, strain(L, frame.length, end1.angles, end2.angles, both))
 
 
-@njit(cache=True)
+@njit
 def reference(chord0: Array, T0_1: Array, T0_2: Array, L: Array) -> Reference:
     """Unstressed configuration from chords (ne, 3), end frames (ne, 3, 3) and arc lengths (ne,)."""
     ne = len(L)
@@ -103,18 +103,18 @@ def reference(chord0: Array, T0_1: Array, T0_2: Array, L: Array) -> Reference:
     return Reference(L, axial, twist, curvature)
 
 
-@njit(cache=True)
+@njit
 def _unstressed(ref: Reference, e: int) -> Strain:
     k = ref.curvature[e]
     return Strain(ref.axial[e], ref.twist[e], (k[0, 0], k[0, 1]), (k[1, 0], k[1, 1]))
 
 
-@njit(cache=True)
+@njit
 def _stiffness(ref: Reference, section: Section, e: int) -> Stiffness:
     return Stiffness(ref.L[e], section.EA[e], section.EIy[e], section.EIz[e], section.GJ[e])
 
 
-@njit(cache=True)
+@njit
 def strain_energy(chord: Array, frame1: Array, frame2: Array, ref: Reference, section: Section) -> Array:
     """Strain energy (ne,) in J; arguments as in `forces`."""
     U = np.empty(len(chord))
@@ -124,7 +124,7 @@ def strain_energy(chord: Array, frame1: Array, frame2: Array, ref: Reference, se
     return U
 
 
-@njit(cache=True)
+@njit
 def _respond(D: Stiffness, unstressed: Strain, at: Shape) -> Response:
     elastic = difference(at.strain, unstressed)
     s = stress(D, at.strain, elastic)
@@ -133,7 +133,7 @@ def _respond(D: Stiffness, unstressed: Strain, at: Shape) -> Response:
     return Response(elastic, s, mu1, mu2, nodal_forces(at.frame.length, s.axial / D.L, m1, m2))
 
 
-@njit(cache=True)
+@njit
 def _put_forces(axes: Mat, forces: NodalForces, out: Array) -> None:
     """Write an element's forces, given along its frame, to `out` (12,) in global axes."""
     force = vecmat(forces.force, axes)
@@ -146,7 +146,7 @@ def _put_forces(axes: Mat, forces: NodalForces, out: Array) -> None:
         out[9 + i] = moment2[i]
 
 
-@njit(cache=True)
+@njit
 def forces(chord: Array, frame1: Array, frame2: Array, ref: Reference, section: Section) -> Array:
     """Internal forces f (ne, 12) for chords (ne, 3) and section frames (ne, 3, 3) of both ends."""
     f = np.empty((len(chord), 12))
@@ -157,7 +157,7 @@ def forces(chord: Array, frame1: Array, frame2: Array, ref: Reference, section: 
     return f
 
 
-@njit(cache=True)
+@njit
 def _vary(D: Stiffness, at: Shape, response: Response, u: Vec, w1: Vec, w2: Vec) -> NodalForces:
     """Variation of an element's forces when its nodes move by u = u2 - u1 and spin by w1, w2."""
     spin = frame_spin(at.frame.length, u)
@@ -175,7 +175,7 @@ def _vary(D: Stiffness, at: Shape, response: Response, u: Vec, w1: Vec, w2: Vec)
     return plus(plus(stressed, moved), turn(response.forces, spin))
 
 
-@njit(cache=True)
+@njit
 def _tangent(D: Stiffness, at: Shape, response: Response, K: Array) -> None:
     """Write the element's tangent, column by column, to K (12, 12)."""
     axes = at.frame.axes
@@ -188,7 +188,7 @@ def _tangent(D: Stiffness, at: Shape, response: Response, K: Array) -> None:
             K[i, k] = -K[i, 6 + k]
 
 
-@njit(cache=True)
+@njit
 def forces_and_tangent(
     chord: Array, frame1: Array, frame2: Array, ref: Reference, section: Section
 ) -> tuple[Array, Array]:

@@ -10,22 +10,22 @@ Source: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, 
 7.
 """
 
-from numba import njit
+from riser_soil.compiled import njit
 
 
-@njit(cache=True)
+@njit
 def bow(a: float, b: float) -> float:
     """Half the mean square slope of the deflection from the chord."""
     return (2.0 * a * a - a * b + 2.0 * b * b) / 30.0
 
 
-@njit(cache=True)
+@njit
 def bow_slopes(a: float, b: float) -> tuple[float, float]:
     """Derivatives of `bow` by a and b; linear, so they map variations too."""
     return (4.0 * a - b) / 30.0, (4.0 * b - a) / 30.0
 
 
-@njit(cache=True)
+@njit
 def end_moments(EI_per_L: float, a: float, b: float) -> tuple[float, float]:
     """Moments (N m) conjugate to the end rotations a and b of a cubic deflection."""
     return EI_per_L * (4.0 * a + 2.0 * b), EI_per_L * (2.0 * a + 4.0 * b)

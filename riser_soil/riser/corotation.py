@@ -15,8 +15,7 @@ Pacoste, Comput. Methods Appl. Mech. Engng 191 (2002), need further terms.
 import math
 from typing import NamedTuple
 
-from numba import njit
-
+from riser_soil.compiled import njit
 from riser_soil.riser.vectors import Mat, Vec, add, cross, dot, matmul, scale, sub
 
 
@@ -37,7 +36,7 @@ class NodalForces(NamedTuple):
     moment2: Vec
 
 
-@njit(cache=True)
+@njit
 def corotate(chord: Vec, T1: Mat, T2: Mat) -> Corotated:
     """The element's frame from its chord and the section frames of its ends."""
     length = math.sqrt(dot(chord, chord))
@@ -48,31 +47,31 @@ def corotate(chord: Vec, T1: Mat, T2: Mat) -> Corotated:
     return Corotated(axes, length, matmul(axes, T1), matmul(axes, T2))
 
 
-@njit(cache=True)
+@njit
 def frame_spin(length: float, u: Vec) -> Vec:
     """omega, the spin of the frame when the nodes move apart by u."""
     return (0.0, -u[2] / length, u[1] / length)
 
 
-@njit(cache=True)
+@njit
 def nodal_forces(length: float, N: float, m1: Vec, m2: Vec) -> NodalForces:
     """Nodal forces from the chord force N and the moments m_i conjugate to w_i - omega."""
     return NodalForces((N, -(m1[2] + m2[2]) / length, (m1[1] + m2[1]) / length), m1, m2)
 
 
-@njit(cache=True)
+@njit
 def lengthen(length: float, forces: NodalForces, stretch: float) -> Vec:
     """Change of the force on node 2, at fixed N and m_i, when the chord lengthens by `stretch`."""
     return (0.0, -stretch / length * forces.force[1], -stretch / length * forces.force[2])
 
 
-@njit(cache=True)
+@njit
 def turn(forces: NodalForces, spin: Vec) -> NodalForces:
     """Change of the forces when the frame in which they are fixed spins."""
     return NodalForces(cross(spin, forces.force), cross(spin, forces.moment1), cross(spin, forces.moment2))
 
 
-@njit(cache=True)
+@njit
 def plus(a: NodalForces, b: NodalForces) -> NodalForces:
     """Sum of two sets of forces."""
     return NodalForces(add(a.force, b.force), add(a.moment1, b.moment1), add(a.moment2, b.moment2))

@@ -16,9 +16,9 @@ t = R t0, t' = R (W x t0), t'' = R (A x t0 + W x (W x t0)).
 from functools import cached_property
 
 import numpy as np
-from numba import njit
 
 from riser_soil.arrays import Array
+from riser_soil.compiled import njit
 from riser_soil.riser import rotations
 from riser_soil.riser.vectors import (
     Mat,
@@ -148,7 +148,7 @@ def _at_ends(nodal: Array) -> Array:
     return np.stack([nodal[:-1], nodal[1:]], axis=1)
 
 
-@njit(cache=True)
+@njit
 def node_frames(Rn: Array, Theta: Array) -> tuple[Array, Array]:
     """R = Rn exp(Theta) and H = Rn T_L(Theta), which gives the spatial spin H dTheta; each (nn, 3, 3)."""
     R, H = np.empty_like(Rn), np.empty_like(Rn)
@@ -159,7 +159,7 @@ def node_frames(Rn: Array, Theta: Array) -> tuple[Array, Array]:
     return R, H
 
 
-@njit(cache=True)
+@njit
 def end_frames(R: Array, T0: Array) -> tuple[Array, Array]:
     """Frames T = R T0 at the first and second end of each element, each (ne, 3, 3)."""
     ne = T0.shape[0]
@@ -170,7 +170,7 @@ def end_frames(R: Array, T0: Array) -> tuple[Array, Array]:
     return first, second
 
 
-@njit(cache=True)
+@njit
 def _spatial_P(t: Array, H: Array) -> Array:
     P = np.empty((t.shape[0], 2, 3, 3))
     for e in range(t.shape[0]):
@@ -179,13 +179,13 @@ def _spatial_P(t: Array, H: Array) -> Array:
     return P
 
 
-@njit(cache=True)
+@njit
 def _double_cross(w: Vec, t0: Vec) -> Mat:
     """d(w x (w x t0))/dw."""
     return matadd(isotropic(dot(w, t0)), matadd(outer(w, t0), matscale(-2.0, outer(t0, w))))
 
 
-@njit(cache=True)
+@njit
 def _spatial_rates(R: Array, T0: Array, v: Array, a: Array) -> tuple[Array, Array]:
     ne = T0.shape[0]
     first, second = np.empty((ne, 2, 3)), np.empty((ne, 2, 3))
@@ -200,7 +200,7 @@ def _spatial_rates(R: Array, T0: Array, v: Array, a: Array) -> tuple[Array, Arra
     return first, second
 
 
-@njit(cache=True)
+@njit
 def _spatial_maps(
     R: Array, H: Array, T0: Array, v: Array, a: Array, shift_v: float, shift_a: float
 ) -> tuple[Array, Array]:
@@ -223,13 +223,13 @@ def _spatial_maps(
     return first, second
 
 
-@njit(cache=True)
+@njit
 def moment_stiffness(Rn: Mat, Theta: Vec, m: Vec) -> Mat:
     """d(H^T m)/dTheta at fixed spatial moment m."""
     return rotations.right_tangent_derivative(Theta, matvec(transpose(Rn), m))
 
 
-@njit(cache=True)
+@njit
 def _spatial_geometric(Rn: Array, H: Array, Theta: Array, t: Array, F: Array) -> Array:
     """d(H^T (t x F))/dTheta at fixed F: H turns, and so does t."""
     G = np.empty((t.shape[0], 2, 3, 3))

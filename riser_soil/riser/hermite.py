@@ -12,9 +12,9 @@ rotation dofs of their node.
 """
 
 import numpy as np
-from numba import njit
 
 from riser_soil.arrays import Array
+from riser_soil.compiled import njit
 
 Four = tuple[float, float, float, float]
 
@@ -59,7 +59,7 @@ def consistent_mass(L: Array, mass: Array) -> Array:
     return (mass * L)[:, None, None] * unit * scale[:, :, None] * scale[:, None, :]
 
 
-@njit(cache=True)
+@njit
 def pull_back(F: Array, P: Array) -> Array:
     """Element residual in the dofs, (ne, 2 (d + r)), of F (ne, 4, d) conjugate to q."""
     ne, d, r = P.shape[0], P.shape[2], P.shape[3]
@@ -74,7 +74,7 @@ def pull_back(F: Array, P: Array) -> Array:
     return out
 
 
-@njit(cache=True)
+@njit
 def add_blocks(out: Array, scale: float, P: Array, columns: Array, shift: float, K: Array) -> None:
     """Add scale P^T K D to out (ne, n, n), D being the derivative of q, q' or q'' by the dofs.
 
@@ -106,7 +106,7 @@ def add_blocks(out: Array, scale: float, P: Array, columns: Array, shift: float,
                                 out[e, row + m, col + k] += P[e, a // 2, i, m] * S[i, k]
 
 
-@njit(cache=True)
+@njit
 def add_geometric(out: Array, scale: float, G: Array, d: int) -> None:
     """Add scale G, (ne, 2, r, r), to the rotation blocks of out (ne, 2 (d + r), 2 (d + r))."""
     r = G.shape[2]

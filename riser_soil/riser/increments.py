@@ -5,20 +5,20 @@ nodes e and e + 1, its dofs are ordered displacement1, rotation1, displacement2,
 changed in place.
 """
 
-from numba import njit
 
 from riser_soil.arrays import Array
+from riser_soil.compiled import njit
 from riser_soil.riser.rotations import right_tangent_derivative
 from riser_soil.riser.vectors import Mat, Vec, matrix, vecmat, vector
 
 
-@njit(cache=True)
+@njit
 def _moment_to_increments(moment: Array, H: Mat) -> None:
     m = vecmat(vector(moment), H)
     moment[0], moment[1], moment[2] = m
 
 
-@njit(cache=True)
+@njit
 def forces_to_increments(f: Array, H: Array) -> None:
     """Turn the moments in f (ne, 12), conjugate to spins, into those of rotation vectors; H is (nn, 3, 3)."""
     for e in range(len(f)):
@@ -26,7 +26,7 @@ def forces_to_increments(f: Array, H: Array) -> None:
         _moment_to_increments(f[e, 9:12], matrix(H[e + 1]))
 
 
-@njit(cache=True)
+@njit
 def _rotate_columns(K: Array, H: Mat) -> None:
     """K (12, 3) becomes K H."""
     for i in range(12):
@@ -34,13 +34,13 @@ def _rotate_columns(K: Array, H: Mat) -> None:
         K[i, 0], K[i, 1], K[i, 2] = row
 
 
-@njit(cache=True)
+@njit
 def _moment_tangent(Rn: Mat, Theta: Vec, moment: Vec) -> Mat:
     """d(H' m)/dTheta of a spatially fixed moment."""
     return right_tangent_derivative(Theta, vecmat(moment, Rn))
 
 
-@njit(cache=True)
+@njit
 def _end_to_increments(K: Array, at: int, moment: Vec, H: Mat, Rn: Mat, Theta: Vec) -> None:
     """Transform the rows and columns at..at+2 of K (12, 12), and add the change of H at fixed moment."""
     _rotate_columns(K[:, at : at + 3], H)
@@ -51,7 +51,7 @@ def _end_to_increments(K: Array, at: int, moment: Vec, H: Mat, Rn: Mat, Theta: V
             K[at + i, at + j] += geometric[i][j]
 
 
-@njit(cache=True)
+@njit
 def to_increments(f: Array, K: Array, H: Array, Rn: Array, Theta: Array) -> None:
     """Turn forces f (ne, 12) and tangents K (ne, 12, 12) by spins into those by rotation vectors.
 

@@ -14,8 +14,7 @@ Engng 26 (1988).
 
 import math
 
-from numba import njit
-
+from riser_soil.compiled import njit
 from riser_soil.riser.vectors import Mat, Vec, cross, dot, isotropic, matadd, matscale, outer, skew
 
 SERIES_BELOW = 0.25  # theta^2 under which the closed forms lose digits and the power series have converged
@@ -32,7 +31,7 @@ BERNOULLI = (  # |B_2n| / (2n)!, n = 8, 7, ..., 1: the coefficients of theta^(2n
 SMALLEST_SINE_SQUARED = 1e-20  # sin^2(theta/2) under which its arc sine equals it to round-off
 
 
-@njit(cache=True)
+@njit
 def exp_coefficients(x: float) -> tuple[float, float, float]:
     """(a, b, c) of the exponential and its tangent maps at x = theta^2."""
     if x < SERIES_BELOW:
@@ -47,7 +46,7 @@ def exp_coefficients(x: float) -> tuple[float, float, float]:
     return a, 2.0 * half_sine * half_sine / x, (1.0 - a) / x
 
 
-@njit(cache=True)
+@njit
 def exp_slopes(x: float) -> tuple[float, float]:
     """(db/dtheta, dc/dtheta)/theta at x = theta^2, so that the gradients of b and c are these times Theta."""
     if x < SERIES_BELOW:
@@ -58,7 +57,7 @@ def exp_slopes(x: float) -> tuple[float, float]:
     return (a - 2.0 * b) / x, (b - 3.0 * c) / x
 
 
-@njit(cache=True)
+@njit
 def inverse_coefficient(x: float) -> float:
     """k of the inverse tangent map at x = theta^2; singular at theta = 2 pi."""
     if x < SERIES_BELOW:
@@ -70,47 +69,47 @@ def inverse_coefficient(x: float) -> float:
     return (1.0 - 0.5 * theta / math.tan(0.5 * theta)) / x
 
 
-@njit(cache=True)
+@njit
 def _polynomial(one: float, linear: float, square: float, v: Vec) -> Mat:
     """one I + linear [v] + square [v]^2, with [v]^2 = v v' - |v|^2 I."""
     diagonal = isotropic(one - square * dot(v, v))
     return matadd(matadd(diagonal, matscale(linear, skew(v))), matscale(square, outer(v, v)))
 
 
-@njit(cache=True)
+@njit
 def _double_cross_derivative(v: Vec, m: Vec) -> Mat:
     """d(v x (v x m))/dv."""
     return matadd(isotropic(dot(v, m)), matadd(outer(v, m), matscale(-2.0, outer(m, v))))
 
 
-@njit(cache=True)
+@njit
 def exp(rotation: Vec) -> Mat:
     """The rotation matrix of a rotation vector (rad)."""
     a, b, _ = exp_coefficients(dot(rotation, rotation))
     return _polynomial(1.0, a, b, rotation)
 
 
-@njit(cache=True)
+@njit
 def left_tangent(rotation: Vec) -> Mat:
     """T_L: rate of the rotation vector to spatial spin."""
     _, b, c = exp_coefficients(dot(rotation, rotation))
     return _polynomial(1.0, b, c, rotation)
 
 
-@njit(cache=True)
+@njit
 def right_tangent(rotation: Vec) -> Mat:
     """T_R: rate of the rotation vector to spin in the rotated axes; the transpose of T_L."""
     _, b, c = exp_coefficients(dot(rotation, rotation))
     return _polynomial(1.0, -b, c, rotation)
 
 
-@njit(cache=True)
+@njit
 def left_tangent_inverse(rotation: Vec) -> Mat:
     """Inverse of T_L, for rotations below 2 pi."""
     return _polynomial(1.0, -0.5, inverse_coefficient(dot(rotation, rotation)), rotation)
 
 
-@njit(cache=True)
+@njit
 def right_tangent_derivative(rotation: Vec, m: Vec) -> Mat:
     """d(T_R(Theta) m)/dTheta at fixed m, the geometric stiffness of a moment m given in the unturned axes."""
     _, b, c = exp_coefficients(dot(rotation, rotation))
@@ -122,7 +121,7 @@ def right_tangent_derivative(rotation: Vec, m: Vec) -> Mat:
     return matadd(linear, outer(change, rotation))
 
 
-@njit(cache=True)
+@njit
 def quaternion(R: Mat) -> tuple[float, float, float, float]:
     """Unit quaternion (w, x, y, z), w >= 0, of a rotation matrix.
 
@@ -146,7 +145,7 @@ def quaternion(R: Mat) -> tuple[float, float, float, float]:
     return sign * w, sign * x, sign * y, sign * z
 
 
-@njit(cache=True)
+@njit
 def log(R: Mat) -> Vec:
     """Rotation vector (rad), no longer than pi, of a rotation matrix."""
     w, x, y, z = quaternion(R)

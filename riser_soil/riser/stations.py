@@ -9,9 +9,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from riser_soil.arrays import Array
+from riser_soil.compiled import njit
 from riser_soil.riser.hermite import shapes, slopes
 
 POINTS = 0.5 + np.sqrt(0.6) * np.array([-0.5, 0.0, 0.5])
@@ -33,7 +33,7 @@ def stations(L: Array) -> Stations:
     return Stations(N, dN, GAUSS[:, None] * L[:, None, None] * N)
 
 
-@njit(cache=True)
+@njit
 def interpolate(at: Stations, q: Array) -> Array:
     """Values (ne, ng, d) of q, q' or q''."""
     ne, ng, d = q.shape[0], at.N.shape[1], q.shape[2]
@@ -46,7 +46,7 @@ def interpolate(at: Stations, q: Array) -> Array:
     return out
 
 
-@njit(cache=True)
+@njit
 def unit_tangents(at: Stations, chord: Array, ends: Array) -> tuple[Array, Array]:
     """Unit tangents (ne, ng, d) and stretch |x'| (ne, ng); chord (ne, d), ends: end tangents (ne, 2, d)."""
     ne, ng, d = chord.shape[0], at.N.shape[1], chord.shape[1]
@@ -68,7 +68,7 @@ def unit_tangents(at: Stations, chord: Array, ends: Array) -> tuple[Array, Array
     return tau, stretch
 
 
-@njit(cache=True)
+@njit
 def integrate(at: Stations, f: Array) -> Array:
     """Residual conjugate to q (ne, 4, d) of a force per length f (ne, ng, d)."""
     ne, ng, d = f.shape
@@ -81,7 +81,7 @@ def integrate(at: Stations, f: Array) -> Array:
     return out
 
 
-@njit(cache=True)
+@njit
 def follow_slope(A: Array, tau: Array, stretch: Array) -> Array:
     """Derivative by x' from that by tau, A (ne, ng, d, d): tau follows x' by (I - tau tau)/|x'|."""
     ne, ng, d = tau.shape
@@ -97,7 +97,7 @@ def follow_slope(A: Array, tau: Array, stretch: Array) -> Array:
     return out
 
 
-@njit(cache=True)
+@njit
 def add_tangent(
     out: Array, scale: float, P: Array, columns: Array, shift: float, weighted: Array, trial: Array, A: Array
 ) -> None:

@@ -19,8 +19,7 @@ The strains do not change when the frame turns about the chord.
 import math
 from typing import NamedTuple
 
-from numba import njit
-
+from riser_soil.compiled import njit
 from riser_soil.riser.bending import bow, bow_slopes
 from riser_soil.riser.vectors import Vec, add, dot, scale
 
@@ -64,7 +63,7 @@ class Stress(NamedTuple):
     second: Pair
 
 
-@njit(cache=True)
+@njit
 def _at_station(side: float, L: float, a: Vec, b: Vec) -> Vec:
     """(tau, y', z') at the first (side = -1) or second (+1) station; linear in the ends' angles a and b."""
     first, second = (side * ROOT3 - 1.0) / L, (side * ROOT3 + 1.0) / L
@@ -72,7 +71,7 @@ def _at_station(side: float, L: float, a: Vec, b: Vec) -> Vec:
     return (tau, first * a[1] + second * b[1], first * a[2] + second * b[2])
 
 
-@njit(cache=True)
+@njit
 def _to_ends(side: float, L: float, v: Vec) -> tuple[Vec, Vec]:
     """Transpose of `_at_station`."""
     first, second = (side * ROOT3 - 1.0) / L, (side * ROOT3 + 1.0) / L
@@ -83,41 +82,41 @@ def _to_ends(side: float, L: float, v: Vec) -> tuple[Vec, Vec]:
     )
 
 
-@njit(cache=True)
+@njit
 def _station(side: float, L: float, a: Vec, b: Vec) -> Station:
     tau, y, z = _at_station(side, L, a, b)
     c, s = math.cos(tau), math.sin(tau)
     return Station(c, s, (y * c + z * s, z * c - y * s))
 
 
-@njit(cache=True)
+@njit
 def _curvature_change(at: Station, side: float, L: float, da: Vec, db: Vec) -> Pair:
     dtau, dy, dz = _at_station(side, L, da, db)
     ky, kz = at.curvature
     return dy * at.cosine + dz * at.sine + dtau * kz, dz * at.cosine - dy * at.sine - dtau * ky
 
 
-@njit(cache=True)
+@njit
 def _station_force(at: Station, M: Pair) -> Vec:
     """Generalised force on (tau, y', z') of the moment pair M conjugate to the curvature."""
     ky, kz = at.curvature
     return (M[0] * kz - M[1] * ky, M[0] * at.cosine - M[1] * at.sine, M[0] * at.sine + M[1] * at.cosine)
 
 
-@njit(cache=True)
+@njit
 def _station_force_change(at: Station, M: Pair, dtau: float, dk: Pair) -> Vec:
     """Change of `_station_force` at fixed M."""
     _, y, z = _station_force(at, M)
     return (M[0] * dk[1] - M[1] * dk[0], -dtau * z, dtau * y)
 
 
-@njit(cache=True)
+@njit
 def stations(L: float, a: Vec, b: Vec) -> tuple[Station, Station]:
     """Both Gauss stations for the angles a and b of the ends."""
     return _station(-1.0, L, a, b), _station(1.0, L, a, b)
 
 
-@njit(cache=True)
+@njit
 def strain(L: float, length: float, a: Vec, b: Vec, at: tuple[Station, Station]) -> Strain:
     """Strains for a chord of `length` and the ends' angles a and b; the axial one starts at 1."""
     axial = length / L + bow(a[1], b[1]) + bow(a[2], b[2])
@@ -125,7 +124,7 @@ def strain(L: float, length: float, a: Vec, b: Vec, at: tuple[Station, Station])
     return Strain(axial, twist, at[0].curvature, at[1].curvature)
 
 
-@njit(cache=True)
+@njit
 def _gradients(a: Vec, b: Vec) -> tuple[Vec, Vec, Vec, Vec]:
     """Gradients by a and b of the axial strain and of the twist's quadratic part; all linear in (a, b)."""
     y1, y2 = bow_slopes(a[1], b[1])
@@ -134,7 +133,7 @@ def _gradients(a: Vec, b: Vec) -> tuple[Vec, Vec, Vec, Vec]:
     return (0.0, y1, z1), (0.0, y2, z2), twist1, twist2
 
 
-@njit(cache=True)
+@njit
 def strain_change(
     L: float, a: Vec, b: Vec, at: tuple[Station, Station], stretch: float, da: Vec, db: Vec
 ) -> Strain:
@@ -146,7 +145,7 @@ def strain_change(
     return Strain(axial, twist, first, second)
 
 
-@njit(cache=True)
+@njit
 def conjugate(L: float, a: Vec, b: Vec, at: tuple[Station, Station], s: Stress) -> tuple[Vec, Vec]:
     """Generalised moments mu_1, mu_2 conjugate to the angles a and b, for the stresses s."""
     axial1, axial2, twist1, twist2 = _gradients(a, b)
@@ -157,7 +156,7 @@ def conjugate(L: float, a: Vec, b: Vec, at: tuple[Station, Station], s: Stress) 
     return add(end1, add(first1, second1)), add(end2, add(first2, second2))
 
 
-@njit(cache=True)
+@njit
 def conjugate_change(
     L: float, at: tuple[Station, Station], s: Stress, change: Strain, da: Vec, db: Vec
 ) -> tuple[Vec, Vec]:
@@ -171,7 +170,7 @@ def conjugate_change(
     return add(end1, add(first1, second1)), add(end2, add(first2, second2))
 
 
-@njit(cache=True)
+@njit
 def difference(a: Strain, b: Strain) -> Strain:
     """a - b."""
     first = (a.first[0] - b.first[0], a.first[1] - b.first[1])

@@ -6,34 +6,34 @@ with all strains less those of the unstressed element, D = diag(EIy, EIz), and P
 moment)_x.
 """
 
-from numba import njit
 
+from riser_soil.compiled import njit
 from riser_soil.riser.strain3d import Pair, Stiffness, Strain, Stress
 
 
-@njit(cache=True)
+@njit
 def _mean(s: Strain) -> Pair:
     return 0.5 * (s.first[0] + s.second[0]), 0.5 * (s.first[1] + s.second[1])
 
 
-@njit(cache=True)
+@njit
 def _torque_rate(k: Pair, elastic: Pair, D: Stiffness) -> float:
     """P for the mean curvature k and its elastic part."""
     return k[0] * D.EIz * elastic[1] - k[1] * D.EIy * elastic[0]
 
 
-@njit(cache=True)
+@njit
 def _torque_rate_slopes(k: Pair, elastic: Pair, D: Stiffness) -> Pair:
     """Derivatives of P by the mean curvature; linear in (k, elastic)."""
     return D.EIz * elastic[1] - D.EIy * k[1], D.EIz * k[0] - D.EIy * elastic[0]
 
 
-@njit(cache=True)
+@njit
 def _twist_compliance(D: Stiffness) -> float:
     return D.L**3 / (12.0 * D.GJ)
 
 
-@njit(cache=True)
+@njit
 def energy(D: Stiffness, total: Strain, elastic: Strain) -> float:
     """Strain energy U (J)."""
     U = 0.5 * (D.EA * D.L * elastic.axial**2 + D.GJ / D.L * elastic.twist**2)
@@ -42,7 +42,7 @@ def energy(D: Stiffness, total: Strain, elastic: Strain) -> float:
     return U - 0.5 * _twist_compliance(D) * _torque_rate(_mean(total), _mean(elastic), D) ** 2
 
 
-@njit(cache=True)
+@njit
 def linear_stress(D: Stiffness, elastic: Strain) -> Stress:
     """Stresses but for those of the torque rate."""
     y, z = 0.5 * D.L * D.EIy, 0.5 * D.L * D.EIz
@@ -53,7 +53,7 @@ def linear_stress(D: Stiffness, elastic: Strain) -> Stress:
     return Stress(D.EA * D.L * elastic.axial, D.GJ / D.L * elastic.twist, first, second)
 
 
-@njit(cache=True)
+@njit
 def _less(s: Stress, moment: Pair) -> Stress:
     """s with the moment taken off both stations."""
     first = (s.first[0] - moment[0], s.first[1] - moment[1])
@@ -61,7 +61,7 @@ def _less(s: Stress, moment: Pair) -> Stress:
     return Stress(s.axial, s.twist, first, second)
 
 
-@njit(cache=True)
+@njit
 def stress(D: Stiffness, total: Strain, elastic: Strain) -> Stress:
     """Gradient of U by the strains `total`, of which `elastic` exceeds the unstressed ones."""
     k, e = _mean(total), _mean(elastic)
@@ -70,7 +70,7 @@ def stress(D: Stiffness, total: Strain, elastic: Strain) -> Stress:
     return _less(linear_stress(D, elastic), (half * Ky, half * Kz))
 
 
-@njit(cache=True)
+@njit
 def stress_change(D: Stiffness, total: Strain, elastic: Strain, change: Strain) -> Stress:
     """Hessian of U times a change of the strains."""
     k, e, dk = _mean(total), _mean(elastic), _mean(change)

@@ -11,8 +11,7 @@ t = -e1. A `mu` is the generalised moment conjugate to (tau, y, z), m the moment
 import math
 from typing import NamedTuple
 
-from numba import njit
-
+from riser_soil.compiled import njit
 from riser_soil.riser.vectors import Mat, Vec, add, cross, dot, scale
 
 SERIES_BELOW = 0.03  # 1 - cos(alpha) under which the closed form of f'' loses digits
@@ -29,7 +28,7 @@ class Swing(NamedTuple):
     ddf: float
 
 
-@njit(cache=True)
+@njit
 def swing_coefficients(cosine: float, sine: float) -> tuple[float, float, float]:
     """f = alpha/sin(alpha) and its first two derivatives by cos(alpha)."""
     if cosine > 1.0 - SERIES_BELOW:
@@ -44,7 +43,7 @@ def swing_coefficients(cosine: float, sine: float) -> tuple[float, float, float]
     return f, df, (f + 3.0 * cosine * df) / (sine * sine)
 
 
-@njit(cache=True)
+@njit
 def split(A: Mat) -> Swing:
     """Twist and swing of the rotation matrix A."""
     t = (A[0][0], A[1][0], A[2][0])
@@ -53,7 +52,7 @@ def split(A: Mat) -> Swing:
     return Swing((tau, -f * t[2], f * t[1]), t, f, df, ddf)
 
 
-@njit(cache=True)
+@njit
 def rate(at: Swing, w: Vec) -> Vec:
     """Change of (tau, y, z) for the spin w."""
     dt = cross(w, at.t)
@@ -62,26 +61,26 @@ def rate(at: Swing, w: Vec) -> Vec:
     return (dtau, -at.f * dt[2] - df * at.t[2], at.f * dt[1] + df * at.t[1])
 
 
-@njit(cache=True)
+@njit
 def _twist_direction(at: Swing) -> Vec:
     """(e1 + t)/(1 + t_x)."""
     per = 1.0 / (1.0 + at.t[0])
     return (1.0, per * at.t[1], per * at.t[2])
 
 
-@njit(cache=True)
+@njit
 def _swing_force(at: Swing, mu: Vec) -> Vec:
     """Gradient of mu_y y + mu_z z by t."""
     return (at.df * (mu[2] * at.t[1] - mu[1] * at.t[2]), at.f * mu[2], -at.f * mu[1])
 
 
-@njit(cache=True)
+@njit
 def moment(at: Swing, mu: Vec) -> Vec:
     """m = the transpose of `rate` times mu."""
     return add(scale(mu[0], _twist_direction(at)), cross(at.t, _swing_force(at, mu)))
 
 
-@njit(cache=True)
+@njit
 def moment_variation(at: Swing, mu: Vec, w: Vec) -> Vec:
     """Change of m at fixed mu for the spin w."""
     dt = cross(w, at.t)

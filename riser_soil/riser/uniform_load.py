@@ -14,9 +14,9 @@ d), stiffness (ne, 4, 4, d, d).
 import math
 
 import numpy as np
-from numba import njit
 
 from riser_soil.arrays import Array
+from riser_soil.compiled import njit
 
 SERIES_BELOW = 0.05  # 1 - cos(theta) under which closed forms lose digits and the series has converged
 SERIES: Array = np.cumprod([1.0] + [2.0 * n / (2.0 * n + 1.0) for n in range(1, 13)])[::-1].copy()
@@ -25,7 +25,7 @@ SERIES: Array = np.cumprod([1.0] + [2.0 * n / (2.0 * n + 1.0) for n in range(1, 
 Three = tuple[float, float, float]
 
 
-@njit(cache=True)
+@njit
 def angle_over_sine(c: float) -> Three:
     """g = theta/sin(theta) and its first two derivatives by c = cos(theta), for theta below pi."""
     g, slope, bend = 0.0, 0.0, 0.0
@@ -42,7 +42,7 @@ def angle_over_sine(c: float) -> Three:
     return g, slope, (g + 3.0 * c * slope) / sine2
 
 
-@njit(cache=True)
+@njit
 def _dot(a: Array, b: Array) -> float:
     total = 0.0
     for i in range(a.size):
@@ -50,7 +50,7 @@ def _dot(a: Array, b: Array) -> float:
     return total
 
 
-@njit(cache=True)
+@njit
 def _axis(chord: Array, e: Array) -> float:
     """Unit vector of the chord into e; returns its length."""
     l = math.sqrt(_dot(chord, chord))
@@ -59,7 +59,7 @@ def _axis(chord: Array, e: Array) -> float:
     return l
 
 
-@njit(cache=True)
+@njit
 def _psi_slopes(e: Array, t: Array, w: Array, g: Three, by_t: Array, by_e: Array) -> None:
     """Gradient of psi with respect to t and e, both varied freely; g from `angle_over_sine`."""
     c, along = _dot(e, t), _dot(w, e)
@@ -69,7 +69,7 @@ def _psi_slopes(e: Array, t: Array, w: Array, g: Three, by_t: Array, by_e: Array
         by_e[i] = P * t[i] - g[0] * c * w[i]
 
 
-@njit(cache=True)
+@njit
 def _psi_bends(e: Array, t: Array, w: Array, g: Three, tt: Array, te: Array, ee: Array) -> None:
     """Second derivatives of psi with respect to t and e (te: rows t, columns e)."""
     c, along = _dot(e, t), _dot(w, e)
@@ -82,7 +82,7 @@ def _psi_bends(e: Array, t: Array, w: Array, g: Three, tt: Array, te: Array, ee:
             te[i, j] = Q * e[i] * t[j] - S * e[i] * w[j] + g[1] * w[i] * t[j] + (P if i == j else 0.0)
 
 
-@njit(cache=True)
+@njit
 def potential(chord: Array, middle: Array, tangent: Array, L: Array, w: Array) -> Array:
     """V (ne,) J. chord, middle = (x1 + x2)/2 and w: (ne, d); tangent: (ne, 2, d) at the elements' ends; L:
     (ne,).
@@ -100,7 +100,7 @@ def potential(chord: Array, middle: Array, tangent: Array, L: Array, w: Array) -
     return V
 
 
-@njit(cache=True)
+@njit
 def residual(chord: Array, tangent: Array, L: Array, w: Array) -> Array:
     """F = dV/dq (ne, 4, d); arguments as in `potential`."""
     ne, d = chord.shape
@@ -121,7 +121,7 @@ def residual(chord: Array, tangent: Array, L: Array, w: Array) -> Array:
     return F
 
 
-@njit(cache=True)
+@njit
 def _chord_bend(ee: Array, by_e: Array, e: Array, l: float, out: Array) -> None:
     """Second derivative of psi by the chord, out (d, d): (I - e e) ee (I - e e)/l^2 and the turn of e."""
     along, twice = _dot(e, by_e), 0.0
@@ -139,7 +139,7 @@ def _chord_bend(ee: Array, by_e: Array, e: Array, l: float, out: Array) -> None:
             out[i, j] = (inner - (along if i == j else 0.0)) / (l * l)
 
 
-@njit(cache=True)
+@njit
 def _project(A: Array, e: Array, l: float) -> None:
     """A becomes A (I - e e)/l: derivatives by e become those by the chord."""
     for i in range(e.size):
@@ -150,7 +150,7 @@ def _project(A: Array, e: Array, l: float) -> None:
             A[i, j] = (A[i, j] - along * e[j]) / l
 
 
-@njit(cache=True)
+@njit
 def stiffness(chord: Array, tangent: Array, L: Array, w: Array) -> Array:
     """Second derivatives of V in blocks (ne, 4, 4, d, d); arguments as in `potential`."""
     ne, d = chord.shape

@@ -5,27 +5,27 @@ allocates nothing per element. `vector` and `matrix` read them from arrays, `sto
 `np.array(A)` works too, also in compiled code.
 """
 
-from numba import njit
 
 from riser_soil.arrays import Array
+from riser_soil.compiled import njit
 
 Vec = tuple[float, float, float]
 Mat = tuple[Vec, Vec, Vec]
 
 
-@njit(cache=True)
+@njit
 def vector(a: Array) -> Vec:
     """The vector stored in an array of shape (3,)."""
     return (a[0], a[1], a[2])
 
 
-@njit(cache=True)
+@njit
 def matrix(a: Array) -> Mat:
     """The matrix stored in an array of shape (3, 3)."""
     return ((a[0, 0], a[0, 1], a[0, 2]), (a[1, 0], a[1, 1], a[1, 2]), (a[2, 0], a[2, 1], a[2, 2]))
 
 
-@njit(cache=True)
+@njit
 def store(A: Mat, out: Array) -> None:
     """Write the matrix A to `out`, shape (3, 3)."""
     out[0, 0], out[0, 1], out[0, 2] = A[0]
@@ -33,49 +33,49 @@ def store(A: Mat, out: Array) -> None:
     out[2, 0], out[2, 1], out[2, 2] = A[2]
 
 
-@njit(cache=True)
+@njit
 def add(a: Vec, b: Vec) -> Vec:
     """a + b."""
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
-@njit(cache=True)
+@njit
 def sub(a: Vec, b: Vec) -> Vec:
     """a - b."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-@njit(cache=True)
+@njit
 def scale(s: float, a: Vec) -> Vec:
     """s a."""
     return (s * a[0], s * a[1], s * a[2])
 
 
-@njit(cache=True)
+@njit
 def dot(a: Vec, b: Vec) -> float:
     """a . b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@njit(cache=True)
+@njit
 def cross(a: Vec, b: Vec) -> Vec:
     """a x b."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-@njit(cache=True)
+@njit
 def transpose(A: Mat) -> Mat:
     """The transpose of A; also the matrix whose columns are the three given vectors."""
     return ((A[0][0], A[1][0], A[2][0]), (A[0][1], A[1][1], A[2][1]), (A[0][2], A[1][2], A[2][2]))
 
 
-@njit(cache=True)
+@njit
 def matvec(A: Mat, v: Vec) -> Vec:
     """A v."""
     return (dot(A[0], v), dot(A[1], v), dot(A[2], v))
 
 
-@njit(cache=True)
+@njit
 def vecmat(v: Vec, A: Mat) -> Vec:
     """v A, that is the transpose of A times v."""
     return (
@@ -85,37 +85,37 @@ def vecmat(v: Vec, A: Mat) -> Vec:
     )
 
 
-@njit(cache=True)
+@njit
 def matmul(A: Mat, B: Mat) -> Mat:
     """A B."""
     return (vecmat(A[0], B), vecmat(A[1], B), vecmat(A[2], B))
 
 
-@njit(cache=True)
+@njit
 def matadd(A: Mat, B: Mat) -> Mat:
     """A + B."""
     return (add(A[0], B[0]), add(A[1], B[1]), add(A[2], B[2]))
 
 
-@njit(cache=True)
+@njit
 def matscale(s: float, A: Mat) -> Mat:
     """s A."""
     return (scale(s, A[0]), scale(s, A[1]), scale(s, A[2]))
 
 
-@njit(cache=True)
+@njit
 def outer(a: Vec, b: Vec) -> Mat:
     """The dyad of a and b."""
     return (scale(a[0], b), scale(a[1], b), scale(a[2], b))
 
 
-@njit(cache=True)
+@njit
 def isotropic(s: float) -> Mat:
     """s times the identity."""
     return ((s, 0.0, 0.0), (0.0, s, 0.0), (0.0, 0.0, s))
 
 
-@njit(cache=True)
+@njit
 def skew(v: Vec) -> Mat:
     """[v], the matrix with [v] a = v x a."""
     return ((0.0, -v[2], v[1]), (v[2], 0.0, -v[0]), (-v[1], v[0], 0.0))

@@ -16,9 +16,9 @@ RP-C205.
 import math
 
 import numpy as np
-from numba import njit
 
 from riser_soil.arrays import Array
+from riser_soil.compiled import njit
 
 
 def drag_coefficients(rho: float, diameter: Array, normal: Array, tangential: Array) -> Array:
@@ -31,7 +31,7 @@ def added_masses(rho: float, diameter: Array, normal: Array, tangential: Array) 
     return rho * (0.25 * np.pi * diameter**2)[:, None] * np.stack([normal, tangential], axis=-1)
 
 
-@njit(cache=True)
+@njit
 def _split(v: Array, tau: Array, e: int, g: int) -> tuple[float, float]:
     """Speed along tau and speed across it at one point."""
     along, square = 0.0, 0.0
@@ -42,7 +42,7 @@ def _split(v: Array, tau: Array, e: int, g: int) -> tuple[float, float]:
     return along, math.sqrt(square)
 
 
-@njit(cache=True)
+@njit
 def drag(v: Array, tau: Array, c: Array) -> Array:
     """Resistance to the rate (ne, ng, d)."""
     f = np.empty_like(v)
@@ -55,7 +55,7 @@ def drag(v: Array, tau: Array, c: Array) -> Array:
     return f
 
 
-@njit(cache=True)
+@njit
 def drag_derivatives(v: Array, tau: Array, c: Array) -> tuple[Array, Array]:
     """d drag/dv and d drag/dtau; at rest both are zero."""
     ne, ng, d = v.shape
@@ -78,7 +78,7 @@ def drag_derivatives(v: Array, tau: Array, c: Array) -> tuple[Array, Array]:
     return by_v, by_tau
 
 
-@njit(cache=True)
+@njit
 def added(a: Array, tau: Array, m: Array) -> Array:
     """Resistance to the acceleration (ne, ng, d)."""
     f = np.empty_like(a)
@@ -90,7 +90,7 @@ def added(a: Array, tau: Array, m: Array) -> Array:
     return f
 
 
-@njit(cache=True)
+@njit
 def added_derivatives(a: Array, tau: Array, m: Array) -> tuple[Array, Array]:
     """d added/da and d added/dtau."""
     ne, ng, d = a.shape

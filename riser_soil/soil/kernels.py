@@ -7,14 +7,14 @@ nc cells, nq quadrature points, nn nodes a cell; `full` (nc, nq, nn, 3), `volume
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from riser_soil.arrays import Array, IntArray
+from riser_soil.compiled import njit
 
 _SHEAR = 1.0 / np.sqrt(2.0)
 
 
-@njit(cache=True)
+@njit
 def strain(full: Array, volume: Array, cells: IntArray, u: Array, out: Array) -> None:
     """Strain (nc, nq, 6) of the nodal displacements u (3n,), written to out."""
     nc, nq, nn, _ = full.shape
@@ -40,7 +40,7 @@ def strain(full: Array, volume: Array, cells: IntArray, u: Array, out: Array) ->
             e[3], e[4], e[5] = _SHEAR * xy, _SHEAR * xz, _SHEAR * yz
 
 
-@njit(cache=True)
+@njit
 def add_internal_force(
     full: Array, volume: Array, weights: Array, cells: IntArray, stress: Array, out: Array
 ) -> None:
@@ -63,7 +63,7 @@ def add_internal_force(
                 out[i + 2] += xz * gx + yz * gy + zz * gz + pressure * h[2]
 
 
-@njit(cache=True)
+@njit
 def add_stiffness(full: Array, volume: Array, weights: Array, moduli: Array, out: Array) -> None:
     """Add the cell matrices ∫ B̄ᵀ C B̄ [N/m] of the moduli C (nc, nq, 6, 6) [Pa] to out (nc, 3nn, 3nn)."""
     nc, nq, nn, _ = full.shape
@@ -84,7 +84,7 @@ def add_stiffness(full: Array, volume: Array, weights: Array, moduli: Array, out
                             row[j] += factor * CB[k, j]
 
 
-@njit(cache=True)
+@njit
 def _operator(full: Array, volume: Array, B: Array) -> None:
     """B̄ (6, 3nn) of one quadrature point."""
     for a in range(full.shape[0]):
@@ -99,7 +99,7 @@ def _operator(full: Array, volume: Array, B: Array) -> None:
         B[5, 3 * a + 1], B[5, 3 * a + 2] = gz, gy
 
 
-@njit(cache=True)
+@njit
 def _product(weight: float, C: Array, B: Array, CB: Array) -> None:
     for k in range(6):
         row = CB[k]

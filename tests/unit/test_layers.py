@@ -11,7 +11,7 @@ import riser_soil
 PACKAGE = Path(riser_soil.__file__).parent
 
 LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one another
-    ("errors", "arrays"),
+    ("errors", "arrays", "compiled"),
     ("part", "snapshot"),
     ("scene", "dolfinx_compat", "time_scheme"),
     ("riser",),
@@ -44,6 +44,7 @@ ONLY_IN = {  # what costs time to import, or may be absent, and the layers that 
     "matplotlib": {"plots", "report"},
     "pyvista": {"plots", "report"},
     "riser_soil.dolfinx_compat": {"soil"},
+    "numba": {"compiled"},
 }
 
 

@@ -1,0 +1,148 @@
+"""Compiled kernels: `njit` for functions on arrays and tuples of numbers, kept on disk between runs.
+
+numba's own cache doesn't notice an edit in another file whose functions it has inlined, and runs stale code. So each
+version of the kernels has a cache folder of its own, under NUMBA_CACHE_DIR, XDG_CACHE_HOME or ~/.cache, or a private
+temporary folder where that can't be written. Division by zero gives inf or nan, as in numpy.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+import platform
+import re
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+import numba
+from numba.core import event
+
+PACKAGE = Path(__file__).parent
+NAME = PACKAGE.name
+KEPT = 4  # cache folders of other versions, the latest ones, for those who go back and forth
+IN_USE = 3600.0  # s since its last start within which a run of another version may still need its folder
+ANNOUNCEMENT = "compiling kernels (once, about 20 s)"
+
+
+def njit(function: Callable[..., object]) -> Any:
+    """Compile a function when it is first called with arguments of new types; its machine code stays on disk."""
+    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(FOLDER)
+    try:
+        return numba.njit(cache=True, error_model="numpy")(function)
+    finally:
+        numba.config.CACHE_DIR = before
+
+
+def fingerprint(package: Path) -> str:
+    """Of all that compiled code depends on: sources of modules with kernels and of what they import, and versions."""
+    digest = hashlib.sha256(f"{numba.__version__} {platform.python_version()}".encode())
+    for path, text in sorted(_sources(package).items()):
+        digest.update(f"{path.relative_to(package)}\n{text}".encode())
+    return digest.hexdigest()[:16]
+
+
+def _sources(package: Path) -> dict[Path, str]:
+    texts = {path: path.read_text(encoding="utf-8") for path in package.rglob("*.py")}
+    needed, todo = set[Path](), {path for path, text in texts.items() if f"{NAME}.compiled import" in text}
+    while todo:
+        needed |= todo
+        imported = (path for known in todo for path in _imports(package, texts[known]))
+        todo = {path for path in imported if path in texts} - needed
+    return {path: texts[path] for path in needed}
+
+
+def _imports(package: Path, text: str) -> Iterable[Path]:
+    """Modules of the package that a source names in its import statements."""
+    for module, names in re.findall(rf"^\s*from {NAME}\.?([\w.]*) import (\([^)]*\)|.*)", text, re.MULTILINE):
+        folder = package.joinpath(*filter(None, module.split(".")))
+        yield folder.with_suffix(".py")
+        yield from (folder / f"{name}.py" for name in re.findall(r"\w+", names))
+
+
+def choose_folder(version: str) -> Path:
+    """A cache folder that can be written, made where it isn't there yet."""
+    given = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
+    try:
+        root = (Path(given) if given else Path.home() / ".cache") / NAME
+        return _make(root, version)
+    except (OSError, RuntimeError):  # RuntimeError: no home
+        return _temporary(version)
+
+
+def _temporary(version: str) -> Path:
+    """In the folder that all may write, only one that nobody else can have filled."""
+    root = Path(tempfile.gettempdir()) / f"{NAME}-{os.getuid()}"
+    try:
+        root.mkdir(mode=0o700, exist_ok=True)
+        status = root.lstat()
+        if root.is_symlink() or status.st_uid != os.getuid() or status.st_mode & 0o022:
+            raise PermissionError(f"{root} is not ours alone")
+        return _make(root, version)
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix=f"{NAME}-"))
+
+
+def _make(root: Path, version: str) -> Path:
+    folder = root / version
+    new = not folder.exists()
+    folder.mkdir(parents=True, exist_ok=True)
+    tempfile.TemporaryFile(dir=folder).close()
+    _mark_used(folder)
+    if new:
+        remove_old(root, keep=folder)
+    return folder
+
+
+def _mark_used(folder: Path) -> None:
+    """A folder that another user has made is used all the same."""
+    try:
+        os.utime(folder)
+    except PermissionError:
+        return
+
+
+def remove_old(root: Path, keep: Path) -> None:
+    """Remove cache folders of other versions, except the latest and those that may be in use."""
+    others = [path for path in root.iterdir() if re.fullmatch("[0-9a-f]{16}", path.name) and path != keep]
+    used = sorted(((_last_use(path), path) for path in others), reverse=True)
+    for last, path in used[KEPT:]:
+        if time.time() - last > IN_USE:
+            shutil.rmtree(path, ignore_errors=True)
+
+
+def _last_use(folder: Path) -> float:
+    """Another process may have removed the folder meanwhile."""
+    try:
+        return folder.stat().st_mtime
+    except OSError:
+        return math.inf
+
+
+class _Announcer(event.Listener):
+    """Tells on the first rank that kernels are being compiled, once for a cache folder."""
+
+    def on_start(self, event: Any) -> None:
+        rank = os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK", "0"))
+        if rank == "0" and _first(FOLDER / "announced"):
+            print(ANNOUNCEMENT, file=sys.stderr, flush=True)
+
+    def on_end(self, event: Any) -> None:
+        pass
+
+
+def _first(marker: Path) -> bool:
+    try:
+        marker.touch(exist_ok=False)
+    except OSError:
+        return False
+    return True
+
+
+FOLDER = choose_folder(fingerprint(PACKAGE))
+event.register("numba:compile", _Announcer())

@@ -1,0 +1,138 @@
+"""The cache of compiled kernels: a version of its own for every change, in a folder that can be written."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from riser_soil import compiled
+
+DAY = 86400.0
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """A package with a kernel that inlines a function of another module."""
+    folder = tmp_path / "riser_soil"
+    sources = {
+        "riser/kernel.py": "from riser_soil.compiled import njit\nfrom riser_soil.riser.law import f\n",
+        "riser/law.py": "from riser_soil.riser import (\n    numbers,\n)\n",
+        "riser/numbers.py": "TWO = 2.0\n",
+        "plots.py": "import riser_soil.riser.kernel\n",
+    }
+    for name, text in sources.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("name", "matters"),
+    [("riser/kernel.py", True), ("riser/law.py", True), ("riser/numbers.py", True), ("plots.py", False)],
+)
+def test_edits_of_what_kernels_depend_on_change_the_version(package: Path, name: str, matters: bool) -> None:
+    before = compiled.fingerprint(package)
+    with (package / name).open("a") as file:
+        file.write("# edited\n")
+    assert (compiled.fingerprint(package) != before) == matters
+
+
+def test_versions_of_numba_have_their_own_caches(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = compiled.fingerprint(package)
+    monkeypatch.setattr(compiled.numba, "__version__", "0.1")
+    assert compiled.fingerprint(package) != before
+
+
+def test_the_package_depends_on_all_its_kernels() -> None:
+    names = {str(path.relative_to(compiled.PACKAGE)) for path in compiled._sources(compiled.PACKAGE)}
+    assert {"riser/beam3d.py", "riser/bending.py", "sea/morison_law.py", "matrix.py"} <= names
+    assert not {"run.py", "__main__.py", "observe.py"} & names
+
+
+def test_cache_is_where_the_user_keeps_caches(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    assert compiled.choose_folder("0" * 16) == tmp_path / "cache" / "riser_soil" / ("0" * 16)
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert compiled.choose_folder("0" * 16) == tmp_path / ".cache" / "riser_soil" / ("0" * 16)
+
+
+def test_what_cant_be_written_is_replaced_by_a_private_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").write_text("in the way")
+    (tmp_path / "tmp").mkdir()
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
+    folder = compiled.choose_folder("0" * 16)
+    assert folder == tmp_path / "tmp" / f"riser_soil-{os.getuid()}" / ("0" * 16)
+    folder.parent.chmod(0o777)
+    other = compiled.choose_folder("0" * 16)
+    assert other.is_dir()
+    assert folder.parent not in other.parents
+    assert other.stat().st_mode & 0o077 == 0
+
+
+def test_old_versions_go_and_nothing_else(tmp_path: Path) -> None:
+    versions = [tmp_path / f"{k:016x}" for k in range(8)]
+    bystanders = [tmp_path / "fenics", tmp_path / "0123"]
+    for age, path in enumerate([*versions, *bystanders]):
+        path.mkdir()
+        os.utime(path, (path.stat().st_mtime - age * DAY,) * 2)
+    compiled.remove_old(tmp_path, keep=versions[7])
+    left = set(tmp_path.iterdir())
+    assert left == {*versions[: compiled.KEPT], versions[7], *bystanders}
+
+
+def test_versions_in_use_stay(tmp_path: Path) -> None:
+    versions = [tmp_path / f"{k:016x}" for k in range(8)]
+    for path in versions:
+        path.mkdir()
+    compiled.remove_old(tmp_path, keep=versions[0])
+    assert all(path.is_dir() for path in versions)
+
+
+KERNEL = """
+import numpy as np
+from riser_soil.sea.morison_law import added
+a = np.ones((1, 1, 3))
+added(a, a, np.ones((1, 2)))
+"""
+
+
+def test_compiling_is_announced_once_by_the_first_rank(tmp_path: Path) -> None:
+    def told(rank: str) -> str:
+        environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path), "OMPI_COMM_WORLD_RANK": rank}
+        environment.pop("NUMBA_CACHE_DIR", None)
+        return subprocess.run([sys.executable, "-c", KERNEL], env=environment, capture_output=True, text=True).stderr
+
+    assert told("1") == ""
+    assert not list(tmp_path.rglob("announced"))
+    for path in tmp_path.rglob("*.nbi"):
+        path.unlink()
+    assert told("0") == compiled.ANNOUNCEMENT + "\n"
+    assert list(tmp_path.rglob("*.nbc"))
+    assert told("0") == ""
+
+
+def test_processes_may_start_at_once(tmp_path: Path) -> None:
+    environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path)}
+    environment.pop("NUMBA_CACHE_DIR", None)
+    running = [subprocess.Popen([sys.executable, "-c", KERNEL], env=environment) for _ in range(4)]
+    assert [process.wait(120) for process in running] == [0] * 4
+    assert len(list((tmp_path / "riser_soil").iterdir())) == 1
+
+
+def test_division_by_zero_is_no_crash() -> None:
+    @compiled.njit
+    def ratio(a: float, b: float) -> float:
+        return a / b
+
+    assert ratio(1.0, 0.0) == np.inf
