@@ -1,0 +1,108 @@
+"""Stages of a scene taken as riser_soil.run takes them, but without files, every step open to a test's eyes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from mpi4py import MPI
+from scipy.sparse import csr_matrix
+
+from riser_soil.arrays import Array, IntArray
+from riser_soil.build import World, build
+from riser_soil.build.stage import scheme_of
+from riser_soil.march import Accepted, March
+from riser_soil.newton import Newton, NewtonSettings
+from riser_soil.observe import Observer, Seen
+from riser_soil.part import Energy, State
+from riser_soil.run import run_stage
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.stages import DynamicStage, Stage
+from riser_soil.system import Clock, System
+from riser_soil.time_scheme import Static
+from tests.coupled_scenes import Mapping
+
+Watch = Callable[[System, Accepted], None]
+
+
+def built(mapping: Mapping) -> World:
+    """The parts of a scene, on this process alone."""
+    return build(scene_from_mapping(mapping), MPI.COMM_SELF)
+
+
+class Watcher(Observer):
+    """Shows every accepted step, not yet committed, to a function; writes nothing."""
+
+    def __init__(self, watch: Watch | None = None) -> None:
+        self._watch = watch
+        self.relaxations = 0
+
+    def begin_stage(self, stage: Stage, energy: Energy) -> None:
+        self.energy_at_start = energy
+
+    def look(self, system: System, step: Accepted) -> Seen | None:
+        if self._watch is not None:
+            self._watch(system, step)
+        return None
+
+    def record(self, step: Accepted, seen: Seen | None, last: bool) -> None:
+        pass
+
+    def relaxed(self, iterations: int) -> None:
+        self.relaxations += 1
+
+
+def take(world: World, stage: Stage, before: State | None = None, watch: Watch | None = None) -> State:
+    """Take a stage to its end; the state that it leaves, increments zero."""
+    rest = State.at_rest(0.0, world.size) if before is None else before
+    return run_stage(world, stage, rest, Watcher(watch), Clock.new())
+
+
+class FirstStep:
+    """The first step of a world's last stage, all stages before it taken: residual and matrix as functions of
+    the system's unknowns x (free,).
+    """
+
+    def __init__(self, world: World) -> None:
+        self.world = world
+        *first, stage = world.scene.stages
+        before = State.at_rest(0.0, world.size)
+        for earlier in first:
+            before = take(world, earlier, before)
+        self.system = System(world.comm, world.begin(stage), Clock.new())
+        self.scheme = scheme_of(stage)
+        solver = world.scene.solver
+        settings = NewtonSettings(solver.tolerance, solver.max_iterations, world.force_floor)
+        newton = Newton(self.system, settings)
+        self._before = March(self.system, newton, self.scheme, replace(before, t=0.0)).before
+        newton.destroy()
+        self._dt = stage.time_step if isinstance(stage, DynamicStage) else 1.0
+        self._start = None if isinstance(self.scheme, Static) else self.system.forces(self._before)
+
+    @property
+    def free(self) -> int:
+        return self.system.numbering.free
+
+    def state(self, x: Array) -> State:
+        """The trial state of x, prescribed motion included."""
+        index = self.system.numbering.index
+        u = np.where(index >= 0, np.append(x, 0.0)[index], 0.0)
+        state = self.scheme.trial(self._before, self._dt, self._dt, u)
+        self.system.prescribe(state)
+        return state
+
+    def residual(self, x: Array) -> Array:
+        local = self.scheme.combine(self.system.forces(self.state(x)), self._start)
+        index = self.system.numbering.index
+        return np.asarray(np.bincount(index[index >= 0], local[index >= 0], minlength=self.free), dtype=float)
+
+    def matrix(self, x: Array) -> csr_matrix:
+        self.system.assemble(self.state(x), self.scheme.weights(self._dt))
+        indptr, indices, values = self.system.matrix.mat.getValuesCSR()
+        return csr_matrix((values, indices, indptr), shape=(self.free, self.free))
+
+    def rows(self, local: IntArray) -> IntArray:
+        """System rows of local dof numbers; prescribed ones have none."""
+        rows: IntArray = self.system.numbering.index[local]
+        return np.unique(rows[rows >= 0])

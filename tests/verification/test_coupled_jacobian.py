@@ -1,0 +1,118 @@
+"""The matrix of the whole system against finite differences of its residual, row group by row group.
+
+The states are well beyond first yield and the riser presses on the soil and on the springs beside it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from riser_soil.arrays import Array, IntArray
+from tests.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.driven_stage import FirstStep, built
+
+LIFT: Mapping = {"name": "lift", "kind": "static", "move": {"end": [22.5, 0.0, 15.1]}}
+NEXT = {"static": LIFT, "dynamic": heave(1.0, time_step=0.01)}
+STEP = 1e-5  # of the finite differences, times perturbations of millimetres: no point starts or stops yielding
+
+
+class Case:
+    """The first step after laying, looked at in a state away from balance; x the unknowns there."""
+
+    def __init__(self, kind: str, dimension: int, stage: str) -> None:
+        world = built(touchdown(LAY, NEXT[stage], kind=kind, dimension=dimension, su=1000.0))
+        self.step = FirstStep(world)
+        self.world = world
+        self._random = np.random.default_rng(5)
+        self.x = self.direction()
+
+    def direction(self) -> Array:
+        """Random: millimetres on the riser, rotations to match, and what makes the soil yield."""
+        x = self._random.normal(size=self.step.free)
+        x[self.riser] *= 1e-3
+        x[self.soil] *= 4e-3
+        return x
+
+    @property
+    def riser(self) -> IntArray:
+        line = self.world.line
+        return self.step.rows(line.offset + np.arange(line.size))
+
+    @property
+    def soil(self) -> IntArray:
+        return np.setdiff1d(np.arange(self.step.free), self.riser)
+
+    @property
+    def touched(self) -> dict[str, IntArray]:
+        """Rows of the riser's and of the soil's dofs on which contact acts at x."""
+        assert self.world.contact is not None
+        touching = self.world.contact.meet(self.step.state(self.x)).touching
+        rows = np.concatenate([self.step.rows(t.rows.ravel()) for t in touching])
+        return {
+            "touched riser": np.intersect1d(rows, self.riser),
+            "touched soil": np.intersect1d(rows, self.soil),
+        }
+
+    def groups(self) -> dict[str, IntArray]:
+        return {"riser": self.riser, "soil": self.soil} | self.touched
+
+    def differences(self, direction: Array) -> Array:
+        """Directional derivative of the residual at x, of fourth order in the step."""
+        h = STEP
+        at = {k: self.step.residual(self.x + k * h * direction) for k in (-2, -1, 1, 2)}
+        return np.asarray((8.0 * (at[1] - at[-1]) - (at[2] - at[-2])) / (12.0 * h))
+
+    def errors(self) -> dict[str, float]:
+        """Relative error of the matrix by row group, the largest over several directions."""
+        matrix, errors = self.step.matrix(self.x), dict.fromkeys(self.groups(), 0.0)
+        for direction in (self.direction() for _ in range(4)):
+            wanted, got = self.differences(direction), matrix @ direction
+            for name, rows in self.groups().items():
+                error = np.linalg.norm((got - wanted)[rows]) / np.linalg.norm(wanted[rows])
+                errors[name] = max(errors[name], float(error))
+        return errors
+
+    def plastic_share(self) -> float:
+        """Share of the soil's cells in which some point yields on the way to x; x is accepted by this."""
+        soil = self.world.soil
+        assert soil is not None
+        before = soil.output_fields().plastic_strain
+        state = self.step.state(self.x)
+        soil.commit(state)
+        return float(np.mean(soil.output_fields().plastic_strain > before))
+
+
+CASES = [(k, d, s) for k in ("hex", "tet") for d in (2, 3) for s in ("static", "dynamic")]
+
+
+@pytest.mark.parametrize(("kind", "dimension", "stage"), CASES)
+def test_jacobian_equals_finite_differences(kind: str, dimension: int, stage: str) -> None:
+    case = Case(kind, dimension, stage)
+    errors = case.errors()
+    assert max(errors.values()) < 1e-7, errors
+    assert all(len(rows) > 10 for rows in case.groups().values())
+    assert case.plastic_share() > 0.3
+
+
+@pytest.mark.parametrize("kind", ["hex", "tet"])
+def test_every_part_matters_in_the_jacobian(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Left out of the matrix, each part shows in the rows that it acts on."""
+    case = Case(kind, 3, "dynamic")
+    for part in case.step.system.model.parts:
+        with monkeypatch.context() as without:
+            without.setattr(part, "tangent", lambda *_: None)
+            errors = case.errors()
+        assert max(errors.values()) > 1e-5, part.name
+        if part.name == "contact":
+            assert min(errors["touched riser"], errors["touched soil"]) > 5e-3, errors
+
+
+@pytest.mark.parametrize("stage", ["static", "dynamic"])
+def test_matrix_is_symmetric_where_the_system_says_so(stage: str) -> None:
+    """Still water's drag and the turning of accelerated directors make dynamics unsymmetric."""
+    case = Case("hex", 3, stage)
+    matrix = case.step.matrix(case.x)
+    skew = abs(matrix - matrix.T).max() / abs(matrix).max()
+    assert case.step.system.symmetric == (stage == "static")
+    assert (skew < 1e-12) == (stage == "static")
