@@ -17,8 +17,8 @@ LONGEST_ELEMENT = 0.5
 # Bounds of the penalty stiffness over the soil's Young's modulus: below it hides the soil, above it costs iterations.
 SOFT, STIFF = 1.0, 1e4
 
-PROCESS = 0.15e9  # bytes of a process with the packages that every scene needs
-SOIL_PROCESS = 0.15e9  # bytes that dolfinx and gmsh add
+PROCESS = 0.24e9  # bytes of a process with the packages that every scene needs
+SOIL_PROCESS = 0.1e9  # bytes that dolfinx and gmsh add
 PER_RISER_DOF = 2e3  # bytes: element and matrix arrays
 PER_CELL_ENTRY = 24.0  # bytes: value, place and matrix entry of one entry of a cell's matrix
 FACTOR = 10.0  # entries of the soil's factor: FACTOR n^(4/3), as nested dissection gives them in three dimensions

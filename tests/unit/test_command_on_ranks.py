@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+
+from tests.on_ranks import mpirun
 
 ROOT = Path(__file__).parents[2]
 SCENE = ROOT / "tests/scenes/catenary.yaml"
@@ -32,24 +31,9 @@ command.main()
 """
 
 
-def mpirun(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
-    environment = os.environ | {
-        "OMP_NUM_THREADS": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-        "OMPI_MCA_rmaps_base_oversubscribe": "1",
-        "OMPI_MCA_mpi_yield_when_idle": "1",
-        "PYTHONPATH": str(ROOT),
-    }
-    call = ["mpirun", "-n", "2", "--bind-to", "none", sys.executable, *command]
-    return subprocess.run(
-        call, cwd=folder, env=environment, capture_output=True, text=True, timeout=60, check=False
-    )
-
-
 def test_wrong_scene_is_told_once(tmp_path: Path) -> None:
     (tmp_path / "case.yaml").write_text("title: [\n", encoding="utf-8")
-    done = mpirun(tmp_path, "-m", "riser_soil", "run", "case.yaml")
+    done = mpirun(2, "-m", "riser_soil", "run", "case.yaml", folder=tmp_path)
     assert done.returncode == 2
     assert done.stderr.count("case.yaml:2: not valid YAML") == 1
     assert "Traceback" not in done.stderr
@@ -58,7 +42,7 @@ def test_wrong_scene_is_told_once(tmp_path: Path) -> None:
 @pytest.mark.parametrize("failing", ["(0, 1)", "(0,)", "(1,)"])
 def test_failed_solve_ends_all_ranks_and_is_told_once(failing: str, tmp_path: Path) -> None:
     script = DRIVER.replace("FAILING", failing).replace("FAILURE", "SolveError('no convergence at arc 24 m')")
-    done = mpirun(tmp_path, "-c", script)
+    done = mpirun(2, "-c", script, folder=tmp_path)
     assert done.returncode == 3
     assert done.stderr.count("no convergence at arc 24 m") == 1
     assert "Traceback" not in done.stderr
@@ -66,6 +50,6 @@ def test_failed_solve_ends_all_ranks_and_is_told_once(failing: str, tmp_path: Pa
 
 def test_unexpected_error_of_one_rank_ends_all(tmp_path: Path) -> None:
     script = DRIVER.replace("FAILING", "(1,)").replace("FAILURE", "ZeroDivisionError('bug')")
-    done = mpirun(tmp_path, "-c", script)
+    done = mpirun(2, "-c", script, folder=tmp_path)
     assert done.returncode == 1
     assert "ZeroDivisionError: bug" in done.stderr

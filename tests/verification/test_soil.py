@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-import sys
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -20,6 +17,7 @@ from riser_soil.soil.families import Family
 from riser_soil.soil.grid import Grid, block_grid
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.von_mises import VonMises
+from tests.on_ranks import mpirun
 from tests.soil_bench import Bench
 from tests.soil_cases import ELASTIC, KINDS, small_block
 
@@ -133,30 +131,8 @@ def test_any_number_of_ranks_agrees(ranks: int, kind: str, size: float) -> None:
 
 
 def on_ranks(ranks: int, kind: str, size: float) -> dict[str, float]:
-    environment = os.environ | {
-        "OMP_NUM_THREADS": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-        "OMPI_MCA_rmaps_base_oversubscribe": "1",
-        "OMPI_MCA_mpi_yield_when_idle": "1",
-        "PYTHONPATH": str(ROOT),
-    }
     script = Path(__file__).with_name("soil_on_ranks.py")
-    # `timeout` ends mpirun in a way that lets it end its ranks
-    command = [
-        "timeout",
-        "60",
-        "mpirun",
-        "-n",
-        str(ranks),
-        "--bind-to",
-        "none",
-        sys.executable,
-        str(script),
-        kind,
-        str(size),
-    ]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True)
+    done = mpirun(ranks, str(script), kind, str(size))
     assert done.returncode == 0, done.stderr
     result: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
     return result

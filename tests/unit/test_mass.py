@@ -1,0 +1,32 @@
+"""Accelerations by the banded mass against a dense solve."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from riser_soil.mass import RiserMass
+from riser_soil.part import Model
+from riser_soil.system import Clock, System
+from tests.toy_chain import Chain, Inertia, Springs
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_against_a_dense_solve(held: bool) -> None:
+    chain = Chain(np.arange(5.0), held=held)
+    inertia, springs = Inertia(chain, 2.0), Springs(chain, 1.0, 30.0)
+    system = System(MPI.COMM_SELF, Model([chain], [springs, inertia]), Clock.new())
+    force = np.array([1.0, -2.0, 0.5, 3.0, 0.1])
+    a = RiserMass(system).accelerations(0.0, force)
+    expected = force / inertia.nodal()
+    expected[0] *= not held
+    assert a == pytest.approx(expected, rel=1e-14)
+    system.destroy()
+
+
+def test_massless_dofs_stay() -> None:
+    chain = Chain(np.arange(3.0))
+    system = System(MPI.COMM_SELF, Model([chain], [Inertia(chain, 0.0)]), Clock.new())
+    assert RiserMass(system).accelerations(0.0, np.ones(3)) == pytest.approx(np.zeros(3))
+    system.destroy()

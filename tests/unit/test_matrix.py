@@ -1,0 +1,77 @@
+"""Numbering and assembly: no rows for prescribed dofs, sums over blocks, the same product on two ranks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from riser_soil.matrix import Matrix
+from riser_soil.numbering import Numbering
+from riser_soil.part import Block
+from tests.on_ranks import mpirun
+from tests.toy_chain import Chain
+
+
+def test_rows_are_the_free_dofs() -> None:
+    numbering = Numbering(MPI.COMM_SELF, [Chain(np.arange(4.0), held=True)])
+    assert numbering.free == 3
+    assert numbering.index.tolist() == [-1, 0, 1, 2]
+    numbering.destroy()
+
+
+def test_blocks_add_up_and_absent_dofs_drop_out() -> None:
+    chain = Chain(np.arange(4.0), held=True)
+    numbering = Numbering(MPI.COMM_SELF, [chain])
+    extra = Block(np.array([[3, -1]]), np.array([[3, -1]]))
+    matrix = Matrix(numbering, {"riser": chain.pairs(), "extra": extra}, symmetric=True)
+    for _ in range(2):  # assembly starts anew each time
+        matrix.values["riser"][...] = np.array([[1.0, -1.0], [-1.0, 1.0]])
+        matrix.values["extra"][...] = 5.0
+        matrix.assemble()
+    dense = np.zeros((3, 3))
+    for row in range(3):
+        columns, values = matrix.mat.getRow(row)
+        dense[row, columns] = values
+    assert dense == pytest.approx(np.array([[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 6.0]]))
+    matrix.destroy()
+    numbering.destroy()
+
+
+ON_RANKS = '''
+import numpy as np
+from mpi4py import MPI
+from riser_soil.matrix import Matrix
+from riser_soil.numbering import Numbering
+from tests.toy_chain import Chain
+
+comm = MPI.COMM_WORLD
+# All ranks hold the chain, the first one owns it, and every rank adds a share of every block.
+chain = Chain(np.arange(40.0), held=True, owner=comm.rank == 0)
+numbering = Numbering(comm, [chain])
+matrix = Matrix(numbering, {"pairs": chain.pairs()}, symmetric=True)
+matrix.values["pairs"][...] = np.array([[1.0, -1.0], [-1.0, 1.0]]) / comm.size
+matrix.assemble()
+x, y = numbering.vector, numbering.vector.duplicate()
+first, last = x.getOwnershipRange()
+x.array_w[:] = np.sin(np.arange(first, last))
+matrix.mat.mult(x, y)
+local = np.zeros(chain.size)
+numbering.to_local(y, local)
+numbering.add_to_global(local / comm.size, x)
+if comm.rank == 0:
+    print(" ".join(f"{v:.12e}" for v in np.concatenate([local, [x.norm()]])))
+else:
+    x.norm()
+'''
+
+
+@pytest.mark.parametrize("ranks", [2, 3])
+def test_product_on_ranks(tmp_path: Path, ranks: int) -> None:
+    script = tmp_path / "on_ranks.py"
+    script.write_text(ON_RANKS)
+    alone, together = (np.array(mpirun(n, str(script)).stdout.split(), dtype=float) for n in (1, ranks))
+    assert len(alone) == 41
+    assert together == pytest.approx(alone, rel=1e-12)
