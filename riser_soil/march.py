@@ -15,8 +15,9 @@ from riser_soil.newton import Newton, NotConvergedError, Solution, Step
 from riser_soil.part import Energy, Forces, State
 from riser_soil.stepping import StepControl
 from riser_soil.system import System, total
-from riser_soil.time_scheme import GeneralizedAlpha, Scheme
+from riser_soil.time_scheme import GeneralizedAlpha, Scheme, Static
 
+ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away
 EASY = 6  # Newton iterations up to which a step that was cut may grow again
 
 
@@ -62,6 +63,7 @@ class March:
             self._mass = RiserMass(system)
             self._start_rates(before)
         self._history = self._forces_at_start()
+        self._energy = system.energy(self.before)
 
     def restart(self) -> None:
         """Start anew from the configuration that the parts hold now."""
@@ -84,15 +86,13 @@ class March:
         cuts = 0
         while True:
             try:
-                solution = self._solve(control.target, control.dt)
-                break
+                return self._account(self._solve(control.target, control.dt), control, cuts)
             except NotConvergedError as failure:
                 cuts += 1
                 if not control.cut():
                     raise SolveError(
                         f"no convergence at t = {control.target:.6g} with the smallest step {control.dt:.3g}: {failure}"
                     ) from failure
-        return self._account(solution, control, cuts)
 
     def _solve(self, t: float, dt: float) -> Solution:
         step = Step(self.scheme, self.before, t, dt, self._history, self._guess(t, dt))
@@ -125,22 +125,30 @@ class March:
         state = solution.state
         turned = self.system.work(self.before, state)
         supports = self.system.work_of_supports(self._forces, solution.forces, state.u)
-        return Accepted(
-            control.target,
-            control.dt,
-            solution,
-            cuts,
-            self.system.energy(state),
-            turned.dissipated,
-            turned.external + supports,
-        )
+        work, energy = turned.external + supports, self.system.energy(state)
+        self._refuse_wrong_root(energy, turned.dissipated, work)
+        return Accepted(control.target, control.dt, solution, cuts, energy, turned.dissipated, work)
+
+    def _refuse_wrong_root(self, energy: Energy, dissipated: float, work: float) -> None:
+        """A dynamic step that more than doubles the energy in motion out of nothing is a root of the equations far
+        from the motion that it continues: NotConvergedError, so that it is cut.
+        """
+        if isinstance(self.scheme, Static):
+            return
+        was = self._energy
+        appeared = energy.total - was.total + dissipated - work
+        in_motion = was.kinetic + was.strain + max(0.0, was.potential - energy.potential) + abs(work)
+        if appeared > in_motion + ENERGY_ROUND_OFF * abs(was.potential):
+            raise NotConvergedError(
+                f"the step's solution makes {appeared:.3g} J out of nothing, more than the {in_motion:.3g} J in motion"
+            )
 
     def commit(self, step: Accepted, control: StepControl) -> None:
         """Accept the step and get ready for the next."""
         state, forces = step.solution.state, step.solution.forces
         self.system.commit(state)
         self.before = self._rates_after(state, forces, step.dt)
-        self._forces, self._history = forces, self._forces_at_start()
+        self._forces, self._history, self._energy = forces, self._forces_at_start(), step.energy
         self._increment, self._dt = state.u, step.dt
         control.accept(easy=step.solution.iterations <= EASY)
         self._renew_pattern()
