@@ -21,7 +21,7 @@ help: ## this list
 setup: ## Debian packages, the environment .venv, riser_soil in it; does nothing when they are there
 	@scripts/setup.sh
 
-demo: setup ## the paper's riser on an elasto-plastic seabed, with pictures and a report
+demo: setup ## a flexible riser comes down on 3D clay: results and a picture in demos/touchdown_clay/results
 	$(PYTHON) demos/touchdown_clay/run.py
 
 test: lint ## linters, types, and the quick tests, some of them on two ranks
@@ -34,7 +34,7 @@ lint: setup
 verify: setup ## the long comparisons with closed forms, references and finer meshes
 	$(PYTHON) -m pytest -m verify
 
-bench: setup ## error against run time
+bench: setup ## seconds by part of the demo, and Newton iterations against the bare work in them
 	$(PYTHON) -m benchmarks
 
 verify-fresh: ## both commands of the README on a bare Debian 12 made for it (needs root and debootstrap)
@@ -44,5 +44,5 @@ docker: ## the image riser_soil
 	docker build -t riser_soil -f docker/Dockerfile .
 
 clean: ## what set-up, tests and runs have left here
-	rm -rf .venv build results .pytest_cache .mypy_cache .ruff_cache .hypothesis riser_soil.egg-info
+	rm -rf .venv build results demos/*/results .pytest_cache .mypy_cache .ruff_cache .hypothesis riser_soil.egg-info
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

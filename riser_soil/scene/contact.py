@@ -4,17 +4,12 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, Discriminator, Field, Tag
 
-from riser_soil.scene.quantities import FROZEN, NonNegative, Positive
-
-
-def _pick_stiffness(value: object) -> str | None:
-    return "<word>" if isinstance(value, str) else "<number>"
-
+from riser_soil.scene.quantities import FROZEN, NonNegative, Positive, word_or_number
 
 Stiffness = Annotated[
     Annotated[Literal["auto"], Tag("<word>")] | Annotated[Positive, Tag("<number>")],
     Discriminator(
-        _pick_stiffness, custom_error_type="choice", custom_error_message="must be auto or a number"
+        word_or_number, custom_error_type="choice", custom_error_message="must be auto or a number"
     ),
 ]
 

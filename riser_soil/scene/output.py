@@ -1,6 +1,6 @@
 """What a run writes."""
 
-from typing import Literal
+from typing import Literal, get_args
 
 from pydantic import BaseModel, Field
 
@@ -16,16 +16,7 @@ FieldName = Literal[
     "von_mises_stress",
     "equivalent_plastic_strain",
 ]
-ALL_FIELDS: tuple[FieldName, ...] = (
-    "effective_tension",
-    "bending_moment",
-    "curvature",
-    "contact_force",
-    "moment_vector",
-    "displacement",
-    "von_mises_stress",
-    "equivalent_plastic_strain",
-)
+ALL_FIELDS: tuple[FieldName, ...] = get_args(FieldName)
 
 
 class Output(BaseModel):

@@ -39,6 +39,11 @@ def word_or(model: type[BaseModel]) -> Callable[[Any], str | None]:
     return pick
 
 
+def word_or_number(value: Any) -> str:
+    """Choose between words (tag `<word>`) and a number (tag `<number>`), by the type of the value."""
+    return "<word>" if isinstance(value, str) else "<number>"
+
+
 def by_key(models: dict[str, type[BaseModel]]) -> Callable[[Any], str | None]:
     """Choose the model of a mapping by the key that only this model has; words have the tag `<word>`."""
 

@@ -8,6 +8,9 @@ from riser_soil.scene.quantities import FROZEN, Positive, Real, by_kind
 
 ContactAt = Literal["axis", "outer"]
 
+Level = Annotated[Real, Field(description="height z of the seabed and of the soil's top face [m]")]
+Toucher = Annotated[ContactAt, Field(description="what touches: the pipe's axis or its outer surface")]
+
 
 class RigidSeabed(BaseModel):
     """A level rigid plane; its penalty stiffness is `contact.stiffness`."""
@@ -15,10 +18,8 @@ class RigidSeabed(BaseModel):
     model_config = FROZEN
 
     kind: Literal["rigid"] = Field(description="rigid or spring")
-    level: Real = Field(default=0.0, description="height z of the seabed and of the soil's top face [m]")
-    contact_at: ContactAt = Field(
-        default="outer", description="what touches: the pipe's axis or its outer surface"
-    )
+    level: Level = 0.0
+    contact_at: Toucher = "outer"
 
 
 class SpringSeabed(BaseModel):
@@ -27,10 +28,8 @@ class SpringSeabed(BaseModel):
     model_config = FROZEN
 
     kind: Literal["spring"] = Field(description="rigid or spring")
-    level: Real = Field(default=0.0, description="height z of the seabed and of the soil's top face [m]")
-    contact_at: ContactAt = Field(
-        default="outer", description="what touches: the pipe's axis or its outer surface"
-    )
+    level: Level = 0.0
+    contact_at: Toucher = "outer"
     stiffness: Positive = Field(description="force per length of pipe and penetration [N/m2]")
 
 

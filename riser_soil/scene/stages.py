@@ -14,18 +14,14 @@ from riser_soil.scene.quantities import (
     Vector,
     by_key,
     by_kind,
+    word_or_number,
     wrong,
 )
-
-
-def _pick_place(value: object) -> str | None:
-    return "<word>" if isinstance(value, str) else "<number>"
-
 
 Place = Annotated[
     Annotated[Literal["start", "end"], Tag("<word>")] | Annotated[NonNegative, Tag("<number>")],
     Discriminator(
-        _pick_place, custom_error_type="choice", custom_error_message="must be start, end or an arc [m]"
+        word_or_number, custom_error_type="choice", custom_error_message="must be start, end or an arc [m]"
     ),
 ]
 
