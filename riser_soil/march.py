@@ -97,11 +97,14 @@ class March:
     def _solve(self, t: float, dt: float) -> Solution:
         step = Step(self.scheme, self.before, t, dt, self._history, self._guess(t, dt))
         try:
-            return self.newton.solve(step)
+            solution = self.newton.solve(step)
         except NotConvergedError:
             if not self._renew_pattern():
                 raise
-            return self.newton.solve(step)
+            solution = self.newton.solve(step)
+        if isinstance(self.scheme, Static):
+            self.newton.require_stable(step, solution)
+        return solution
 
     def _guess(self, t: float, dt: float) -> Array:
         """The last increment, scaled to the step, as fields and parts improve it."""

@@ -15,6 +15,8 @@ from riser_soil.system import System, total
 from riser_soil.time_scheme import Scheme
 
 PREFIX = "riser_soil_"
+# Count pivots on several ranks too (13), detect null pivots (24), room for fill-in in per cent (14).
+MUMPS_INERTIA = {"mat_mumps_icntl_13": 1, "mat_mumps_icntl_24": 1, "mat_mumps_icntl_14": 60}
 CONVERGED = PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
 DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_DTOL
 ITERATING = PETSc.SNES.ConvergedReason.ITERATING
@@ -92,6 +94,22 @@ class Newton:
             raise NotConvergedError(self._reason())
         state = self._trial(self._x)
         return Solution(state, self._forces, self._norms)
+
+    def require_stable(self, step: Step, solution: Solution) -> None:
+        """Raise NotConvergedError where a static solution is an unstable equilibrium, such as an unbuckled strut.
+
+        Stable means that the tangent there has no negative pivot; a system without symmetry can't be judged so.
+        Collective.
+        """
+        if not self.system.symmetric:
+            return
+        self.system.assemble(solution.state, step.scheme.weights(step.dt))
+        negative = _negative_pivots(self.system)
+        if negative > 0:
+            raise NotConvergedError(
+                f"the equilibrium found is unstable (its tangent has {negative} negative pivot(s)): the riser would "
+                "buckle or swing away from it; start from a shape nearer to the one that it takes"
+            )
 
     def renew(self) -> None:
         """Take over a new matrix after the system's pattern has changed."""
@@ -176,9 +194,8 @@ class Newton:
 
 def _set_direct_solver(snes: PETSc.SNES, system: System) -> None:
     """PETSc's own banded LU where a serial system is a chain in its natural order, MUMPS otherwise."""
-    banded = system.comm.size == 1 and len(system.model.fields) == 1
     options: dict[str, object] = {"snes_linesearch_type": "basic", "ksp_type": "preonly"}
-    if banded:
+    if _is_chain(system):
         options |= {"pc_type": "lu", "pc_factor_mat_ordering_type": "natural"}
     else:
         options |= {
@@ -187,6 +204,32 @@ def _set_direct_solver(snes: PETSc.SNES, system: System) -> None:
             "mat_mumps_icntl_14": 60,
         }
     _apply(snes, options)
+
+
+def _is_chain(system: System) -> bool:
+    return system.comm.size == 1 and len(system.model.fields) == 1
+
+
+def _negative_pivots(system: System) -> int:
+    """Negative pivots of the symmetric matrix: its number of negative eigenvalues."""
+    database, key = PETSc.Options(), PREFIX + "pivots_"
+    settings = {} if _is_chain(system) else MUMPS_INERTIA
+    pc = PETSc.PC().create(system.comm)
+    pc.setOptionsPrefix(key)
+    for name, value in settings.items():
+        database[key + name] = value
+    pc.setOperators(system.matrix.mat)
+    pc.setType(PETSc.PC.Type.CHOLESKY)
+    if _is_chain(system):
+        pc.setFactorOrdering("natural")
+    else:
+        pc.setFactorSolverType("mumps")
+    pc.setUp()
+    negative: int = pc.getFactorMatrix().getInertia()[0]
+    pc.destroy()
+    for name in settings:
+        database.delValue(key + name)
+    return negative
 
 
 def _apply(snes: PETSc.SNES, options: dict[str, object]) -> None:

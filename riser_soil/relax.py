@@ -18,6 +18,7 @@ from riser_soil.time_scheme import Static
 
 FREE_FALL = 0.1  # the first step lets the riser fall by about this many element lengths
 MOST_STEPS = 2000
+MOST_ATTEMPTS = 50  # at an equilibrium without drag
 QUICK = 6  # Newton iterations up to which the drag is lowered
 NEARLY_THERE = 1e-2  # largest increment, in element lengths, from which equilibrium without drag is tried
 
@@ -40,17 +41,21 @@ def relax(
 
 
 def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: float) -> int:
-    stiffest, iterations, moved = part.drag * 1e8, 0, np.inf
+    stiffest, iterations, failures, moved = part.drag * 1e8, 0, 0, np.inf
     for _ in range(MOST_STEPS):
         if moved < NEARLY_THERE * line.length.min():
-            solution = _try(system, newton, part, t, drag=0.0)
-            if solution is not None:
-                return iterations + solution.iterations
-        solution = _try(system, newton, part, t, part.drag)
-        if solution is None:
+            try:
+                return iterations + _step(system, newton, part, t, drag=0.0).iterations
+            except NotConvergedError as failure:
+                failures += 1
+                if failures == MOST_ATTEMPTS:
+                    raise SolveError(f"dynamic relaxation ends in no stable equilibrium: {failure}") from failure
+        try:
+            solution = _step(system, newton, part, t, part.drag)
+        except NotConvergedError as failure:
             part.drag *= 8.0
             if part.drag > stiffest:
-                raise SolveError("dynamic relaxation finds no equilibrium: not even tiny pseudo-time steps converge")
+                raise SolveError(f"dynamic relaxation fails even in tiny pseudo-time steps: {failure}") from failure
             continue
         iterations += solution.iterations
         moved = _largest_increment(system, line, solution)
@@ -58,14 +63,15 @@ def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: fl
     raise SolveError(f"dynamic relaxation finds no equilibrium in {MOST_STEPS} pseudo-time steps")
 
 
-def _try(system: System, newton: Newton, part: Relaxation, t: float, drag: float) -> Solution | None:
-    """A committed step with the given drag, or None."""
+def _step(system: System, newton: Newton, part: Relaxation, t: float, drag: float) -> Solution:
+    """A pseudo-time step with the given drag, committed; without drag it must end in a stable equilibrium."""
     usual, part.drag = part.drag, drag
     size = system.numbering.size
+    step = Step(Static(), State.at_rest(t, size), t, 0.0, None, np.zeros(size))
     try:
-        solution = newton.solve(Step(Static(), State.at_rest(t, size), t, 0.0, None, np.zeros(size)))
-    except NotConvergedError:
-        return None
+        solution = newton.solve(step)
+        if drag == 0.0:
+            newton.require_stable(step, solution)
     finally:
         part.drag = usual
     system.commit(solution.state)

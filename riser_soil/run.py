@@ -62,22 +62,21 @@ def _walk(world: World, stage: Stage, march: March, observer: Observer) -> State
         except SolveError:
             if relaxed or not isinstance(stage, StaticStage):
                 raise
-            _relax(world, march, observer)
+            _relax(world, march, control.target, observer)
             relaxed = True
             control.widen()
             continue
         seen = observer.look(march.system, step)
         march.commit(step, control)
         observer.record(step, seen, last=control.finished)
+        relaxed = False
     return march.before
 
 
-def _relax(world: World, march: March, observer: Observer) -> None:
-    """From a shape that Newton's method can't start from, to equilibrium at the load factor reached so far."""
+def _relax(world: World, march: March, t: float, observer: Observer) -> None:
+    """Where Newton's method can't go on in a static stage: to an equilibrium at the load factor t that it missed."""
     system = march.system
-    iterations = relax(
-        world.comm, system.model, world.line, world.weight, _settings(world), system.clock, march.before.t
-    )
+    iterations = relax(world.comm, system.model, world.line, world.weight, _settings(world), system.clock, t)
     observer.relaxed(iterations)
     march.restart()
 

@@ -184,6 +184,7 @@ CONFLICTS = [
         "hold",
         lines=2,
     ),
+    Bad("initial: catenary", "initial: straight", 19, "riser.initial", '"straight"', "compress"),
     Bad("gravity: 9.81", "gravity: 0", 19, "riser.initial", '"catenary"', "no catenary without gravity"),
     Bad("name: heave", "name: lay", 29, "stages.1.name", '"lay"', "another stage has the same name"),
     Bad("y: [-2.5, 2.5]", "y: [7.5, 9.5]", 22, "soil.block", '{"x"', "never passes over"),

@@ -15,12 +15,14 @@ from riser_soil.scene.soil import Block
 from riser_soil.scene.stage_checks import stage_conflicts
 
 # A given unstressed shape may differ from the segments' length by this part; points leave out the curve.
-_ARC_TOLERANCE = 1e-3
+_ARC_TOLERANCE = 1e-6
 _POINTS_TOLERANCE = 0.05
 # Distance between an end's position and the initial shape, relative to the riser's length.
 _MEETING = 1e-6
 # Strain of a riser pulled straight between its ends beyond which the positions must be a mistake.
 _GREATEST_STRAIN = 0.1
+# Part of its length by which a riser may start shorter when it is laid straight between its ends.
+_GREATEST_SLACK = 1e-3
 
 _Check = Callable[[Scene], Iterator[Problem]]
 
@@ -133,6 +135,20 @@ def _initial_shape_possible(scene: Scene) -> Iterator[Problem]:
         yield Problem(path, "straight needs two held ends here", "hold both ends, or set initial: unstressed")
 
 
+def _straight_without_slack(scene: Scene) -> Iterator[Problem]:
+    """A straight line between ends nearer than its length would be a strut, and might stay one."""
+    start, end, length = scene.riser.start, scene.riser.end, scene.riser.length
+    if scene.riser.initial != "straight" or not isinstance(start, Support) or not isinstance(end, Support):
+        return
+    distance = math.dist(start.position, end.position)
+    if distance < (1.0 - _GREATEST_SLACK) * length:
+        yield Problem(
+            ("riser", "initial"),
+            f"straight would compress the riser's {length:g} m into the {distance:g} m between its ends",
+            "set initial: catenary, give points, or hold the end a length away and move it in a static stage",
+        )
+
+
 def _long_enough(scene: Scene) -> Iterator[Problem]:
     start, end, length = scene.riser.start, scene.riser.end, scene.riser.length
     if not isinstance(start, Support) or not isinstance(end, Support):
@@ -207,6 +223,7 @@ _CHECKS: tuple[_Check, ...] = (
     _contact_with_something,
     _ends_above_seabed,
     _initial_shape_possible,
+    _straight_without_slack,
     _long_enough,
     _unstressed_shape_fits,
     _initial_shape_meets_the_supports,

@@ -1,0 +1,73 @@
+"""Statics return stable equilibria only; where Newton finds none, relaxation does, or the failure is told."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from riser_soil.errors import SolveError
+from riser_soil.results import Run
+from riser_soil.run import run
+from riser_soil.scene.reader import scene_from_mapping
+
+PIPE = {"EA": 1e7, "EI": 1e3, "submerged_weight": 100.0}
+EULER = np.pi**2 * 1e3 / 10.0**2
+
+
+def strut(shortening: float, side_load: float) -> dict[str, object]:
+    """A pinned strut 10 m long without weight, pushed together; loaded across at its middle."""
+    load = {"at": 5.0, "force": [0.0, 0.0, side_load]}
+    return {
+        "gravity": 0.0,
+        "line_types": {"bar": PIPE | {"submerged_weight": 0.0}},
+        "riser": {
+            "segments": [{"line_type": "bar", "length": 10.0, "elements": 10}],
+            "start": {"position": [0.0, 0.0, 0.0]},
+            "end": {"position": [10.0, 0.0, 0.0]},
+            "initial": "straight",
+        },
+        "stages": [
+            {"name": "push", "kind": "static", "move": {"end": [10.0 - shortening, 0.0, 0.0]}, "loads": [load]}
+        ],
+    }
+
+
+def thrust(scene: dict[str, object], folder: Path) -> float:
+    """Compression at the start [N]."""
+    run(scene_from_mapping(scene), folder)
+    return float(Run(folder).summary["stages"][0]["final"]["start"]["force"][0])
+
+
+def test_below_the_buckling_load_a_strut_stays_straight(tmp_path: Path) -> None:
+    shortening = 0.5 * EULER / PIPE["EA"] * 10.0
+    assert thrust(strut(shortening, 0.0), tmp_path) == pytest.approx(0.5 * EULER, rel=1e-6)
+
+
+def test_above_it_a_straight_strut_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SolveError, match="unstable"):
+        thrust(strut(0.1, 0.0), tmp_path)
+
+
+def test_a_side_load_lets_it_buckle(tmp_path: Path) -> None:
+    """A buckled strut carries about Euler's load, growing slowly with the shortening."""
+    assert thrust(strut(0.1, 1.0), tmp_path) == pytest.approx(EULER, rel=0.05)
+
+
+def test_a_cantilever_laid_out_level_falls_to_hang(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Newton's method alone does not get there; the line ends up hanging with its weight as top tension."""
+    scene = {
+        "line_types": {"hose": PIPE},
+        "riser": {
+            "segments": [{"line_type": "hose", "length": 50.0, "elements": 25}],
+            "start": {"position": [0.0, 0.0, 100.0]},
+            "end": "free",
+        },
+        "stages": [{"name": "hang", "kind": "static"}],
+    }
+    run(scene_from_mapping(scene), tmp_path)
+    final = Run(tmp_path).summary["stages"][0]["final"]
+    assert final["start"]["force"] == pytest.approx([0.0, 0.0, 5000.0], abs=1e-2)
+    assert final["end"]["position"] == pytest.approx([0.0, 0.0, 50.0 - 0.0125], abs=1e-3)
+    assert "relaxation" in capsys.readouterr().out
