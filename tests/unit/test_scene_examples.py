@@ -187,7 +187,7 @@ def test_initial_follows_from_ends_and_gravity(gravity: float, end: float | None
         ((), ((0, 0, 0), (70.710678, 29.289322, 0))),
         (("riser.unstressed.arc.axis=[0, 0, -3]",), ((0, 0, 0), (-70.710678, 29.289322, 0))),
         (("riser.unstressed=straight",), ((0, 0, 0), (78.539816, 0, 0))),
-        (("riser.unstressed={points: [[0, 0, 0], [0, 78, 0]]}",), ((0, 0, 0), (0, 79, 0))),
+        (("riser.unstressed={points: [[0, 0, 0], [0, 78, 0]]}",), ((0, 0, 0), (0, 78, 0))),
         (("riser.initial={points: [[0, 0, 0], [0, 0, 78]]}",), ((0, 0, 0), (0, 0, 78))),
         (
             ("riser.initial=straight", "riser.unstressed=straight", "riser.end={position: [0, 79, 0]}"),
