@@ -24,10 +24,6 @@ class _Pace:
         self._interval = interval
         self._count = 1
 
-    @property
-    def next_time(self) -> float:
-        return 0.0 if self._interval is None else self._count * self._interval
-
     def restart(self) -> None:
         self._count = 1
 
@@ -55,11 +51,6 @@ class Schedule:
         self._series = _Pace(interval)
         self._pictures = _Pace(interval if picture_interval is None else picture_interval)
         self._static = True
-
-    @property
-    def next_time(self) -> float:
-        """Next output time [s since the stage began]; infinite in statics, 0 when every step is written."""
-        return math.inf if self._static else min(self._series.next_time, self._pictures.next_time)
 
     def begin_stage(self, kind: str) -> None:
         """kind: `static` or `dynamic`."""

@@ -28,6 +28,7 @@ NOMINAL_DIAMETER = 0.1  # m, for the automatic contact stiffness of a line witho
 
 
 def soil_of(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Soil:
+    """The continuum; meshed finely under the straight line between the riser's ends. Collective."""
     from riser_soil.soil.linear_elastic import LinearElastic as Elastic
     from riser_soil.soil.soil import Soil
     from riser_soil.soil.von_mises import VonMises
@@ -76,7 +77,10 @@ def contact_of(
     stiffness: dict[str, float],
     active: bool,
 ) -> Contact:
-    """stiffness: of each ground, from `stiffnesses`. active: whether this rank evaluates contact."""
+    """Contact of the riser with all grounds of the scene.
+
+    stiffness [N/m2]: by ground, from `stiffnesses`. active: whether this rank evaluates contact.
+    """
     from riser_soil.contact.contact import Contact
     from riser_soil.contact.law import Penalty
 

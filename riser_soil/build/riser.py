@@ -17,6 +17,7 @@ from riser_soil.scene.shapes import ArcShape, PointsShape
 
 
 def elements_of(scene: Scene) -> sections.Elements:
+    """Properties of all elements, from start to end."""
     around = sections.Surroundings(
         gravity=scene.gravity,
         contents=scene.riser.contents.density if scene.riser.contents else 0.0,
@@ -73,6 +74,7 @@ def _holds_spin(riser: Riser) -> bool:
 
 
 def springs_of(riser: Riser, line: Line) -> list[Part]:
+    """Rotational springs of the ends that have one; at rest in the line's present configuration."""
     ends = ((0, riser.start), (-1, riser.end))
     return [
         EndSpring(line, node, end.rotation.stiffness)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 
 def scheme_of(stage: Stage) -> Scheme:
+    """How the stage goes from one step to the next."""
     if isinstance(stage, StaticStage):
         return Static()
     if isinstance(stage.scheme, NewmarkScheme):
@@ -31,6 +32,7 @@ def scheme_of(stage: Stage) -> Scheme:
 
 
 def set_motions(line: Line, stage: Stage) -> None:
+    """Give the held ends their motions in this stage, from where they are now; without one they stay there."""
     for end, node, name in ((line.start, 0, "start"), (line.end, -1, "end")):
         end.motion = _motion(line.to_global(line.x[node]), stage, name) if end.held else None
 
@@ -47,6 +49,7 @@ def _motion(origin: Array, stage: Stage, name: str) -> Motion | None:
 
 
 def loads_of(line: Line, stage: Stage) -> list[Part]:
+    """The part of the stage's loads, if it has any."""
     if not stage.loads:
         return []
     from riser_soil.riser.loads import PointLoads
@@ -74,6 +77,7 @@ def _factor(given: LoadScene, static: bool) -> Callable[[float], float]:
 
 
 def dynamic_parts(scene: Scene, line: Line, elements: Elements) -> list[Part]:
+    """What acts only in motion: inertia, and drag and added mass where there is water for them."""
     from riser_soil.riser.inertia import Inertia
 
     parts: list[Part] = [Inertia(line, elements.mass)]

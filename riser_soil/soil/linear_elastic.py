@@ -19,9 +19,9 @@ class LinearElastic:
     symmetric: bool = True
 
     @classmethod
-    def at_depth(cls, depth: Array, *, E: float, nu: float, E_gradient: float = 0.0) -> LinearElastic:
-        """Young's modulus E + E_gradient·depth [Pa] at depths (n,) [m] below the seabed."""
-        modulus = E + E_gradient * depth
+    def at_depth(cls, depth: Array, *, E: float, nu: float) -> LinearElastic:
+        """Young's modulus E [Pa] at all depths (n,) [m] below the seabed."""
+        modulus = np.full_like(depth, E)
         return cls(mandel.bulk_modulus(modulus, nu), mandel.shear_modulus(modulus, nu))
 
     def start(self) -> Array:

@@ -57,7 +57,6 @@ def test_a_static_stage_is_written_once_at_its_end() -> None:
     schedule = Schedule(0.1)
     schedule.begin_stage("static")
     assert [schedule.due(t, last=t == 1.0).series for t in (0.3, 0.6, 1.0)] == [False, False, True]
-    assert schedule.next_time == np.inf
 
 
 def test_the_schedule_starts_anew_with_each_stage() -> None:
