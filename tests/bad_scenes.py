@@ -248,6 +248,14 @@ CONFLICTS = [
     ),
     Bad(
         "kind: static}",
+        "kind: static, loads: [{at: end, force: [0, 0, 1], distributed: [0, 0, 1]}]}",
+        28,
+        "stages.0.loads.0.at",
+        '"end"',
+        "load of its own",
+    ),
+    Bad(
+        "kind: static}",
         "kind: static, loads: [{at: end, force: [1, 0, 0], history: [[1, 0], [0, 1]]}]}",
         28,
         "stages.0.loads.0.history",

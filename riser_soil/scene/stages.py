@@ -56,8 +56,9 @@ class Load(BaseModel):
             raise wrong("force", "the load is missing", "give force [N], moment [N.m] or distributed [N/m]")
         if at_a_point and self.at is None:
             raise wrong("at", "force and moment need a place", "give at: start, end or an arc length [m]")
-        if not at_a_point and self.at is not None:
-            raise wrong("at", "a distributed load acts along the whole riser", "leave out at")
+        if self.distributed is not None and self.at is not None:
+            remedy = "write it as a load of its own" if at_a_point else "leave out at"
+            raise wrong("at", "a distributed load acts along the whole riser, not at a place", remedy)
         return self
 
     @model_validator(mode="after")
