@@ -1,6 +1,7 @@
 """Step sizes of a stage: the nominal step, halved where a step fails, doubled again where it goes well.
 
-All times lie on a binary refinement of the nominal steps, so that nominal times are always hit.
+All times lie on a binary refinement of the nominal steps, so that nominal times are always hit. The last nominal step
+ends where the stage does; it may be shorter than the others.
 """
 
 from __future__ import annotations
@@ -16,7 +17,6 @@ class StepControl:
     def __init__(self, end: float, step: float, smallest: float) -> None:
         self.end, self.step = end, step
         self._levels = min(LEVELS, max(0, math.floor(math.log2(step / smallest) + 1e-9)))
-        self._tick = step / 2**self._levels
         self._last = math.ceil(end / step - 1e-9) * 2**self._levels
         self._at = 0
         self._level = 0
@@ -57,4 +57,7 @@ class StepControl:
         return int(2 ** (self._levels - self._level))
 
     def _time(self, ticks: int) -> float:
-        return self.end if ticks >= self._last else ticks * self._tick
+        whole, rest = divmod(ticks, 2**self._levels)
+        begun = whole * self.step
+        ending = self.end if ticks >= self._last - 2**self._levels else begun + self.step
+        return self.end if ticks >= self._last else begun + rest / 2**self._levels * (ending - begun)

@@ -24,6 +24,15 @@ def test_last_step_ends_the_stage() -> None:
     assert walk(control) == pytest.approx([0.3, 0.6, 0.9, 1.0])
 
 
+def test_cuts_of_a_short_last_step_stay_within_the_stage() -> None:
+    control = StepControl(1.05, 0.1, 0.01)
+    while control.target < 1.05:
+        control.accept(easy=True)
+    control.cut()
+    control.cut()
+    assert walk(control, easy=False) == pytest.approx([1.0125, 1.025, 1.0375, 1.05])
+
+
 def test_no_sliver_of_a_step_from_round_off() -> None:
     assert len(walk(StepControl(15.0, 0.1, 1e-5))) == 150
 
