@@ -1,0 +1,185 @@
+"""Riser, soil and contact solved together: balances, convergence of Newton's method, energy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from riser_soil.arrays import Array
+from riser_soil.build import World, build
+from riser_soil.march import Accepted
+from riser_soil.results import Run
+from riser_soil.riser.catenary import catenary
+from riser_soil.scene.reader import read_scene
+from riser_soil.system import System, total
+from tests.coupled_scenes import DEMO, LAY, Mapping, touchdown
+from tests.driven_stage import built, take
+from tests.watched_run import WatchedRun
+
+KINDS = [("hex", 2), ("hex", 3), ("tet", 2), ("tet", 3)]
+
+
+class Laid:
+    """A scene laid down: the last step of its static stage, before it is committed."""
+
+    def __init__(self, scene: Mapping) -> None:
+        self.world: World = built(scene)
+
+        def keep(system: System, step: Accepted) -> None:
+            self.step, self.system = step, system
+            self.forces = total(step.solution.forces)
+            self.on_riser = self.contact(lambda c: c.force_on_riser(step.solution.state))
+            self.on_soil = self.contact(lambda c: c.force_on_soil(step.solution.state))
+
+        take(self.world, self.world.scene.stages[0], watch=keep)
+
+    def contact(self, ask: Callable[..., Array]) -> Array:
+        assert self.world.contact is not None
+        return ask(self.world.contact)
+
+    @property
+    def weight(self) -> float:
+        """Submerged weight of the whole riser [N]."""
+        return float(self.world.elements.weight @ self.world.line.length)
+
+    @property
+    def supports(self) -> Array:
+        """Force (3,) of both supports on the riser [N], global axes."""
+        line = self.world.line
+        return np.asarray(self.forces[line.translation_dofs[[0, -1]]].sum(axis=0) @ line.basis.T)
+
+    @property
+    def soil_reactions(self) -> Array:
+        """Force (3,) of the bottom and the sides on the soil [N]; contact pushes the upper edges of the sides, too."""
+        soil = self.world.soil
+        assert soil is not None
+        out = np.zeros(3)
+        for field in (soil.field, soil.surface):
+            own = self.forces[field.offset : field.offset + field.size]
+            out += np.where(field.prescribed, own, 0.0).reshape(-1, 3).sum(axis=0)
+        return out
+
+
+@cache
+def laid(kind: str, dimension: int) -> Laid:
+    return Laid(touchdown(LAY, kind=kind, dimension=dimension, su=1000.0, tolerance=1e-12))
+
+
+@cache
+def laid_on_soil_alone(kind: str) -> Laid:
+    """No springs outside the block, which reaches beyond the riser's start. In a plane the riser would bear no
+    force across it, which the soil of irregular cells pushes with.
+    """
+    scene = touchdown(LAY, kind=kind, dimension=3, su=1000.0, tolerance=1e-12)
+    del scene["seabed"]
+    scene["soil"]["block"]["x"] = [-1.0, 9.0]
+    return Laid(scene)
+
+
+@pytest.mark.parametrize(("kind", "dimension"), KINDS)
+def test_supports_and_contact_bear_the_weight(kind: str, dimension: int) -> None:
+    case = laid(kind, dimension)
+    out_of_balance = case.supports + case.on_riser - [0.0, 0.0, case.weight]
+    assert np.abs(out_of_balance).max() < 1e-9 * case.weight
+    assert case.on_riser[2] > 0.2 * case.weight
+
+
+@pytest.mark.parametrize(("kind", "dimension"), KINDS)
+def test_soil_hands_the_contact_force_on_to_its_supports(kind: str, dimension: int) -> None:
+    case = laid(kind, dimension)
+    assert np.abs(case.soil_reactions + case.on_soil).max() < 1e-9 * np.linalg.norm(case.on_soil)
+    assert case.on_soil[2] < -0.15 * case.weight
+
+
+@pytest.mark.parametrize("kind", ["hex", "tet"])
+def test_contact_on_riser_and_soil_is_equal_and_opposite(kind: str) -> None:
+    case = laid_on_soil_alone(kind)
+    assert np.abs(case.on_riser + case.on_soil).max() < 1e-13 * np.linalg.norm(case.on_soil)
+    assert np.abs(case.supports + case.on_riser - [0.0, 0.0, case.weight]).max() < 1e-9 * case.weight
+
+
+PRESS: Mapping = {"name": "press", "kind": "static", "loads": [{"at": 4.0, "force": [0.0, 0.0, -6000.0]}]}
+ROUND_OFF = 1e-6  # N: residual norms fall to 3e-7 N and stay there
+
+
+@pytest.mark.parametrize("kind", ["hex", "tet"])
+def test_plastic_steps_converge_quadratically(kind: str) -> None:
+    """A load presses the laid riser into the clay in eight steps; the residual norm e falls by e' <= C e²."""
+    histories = pressed(kind)
+    last_drops = [norms[-1] / norms[-2] ** 2 for norms in histories]
+    assert max(last_drops) < 2e-2
+    hardest = max(reversed(histories), key=len)
+    a, b, c = hardest[-3:]
+    assert np.log(c / b) / np.log(b / a) > 1.8, hardest
+
+
+def pressed(kind: str) -> list[Array]:
+    """Residual norms [N] above round-off of all steps."""
+    histories = list[Array]()
+
+    def watch(system: System, step: Accepted) -> None:
+        norms = np.array(step.solution.norms)
+        histories.append(norms[norms > ROUND_OFF])
+
+    scene = touchdown(LAY, PRESS, kind=kind, su=1000.0, tolerance=1e-13)
+    scene["solver"]["load_steps"] = 8
+    world = built(scene)
+    assert world.soil is not None
+    before = take(world, world.scene.stages[0])
+    yielded = world.soil.output_fields().plastic_strain.max()
+    take(world, world.scene.stages[1], before, watch)
+    assert world.soil.output_fields().plastic_strain.max() > yielded + 1e-3
+    return histories
+
+
+# The demo
+
+
+@pytest.mark.xdist_group("demo")
+def test_demo_needs_few_newton_iterations(demo: WatchedRun) -> None:
+    steps = demo.of_kind(static=False)
+    assert len(steps) == 150
+    assert sum(s.cuts for s in demo.steps) == 0
+    assert max(s.iterations for s in steps) <= 5
+    assert np.mean([s.iterations for s in steps]) <= 3.5
+
+
+@pytest.mark.xdist_group("demo")
+def test_demo_lays_down_the_weight_that_does_not_hang(demo: WatchedRun) -> None:
+    """Contact and the start's support bear the weight of what lies; the catenary says how much that is."""
+    final = Run(demo.folder).summary["stages"][0]["final"]
+    world = built_demo()
+    w = float(world.elements.weight[0])
+    lying = (final["contact_force"] + final["start"]["force"][2]) / w
+    shape = catenary(world.line.arc, np.array([0.0, 0.0, 0.15]), np.array([80.0, 0.0, 100.0]), w, 3.0e8, 0.15)
+    hanging = np.sqrt(shape.tension[-1] ** 2 - shape.H**2) / w
+    assert lying == pytest.approx(world.line.arc[-1] - hanging, rel=0.01)
+
+
+@pytest.mark.xdist_group("demo")
+@pytest.mark.parametrize("part", ["contact", "soil"])
+def test_demo_contact_and_soil_only_take_energy(demo: WatchedRun, part: str) -> None:
+    dissipated = np.array([s.dissipated[part] for s in demo.of_kind(static=False)])
+    assert dissipated.min() > -1e-9 * dissipated.sum()
+    assert dissipated.sum() > 1.0
+
+
+@pytest.mark.xdist_group("demo")
+def test_demo_balances_its_energy(demo: WatchedRun) -> None:
+    """Measured: 3.7 J off at most on the way, 0.3 J in a step, of 57.5 kJ that the floater puts in."""
+    run = Run(demo.folder)
+    energy = run.summary["stages"][1]["energy"]
+    each = run["energy_residual"][1:]
+    assert np.abs(each).max() < 1.0
+    assert np.abs(np.cumsum(each)).max() < 2e-4 * energy["work"]
+    assert energy["residual"] == pytest.approx(each.sum(), abs=1e-6)
+    assert energy["work"] > 1e4
+
+
+@cache
+def built_demo() -> World:
+    return build(read_scene(DEMO), MPI.COMM_SELF)
