@@ -22,7 +22,7 @@ def print_summary(
     console = console or Console()
     for stage in summary["stages"]:
         if stage["final"] is not None:
-            console.print(_table(f"{stage['name']} ({stage['kind']})", _stage_rows(stage)))
+            console.print(_table(_stage_title(stage), _stage_rows(stage)))
     console.print(_table(_title(summary), [*_run_rows(summary, settlement)]))
 
 
@@ -33,6 +33,11 @@ def _table(title: str, rows: list[Row]) -> Table:
     for row in rows:
         table.add_row(*row)
     return table
+
+
+def _stage_title(stage: dict[str, Any]) -> str:
+    ranges = " (range over the stage)" if stage["kind"] == "dynamic" else ""
+    return f"{stage['name']} ({stage['kind']}), at its end{ranges}"
 
 
 def _title(summary: dict[str, Any]) -> str:
@@ -46,9 +51,9 @@ def _stage_rows(stage: dict[str, Any]) -> list[Row]:
             "top tension",
             _span(final["end"]["effective_tension"], extremes["end"]["effective_tension"], "kN", 1e-3),
         ),
-        ("least effective tension", _at(final["min_effective_tension"], "kN", 1e-3)),
-        ("largest bending moment", _at(final["max_bending_moment"], "kN.m", 1e-3)),
-        ("largest curvature", _at(final["max_curvature"], "1/m")),
+        ("least effective tension", _at("min_effective_tension", stage, "kN", 1e-3)),
+        ("largest bending moment", _at("max_bending_moment", stage, "kN.m", 1e-3)),
+        ("largest curvature", _at("max_curvature", stage, "1/m")),
         ("touchdown arc length", _span(final["touchdown_arc"], extremes["touchdown_arc"], "m")),
         ("contact force", _span(final["contact_force"], extremes["contact_force"], "kN", 1e-3)),
         ("deepest penetration", _span(final["max_penetration"], extremes["max_penetration"], "mm", 1e3)),
@@ -72,7 +77,8 @@ def _newton(stage: dict[str, Any]) -> str:
 
 
 def _residual(energy: dict[str, float]) -> str:
-    return f"{_number(energy['residual'], 'J', 1.0)} of {_turnover(energy):.3g} J"
+    number = _number(energy["residual"], "J", 1.0)
+    return "not balanced in statics" if number == "-" else f"{number} of {_turnover(energy):.3g} J"
 
 
 def _turnover(energy: dict[str, float]) -> float:
@@ -82,15 +88,21 @@ def _turnover(energy: dict[str, float]) -> float:
 
 def _span(value: float | None, extremes: dict[str, float | None], unit: str, scale: float = 1.0) -> str:
     """The final value, and the range over the stage where there is one."""
+    return _number(value, unit, scale) + _range(extremes, scale)
+
+
+def _at(name: str, stage: dict[str, Any], unit: str, scale: float = 1.0) -> str:
+    """The final value of what sits somewhere on the riser, its place, and the range over the stage."""
+    final = stage["final"][name]
+    place = f" at {final['arc']:.5g} m"
+    return _number(final["value"], unit, scale) + place + _range(stage["extremes"][name], scale)
+
+
+def _range(extremes: dict[str, float | None], scale: float) -> str:
     least, most = extremes["min"], extremes["max"]
-    text = _number(value, unit, scale)
     if least is None or most is None or not most > least:
-        return text
-    return f"{text}  ({least * scale:.5g} to {most * scale:.5g})"
-
-
-def _at(entry: dict[str, float], unit: str, scale: float = 1.0) -> str:
-    return f"{_number(entry['value'], unit, scale)} at {entry['arc']:.5g} m"
+        return ""
+    return f"  ({least * scale:.5g} to {most * scale:.5g})"
 
 
 def _number(value: float | None, unit: str, scale: float) -> str:
