@@ -39,6 +39,11 @@ def njit(function: Callable[..., object]) -> Any:
         numba.config.CACHE_DIR = before
 
 
+def fixed(n: int) -> tuple[int, ...]:
+    """A tuple of length n, which compiled code knows beforehand: it unrolls loops over range(len(...))."""
+    return (0,) * n
+
+
 def fingerprint(package: Path) -> str:
     """Of all that compiled code depends on: sources of modules with kernels and of what they import, and versions."""
     digest = hashlib.sha256(f"{numba.__version__} {platform.python_version()}".encode())

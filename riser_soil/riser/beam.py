@@ -43,22 +43,26 @@ class Beam:
         """Arguments of `uniform_load`: chords, tangents, lengths and load."""
         return trial.chord, trial.turn.tangent, self.line.length, self.factor(trial.state.t) * self._load
 
-    def _element_forces(self, trial: Trial) -> Array:
-        return self._elastic.forces(trial) + trial.pull_back(uniform_load.residual(*self._loaded(trial)))
+    def _load_forces(self, trial: Trial) -> Array:
+        """Residual of weight and load conjugate to q (ne, 4, d)."""
+        return uniform_load.residual(*self._loaded(trial))
 
-    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
+    def _element_forces(self, trial: Trial) -> Array:
+        return self._elastic.forces(trial) + trial.pull_back(trial.once((self, "load"), self._load_forces))
+
+    def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
-        return None, self._element_forces(self.line.trial(state))
+        return None, self.line.trial(state).once((self, "element forces"), self._element_forces)
 
     def residual(self, state: State, forces: Forces) -> None:
         if self.line.active:
-            self.line.scatter(self._element_forces(self.line.trial(state)), forces.force)
+            self.line.scatter(self.element_forces(state)[1], forces.force)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:
             trial, K, at = self.line.trial(state), values["riser"], self._loaded(self.line.trial(state))
             K += weights.force * self._elastic.tangent(trial)
-            trial.add_turning(K, weights.force, uniform_load.residual(*at))
+            trial.add_turning(K, weights.force, trial.once((self, "load"), self._load_forces))
             trial.add_blocks(K, weights.force, trial.columns(weights)[0], uniform_load.stiffness(*at))
 
     def energy(self, state: State) -> Energy:

@@ -14,9 +14,10 @@ rotation dofs of their node.
 import numpy as np
 
 from riser_soil.arrays import Array
-from riser_soil.compiled import njit
+from riser_soil.compiled import fixed, njit
 
 Four = tuple[float, float, float, float]
+Size = tuple[int, ...]  # of `fixed`: D for the dimension d, R for the r rotation dofs
 
 
 def shape(xi: float, L: float) -> Four:
@@ -59,51 +60,72 @@ def consistent_mass(L: Array, mass: Array) -> Array:
     return (mass * L)[:, None, None] * unit * scale[:, :, None] * scale[:, None, :]
 
 
-@njit
 def pull_back(F: Array, P: Array) -> Array:
     """Element residual in the dofs, (ne, 2 (d + r)), of F (ne, 4, d) conjugate to q."""
-    ne, d, r = P.shape[0], P.shape[2], P.shape[3]
-    out = np.zeros((ne, 2 * (d + r)))
+    pulled: Array = _pull_back(F, P, fixed(P.shape[2]), fixed(P.shape[3]))
+    return pulled
+
+
+@njit
+def _pull_back(F: Array, P: Array, D: Size, R: Size) -> Array:
+    ne, d, r = P.shape[0], len(D), len(R)
+    out = np.empty((ne, 2 * (d + r)))
     for e in range(ne):
         for side in range(2):
             at = side * (d + r)
             for i in range(d):
                 out[e, at + i] = F[e, 2 * side, i]
-                for k in range(r):
-                    out[e, at + d + k] += P[e, side, i, k] * F[e, 2 * side + 1, i]
+            for k in range(r):
+                total = 0.0
+                for i in range(d):
+                    total += P[e, side, i, k] * F[e, 2 * side + 1, i]
+                out[e, at + d + k] = total
     return out
 
 
-@njit
 def add_blocks(out: Array, scale: float, P: Array, columns: Array, shift: float, K: Array) -> None:
     """Add scale P^T K D to out (ne, n, n), D being the derivative of q, q' or q'' by the dofs.
 
     K: (ne, 4, 4, d, d). D: `shift` for positions, `columns` (ne, 2, d, r) for tangents; P and 1 where K
     belongs to q.
     """
-    ne, d, r = P.shape[0], P.shape[2], P.shape[3]
-    S = np.empty((d, max(d, r)))
-    for e in range(ne):
+    _add_blocks(out, scale, P, columns, shift, K, fixed(P.shape[2]), fixed(P.shape[3]))
+
+
+@njit
+def _add_blocks(out: Array, scale: float, P: Array, columns: Array, shift: float, K: Array, D: Size, R: Size) -> None:
+    d, r = len(D), len(R)
+    n = d + r
+    S = np.empty((4, d, 2 * n))  # K D of one element
+    for e in range(P.shape[0]):
         for a in range(4):
-            for b in range(4):
-                row = (a // 2) * (d + r) + (a % 2) * d
-                col = (b // 2) * (d + r) + (b % 2) * d
-                width = r if b % 2 else d
+            for side in range(2):
                 for i in range(d):
-                    for k in range(width):
-                        if b % 2 == 0:
-                            S[i, k] = scale * shift * K[e, a, b, i, k]
-                        else:
-                            S[i, k] = 0.0
-                            for j in range(d):
-                                S[i, k] += scale * K[e, a, b, i, j] * columns[e, b // 2, j, k]
+                    for k in range(d):
+                        S[a, i, side * n + k] = scale * shift * K[e, a, 2 * side, i, k]
+                    for k in range(r):
+                        total = 0.0
+                        for j in range(d):
+                            total += K[e, a, 2 * side + 1, i, j] * columns[e, side, j, k]
+                        S[a, i, side * n + d + k] = scale * total
+        add_rows(out[e], P[e], S, D, R)
+
+
+@njit
+def add_rows(out: Array, P: Array, S: Array, D: Size, R: Size) -> None:
+    """Add P^T S of one element to out (n, n); S: (4, d, n), rows conjugate to q, columns by the dofs."""
+    d, r = len(D), len(R)
+    n = d + r
+    for side in range(2):
+        for i in range(d):
+            for c in range(2 * n):
+                out[side * n + i, c] += S[2 * side, i, c]
+        for m in range(r):
+            for c in range(2 * n):
+                total = 0.0
                 for i in range(d):
-                    for k in range(width):
-                        if a % 2 == 0:
-                            out[e, row + i, col + k] += S[i, k]
-                        else:
-                            for m in range(r):
-                                out[e, row + m, col + k] += P[e, a // 2, i, m] * S[i, k]
+                    total += P[side, i, m] * S[2 * side + 1, i, c]
+                out[side * n + d + m, c] += total
 
 
 @njit

@@ -6,6 +6,7 @@ from riser_soil.arrays import Array
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.riser.hermite import consistent_mass
 from riser_soil.riser.line import Line
+from riser_soil.riser.trial import Trial
 
 
 class Inertia:
@@ -27,21 +28,25 @@ class Inertia:
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}
 
-    def _F(self, state: State) -> Array:
-        return np.asarray(self.M @ self.line.trial(state).q_acceleration)
+    def _F(self, trial: Trial) -> Array:
+        """Residual conjugate to q (ne, 4, d)."""
+        return np.asarray(self.M @ trial.q_acceleration)
 
-    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
+    def _element_forces(self, trial: Trial) -> Array:
+        return trial.pull_back(trial.once((self, "F"), self._F))
+
+    def element_forces(self, state: State) -> tuple[Array, None]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
-        return self.line.trial(state).pull_back(self._F(state)), None
+        return self.line.trial(state).once((self, "element forces"), self._element_forces), None
 
     def residual(self, state: State, forces: Forces) -> None:
         if self.line.active:
-            self.line.scatter(self.line.trial(state).pull_back(self._F(state)), forces.inertia)
+            self.line.scatter(self.element_forces(state)[0], forces.inertia)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:
             trial, K = self.line.trial(state), values["riser"]
-            trial.add_turning(K, weights.inertia, self._F(state))
+            trial.add_turning(K, weights.inertia, trial.once((self, "F"), self._F))
             trial.add_blocks(K, weights.inertia, trial.columns(weights)[2], self._blocks)
 
     def energy(self, state: State) -> Energy:

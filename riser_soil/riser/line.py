@@ -6,6 +6,7 @@ an angle, p along the horizontal unit vector d, the angle positive from d toward
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from riser_soil.arrays import Array, BoolArray, IntArray
+from riser_soil.compiled import njit
 from riser_soil.errors import SceneError
 from riser_soil.part import Block, State
 from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames
@@ -90,7 +92,7 @@ class Line:
         self.x = (layout.position - self.origin) @ self.basis
         self.chord = np.diff(self.x, axis=0)
         self.offset = 0
-        self._trial: Trial | None = None
+        self._trials: deque[Trial] = deque(maxlen=2)
         self._number(hold_spin and dimension == 3)
 
     def _axes(self, first: Array) -> tuple[Array, Array]:
@@ -124,6 +126,7 @@ class Line:
             prescribed[node, self.dimension :] = end.rotation_fixed
         prescribed[0, self.dimension] |= hold_spin
         self.prescribed: BoolArray = prescribed.ravel()
+        self._held: IntArray = np.flatnonzero(self.prescribed)
 
     @property
     def part(self) -> slice:
@@ -136,9 +139,7 @@ class Line:
 
     def scatter(self, element: Array, values: Array) -> None:
         """Add element arrays (ne, 2 ndof) along the chain to the riser's slice of a local array."""
-        nodal = self.nodal(values)
-        nodal[:-1] += element[:, : self.ndof]
-        nodal[1:] += element[:, self.ndof :]
+        _scatter(element, self.nodal(values))
 
     def element_block(self) -> Block:
         """Pattern "riser": all dofs of each element."""
@@ -159,10 +160,12 @@ class Line:
         return np.asarray(np.append(half, 0.0) + np.append(0.0, half))
 
     def trial(self, state: State) -> Trial:
-        """The line at a state; kept for the state asked last, whose arrays must not change from then on."""
-        if self._trial is None or self._trial.state is not state:
-            self._trial = self._make_trial(state)
-        return self._trial
+        """The line at a state; kept for the last two new ones, whose arrays must not change from then on."""
+        for known in self._trials:
+            if known.state is state:
+                return known
+        self._trials.appendleft(self._make_trial(state))
+        return self._trials[0]
 
     def _make_trial(self, state: State) -> Trial:
         d, u = self.dimension, self.nodal(state.u)
@@ -176,7 +179,7 @@ class Line:
         trial = self.trial(state)
         self.x, self.chord = trial.x, trial.chord
         self.frames.commit(self.nodal(state.u)[:, self.dimension :])
-        self._trial = None
+        self._trials.clear()
 
     def improve(self, guess: State) -> Array:
         """First guess of a step: the guess's increment, with what the held ends move beyond it spread along the line.
@@ -202,8 +205,8 @@ class Line:
 
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
         """Write the increments, rates and accelerations of the held ends into views of the field's slice."""
-        held = self.prescribed
-        u[held], v[held], a[held] = 0.0, 0.0, 0.0
+        for values in (u, v, a):
+            values[self._held] = 0.0
         for node, end in ((0, self.start), (self.nodes - 1, self.end)):
             if end.held and end.motion is not None:
                 at = slice(node * self.ndof, node * self.ndof + self.dimension)
@@ -220,6 +223,15 @@ class Line:
             else ("force x", "force y", "vertical force", "moment 1", "moment 2", "moment 3")
         )
         return f"riser node at arc {self.arc[node]:.6g} m, {names[dof]}"
+
+
+@njit
+def _scatter(element: Array, nodal: Array) -> None:
+    ndof = nodal.shape[1]
+    for e in range(element.shape[0]):
+        for i in range(ndof):
+            nodal[e, i] += element[e, i]
+            nodal[e + 1, i] += element[e, ndof + i]
 
 
 def _planar_frames(layout: Layout, direction: Array) -> PlanarFrames:

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.arrays import Array
-from riser_soil.compiled import njit
-from riser_soil.riser.hermite import shapes, slopes
+from riser_soil.compiled import fixed, njit
+from riser_soil.riser.hermite import Size, add_rows, shapes, slopes
 
 POINTS = 0.5 + np.sqrt(0.6) * np.array([-0.5, 0.0, 0.5])
 GAUSS = np.array([5.0, 8.0, 5.0]) / 18.0
@@ -33,33 +33,40 @@ def stations(L: Array) -> Stations:
     return Stations(N, dN, GAUSS[:, None] * L[:, None, None] * N)
 
 
-@njit
 def interpolate(at: Stations, q: Array) -> Array:
     """Values (ne, ng, d) of q, q' or q''."""
-    ne, ng, d = q.shape[0], at.N.shape[1], q.shape[2]
-    out = np.zeros((ne, ng, d))
+    values: Array = _interpolate(at.N, q, fixed(q.shape[2]))
+    return values
+
+
+@njit
+def _interpolate(N: Array, q: Array, D: Size) -> Array:
+    ne, ng, d = N.shape[0], N.shape[1], len(D)
+    out = np.empty((ne, ng, d))
     for e in range(ne):
         for g in range(ng):
-            for a in range(4):
-                for i in range(d):
-                    out[e, g, i] += at.N[e, g, a] * q[e, a, i]
+            for i in range(d):
+                out[e, g, i] = 0.0
+                for a in range(4):
+                    out[e, g, i] += N[e, g, a] * q[e, a, i]
     return out
 
 
-@njit
 def unit_tangents(at: Stations, chord: Array, ends: Array) -> tuple[Array, Array]:
     """Unit tangents (ne, ng, d) and stretch |x'| (ne, ng); chord (ne, d), ends: end tangents (ne, 2, d)."""
-    ne, ng, d = chord.shape[0], at.N.shape[1], chord.shape[1]
+    tau, stretch = _unit_tangents(at.dN, chord, ends, fixed(chord.shape[1]))
+    return tau, stretch
+
+
+@njit
+def _unit_tangents(dN: Array, chord: Array, ends: Array, D: Size) -> tuple[Array, Array]:
+    ne, ng, d = dN.shape[0], dN.shape[1], len(D)
     tau, stretch = np.empty((ne, ng, d)), np.empty((ne, ng))
     for e in range(ne):
         for g in range(ng):
             square = 0.0
             for i in range(d):
-                x = (
-                    at.dN[e, g, 2] * chord[e, i]
-                    + at.dN[e, g, 1] * ends[e, 0, i]
-                    + at.dN[e, g, 3] * ends[e, 1, i]
-                )
+                x = dN[e, g, 2] * chord[e, i] + dN[e, g, 1] * ends[e, 0, i] + dN[e, g, 3] * ends[e, 1, i]
                 tau[e, g, i] = x
                 square += x * x
             stretch[e, g] = math.sqrt(square)
@@ -68,66 +75,114 @@ def unit_tangents(at: Stations, chord: Array, ends: Array) -> tuple[Array, Array
     return tau, stretch
 
 
-@njit
 def integrate(at: Stations, f: Array) -> Array:
     """Residual conjugate to q (ne, 4, d) of a force per length f (ne, ng, d)."""
-    ne, ng, d = f.shape
+    F: Array = _integrate(at.weighted, f, fixed(f.shape[2]))
+    return F
+
+
+@njit
+def _integrate(weighted: Array, f: Array, D: Size) -> Array:
+    ne, ng, d = f.shape[0], f.shape[1], len(D)
     out = np.zeros((ne, 4, d))
     for e in range(ne):
         for g in range(ng):
             for a in range(4):
                 for i in range(d):
-                    out[e, a, i] += at.weighted[e, g, a] * f[e, g, i]
+                    out[e, a, i] += weighted[e, g, a] * f[e, g, i]
     return out
 
 
-@njit
 def follow_slope(A: Array, tau: Array, stretch: Array) -> Array:
     """Derivative by x' from that by tau, A (ne, ng, d, d): tau follows x' by (I - tau tau)/|x'|."""
-    ne, ng, d = tau.shape
+    by_slope: Array = _follow_slope(A, tau, stretch, fixed(tau.shape[2]))
+    return by_slope
+
+
+@njit
+def _follow_slope(A: Array, tau: Array, stretch: Array, D: Size) -> Array:
     out = np.empty_like(A)
-    for e in range(ne):
-        for g in range(ng):
-            for i in range(d):
+    for e in range(tau.shape[0]):
+        for g in range(tau.shape[1]):
+            for i in range(len(D)):
                 along = 0.0
-                for j in range(d):
+                for j in range(len(D)):
                     along += A[e, g, i, j] * tau[e, g, j]
-                for j in range(d):
+                for j in range(len(D)):
                     out[e, g, i, j] = (A[e, g, i, j] - along * tau[e, g, j]) / stretch[e, g]
     return out
 
 
-@njit
-def add_tangent(
-    out: Array, scale: float, P: Array, columns: Array, shift: float, weighted: Array, trial: Array, A: Array
-) -> None:
-    """Add to out (ne, n, n) scale times the derivative by the dofs of the residual of a force per length.
+class Columns(NamedTuple):
+    """Derivatives by the dofs: of tangents in q, q' and q'' (ne, 2, d, r), of positions in q' and q'' the shifts."""
 
-    A: derivative (ne, ng, d, d) of the force by the field that the functions `trial` (N or dN) make of q, q'
-    or q''.
-    columns, shift: derivatives of tangents (ne, 2, d, r) and positions in that q by the dofs; P: dt/dTheta.
-    """
-    ne, ng, d, r = A.shape[0], A.shape[1], A.shape[2], P.shape[3]
-    n = d + r
-    S = np.empty((d, 2 * n))
-    for e in range(ne):
-        for g in range(ng):
+    q: Array
+    rate: Array
+    acceleration: Array
+    shift_v: float
+    shift_a: float
+
+
+class Derivatives(NamedTuple):
+    """Derivatives (ne, ng, d, d) of a force per length by x', and by the rate and acceleration of x."""
+
+    slope: Array
+    rate: Array
+    acceleration: Array
+
+
+def add_tangent(out: Array, at: Stations, by: Derivatives, columns: Columns) -> None:
+    """Add to out (ne, n, n) the derivative by the dofs of the residual of a force per length, P = dt/dTheta held."""
+    _add_tangent(out, *at, *by, *columns, fixed(by.slope.shape[2]), fixed(columns.q.shape[3]))
+
+
+@njit
+def _spread(P: Array, shift: float, e: int, out: Array, D: Size, R: Size) -> None:
+    """Write the columns of both ends' position and tangent to out (d, n)."""
+    d, r = len(D), len(R)
+    for i in range(d):
+        for side in range(2):
+            for k in range(d):
+                out[i, side * (d + r) + k] = shift if i == k else 0.0
+            for k in range(r):
+                out[i, side * (d + r) + d + k] = P[e, side, i, k]
+
+
+@njit
+def _add_tangent(
+    out: Array,
+    N: Array,
+    dN: Array,
+    weighted: Array,
+    by_slope: Array,
+    by_rate: Array,
+    by_acceleration: Array,
+    P: Array,
+    rate: Array,
+    acceleration: Array,
+    shift_v: float,
+    shift_a: float,
+    D: Size,
+    R: Size,
+) -> None:
+    d, half = len(D), len(D) + len(R)
+    n = 2 * half
+    q, q1, q2 = np.empty((d, n)), np.empty((d, n)), np.empty((d, n))
+    rows = np.empty((4, d, n))
+    for e in range(by_slope.shape[0]):
+        _spread(P, 1.0, e, q, D, R)
+        _spread(rate, shift_v, e, q1, D, R)
+        _spread(acceleration, shift_a, e, q2, D, R)
+        rows[:] = 0.0
+        for g in range(by_slope.shape[1]):
             for i in range(d):
-                for side in range(2):
-                    position, turn = shift * trial[e, g, 2 * side], trial[e, g, 2 * side + 1]
-                    for k in range(d):
-                        S[i, side * n + k] = position * A[e, g, i, k]
-                    for k in range(r):
-                        total = 0.0
-                        for j in range(d):
-                            total += A[e, g, i, j] * columns[e, side, j, k]
-                        S[i, side * n + d + k] = turn * total
-            for side in range(2):
-                position, turn = scale * weighted[e, g, 2 * side], scale * weighted[e, g, 2 * side + 1]
-                for i in range(d):
-                    for c in range(2 * n):
-                        out[e, side * n + i, c] += position * S[i, c]
-                    for m in range(r):
-                        lever = turn * P[e, side, i, m]
-                        for c in range(2 * n):
-                            out[e, side * n + d + m, c] += lever * S[i, c]
+                for c in range(n):
+                    b = 2 * (c // half) + (1 if c % half >= d else 0)
+                    turning, moving = 0.0, 0.0
+                    for j in range(d):
+                        turning += by_slope[e, g, i, j] * q[j, c]
+                        moving += by_rate[e, g, i, j] * q1[j, c] + by_acceleration[e, g, i, j] * q2[j, c]
+                    change = dN[e, g, b] * turning + N[e, g, b] * moving
+                    for a in range(4):
+                        rows[a, i, c] += weighted[e, g, a] * change
+        add_rows(out[e], P[e], rows, D, R)

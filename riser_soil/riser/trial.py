@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,6 +30,13 @@ class Trial:
         self.state, self.x, self.chord, self.turn = state, x, chord, turn
         self._v, self._a = rates
         self._columns: dict[tuple[float, float], tuple[Columns, Columns, Columns]] = {}
+        self._kept: dict[Hashable, Any] = {}
+
+    def once(self, key: Hashable, make: Callable[[Trial], Any]) -> Any:
+        """What a part makes of this trial under a key of its own; made when first asked for."""
+        if key not in self._kept:
+            self._kept[key] = make(self)
+        return self._kept[key]
 
     @cached_property
     def _director_rates(self) -> tuple[Array, Array]:

@@ -16,7 +16,8 @@ import math
 import numpy as np
 
 from riser_soil.arrays import Array
-from riser_soil.compiled import njit
+from riser_soil.compiled import fixed, njit
+from riser_soil.riser.hermite import Size
 
 SERIES_BELOW = 0.05  # 1 - cos(theta) under which closed forms lose digits and the series has converged
 SERIES: Array = np.cumprod([1.0] + [2.0 * n / (2.0 * n + 1.0) for n in range(1, 13)])[::-1].copy()
@@ -43,77 +44,87 @@ def angle_over_sine(c: float) -> Three:
 
 
 @njit
-def _dot(a: Array, b: Array) -> float:
+def _dot(D: Size, a: Array, b: Array) -> float:
     total = 0.0
-    for i in range(a.size):
+    for i in range(len(D)):
         total += a[i] * b[i]
     return total
 
 
 @njit
-def _axis(chord: Array, e: Array) -> float:
+def _axis(D: Size, chord: Array, e: Array) -> float:
     """Unit vector of the chord into e; returns its length."""
-    l = math.sqrt(_dot(chord, chord))
-    for i in range(e.size):
+    l = math.sqrt(_dot(D, chord, chord))
+    for i in range(len(D)):
         e[i] = chord[i] / l
     return l
 
 
 @njit
-def _psi_slopes(e: Array, t: Array, w: Array, g: Three, by_t: Array, by_e: Array) -> None:
+def _psi_slopes(D: Size, e: Array, t: Array, w: Array, g: Three, by_t: Array, by_e: Array) -> None:
     """Gradient of psi with respect to t and e, both varied freely; g from `angle_over_sine`."""
-    c, along = _dot(e, t), _dot(w, e)
-    P = g[1] * (_dot(w, t) - c * along) - g[0] * along
-    for i in range(e.size):
+    c, along = _dot(D, e, t), _dot(D, w, e)
+    P = g[1] * (_dot(D, w, t) - c * along) - g[0] * along
+    for i in range(len(D)):
         by_t[i] = P * e[i] + g[0] * w[i]
         by_e[i] = P * t[i] - g[0] * c * w[i]
 
 
 @njit
-def _psi_bends(e: Array, t: Array, w: Array, g: Three, tt: Array, te: Array, ee: Array) -> None:
+def _psi_bends(D: Size, e: Array, t: Array, w: Array, g: Three, tt: Array, te: Array, ee: Array) -> None:
     """Second derivatives of psi with respect to t and e (te: rows t, columns e)."""
-    c, along = _dot(e, t), _dot(w, e)
-    across = _dot(w, t) - c * along
+    c, along = _dot(D, e, t), _dot(D, w, e)
+    across = _dot(D, w, t) - c * along
     P, Q, S = g[1] * across - g[0] * along, g[2] * across - 2.0 * g[1] * along, g[1] * c + g[0]
-    for i in range(e.size):
-        for j in range(e.size):
+    for i in range(len(D)):
+        for j in range(len(D)):
             tt[i, j] = Q * e[i] * e[j] + g[1] * (e[i] * w[j] + w[i] * e[j])
             ee[i, j] = Q * t[i] * t[j] - S * (t[i] * w[j] + w[i] * t[j])
             te[i, j] = Q * e[i] * t[j] - S * e[i] * w[j] + g[1] * w[i] * t[j] + (P if i == j else 0.0)
 
 
-@njit
 def potential(chord: Array, middle: Array, tangent: Array, L: Array, w: Array) -> Array:
     """V (ne,) J. chord, middle = (x1 + x2)/2 and w: (ne, d); tangent: (ne, 2, d) at the elements' ends; L:
     (ne,).
     """
-    ne, d = chord.shape
+    found: Array = _potential(fixed(chord.shape[1]), chord, middle, tangent, L, w)
+    return found
+
+
+@njit
+def _potential(D: Size, chord: Array, middle: Array, tangent: Array, L: Array, w: Array) -> Array:
+    ne, d = chord.shape[0], len(D)
     V, e = np.empty(ne), np.empty(d)
     for k in range(ne):
-        _axis(chord[k], e)
-        V[k] = -L[k] * _dot(w[k], middle[k])
+        _axis(D, chord[k], e)
+        V[k] = -L[k] * _dot(D, w[k], middle[k])
         for end in range(2):
             t = tangent[k, end]
-            c = _dot(e, t)
-            psi = angle_over_sine(c)[0] * (_dot(w[k], t) - c * _dot(w[k], e))
+            c = _dot(D, e, t)
+            psi = angle_over_sine(c)[0] * (_dot(D, w[k], t) - c * _dot(D, w[k], e))
             V[k] -= (1 - 2 * end) * L[k] * L[k] / 12.0 * psi
     return V
 
 
-@njit
 def residual(chord: Array, tangent: Array, L: Array, w: Array) -> Array:
     """F = dV/dq (ne, 4, d); arguments as in `potential`."""
-    ne, d = chord.shape
+    found: Array = _residual(fixed(chord.shape[1]), chord, tangent, L, w)
+    return found
+
+
+@njit
+def _residual(D: Size, chord: Array, tangent: Array, L: Array, w: Array) -> Array:
+    ne, d = chord.shape[0], len(D)
     F, e, t, by_t, by_e = np.empty((ne, 4, d)), np.empty(d), np.empty(d), np.empty(d), np.empty(d)
     for k in range(ne):
-        l, load = _axis(chord[k], e), w[k]
+        l, load = _axis(D, chord[k], e), w[k]
         for i in range(d):
             F[k, 0, i] = F[k, 2, i] = -0.5 * L[k] * w[k, i]
         for end in range(2):
             factor = (2 * end - 1) * L[k] * L[k] / 12.0
             t[:] = tangent[k, end]
-            _psi_slopes(e, t, load, angle_over_sine(_dot(e, t)), by_t, by_e)
-            along = _dot(e, by_e)
+            _psi_slopes(D, e, t, load, angle_over_sine(_dot(D, e, t)), by_t, by_e)
+            along = _dot(D, e, by_e)
             for i in range(d):
                 F[k, 2 * end + 1, i] = factor * by_t[i]
                 F[k, 2, i] += factor * (by_e[i] - e[i] * along) / l
@@ -122,16 +133,16 @@ def residual(chord: Array, tangent: Array, L: Array, w: Array) -> Array:
 
 
 @njit
-def _chord_bend(ee: Array, by_e: Array, e: Array, l: float, out: Array) -> None:
+def _chord_bend(D: Size, ee: Array, by_e: Array, e: Array, l: float, out: Array) -> None:
     """Second derivative of psi by the chord, out (d, d): (I - e e) ee (I - e e)/l^2 and the turn of e."""
-    along, twice = _dot(e, by_e), 0.0
-    for i in range(e.size):
-        for j in range(e.size):
+    along, twice = _dot(D, e, by_e), 0.0
+    for i in range(len(D)):
+        for j in range(len(D)):
             twice += e[i] * ee[i, j] * e[j]
-    for i in range(e.size):
-        for j in range(e.size):
+    for i in range(len(D)):
+        for j in range(len(D)):
             row, col = 0.0, 0.0
-            for k in range(e.size):
+            for k in range(len(D)):
                 row += ee[i, k] * e[k]
                 col += e[k] * ee[k, j]
             inner = ee[i, j] - row * e[j] - e[i] * col + (twice + 3.0 * along) * e[i] * e[j]
@@ -140,33 +151,38 @@ def _chord_bend(ee: Array, by_e: Array, e: Array, l: float, out: Array) -> None:
 
 
 @njit
-def _project(A: Array, e: Array, l: float) -> None:
+def _project(D: Size, A: Array, e: Array, l: float) -> None:
     """A becomes A (I - e e)/l: derivatives by e become those by the chord."""
-    for i in range(e.size):
+    for i in range(len(D)):
         along = 0.0
-        for j in range(e.size):
+        for j in range(len(D)):
             along += A[i, j] * e[j]
-        for j in range(e.size):
+        for j in range(len(D)):
             A[i, j] = (A[i, j] - along * e[j]) / l
 
 
-@njit
 def stiffness(chord: Array, tangent: Array, L: Array, w: Array) -> Array:
     """Second derivatives of V in blocks (ne, 4, 4, d, d); arguments as in `potential`."""
-    ne, d = chord.shape
+    found: Array = _stiffness(fixed(chord.shape[1]), chord, tangent, L, w)
+    return found
+
+
+@njit
+def _stiffness(D: Size, chord: Array, tangent: Array, L: Array, w: Array) -> Array:
+    ne, d = chord.shape[0], len(D)
     K = np.zeros((ne, 4, 4, d, d))
     e, t, by_t, by_e = np.empty(d), np.empty(d), np.empty(d), np.empty(d)
     tt, te, ee, dd = np.empty((d, d)), np.empty((d, d)), np.empty((d, d)), np.empty((d, d))
     for k in range(ne):
-        l, load = _axis(chord[k], e), w[k]
+        l, load = _axis(D, chord[k], e), w[k]
         for end in range(2):
             factor, a = (2 * end - 1) * L[k] * L[k] / 12.0, 2 * end + 1
             t[:] = tangent[k, end]
-            g = angle_over_sine(_dot(e, t))
-            _psi_slopes(e, t, load, g, by_t, by_e)
-            _psi_bends(e, t, load, g, tt, te, ee)
-            _project(te, e, l)
-            _chord_bend(ee, by_e, e, l, dd)
+            g = angle_over_sine(_dot(D, e, t))
+            _psi_slopes(D, e, t, load, g, by_t, by_e)
+            _psi_bends(D, e, t, load, g, tt, te, ee)
+            _project(D, te, e, l)
+            _chord_bend(D, ee, by_e, e, l, dd)
             for i in range(d):
                 for j in range(d):
                     K[k, a, a, i, j] = factor * tt[i, j]

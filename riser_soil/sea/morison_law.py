@@ -18,7 +18,8 @@ import math
 import numpy as np
 
 from riser_soil.arrays import Array
-from riser_soil.compiled import njit
+from riser_soil.compiled import fixed, njit
+from riser_soil.riser.hermite import Size
 
 
 def drag_coefficients(rho: float, diameter: Array, normal: Array, tangential: Array) -> Array:
@@ -32,37 +33,47 @@ def added_masses(rho: float, diameter: Array, normal: Array, tangential: Array) 
 
 
 @njit
-def _split(v: Array, tau: Array, e: int, g: int) -> tuple[float, float]:
+def _split(v: Array, tau: Array, e: int, g: int, D: Size) -> tuple[float, float]:
     """Speed along tau and speed across it at one point."""
     along, square = 0.0, 0.0
-    for i in range(v.shape[2]):
+    for i in range(len(D)):
         along += v[e, g, i] * tau[e, g, i]
-    for i in range(v.shape[2]):
+    for i in range(len(D)):
         square += (v[e, g, i] - along * tau[e, g, i]) ** 2
     return along, math.sqrt(square)
 
 
-@njit
 def drag(v: Array, tau: Array, c: Array) -> Array:
     """Resistance to the rate (ne, ng, d)."""
+    found: Array = _drag(v, tau, c, fixed(v.shape[2]))
+    return found
+
+
+@njit
+def _drag(v: Array, tau: Array, c: Array, D: Size) -> Array:
     f = np.empty_like(v)
     for e in range(v.shape[0]):
         for g in range(v.shape[1]):
-            along, speed = _split(v, tau, e, g)
+            along, speed = _split(v, tau, e, g, D)
             across, lengthwise = c[e, 0] * speed, c[e, 1] * abs(along) * along
-            for i in range(v.shape[2]):
+            for i in range(len(D)):
                 f[e, g, i] = across * (v[e, g, i] - along * tau[e, g, i]) + lengthwise * tau[e, g, i]
     return f
 
 
-@njit
 def drag_derivatives(v: Array, tau: Array, c: Array) -> tuple[Array, Array]:
     """d drag/dv and d drag/dtau; at rest both are zero."""
-    ne, ng, d = v.shape
+    found: tuple[Array, Array] = _drag_derivatives(v, tau, c, fixed(v.shape[2]))
+    return found
+
+
+@njit
+def _drag_derivatives(v: Array, tau: Array, c: Array, D: Size) -> tuple[Array, Array]:
+    ne, ng, d = v.shape[0], v.shape[1], len(D)
     by_v, by_tau = np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d))
     for e in range(ne):
         for g in range(ng):
-            along, speed = _split(v, tau, e, g)
+            along, speed = _split(v, tau, e, g, D)
             normal, tangential = c[e, 0] * speed, 2.0 * c[e, 1] * abs(along)
             bend = c[e, 0] / speed if speed > 0.0 else 0.0
             for i in range(d):
@@ -78,27 +89,37 @@ def drag_derivatives(v: Array, tau: Array, c: Array) -> tuple[Array, Array]:
     return by_v, by_tau
 
 
-@njit
 def added(a: Array, tau: Array, m: Array) -> Array:
     """Resistance to the acceleration (ne, ng, d)."""
+    found: Array = _added(a, tau, m, fixed(a.shape[2]))
+    return found
+
+
+@njit
+def _added(a: Array, tau: Array, m: Array, D: Size) -> Array:
     f = np.empty_like(a)
     for e in range(a.shape[0]):
         for g in range(a.shape[1]):
-            along, _ = _split(a, tau, e, g)
-            for i in range(a.shape[2]):
+            along, _ = _split(a, tau, e, g, D)
+            for i in range(len(D)):
                 f[e, g, i] = m[e, 0] * a[e, g, i] + (m[e, 1] - m[e, 0]) * along * tau[e, g, i]
     return f
 
 
-@njit
 def added_derivatives(a: Array, tau: Array, m: Array) -> tuple[Array, Array]:
     """d added/da and d added/dtau."""
-    ne, ng, d = a.shape
+    found: tuple[Array, Array] = _added_derivatives(a, tau, m, fixed(a.shape[2]))
+    return found
+
+
+@njit
+def _added_derivatives(a: Array, tau: Array, m: Array, D: Size) -> tuple[Array, Array]:
+    ne, ng, d = a.shape[0], a.shape[1], len(D)
     by_a, by_tau = np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d))
     for e in range(ne):
         excess = m[e, 1] - m[e, 0]
         for g in range(ng):
-            along, _ = _split(a, tau, e, g)
+            along, _ = _split(a, tau, e, g, D)
             for i in range(d):
                 for j in range(d):
                     one = 1.0 if i == j else 0.0

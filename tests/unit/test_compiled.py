@@ -101,9 +101,8 @@ def test_versions_in_use_stay(tmp_path: Path) -> None:
 
 KERNEL = """
 import numpy as np
-from riser_soil.sea.morison_law import added
-a = np.ones((1, 1, 3))
-added(a, a, np.ones((1, 2)))
+from riser_soil.riser.vectors import vector
+vector(np.ones(3))
 """
 
 
