@@ -56,6 +56,9 @@ class March:
     def __init__(self, system: System, newton: Newton, scheme: Scheme, before: State) -> None:
         self.system, self.newton, self.scheme = system, newton, scheme
         self._mass: RiserMass | None = None
+        owners = (*system.model.fields, *system.model.parts)
+        self._foreseeing = [owner for owner in owners if isinstance(owner, Foreseeing)]
+        self._adaptive = [part for part in system.model.parts if isinstance(part, Adaptive)]
         self._contact = system.comm.allreduce(any(p.name == "contact" for p in system.model.parts), MPI.LOR)
         self.before = before
         self.restart()
@@ -109,14 +112,13 @@ class March:
     def _guess(self, t: float, dt: float) -> Array:
         """The last increment, scaled to the step, as fields and parts improve it."""
         guess = self._increment * (dt / self._dt if self._dt > 0.0 else 0.0)
-        for owner in (*self.system.model.fields, *self.system.model.parts):
-            if isinstance(owner, Foreseeing):
-                guess = owner.improve(State(t, guess, self.before.v, self.before.a))
+        for owner in self._foreseeing:
+            guess = owner.improve(State(t, guess, self.before.v, self.before.a))
         return guess
 
     def _renew_pattern(self) -> bool:
         """Rebuild what the motion has outgrown; whether anything was."""
-        outgrown = [p for p in self.system.model.parts if isinstance(p, Adaptive) and p.outgrown]
+        outgrown = [part for part in self._adaptive if part.outgrown]
         if not self.system.comm.allreduce(bool(outgrown), MPI.LOR):
             return False
         for part in outgrown:

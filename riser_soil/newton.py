@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass, field
 
@@ -9,9 +10,9 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from riser_soil.arrays import Array, BoolArray
+from riser_soil.arrays import Array
 from riser_soil.part import Forces, State
-from riser_soil.system import System, total
+from riser_soil.system import System
 from riser_soil.time_scheme import Scheme
 
 PREFIX = "riser_soil_"
@@ -86,6 +87,7 @@ class Newton:
         """Solve a step or raise NotConvergedError; collective."""
         self._step, self._norms = step, list[float]()
         self._state: State | None = None
+        self._unknowns: Array = step.guess
         self._restrict(step.guess)
         began, counted = time.perf_counter(), self.system.clock.total
         self._snes.solve(None, self._x)
@@ -127,15 +129,12 @@ class Newton:
         """State of the unknowns x; the same object while x stays the same, so that parts need not look twice."""
         u = np.zeros(self.system.numbering.size)
         self.system.numbering.to_local(x, u)
-        if self._state is None or not np.array_equal(u[self._free], self._state.u[self._free]):
+        if self._state is None or not np.array_equal(u, self._unknowns):
             step = self._step
+            self._unknowns = u.copy()
             self._state = step.scheme.trial(step.before, step.t, step.dt, u)
             self.system.prescribe(self._state)
         return self._state
-
-    @property
-    def _free(self) -> BoolArray:
-        return ~self.system.prescribed
 
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
         state = self._trial(x)
@@ -162,9 +161,9 @@ class Newton:
         forces, system = self._forces, self.system
         riser = system.model.fields[0]
         contact = forces.end[riser.offset : riser.offset + riser.size]
-        reactions = total(forces)[system.prescribed]
-        mine = np.array([reactions @ reactions, forces.inertia @ forces.inertia, contact @ contact])
-        return float(np.sqrt(system.comm.allreduce(mine).max()))
+        reactions = system.reactions(forces)
+        mine = [float(f @ f) for f in (reactions, forces.inertia, contact)]
+        return math.sqrt(max(system.sum(mine)))
 
     def _reason(self) -> str:
         reason = self._snes.getConvergedReason()

@@ -42,6 +42,7 @@ class System:
         self.comm, self.model, self.clock = comm, model, clock
         self.numbering = Numbering(comm, model.fields)
         self.prescribed: BoolArray = self._gather_prescribed()
+        self._held: IntArray = np.flatnonzero(self.prescribed)
         self.symmetric: bool = comm.allreduce(all(p.symmetric for p in model.parts), MPI.LAND)
         self.matrix = self._new_matrix()
 
@@ -87,18 +88,22 @@ class System:
 
     def energy(self, state: State) -> Energy:
         mine = sum((p.energy(state) for p in self.model.parts), Energy())
-        values = self._sum([mine.kinetic, mine.strain, mine.potential])
+        values = self.sum([mine.kinetic, mine.strain, mine.potential])
         return Energy(*values)
 
     def work(self, before: State, after: State) -> Work:
         mine = sum((p.work(before, after) for p in self.model.parts), Work())
-        return Work(*self._sum([mine.dissipated, mine.external]))
+        return Work(*self.sum([mine.dissipated, mine.external]))
 
     def work_of_supports(self, start: Forces, end: Forces, u: Array) -> float:
         """Work [J] that prescribed motions put in over a step: mean reaction times increment."""
-        at = self.prescribed
-        mean = 0.5 * (total(start)[at] + total(end)[at])
-        return self._sum([float(mean @ u[at])])[0]
+        mean = 0.5 * (self.reactions(start) + self.reactions(end))
+        return self.sum([float(mean @ u[self._held])])[0]
+
+    def reactions(self, forces: Forces) -> Array:
+        """What the supports of this rank's prescribed dofs exert [N, N.m]."""
+        at = self._held
+        return forces.inertia[at] + forces.force[at] + forces.end[at]
 
     def commit(self, state: State) -> None:
         """Accept a state: parts first, then the fields that they act on, each object once."""
@@ -124,9 +129,11 @@ class System:
     def _field_of(self, entry: int) -> Field:
         return next(f for f in self.model.fields if f.offset <= entry < f.offset + f.size)
 
-    def _sum(self, values: list[float]) -> list[float]:
-        summed: list[float] = self.comm.allreduce(np.asarray(values)).tolist()
-        return summed
+    def sum(self, values: list[float]) -> list[float]:
+        """Sums over all ranks; collective."""
+        summed = np.array(values)
+        self.comm.Allreduce(MPI.IN_PLACE, summed)
+        return [float(value) for value in summed]
 
     def destroy(self) -> None:
         self.matrix.destroy()
