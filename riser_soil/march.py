@@ -39,11 +39,16 @@ class Foreseeing(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Accepted:
-    """An accepted step, before its configuration is committed."""
+    """An accepted step, before its configuration is committed.
+
+    motion: the solution's state with the rates that bulk and contact forces together cause (see `time_scheme`), by
+    the mass in the configuration before the step.
+    """
 
     t: float
     dt: float
     solution: Solution
+    motion: State
     cuts: int
     energy: Energy
     dissipated: float
@@ -132,7 +137,8 @@ class March:
         supports = self.system.work_of_supports(self._forces, solution.forces, state.u)
         work, energy = turned.external + supports, self.system.energy(state)
         self._refuse_wrong_root(energy, turned.dissipated, work)
-        return Accepted(control.target, control.dt, solution, cuts, energy, turned.dissipated, work)
+        motion = self._motion(solution, control.dt)
+        return Accepted(control.target, control.dt, solution, motion, cuts, energy, turned.dissipated, work)
 
     def _refuse_wrong_root(self, energy: Energy, dissipated: float, work: float) -> None:
         """A dynamic step that more than doubles the energy in motion out of nothing is a root of the equations far
@@ -157,6 +163,14 @@ class March:
         self._increment, self._dt = state.u, step.dt
         control.accept(easy=step.solution.iterations <= EASY)
         self._renew_pattern()
+
+    def _motion(self, solution: Solution, dt: float) -> State:
+        state = solution.state
+        if not self._contact or self._mass is None or not isinstance(self.scheme, GeneralizedAlpha):
+            return state
+        contact = self._mass.accelerations(state.t, -solution.forces.end)
+        split = self.scheme.split_contact(state, contact, dt)
+        return State(state.t, state.u, split.v, split.a + contact)
 
     def _rates_after(self, state: State, forces: Forces, dt: float) -> State:
         if self._contact and self._mass is not None and isinstance(self.scheme, GeneralizedAlpha):

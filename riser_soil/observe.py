@@ -114,10 +114,12 @@ class Observer:
 
 def riser_snapshot(world: World, system: System, step: Accepted) -> RiserSnapshot:
     """The riser at the end of a step that isn't committed yet; on the rank that holds it."""
-    line, state = world.line, step.solution.state
-    residual = element_residual(line, [p for p in system.model.parts if isinstance(p, HasElementForces)], state)
+    line, state = world.line, step.motion
+    parts = [p for p in system.model.parts if isinstance(p, HasElementForces)]
+    on_nodes = _on_nodes(world, step, element_residual(line, parts, step.solution.state))
+    residual = element_residual(line, parts, state)
     inside = section_forces(line, world.elements, state, residual)
-    start, end = end_reactions(line, state, residual, _on_nodes(world, step, residual))
+    start, end = end_reactions(line, state, residual, on_nodes)
     tangent = line.trial(state).turn.tangent @ line.basis.T
     return RiserSnapshot(
         position=line.positions3(state),
@@ -136,7 +138,10 @@ def riser_snapshot(world: World, system: System, step: Accepted) -> RiserSnapsho
 
 
 def _on_nodes(world: World, step: Accepted, residual: Array) -> Array:
-    """What acts on nodes but isn't a support (nn, ndof): all forces less those of elements and of end springs."""
+    """What acts on nodes but isn't a support (nn, ndof): all forces less those of elements and of end springs.
+
+    residual: of the elements, at the state that the step's forces belong to.
+    """
     line, forces = world.line, step.solution.forces
     inside = np.zeros_like(forces.force)
     line.scatter(residual, inside)
