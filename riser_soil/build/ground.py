@@ -91,6 +91,7 @@ def contact_of(
         plane=_plane(scene, stiffness, settings.smoothing),
         surface=surface,
         penalty=Penalty(stiffness["soil"], settings.smoothing) if surface is not None else None,
+        along=line.direction[:2],
         active=active,
     )
 

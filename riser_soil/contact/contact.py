@@ -48,8 +48,9 @@ class Contact:
     pipe touches once it has sunk in by 3 % of its radius.
 
     radius (nn,): distance [m] from the axis to the line that touches, 0 for the axis itself. penalty: law on
-    the soil; a plane brings its own numbers. reach: by default 1 % of the riser's length above the ground and
-    half a facet around a node. active: whether this rank, which then holds the surface, evaluates contact.
+    the soil; a plane brings its own numbers. along (2,): horizontal unit vector of the riser on the ground; by
+    default its first axis. reach: by default 1 % of the riser's length above the ground and half a facet
+    around a node. active: whether this rank, which then holds the surface, evaluates contact.
     outgrown: a point has touched that had no place in the tangent's pattern and was left out there, not in
     the residual.
     """
@@ -66,6 +67,7 @@ class Contact:
         surface: SoilSurface | None = None,
         penalty: Penalty | None = None,
         footprint: float | None = None,
+        along: Array | None = None,
         reach: Reach | None = None,
         active: bool = True,
     ) -> None:
@@ -78,7 +80,8 @@ class Contact:
         self._footprint = 0.0
         if self._soil is not None:
             self._footprint = FOOTPRINT * float(radius.mean()) if footprint is None else footprint
-        points = ContactPoints.of_nodes(riser.tributary_length, self._footprint, riser.basis[:2, 0])
+        axis = riser.basis[:2, 0] if along is None else along
+        points = ContactPoints.of_nodes(riser.tributary_length, self._footprint, axis)
         level = plane.level if plane is not None else -np.inf
         laws = _laws(plane, self._soil, penalty)
         self._rounding = max((law.smoothing for law in laws.values()), default=0.0)

@@ -101,7 +101,12 @@ class Case:
 
     @classmethod
     def build(
-        cls, riser: Nodes, surface: Top | None, plane: Plane | None = None, footprint: float = FOOTPRINT
+        cls,
+        riser: Nodes,
+        surface: Top | None,
+        plane: Plane | None = None,
+        footprint: float = FOOTPRINT,
+        along: Array | None = None,
     ) -> Case:
         riser.offset = 2
         if surface is not None:
@@ -114,6 +119,7 @@ class Case:
             surface=surface,
             penalty=LAW,
             footprint=footprint,
+            along=along,
             reach=Reach(0.5, 0.3),
         )
         return cls(riser, surface, contact)
@@ -231,6 +237,18 @@ def test_forces_balance_to_round_off(kind: str, dimension: int) -> None:
     unbalanced = on_riser + on_soil
     unbalanced -= (unbalanced @ out_of_plane) * out_of_plane
     np.testing.assert_allclose(unbalanced, 0.0, atol=1e-13 * on_riser[2])
+
+
+def test_the_footprint_follows_the_riser_in_space_as_in_a_plane() -> None:
+    def forces(basis: Array, along: Array | None) -> Array:
+        y = np.linspace(-0.8, 0.8, 6)
+        position = np.column_stack([np.full(6, 1.3), y, np.full(6, RADIUS - 0.02)])
+        case = Case.build(Nodes(position, basis), deformed_case("quad4", 3).surface, FLOOR, along=along)
+        return case.contact.force_per_length(case.state())
+
+    planar = forces(in_plane(0.5 * np.pi), None)
+    np.testing.assert_allclose(forces(np.eye(3), np.array([0.0, 1.0])), planar, rtol=1e-9)
+    assert np.abs(forces(np.eye(3), None) - planar).max() > 1e-3 * planar.max()
 
 
 def test_force_on_riser_is_minus_its_residual() -> None:
