@@ -1,0 +1,138 @@
+"""What a scene doesn't need is neither imported, built, nor solved for."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from riser_soil.build import World
+from riser_soil.system import Clock, System
+from tests.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.driven_stage import built
+from tests.on_ranks import ENVIRONMENT
+
+FOR_SOIL = {"dolfinx", "dolfinx_cpp", "ufl", "ffcx", "basix", "gmsh"}
+FOR_PICTURES = {"pyvista", "vtk", "vtkmodules", "matplotlib"}
+OWN_FOR_SOIL = {"riser_soil.soil.soil", "riser_soil.dolfinx_compat"}
+NODES = 37
+
+
+def hanging(*stages: Mapping, dimension: int = 2) -> Mapping:
+    """The touchdown scene's riser, hanging freely; nothing else."""
+    scene = touchdown(*stages, dimension=dimension)
+    del scene["soil"], scene["seabed"]
+    scene["riser"]["end"]["position"] = [15.0, 0.0, 15.0]
+    return scene
+
+
+def over_springs(*stages: Mapping, dimension: int = 2) -> Mapping:
+    """The same riser comes down on a seabed of springs."""
+    scene = touchdown(*stages, dimension=dimension)
+    del scene["soil"]
+    return scene
+
+
+def ran(name: str, folder: Path) -> dict[str, Any]:
+    """What a process has imported that has run a scene, and its CPU seconds."""
+    scenes = {
+        "hanging, static": hanging(LAY),
+        "hanging, dynamic": hanging(LAY, heave(0.2)),
+        "over springs": over_springs(LAY, heave(0.2)),
+        "on soil": touchdown(LAY),
+    }
+    (folder / "scene.yaml").write_text(json.dumps(scenes[name]), encoding="utf-8")
+    script = Path(__file__).with_name("imports_of_run.py")
+    call = [sys.executable, str(script), str(folder / "scene.yaml"), str(folder)]
+    subprocess.run(call, env=os.environ | ENVIRONMENT, check=True, capture_output=True, timeout=120)
+    found: dict[str, Any] = json.loads((folder / "found.json").read_text(encoding="utf-8"))
+    return found
+
+
+def imported(name: str, folder: Path) -> set[str]:
+    """Imported packages, and the project's modules by their full names."""
+    modules = ran(name, folder)["modules"]
+    return {m.split(".")[0] for m in modules} | {m for m in modules if m.startswith("riser_soil.")}
+
+
+@pytest.mark.parametrize("name", ["hanging, static", "hanging, dynamic", "over springs"])
+def test_without_soil_its_libraries_are_not_imported(name: str, tmp_path: Path) -> None:
+    found = imported(name, tmp_path)
+    assert not found & (FOR_SOIL | FOR_PICTURES | OWN_FOR_SOIL)
+    assert ("riser_soil.contact.contact" in found) == (name == "over springs")
+    assert ("riser_soil.sea.morison" in found) == (name != "hanging, static")
+    assert ("riser_soil.riser.inertia" in found) == (name != "hanging, static")
+    assert "riser_soil.riser.loads" not in found
+
+
+def test_with_soil_they_are(tmp_path: Path) -> None:
+    """The names looked for are those that a soil imports; pictures are none of a run's business."""
+    found = imported("on soil", tmp_path)
+    assert found >= {"dolfinx", "ufl", "basix", "gmsh"}
+    assert found >= OWN_FOR_SOIL
+    assert not found & FOR_PICTURES
+
+
+def test_hanging_riser_starts_at_once(tmp_path: Path) -> None:
+    """From the interpreter's start to the end of a static run: below a second of CPU time, the best of three."""
+    seconds = []
+    for attempt in range(3):
+        folder = tmp_path / str(attempt)
+        folder.mkdir()
+        seconds.append(ran("hanging, static", folder)["seconds"])
+    assert min(seconds) < 1.0
+
+
+def system(world: World, stage: int) -> System:
+    return System(world.comm, world.begin(world.scene.stages[stage]), Clock.new())
+
+
+@pytest.mark.parametrize(("dimension", "dofs"), [(2, 3), (3, 6)])
+@pytest.mark.parametrize("scene", [hanging, over_springs])
+def test_matrix_holds_the_free_dofs_alone(scene: Any, dimension: int, dofs: int) -> None:
+    """Held are the ends' positions and, in space, the spin that nothing else holds; contact adds no row."""
+    world = built(scene(LAY, heave(0.2), dimension=dimension))
+    held = 2 * dimension + (dimension == 3)
+    for stage in (0, 1):
+        rows, columns = system(world, stage).matrix.mat.getSize()
+        assert rows == columns == dofs * NODES - held
+
+
+def test_hanging_riser_has_no_entries_for_contact() -> None:
+    """Each node couples with itself and its neighbours, on springs as well: they add to entries that are there."""
+    hung, sprung = (system(built(s(LAY)), 0).matrix.mat for s in (hanging, over_springs))
+    indptr, _, _ = hung.getValuesCSR()
+    assert np.diff(indptr).max() == 3 * 3
+    assert sprung.getInfo()["nz_used"] == hung.getInfo()["nz_used"]
+
+
+def names(world: World, stage: int) -> list[str]:
+    return [part.name for part in world.begin(world.scene.stages[stage]).parts]
+
+
+def test_static_stages_build_nothing_of_dynamics() -> None:
+    world = built(touchdown(LAY, heave(0.2)))
+    assert names(world, 0) == ["riser", "soil", "contact"]
+    assert names(world, 1) == ["riser", "inertia", "morison", "soil", "contact"]
+
+
+def test_without_water_nothing_of_the_sea() -> None:
+    scene = hanging(LAY, heave(0.2))
+    line = scene["line_types"]["flexible"]
+    del scene["water"], line["drag"], line["added_mass"]
+    world = built(scene)
+    assert names(world, 1) == ["riser", "inertia"]
+    assert world.soil is None
+    assert world.contact is None
+
+
+def test_symmetric_where_nothing_makes_it_unsymmetric() -> None:
+    world = built(touchdown(LAY, heave(0.2)))
+    assert system(world, 0).symmetric
+    assert not system(world, 1).symmetric
