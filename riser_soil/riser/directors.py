@@ -13,6 +13,7 @@ R is the identity in the unstressed configuration. With body-axes angular veloci
 t = R t0, t' = R (W x t0), t'' = R (A x t0 + W x (W x t0)).
 """
 
+import math
 from functools import cached_property
 
 import numpy as np
@@ -48,29 +49,24 @@ class PlanarTurn:
 
     def __init__(self, angle: Array, alpha0: Array) -> None:
         self.angle = angle
-        self.end_angle = _at_ends(angle) + alpha0
-        cosine, sine = np.cos(self.end_angle), np.sin(self.end_angle)
-        self.tangent = np.stack([cosine, sine], axis=-1)
-        self.normal = np.stack([-sine, cosine], axis=-1)
+        self.end_angle, self.tangent, self.normal = _planar_ends(angle, alpha0)
 
-    @cached_property
+    @property
     def P(self) -> Array:
-        return np.ascontiguousarray(self.normal[..., None])
+        return self.normal[..., None]
 
     def rates(self, v: Array, a: Array) -> tuple[Array, Array]:
         """t' and t'' (ne, 2, 2) from angular velocity and acceleration (nn, 1)."""
-        w, alpha = _at_ends(v), _at_ends(a)
-        return w * self.normal, alpha * self.normal - w**2 * self.tangent
+        first, second = _planar_combinations(self.tangent, self.normal, v, a, 0.0, 0.0)[:2]
+        return first, second
 
     def maps(self, v: Array, a: Array, shift_v: float, shift_a: float) -> Maps:
-        w, alpha = _at_ends(v), _at_ends(a)
-        first = shift_v * self.normal - w * self.tangent
-        second = (shift_a - w**2) * self.normal - (alpha + 2.0 * shift_v * w) * self.tangent
-        return self.P, first[..., None], second[..., None]
+        first, second = _planar_combinations(self.tangent, self.normal, v, a, shift_v, shift_a)[2:]
+        return self.P, first, second
 
     def geometric(self, F: Array) -> Array:
         """(ne, 2, 1, 1) from the residual conjugate to the tangents, F (ne, 2, 2)."""
-        return -np.einsum("esi,esi->es", self.tangent, F)[..., None, None]
+        return np.asarray(-np.sum(self.tangent * F, axis=2)[..., None, None])
 
 
 class PlanarFrames:
@@ -143,9 +139,38 @@ Frames = PlanarFrames | SpatialFrames
 Turn = PlanarTurn | SpatialTurn
 
 
-def _at_ends(nodal: Array) -> Array:
-    """Nodal values (nn, ...) at both ends of each element (ne, 2, ...)."""
-    return np.stack([nodal[:-1], nodal[1:]], axis=1)
+@njit
+def _planar_ends(angle: Array, alpha0: Array) -> tuple[Array, Array, Array]:
+    """Angle (ne, 2), tangent and normal (ne, 2, 2) of element ends."""
+    ne = alpha0.shape[0]
+    end_angle, tangent, normal = np.empty((ne, 2)), np.empty((ne, 2, 2)), np.empty((ne, 2, 2))
+    for e in range(ne):
+        for side in range(2):
+            end_angle[e, side] = angle[e + side] + alpha0[e, side]
+            cosine, sine = math.cos(end_angle[e, side]), math.sin(end_angle[e, side])
+            tangent[e, side, 0], tangent[e, side, 1] = cosine, sine
+            normal[e, side, 0], normal[e, side, 1] = -sine, cosine
+    return end_angle, tangent, normal
+
+
+@njit
+def _planar_combinations(
+    tangent: Array, normal: Array, v: Array, a: Array, shift_v: float, shift_a: float
+) -> tuple[Array, Array, Array, Array]:
+    """t', t'' (ne, 2, 2) and their derivatives by the angle (ne, 2, 2, 1), from nodal rates v and a (nn, 1)."""
+    ne = tangent.shape[0]
+    first, second = np.empty((ne, 2, 2)), np.empty((ne, 2, 2))
+    by_first, by_second = np.empty((ne, 2, 2, 1)), np.empty((ne, 2, 2, 1))
+    for e in range(ne):
+        for side in range(2):
+            w, alpha = v[e + side, 0], a[e + side, 0]
+            for i in range(2):
+                t, n = tangent[e, side, i], normal[e, side, i]
+                first[e, side, i] = w * n
+                second[e, side, i] = alpha * n - w**2 * t
+                by_first[e, side, i, 0] = shift_v * n - w * t
+                by_second[e, side, i, 0] = (shift_a - w**2) * n - (alpha + 2.0 * shift_v * w) * t
+    return first, second, by_first, by_second
 
 
 @njit

@@ -83,6 +83,7 @@ class Line:
         self.arc, self.outer_diameter = layout.arc, layout.outer_diameter
         self.length = np.diff(layout.arc)
         self.direction = np.array([1.0, 0.0, 0.0]) if direction is None else direction
+        self.normal = np.cross(self.direction, UP)
         self.basis, self.origin = self._axes(layout.position[0])
         self._check_plane(layout)
         self.chord0 = layout.chord0 @ (self.basis if dimension == 2 else layout.T0[0, 0])
@@ -92,6 +93,7 @@ class Line:
         self.x = (layout.position - self.origin) @ self.basis
         self.chord = np.diff(self.x, axis=0)
         self.offset = 0
+        self._first: Trial | None = None
         self._trials: deque[Trial] = deque(maxlen=2)
         self._number(hold_spin and dimension == 3)
 
@@ -105,10 +107,8 @@ class Line:
 
     def _check_plane(self, layout: Layout) -> None:
         """A planar line must not leave its plane."""
-        off = np.cross(self.direction, UP)
-        away = max(
-            np.abs((layout.position - layout.position[0]) @ off).max(), np.abs(layout.chord0 @ off).max()
-        )
+        off = self.normal
+        away = max(np.abs((layout.position - layout.position[0]) @ off).max(), np.abs(layout.chord0 @ off).max())
         if self.dimension == 2 and away > 1e-9 * layout.arc[-1]:
             raise SceneError(
                 f"dimension: 2: the riser's shapes leave the vertical plane by {away:.3g} m; use 3"
@@ -160,12 +160,24 @@ class Line:
         return np.asarray(np.append(half, 0.0) + np.append(0.0, half))
 
     def trial(self, state: State) -> Trial:
-        """The line at a state; kept for the last two new ones, whose arrays must not change from then on."""
-        for known in self._trials:
-            if known.state is state:
+        """The line at a state, whose arrays must not change from then on.
+
+        Kept for the first state since the last commit, where the step begins, and for the last two.
+        """
+        for known in (*self._trials, self._first):
+            if known is not None and known.state is state:
                 return known
-        self._trials.appendleft(self._make_trial(state))
-        return self._trials[0]
+        trial = self._make_trial(state)
+        if self._first is None:
+            self._first = trial
+        else:
+            self._trials.appendleft(trial)
+        return trial
+
+    def forget(self) -> None:
+        """Drop the trials that are kept."""
+        self._first = None
+        self._trials.clear()
 
     def _make_trial(self, state: State) -> Trial:
         d, u = self.dimension, self.nodal(state.u)
@@ -179,7 +191,7 @@ class Line:
         trial = self.trial(state)
         self.x, self.chord = trial.x, trial.chord
         self.frames.commit(self.nodal(state.u)[:, self.dimension :])
-        self._trials.clear()
+        self.forget()
 
     def improve(self, guess: State) -> Array:
         """First guess of a step: the guess's increment, with what the held ends move beyond it spread along the line.

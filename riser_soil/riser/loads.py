@@ -12,7 +12,7 @@ from riser_soil.errors import SceneError
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import SpatialTurn, moment_stiffness
-from riser_soil.riser.line import UP, Line
+from riser_soil.riser.line import Line
 from riser_soil.riser.trial import Trial
 
 
@@ -127,7 +127,7 @@ class PointLoads:
         """What the node's rotation dofs (r,) get of a moment in global axes."""
         if isinstance(trial.turn, SpatialTurn):
             return np.asarray(trial.turn.H[node].T @ moment)
-        return np.array([moment @ np.cross(self.line.direction, UP)])
+        return np.array([moment @ self.line.normal])
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if not self.line.active:

@@ -16,7 +16,7 @@ import numpy as np
 from riser_soil.arrays import Array, IntArray
 from riser_soil.part import State
 from riser_soil.riser.directors import SpatialTurn
-from riser_soil.riser.line import UP, Line
+from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.trial import Trial
 
@@ -113,7 +113,7 @@ def _global(line: Line, trial: Trial, dofs: Array, nodes: IntArray) -> tuple[Arr
     if isinstance(trial.turn, SpatialTurn):
         H = trial.turn.H[nodes]
         return force, np.linalg.solve(np.swapaxes(H, 1, 2), rest[..., None])[..., 0]
-    return force, rest * np.cross(line.direction, UP)
+    return force, rest * line.normal
 
 
 def _nodal(first: Array, second: Array) -> Array:
