@@ -1,0 +1,148 @@
+"""Runs that fail, are killed, or meet the results of another: what they say and what they leave, on 1 and 2 ranks."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from riser_soil.results import Run
+from tests.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.on_ranks import ENVIRONMENT, mpirun
+from tests.vtk_reading import read_by_vtk
+
+RANKS = pytest.mark.parametrize("ranks", [1, 2])
+FAILED, REFUSED = 3, 2
+FILES = {"scene.yaml", "summary.json", "results.nc", "riser.xdmf", "riser.h5", "soil.xdmf", "soil.h5"}
+
+
+def command(folder: Path, ranks: int, scene: Mapping, *options: str) -> subprocess.CompletedProcess[str]:
+    """riser-soil run on a scene, results in folder/out."""
+    (folder / "scene.yaml").write_text(json.dumps(scene), encoding="utf-8")
+    call = ["-m", "riser_soil", "run", "scene.yaml", "-o", "out", *options]
+    return mpirun(ranks, *call, folder=folder, seconds=200)
+
+
+def struck() -> Mapping:
+    """At 0.5 s a force of 1 MN begins to act in the middle of the block; steps may be halved twice only."""
+    blow = {"at": 4.0, "force": [0.0, 0.0, -1.0e6], "history": [[0.0, 0.0], [0.5, 0.0], [0.6, 1.0], [3.0, 1.0]]}
+    scene = touchdown(LAY, heave(3.0) | {"loads": [blow]})
+    scene["solver"]["min_time_step"] = 0.02
+    return scene
+
+
+def resting(su: float) -> Mapping:
+    """A pipe of 8 m, pinned at its start, lies on clay of strength su [Pa] and on nothing else."""
+    scene = touchdown(LAY, su=su)
+    del scene["seabed"]
+    segments = [{"line_type": "flexible", "length": 8.0, "elements": 16}]
+    scene["riser"] |= {"segments": segments, "end": "free", "initial": "straight"}
+    scene["soil"]["block"]["x"] = [-1.0, 9.0]
+    scene["soil"]["law"]["su_gradient"] = 0.0
+    return scene
+
+
+def told(done: subprocess.CompletedProcess[str]) -> str:
+    """The one line that a failed run tells; Open MPI adds its own about the rank that ended the job."""
+    mine = [line for line in done.stderr.splitlines() if re.search(r"converge|relaxation|finished run", line)]
+    assert len(mine) == 1, done.stderr
+    assert "Traceback" not in done.stderr
+    return mine[0]
+
+
+PLACE = re.compile(r"sits at the (riser node at arc [\d.]+ m|soil (node|surface) at \([-\d., e]+\) m), \w+")
+
+
+@RANKS
+def test_failed_step_is_told_with_its_place_and_keeps_all_before(ranks: int, tmp_path: Path) -> None:
+    done = command(tmp_path, ranks, struck())
+    assert done.returncode == FAILED
+    line = told(done)
+    assert PLACE.search(line), line
+    assert "no convergence at t = 0.5" in line
+    assert "smallest step 0.025" in line
+    run = Run(tmp_path / "out")
+    assert {p.name for p in run.folder.iterdir()} == FILES
+    assert not run.finished
+    lay, blow = run.summary["stages"]
+    assert (lay["steps"], blow["steps"], blow["time"]) == (1, 5, 0.5)
+    np.testing.assert_allclose(run.time, [0.0, 0.1, 0.2, 0.3, 0.4, 0.5], atol=1e-12)
+    assert np.isfinite(run["effective_tension"]).all()
+    np.testing.assert_allclose(run.soil_times, run.time)
+
+
+@RANKS
+def test_soil_loaded_beyond_its_capacity_is_an_error(ranks: int, tmp_path: Path) -> None:
+    """717 N/m lie on clay that bears some 250 N/m: no answer is right."""
+    done = command(tmp_path, ranks, resting(su=100.0))
+    assert done.returncode == FAILED
+    assert PLACE.search(told(done)), done.stderr
+    run = Run(tmp_path / "out")
+    assert not run.finished
+    assert run.summary["stages"][0]["steps"] == 0
+    assert run.time.size == 0
+
+
+def test_soil_loaded_below_its_capacity_is_none(tmp_path: Path) -> None:
+    done = command(tmp_path, 1, resting(su=1000.0))
+    assert done.returncode == 0, done.stderr
+    assert Run(tmp_path / "out").finished
+
+
+@RANKS
+def test_killed_run_leaves_what_it_has_accepted(ranks: int, tmp_path: Path) -> None:
+    (tmp_path / "scene.yaml").write_text(json.dumps(touchdown(LAY, heave(1000.0))), encoding="utf-8")
+    launch = ["mpirun", "-n", str(ranks), "--bind-to", "none"] if ranks > 1 else []
+    call = [*launch, sys.executable, "-m", "riser_soil", "run", "scene.yaml", "-o", "out"]
+    quiet = subprocess.DEVNULL
+    process = subprocess.Popen(
+        call, cwd=tmp_path, env=os.environ | ENVIRONMENT, stdout=quiet, stderr=quiet, start_new_session=True
+    )
+    try:
+        wait_for_steps(tmp_path / "out", 20)
+    finally:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+    run = Run(tmp_path / "out")
+    assert not run.finished
+    steps = run.time.size
+    assert steps > 20
+    assert np.isfinite(run["position"]).all()
+    assert run["newton_iterations"].size >= steps
+    for name in ("riser", "soil"):
+        times, frames = read_by_vtk(run.folder / f"{name}.xdmf")
+        assert len(times) == len(frames) > 20
+    again = command(tmp_path, 1, touchdown(LAY))
+    assert again.returncode == 0, "an unfinished run may be replaced"
+    assert Run(tmp_path / "out").finished
+
+
+def wait_for_steps(folder: Path, steps: int, seconds: float = 90.0) -> None:
+    """Until results.nc holds this many output times."""
+    ends = time.monotonic() + seconds
+    while time.monotonic() < ends:
+        time.sleep(0.2)
+        if (folder / "results.nc").is_file() and Run(folder).time.size > steps:
+            return
+    raise TimeoutError("the run has not come that far")
+
+
+@RANKS
+def test_finished_run_is_replaced_by_force_alone(ranks: int, tmp_path: Path) -> None:
+    first, second = touchdown(LAY), touchdown(LAY, su=2000.0)
+    assert command(tmp_path, ranks, first).returncode == 0
+    before = {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()}
+    refused = command(tmp_path, ranks, second)
+    assert refused.returncode == REFUSED
+    assert "--force" in told(refused)
+    assert {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()} == before
+    assert command(tmp_path, ranks, second, "--force").returncode == 0
+    assert "su: 2000" in (tmp_path / "out" / "scene.yaml").read_text(encoding="utf-8")
