@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass, field
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from mpi4py import MPI
@@ -25,6 +26,15 @@ ITERATING = PETSc.SNES.ConvergedReason.ITERATING
 
 class NotConvergedError(Exception):
     """A step that Newton could not solve; its text says why and where the residual sits."""
+
+
+@runtime_checkable
+class Judging(Protocol):
+    """A field that knows states in balance that are none of the thing modelled."""
+
+    def fault(self, state: State) -> str:
+        """What is wrong with a state, the same on all ranks; empty for a good one."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -95,6 +105,9 @@ class Newton:
         if self._snes.getConvergedReason() <= 0:
             raise NotConvergedError(self._reason())
         state = self._trial(self._x)
+        for owner in self.system.model.fields:
+            if isinstance(owner, Judging) and (fault := owner.fault(state)):
+                raise NotConvergedError(fault)
         return Solution(state, self._forces, self._norms)
 
     def require_stable(self, step: Step, solution: Solution) -> None:

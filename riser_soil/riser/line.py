@@ -207,6 +207,22 @@ class Line:
         self.nodal(improved)[:, : self.dimension] += along**3 * beyond[-1] + (1.0 - along) ** 3 * beyond[0]
         return improved
 
+    def fault(self, state: State) -> str:
+        """Where an element has folded: an end's tangent points against its chord.
+
+        A step of Newton's method that goes far astray ends in such a tangle of folded elements; it balances the loads,
+        even stably, but a pipe knows nothing like it.
+        """
+        trial = self.trial(state)
+        ahead = np.sum(trial.turn.tangent * trial.chord[:, None, :], axis=2).min(axis=1)
+        if np.all(ahead > 0.0):
+            return ""
+        arc = self.arc[int(np.argmin(ahead))]
+        return (
+            f"the riser is folded at arc {arc:.6g} m, where an element's end turns by more than 90 degrees from its "
+            "chord; start nearer to the shape sought, or take shorter elements or steps"
+        )
+
     def to_global(self, x: Array) -> Array:
         """Global positions (…, 3) of in-plane (or global) coordinates (…, d)."""
         return np.asarray(self.origin + x @ self.basis.T)

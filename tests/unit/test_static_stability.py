@@ -71,3 +71,22 @@ def test_a_cantilever_laid_out_level_falls_to_hang(tmp_path: Path, capsys: pytes
     assert final["start"]["force"] == pytest.approx([0.0, 0.0, 5000.0], abs=1e-2)
     assert final["end"]["position"] == pytest.approx([0.0, 0.0, 50.0 - 0.0125], abs=1e-3)
     assert "relaxation" in capsys.readouterr().out
+
+
+def test_a_line_laid_out_straight_sags_and_does_not_fold(tmp_path: Path) -> None:
+    """Newton's first step throws the untensioned line far down; from there it finds a stable tangle of folded elements.
+
+    The tension of a shallow sag is (EA w^2 L^2/24)^(1/3) (Irvine, Cable Structures, 1981, section 2.3).
+    """
+    scene = {
+        "line_types": {"pipe": {"EA": 1e8, "EI": 2e4, "submerged_weight": 490.5}},
+        "riser": {
+            "segments": [{"line_type": "pipe", "length": 50.0, "elements": 50}],
+            "start": {"position": [0.0, 0.0, 0.0]},
+            "end": {"position": [50.0, 0.0, 0.0]},
+            "initial": "straight",
+        },
+        "stages": [{"name": "sag", "kind": "static"}],
+    }
+    tension = (1e8 * 490.5**2 * 50.0**2 / 24.0) ** (1.0 / 3.0)
+    assert -thrust(scene, tmp_path) == pytest.approx(tension, rel=5e-3)
