@@ -6,6 +6,7 @@ it is replaced, so that the XML never names what is not there.
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
@@ -53,14 +54,14 @@ class XdmfFile:
         self._path = path
         self._heavy = path.with_suffix(".h5")
         self._head = _HEAD.format(name=quoteattr(name))
-        self._grids: list[str] = []
+        self._frames = 0
         self._waiting: list[Frame] = []
         with h5py.File(self._heavy, "w") as store:
             item = self._store(store, "cells", np.asarray(cells, dtype=np.int64))
             self._points = None if points is None else self._store(store, "points", points)
         kind = _polyline_of(cells) if polyline else f'TopologyType="{_CELLS[cells.shape[1]]}"'
         self._topology = f'<Topology {kind} NumberOfElements="{len(cells)}">{item}</Topology>'
-        self._write_xml()
+        write_atomically(path, self._head + _FOOT)
 
     def add(self, frame: Frame) -> None:
         """Takes a copy of one frame, later than the ones before; it lives in memory until `flush`."""
@@ -73,10 +74,10 @@ class XdmfFile:
         if not self._waiting:
             return
         with replacing(self._heavy) as draft, h5py.File(draft, "r+") as store:
-            grids = [self._grid(store, len(self._grids) + i, frame) for i, frame in enumerate(self._waiting)]
-        self._grids += grids
+            grids = [self._grid(store, self._frames + i, frame) for i, frame in enumerate(self._waiting)]
+        self._frames += len(grids)
         self._waiting.clear()
-        self._write_xml()
+        self._append("".join(grids))
 
     def _grid(self, store: h5py.File, number: int, frame: Frame) -> str:
         group = f"frame_{number:06d}"
@@ -102,8 +103,11 @@ class XdmfFile:
             f"{self._heavy.name}:/{where}</DataItem>"
         )
 
-    def _write_xml(self) -> None:
-        write_atomically(self._path, self._head + "".join(self._grids) + _FOOT)
+    def _append(self, grids: str) -> None:
+        """Put grids behind the last one; the text itself stays on disk, so that memory doesn't grow with the run."""
+        with replacing(self._path) as draft, draft.open("r+b") as text:
+            text.seek(-len(_FOOT), os.SEEK_END)
+            text.write((grids + _FOOT).encode())
 
 
 def polyline(nodes: int) -> IntArray:
