@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -43,13 +44,16 @@ class WatchedRun:
         return [s for s in self.steps if s.static == static]
 
 
-def watched_run(scene: Scene, folder: Path) -> WatchedRun:
-    """Run a scene into a folder."""
+def watched_run(scene: Scene, folder: Path, at_each: Callable[[], None] | None = None) -> WatchedRun:
+    """Run a scene into a folder. at_each: called after every accepted step, instead of gathering its facts."""
     watched = WatchedRun(folder)
     usual = Observer.look
 
     def look(observer: Observer, system: System, step: Accepted) -> Seen | None:
-        watched.steps.append(_facts(observer._world, system, step))
+        if at_each is not None:
+            at_each()
+        else:
+            watched.steps.append(_facts(observer._world, system, step))
         return usual(observer, system, step)
 
     with pytest.MonkeyPatch.context() as patch:

@@ -1,0 +1,28 @@
+"""Resident memory [MB] at every accepted step of a run, as JSON: python memory_of_run.py SCENE.yaml FOLDER."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from pathlib import Path
+
+from tests.watched_run import watched_run
+
+
+def resident() -> float:
+    """Resident memory of this process [MB]."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+
+def main(scene: str, folder: Path) -> None:
+    from riser_soil.scene.reader import read_scene
+
+    found: list[float] = []
+    watched_run(read_scene(scene), folder, lambda: found.append(resident()))
+    (folder / "memory.json").write_text(json.dumps(found), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], Path(sys.argv[2]))

@@ -1,0 +1,203 @@
+"""What the demo and a small coupled run leave in their folders, read by other people's readers."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+
+from riser_soil import __version__
+from riser_soil.results import Run
+from tests.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.on_ranks import ENVIRONMENT, mpirun
+from tests.vtk_reading import read_by_vtk
+from tests.watched_run import WatchedRun
+
+HEXAHEDRON, POLYLINE = 12, 4
+ON_NODES = ("effective_tension", "bending_moment", "curvature", "contact_force")
+ON_DEMO = pytest.mark.xdist_group("demo")
+
+VECTORS, SCALARS = ("position", "force", "moment"), ("effective_tension", "angle_deg")
+WHOLE = ("touchdown_arc", "max_penetration", "contact_force")
+PLACED = ("max_bending_moment", "max_curvature", "min_effective_tension")
+
+
+@ON_DEMO
+def test_vtk_reads_the_riser(demo: WatchedRun) -> None:
+    run = Run(demo.folder)
+    times, frames = read_by_vtk(demo.folder / "riser.xdmf")
+    assert len(times) == 1 + 30, "the laid riser, then every half second"
+    rows = np.searchsorted(run.time, np.array(times) - 1e-9)
+    np.testing.assert_allclose(run.time[rows], times, atol=1e-12)
+    for row, frame in zip(rows, frames, strict=True):
+        assert frame["cell_types"].tolist() == [POLYLINE]
+        np.testing.assert_array_equal(frame["points"], run["position"][row])
+        for name in ON_NODES:
+            np.testing.assert_array_equal(frame[f"point:{name}"], run[name][row])
+    assert frames[-1]["point:contact_force"].max() > 500.0
+
+
+@ON_DEMO
+def test_vtk_reads_the_soil(demo: WatchedRun) -> None:
+    run = Run(demo.folder)
+    times, frames = read_by_vtk(demo.folder / "soil.xdmf")
+    riser_times, _ = read_by_vtk(demo.folder / "riser.xdmf")
+    assert times == riser_times, "both on one time axis"
+    volume = 40.0 * 5.0 * 2.5
+    for number, frame in enumerate(frames):
+        assert set(frame["cell_types"].tolist()) == {HEXAHEDRON}
+        assert frame["volumes"].sum() == pytest.approx(volume, rel=1e-9)
+        own = run.soil_frame(number)
+        np.testing.assert_array_equal(frame["points"], own.points)
+        for place, name in (
+            ("point", "displacement"),
+            ("cell", "von_mises_stress"),
+            ("cell", "equivalent_plastic_strain"),
+        ):
+            np.testing.assert_array_equal(frame[f"{place}:{name}"], own.fields[name])
+    last = frames[-1]
+    assert last["point:displacement"][:, 2].min() < -1e-3
+    depth = -last["points"][:, 2].min()
+    assert 100.0 < last["cell:von_mises_stress"].max() <= np.sqrt(3.0) * (4.0e3 + 1.5e3 * depth)
+    assert last["cell:equivalent_plastic_strain"].min() >= 0.0
+
+
+@ON_DEMO
+def test_pipe_and_soil_lie_on_each_other_in_the_files(demo: WatchedRun) -> None:
+    """The pipe's underside is as deep in the deformed soil as the penetration says; both files are of one moment."""
+    run = Run(demo.folder)
+    frame = run.soil_frame()
+    top = np.flatnonzero(frame.points[:, 2] > -1e-9)
+    deformed = frame.points[top] + frame.fields["displacement"][top]
+    settled = top[np.argmin(deformed[:, 2])]
+    touching = np.flatnonzero(run["contact_force"][-1] > 0.0)
+    position = run["position"][-1][touching]
+    nearest = position[np.argmin(np.abs(position[:, 0] - frame.points[settled, 0]))]
+    gap = nearest[2] - 0.15 - deformed[:, 2].min()
+    assert abs(gap) <= run["max_penetration"][-1] + 2e-3
+
+
+@ON_DEMO
+def test_xarray_opens_the_series(demo: WatchedRun) -> None:
+    with xarray.open_dataset(demo.folder / "results.nc", engine="h5netcdf", decode_times=False) as data:
+        nodes = 150
+        assert dict(data.sizes) == {"time": 151, "step": 151, "arc": nodes, "component": 3}
+        assert data.attrs["finished"] == 1
+        assert data.attrs["title"] == "Touchdown on soft clay"
+        assert data["position"].dims == ("time", "arc", "component")
+        for name in ON_NODES:
+            assert data[name].dims == ("time", "arc")
+        for name in ("start_force", "end_force", "start_moment", "end_moment"):
+            assert data[name].dims == ("time", "component")
+        for name in ("newton_iterations", "time_step", "energy_residual"):
+            assert data[name].dims == ("step",)
+        for variable in data.data_vars.values():
+            assert variable.attrs["long_name"]
+            assert variable.attrs["units"]
+        assert float(data["effective_tension"].sel(arc=148.0).isel(time=-1)) > 5e4
+        np.testing.assert_array_equal(data["newton_iterations"], [s.iterations for s in demo.steps])
+        assert np.isnan(data["energy_residual"][0])
+
+
+@ON_DEMO
+def test_summary_is_as_documented(demo: WatchedRun) -> None:
+    summary = json.loads((demo.folder / "summary.json").read_text(encoding="utf-8"))
+    assert set(summary) == {"title", "finished", "version", "ranks", "parts", "dofs", "stages", "seconds"}
+    assert (summary["finished"], summary["version"], summary["ranks"]) == (True, __version__, 1)
+    assert set(summary["parts"]) == {"built", "left_out"}
+    assert {"riser", "soil", "contact", "morison", "inertia"} <= set(summary["parts"]["built"])
+    assert all(isinstance(reason, str) and reason for reason in summary["parts"]["left_out"].values())
+    assert set(summary["dofs"]) == {"riser", "soil"}
+    assert summary["dofs"]["riser"] == 3 * 150 - 4
+    assert {"riser", "soil", "contact", "linear_solve"} <= set(summary["seconds"])
+    documented = {"name", "kind", "time", "steps", "newton_iterations", "step_cuts", "final", "extremes", "energy"}
+    for stage in summary["stages"]:
+        assert set(stage) == documented | {"most_newton_iterations"}
+        assert_final(stage["final"])
+        assert_extremes(stage["extremes"])
+        assert set(stage["energy"]) == {"kinetic", "strain", "potential", "dissipated", "work", "residual"}
+    assert [(s["name"], s["kind"], s["time"], s["steps"]) for s in summary["stages"]] == [
+        ("lay", "static", 0.0, 1),
+        ("heave", "dynamic", 15.0, 150),
+    ]
+
+
+def assert_final(final: Any) -> None:
+    assert set(final) == {"start", "end", *WHOLE, *PLACED}
+    for end in (final["start"], final["end"]):
+        assert set(end) == {*VECTORS, *SCALARS}
+        assert all(len(end[name]) == 3 for name in VECTORS)
+        assert all(isinstance(end[name], float) for name in SCALARS)
+    assert all(set(final[name]) == {"value", "arc"} for name in PLACED)
+    assert all(isinstance(final[name], float) for name in WHOLE)
+
+
+def assert_extremes(extremes: Any) -> None:
+    kinds = {"min", "max", "t_min", "t_max"}
+    assert set(extremes) == {"start", "end", *WHOLE, *PLACED}
+    for end in (extremes["start"], extremes["end"]):
+        assert all(set(end[name]) == kinds for name in (*VECTORS, *SCALARS))
+    for name in (*WHOLE, *PLACED):
+        assert set(extremes[name]) == kinds
+        assert extremes[name]["min"] <= extremes[name]["max"]
+
+
+@ON_DEMO
+def test_summary_agrees_with_the_series(demo: WatchedRun) -> None:
+    run = Run(demo.folder)
+    final, extremes = (run.summary["stages"][1][key] for key in ("final", "extremes"))
+    np.testing.assert_array_equal(final["end"]["force"], run["end_force"][-1])
+    assert final["touchdown_arc"] == run["touchdown_arc"][-1]
+    assert final["contact_force"] == run["contact_force_sum"][-1, 2]
+    assert final["max_bending_moment"]["value"] == run["bending_moment"][-1].max()
+    assert final["max_bending_moment"]["arc"] == run.arc[run["bending_moment"][-1].argmax()]
+    assert final["min_effective_tension"]["value"] == run["effective_tension"][-1].min()
+    top = run["end_force"][:, 2]
+    force = extremes["end"]["force"]
+    assert (force["min"][2], force["max"][2]) == (top.min(), top.max())
+    assert (force["t_min"][2], force["t_max"][2]) == (run.time[top.argmin()], run.time[top.argmax()])
+    assert extremes["max_curvature"]["max"] == run["curvature"].max()
+
+
+def test_resolved_scene_computes_the_same_again(tmp_path: Path) -> None:
+    """Bit by bit: nothing that matters is missing from scene.yaml or depends on chance."""
+    given: Mapping = touchdown(LAY, heave(0.5), su=1000.0, dimension=3)
+    (tmp_path / "given.yaml").write_text(json.dumps(given), encoding="utf-8")
+    for scene, out in (("given.yaml", "first"), ("first/scene.yaml", "second")):
+        done = mpirun(1, "-m", "riser_soil", "run", scene, "-o", out, folder=tmp_path)
+        assert done.returncode == 0, done.stderr
+    first, second = Run(tmp_path / "first"), Run(tmp_path / "second")
+    for name in ("position", "moment_vector", "contact_force", "end_force", "energy_residual", "newton_iterations"):
+        np.testing.assert_array_equal(first[name], second[name], err_msg=name)
+    one, other = (run.soil_frame().fields for run in (first, second))
+    assert one["equivalent_plastic_strain"].max() > 0.0
+    assert all(np.array_equal(one[name], other[name]) for name in one)
+    texts = [(run.folder / "scene.yaml").read_text(encoding="utf-8") for run in (first, second)]
+    assert texts[0] == texts[1]
+
+
+@pytest.mark.parametrize("name", ["coupled", "riser"])
+def test_memory_stays_flat_over_500_steps(name: str, tmp_path: Path) -> None:
+    """Resident memory grows by less than 3 MB from step 100 to step 600; the states of 500 coupled steps kept would
+    be 7 MB. Results are recorded every tenth step: those of every step would wait in memory for their turn on disk.
+    """
+    scene = touchdown(LAY, heave(60.0), su=1000.0) | {"output": {"interval": 1.0}}
+    if name == "riser":
+        del scene["soil"]
+    (tmp_path / "scene.yaml").write_text(json.dumps(scene), encoding="utf-8")
+    script = Path(__file__).with_name("memory_of_run.py")
+    call = [sys.executable, str(script), str(tmp_path / "scene.yaml"), str(tmp_path / "out")]
+    done = subprocess.run(
+        call, env=os.environ | ENVIRONMENT, capture_output=True, text=True, timeout=200, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    megabytes = np.array(json.loads((tmp_path / "out" / "memory.json").read_text(encoding="utf-8")))
+    assert len(megabytes) == 601
+    assert megabytes[-1] - megabytes[100] < 3.0
