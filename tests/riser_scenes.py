@@ -1,0 +1,91 @@
+"""Scenes of a riser alone as mappings, and what is seen of them step by step through the time loop."""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.arrays import Array
+from riser_soil.build import build
+from riser_soil.march import Accepted
+from riser_soil.observe import riser_snapshot
+from riser_soil.part import State
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.scene import Scene
+from riser_soil.snapshot import RiserSnapshot
+from riser_soil.system import System
+from tests.coupled_scenes import Mapping
+from tests.driven_stage import take
+
+AVERAGE = {"newmark": {"beta": 0.25, "gamma": 0.5}}
+
+
+def riser_scene(
+    *stages: Mapping, pipe: Mapping, length: float, elements: int, start: Any, end: Any, **more: Any
+) -> Mapping:
+    """A riser of one line type without gravity; `more` adds sections to the scene, and keys to its riser section."""
+    scene: Mapping = {"title": "A riser alone", "gravity": 0.0, "line_types": {"pipe": dict(pipe)}}
+    segments = [{"line_type": "pipe", "length": length, "elements": elements}]
+    riser = {"segments": segments, "start": start, "end": end} | more.pop("riser", {})
+    scene |= {"riser": riser, "stages": list(stages)} | deepcopy(more)
+    return scene
+
+
+def held(*position: float, rotation: Any = "free") -> Mapping:
+    return {"position": list(position), "rotation": rotation}
+
+
+def static(name: str = "static", **more: Any) -> Mapping:
+    return {"name": name, "kind": "static", **more}
+
+
+def dynamic(duration: float, time_step: float, name: str = "dynamic", **more: Any) -> Mapping:
+    return {"name": name, "kind": "dynamic", "duration": duration, "time_step": time_step, **more}
+
+
+@dataclass
+class Told:
+    """A stage, step by step: end times, steps [s], energies [J], node positions (nn, 3), the riser at the last step."""
+
+    t: list[float] = field(default_factory=list)
+    dt: list[float] = field(default_factory=list)
+    cuts: list[int] = field(default_factory=list)
+    energy: list[float] = field(default_factory=list)
+    work: list[float] = field(default_factory=list)
+    position: list[Array] = field(default_factory=list)
+    last: RiserSnapshot | None = None
+
+    @property
+    def end(self) -> RiserSnapshot:
+        assert self.last is not None
+        return self.last
+
+
+def tell(scene: Mapping | Scene) -> list[Told]:
+    """Take all stages of a scene without files."""
+    world = build(scene if isinstance(scene, Scene) else scene_from_mapping(scene), MPI.COMM_SELF)
+    before, told = State.at_rest(0.0, world.size), list[Told]()
+    for stage in world.scene.stages:
+        now = Told()
+
+        def watch(system: System, step: Accepted, now: Told = now) -> None:
+            now.t.append(step.t)
+            now.dt.append(step.dt)
+            now.cuts.append(step.cuts)
+            now.energy.append(step.energy.total)
+            now.work.append(step.work - step.dissipated)
+            now.position.append(world.line.positions3(step.solution.state))
+            now.last = riser_snapshot(world, system, step)
+
+        before = take(world, stage, before, watch)
+        told.append(now)
+    return told
+
+
+def distance(a: Array, b: Array) -> float:
+    """Largest distance of a point in one array (…, 3) from its mate in the other [m]."""
+    return float(np.linalg.norm(a - b, axis=-1).max())
