@@ -39,16 +39,11 @@ class Foreseeing(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Accepted:
-    """An accepted step, before its configuration is committed.
-
-    motion: the solution's state with the rates that bulk and contact forces together cause (see `time_scheme`), by
-    the mass in the configuration before the step.
-    """
+    """A solved step and its energy balance [J]; cuts: failed attempts before it."""
 
     t: float
     dt: float
     solution: Solution
-    motion: State
     cuts: int
     energy: Energy
     dissipated: float
@@ -56,7 +51,11 @@ class Accepted:
 
 
 class March:
-    """The state of a stage on its way: `before` is the accepted state, its increments zero."""
+    """A stage on its way.
+
+    before: the accepted state that the next step starts from, its increments zero; its rates leave out what contact
+    adds to them (see `time_scheme`). now: the same state as the riser moves.
+    """
 
     def __init__(self, system: System, newton: Newton, scheme: Scheme, before: State) -> None:
         self.system, self.newton, self.scheme = system, newton, scheme
@@ -65,7 +64,7 @@ class March:
         self._foreseeing = [owner for owner in owners if isinstance(owner, Foreseeing)]
         self._adaptive = [part for part in system.model.parts if isinstance(part, Adaptive)]
         self._contact = system.comm.allreduce(any(p.name == "contact" for p in system.model.parts), MPI.LOR)
-        self.before = before
+        self.before = self.now = before
         self.restart()
         if isinstance(scheme, GeneralizedAlpha):
             self._mass = RiserMass(system)
@@ -137,8 +136,7 @@ class March:
         supports = self.system.work_of_supports(self._forces, solution.forces, state.u)
         work, energy = turned.external + supports, self.system.energy(state)
         self._refuse_wrong_root(energy, turned.dissipated, work)
-        motion = self._motion(solution, control.dt)
-        return Accepted(control.target, control.dt, solution, motion, cuts, energy, turned.dissipated, work)
+        return Accepted(control.target, control.dt, solution, cuts, energy, turned.dissipated, work)
 
     def _refuse_wrong_root(self, energy: Energy, dissipated: float, work: float) -> None:
         """A dynamic step that more than doubles the energy in motion out of nothing is a root of the equations far
@@ -158,24 +156,21 @@ class March:
         """Accept the step and get ready for the next."""
         state, forces = step.solution.state, step.solution.forces
         self.system.commit(state)
-        self.before = self._rates_after(state, forces, step.dt)
+        self.before, self.now = self._rates_after(step)
         self._forces, self._history, self._energy = forces, self._forces_at_start(), step.energy
         self._increment, self._dt = state.u, step.dt
         control.accept(easy=step.solution.iterations <= EASY)
         self._renew_pattern()
 
-    def _motion(self, solution: Solution, dt: float) -> State:
-        state = solution.state
+    def _rates_after(self, step: Accepted) -> tuple[State, State]:
+        """The state just committed, increments zero: with the bulk's rates alone, and as the riser moves."""
+        solved, forces = step.solution.state, step.solution.forces
+        state = State(solved.t, np.zeros_like(solved.u), solved.v, solved.a)
         if not self._contact or self._mass is None or not isinstance(self.scheme, GeneralizedAlpha):
-            return state
-        contact = self._mass.accelerations(state.t, -solution.forces.end)
-        split = self.scheme.split_contact(state, contact, dt)
-        return State(state.t, state.u, split.v, split.a + contact)
-
-    def _rates_after(self, state: State, forces: Forces, dt: float) -> State:
-        if self._contact and self._mass is not None and isinstance(self.scheme, GeneralizedAlpha):
-            state = self.scheme.split_contact(state, self._mass.accelerations(state.t, -forces.end), dt)
-        return State(state.t, np.zeros_like(state.u), state.v, state.a)
+            return state, state
+        contact = self._mass.accelerations(state.t, -forces.end)
+        bulk = self.scheme.split_contact(state, contact, step.dt)
+        return bulk, State(bulk.t, bulk.u, bulk.v, bulk.a + contact)
 
     def _forces_at_start(self) -> Forces | None:
         """Bulk forces at the accepted state, in its own axes, where the scheme weighs them."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +13,8 @@ from riser_soil import __version__
 from riser_soil.arrays import Array
 from riser_soil.build import World
 from riser_soil.inventory import built, left_out, unknowns
-from riser_soil.march import Accepted
-from riser_soil.part import Energy, Forces
+from riser_soil.march import Accepted, March
+from riser_soil.part import Energy, Forces, State
 from riser_soil.progress import Progress
 from riser_soil.record import Recorder
 from riser_soil.riser.section_forces import HasElementForces, element_residual, end_reactions, section_forces
@@ -25,15 +24,7 @@ from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.schedule import Schedule
 from riser_soil.screen import print_summary
 from riser_soil.snapshot import Ledger, RiserSnapshot, RunFacts, StepHealth, Touch
-from riser_soil.system import Clock, System, total
-
-
-@dataclass(frozen=True, eq=False)
-class Seen:
-    """The riser at the end of a step, looked at before the step is committed; rank 0 only."""
-
-    riser: RiserSnapshot
-    touch: Touch
+from riser_soil.system import Clock, total
 
 
 class Observer:
@@ -70,16 +61,7 @@ class Observer:
             self._recorder.begin_stage(stage.name, stage.kind)
         self._progress.begin_stage(stage.name, stage.kind, 1.0 if isinstance(stage, StaticStage) else stage.duration)
 
-    def look(self, system: System, step: Accepted) -> Seen | None:
-        """The riser at the end of a step that isn't committed yet."""
-        if self._recorder is None:
-            return None
-        since = time.perf_counter()
-        seen = Seen(riser_snapshot(self._world, system, step), touch(self._world, step))
-        self._clock.add("output", since)
-        return seen
-
-    def record(self, step: Accepted, seen: Seen | None, last: bool) -> None:
+    def record(self, march: March, step: Accepted, last: bool) -> None:
         """Tell the recorder of a step that has been committed; collective."""
         since = time.perf_counter()
         due = self._schedule.due(step.t, last)
@@ -87,10 +69,11 @@ class Observer:
         soil = self._world.soil.output_fields() if wanted and self._world.soil is not None else None
         previous, self._ledger = self._ledger, self._balance(step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
-        if self._recorder is not None and seen is not None:
+        if self._recorder is not None:
             change = self._ledger.residual - previous.residual
             health = StepHealth(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
-            self._recorder.accept(step.t, due, seen.riser, seen.touch, health, self._ledger, soil)
+            riser, touching = riser_snapshot(self._world, march), touch(self._world, march.now)
+            self._recorder.accept(step.t, due, riser, touching, health, self._ledger, soil)
         self._relaxed = 0
         self._clock.add("output", since)
 
@@ -112,21 +95,20 @@ class Observer:
         return Ledger(e.kinetic, e.strain, e.potential, dissipated, work, residual)
 
 
-def riser_snapshot(world: World, system: System, step: Accepted) -> RiserSnapshot:
-    """The riser at the end of a step that isn't committed yet; on the rank that holds it."""
-    line, state = world.line, step.motion
-    parts = [p for p in system.model.parts if isinstance(p, HasElementForces)]
-    on_nodes = _on_nodes(world, step, element_residual(line, parts, step.solution.state))
+def riser_snapshot(world: World, march: March) -> RiserSnapshot:
+    """The riser at the accepted state; on the rank that holds it."""
+    line, state = world.line, march.now
+    parts = [p for p in march.system.model.parts if isinstance(p, HasElementForces)]
     residual = element_residual(line, parts, state)
     inside = section_forces(line, world.elements, state, residual)
-    start, end = end_reactions(line, state, residual, on_nodes)
+    start, end = end_reactions(line, state, residual, _on_nodes(world, march, residual))
     tangent = line.trial(state).turn.tangent @ line.basis.T
     return RiserSnapshot(
         position=line.positions3(state),
         effective_tension=inside.effective_tension,
         bending_moment=inside.bending_moment,
         curvature=inside.curvature,
-        contact_force=_contact_force(world, step),
+        contact_force=_contact_force(world, state),
         moment_vector=inside.moment,
         start_force=start.force,
         end_force=end.force,
@@ -137,32 +119,28 @@ def riser_snapshot(world: World, system: System, step: Accepted) -> RiserSnapsho
     )
 
 
-def _on_nodes(world: World, step: Accepted, residual: Array) -> Array:
-    """What acts on nodes but isn't a support (nn, ndof): all forces less those of elements and of end springs.
-
-    residual: of the elements, at the state that the step's forces belong to.
-    """
-    line, forces = world.line, step.solution.forces
-    inside = np.zeros_like(forces.force)
-    line.scatter(residual, inside)
-    springs = Forces.zeros(forces.force.size)
+def _on_nodes(world: World, march: March, residual: Array) -> Array:
+    """What acts on nodes but isn't a support (nn, ndof): all forces less those of elements and of end springs."""
+    forces = march.system.forces(march.now)
+    inside, springs = np.zeros_like(forces.force), Forces.zeros(forces.force.size)
+    world.line.scatter(residual, inside)
     for part in world.riser_parts:
         if isinstance(part, EndSpring):
-            part.residual(step.solution.state, springs)
-    return line.nodal(total(forces) - inside - springs.force)
+            part.residual(march.now, springs)
+    return world.line.nodal(total(forces) - inside - springs.force)
 
 
-def _contact_force(world: World, step: Accepted) -> Array:
+def _contact_force(world: World, state: State) -> Array:
     if world.contact is None:
         return np.zeros(world.line.nodes)
-    return world.contact.force_per_length(step.solution.state)
+    return world.contact.force_per_length(state)
 
 
-def touch(world: World, step: Accepted) -> Touch:
+def touch(world: World, state: State) -> Touch:
     """Where the riser touches the seabed, on the rank that holds contact."""
     if world.contact is None:
         return Touch(float("nan"), 0.0, np.zeros(3))
-    state, contact = step.solution.state, world.contact
+    contact = world.contact
     return Touch(contact.touchdown_arc(state), contact.max_penetration(state), contact.force_on_riser(state))
 
 

@@ -66,9 +66,8 @@ def _walk(world: World, stage: Stage, march: March, observer: Observer) -> State
             relaxed = True
             control.widen()
             continue
-        seen = observer.look(march.system, step)
         march.commit(step, control)
-        observer.record(step, seen, last=control.finished)
+        observer.record(march, step, last=control.finished)
         relaxed = False
     return march.before
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from mpi4py import MPI
 from scipy.sparse import csr_matrix
 
@@ -14,11 +16,12 @@ from riser_soil.build import World, build
 from riser_soil.build.stage import scheme_of
 from riser_soil.march import Accepted, March
 from riser_soil.newton import Newton, NewtonSettings
-from riser_soil.observe import Observer, Seen
+from riser_soil.observe import Observer
 from riser_soil.part import Energy, State
 from riser_soil.run import run_stage
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage, Stage
+from riser_soil.stepping import StepControl
 from riser_soil.system import Clock, System
 from riser_soil.time_scheme import Static
 from tests.coupled_scenes import Mapping
@@ -31,23 +34,34 @@ def built(mapping: Mapping) -> World:
     return build(scene_from_mapping(mapping), MPI.COMM_SELF)
 
 
-class Watcher(Observer):
-    """Shows every accepted step, not yet committed, to a function; writes nothing."""
+@contextmanager
+def before_commit(watch: Watch | None) -> Iterator[None]:
+    """Show every accepted step to a function before it is committed."""
+    usual = March.commit
 
-    def __init__(self, watch: Watch | None = None) -> None:
-        self._watch = watch
+    def commit(march: March, step: Accepted, control: StepControl) -> None:
+        if watch is not None:
+            watch(march.system, step)
+        usual(march, step, control)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(March, "commit", commit)
+        yield
+
+
+class Watcher(Observer):
+    """Shows every committed step to a function; writes nothing."""
+
+    def __init__(self, after: Callable[[March, Accepted], None] | None = None) -> None:
+        self._after = after
         self.relaxations = 0
 
     def begin_stage(self, stage: Stage, energy: Energy) -> None:
         self.energy_at_start = energy
 
-    def look(self, system: System, step: Accepted) -> Seen | None:
-        if self._watch is not None:
-            self._watch(system, step)
-        return None
-
-    def record(self, step: Accepted, seen: Seen | None, last: bool) -> None:
-        pass
+    def record(self, march: March, step: Accepted, last: bool) -> None:
+        if self._after is not None:
+            self._after(march, step)
 
     def relaxed(self, iterations: int) -> None:
         self.relaxations += 1
@@ -56,7 +70,8 @@ class Watcher(Observer):
 def take(world: World, stage: Stage, before: State | None = None, watch: Watch | None = None) -> State:
     """Take a stage to its end; the state that it leaves, increments zero."""
     rest = State.at_rest(0.0, world.size) if before is None else before
-    return run_stage(world, stage, rest, Watcher(watch), Clock.new())
+    with before_commit(watch):
+        return run_stage(world, stage, rest, Watcher(), Clock.new())
 
 
 class FirstStep:

@@ -15,12 +15,13 @@ import pytest
 from riser_soil.arrays import Array
 from riser_soil.contact.contact import Contact
 from riser_soil.march import Accepted
+from riser_soil.newton import Newton, Solution, Step
 from riser_soil.part import Forces, State, Weights
 from riser_soil.run import run_stage
 from riser_soil.system import Clock, System
 from riser_soil.time_scheme import GeneralizedAlpha
 from tests.coupled_scenes import Mapping
-from tests.driven_stage import Watcher, built
+from tests.driven_stage import Watcher, before_commit, built
 
 WEIGHT, LENGTH, DROP = 700.0, 20.0, 1.0  # N/m, m, m
 FALL = WEIGHT * LENGTH * DROP  # J, a measure of the energy in play
@@ -82,8 +83,9 @@ class Fall:
             taken = world.contact.work(State.at_rest(0.0, after.u.size), after).dissipated
             self.least_dissipated_by_contact = min(self.least_dissipated_by_contact, taken)
 
-        watcher = Watcher(watch)
-        run_stage(world, world.scene.stages[0], State.at_rest(0.0, world.size), watcher, Clock.new())
+        watcher = Watcher()
+        with before_commit(watch):
+            run_stage(world, world.scene.stages[0], State.at_rest(0.0, world.size), watcher, Clock.new())
         change = np.array([s.energy.total for s in steps]) - watcher.energy_at_start.total
         work = np.cumsum([s.work for s in steps])
         self.gain: Array = change - work
@@ -108,6 +110,26 @@ def test_average_acceleration_gains_no_energy_by_impact(k: float, dt: float) -> 
     seen = Fall(scene)
     assert seen.gain.max() < 1e-4 * FALL
     assert seen.least_dissipated_by_contact > -1e-9 * FALL
+
+
+def test_step_that_makes_energy_out_of_nothing_is_cut(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps have roots far from the motion that they continue. The fourth step is given one: the pipe blown apart."""
+    usual, calls = Newton.solve, list[float]()
+
+    def solve(self: Newton, step: Step) -> Solution:
+        solution = usual(self, step)
+        calls.append(step.t)
+        if len(calls) != 4:
+            return solution
+        far = step.scheme.trial(step.before, step.t, step.dt, 50.0 * solution.state.u)
+        self.system.prescribe(far)
+        return Solution(far, self.system.forces(far), solution.norms)
+
+    monkeypatch.setattr(Newton, "solve", solve)
+    world, cuts = built(pinned(1e6, 0.1)), list[int]()
+    take(world, world.scene.stages[0], watch=lambda _, step: cuts.append(step.cuts))
+    assert cuts[:5] == [0, 0, 0, 1, 0]
+    np.testing.assert_allclose(calls[3:5], [0.4, 0.35], atol=1e-12)
 
 
 def test_contact_averaged_with_the_pipe_would_gain_energy(monkeypatch: pytest.MonkeyPatch) -> None:
