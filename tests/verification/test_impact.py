@@ -21,7 +21,7 @@ from riser_soil.run import run_stage
 from riser_soil.system import Clock, System
 from riser_soil.time_scheme import GeneralizedAlpha
 from tests.coupled_scenes import Mapping
-from tests.driven_stage import Watcher, before_commit, built
+from tests.driven_stage import Watcher, before_commit, built, take
 
 WEIGHT, LENGTH, DROP = 700.0, 20.0, 1.0  # N/m, m, m
 FALL = WEIGHT * LENGTH * DROP  # J, a measure of the energy in play
