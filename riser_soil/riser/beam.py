@@ -63,7 +63,7 @@ class Beam:
             trial, K, at = self.line.trial(state), values["riser"], self._loaded(self.line.trial(state))
             K += weights.force * self._elastic.tangent(trial)
             trial.add_turning(K, weights.force, trial.once((self, "load"), self._load_forces))
-            trial.add_blocks(K, weights.force, trial.columns(weights)[0], uniform_load.stiffness(*at))
+            uniform_load.add_tangent(K, weights.force, trial.turn.P, *at)
 
     def energy(self, state: State) -> Energy:
         """Strain energy, and the potential of weight and load, zero at the origin of the axes."""

@@ -94,8 +94,7 @@ class SpatialTurn:
     def __init__(self, Rn: Array, Theta: Array, T0: Array) -> None:
         self.Rn, self.Theta, self.T0 = Rn, Theta, T0
         self.R, self.H = node_frames(Rn, Theta)
-        self.frame1, self.frame2 = end_frames(self.R, T0)
-        self.tangent = np.stack([self.frame1[:, :, 0], self.frame2[:, :, 0]], axis=1)
+        self.frame1, self.frame2, self.tangent = end_frames(self.R, T0)
 
     @cached_property
     def P(self) -> Array:
@@ -185,14 +184,15 @@ def node_frames(Rn: Array, Theta: Array) -> tuple[Array, Array]:
 
 
 @njit
-def end_frames(R: Array, T0: Array) -> tuple[Array, Array]:
-    """Frames T = R T0 at the first and second end of each element, each (ne, 3, 3)."""
+def end_frames(R: Array, T0: Array) -> tuple[Array, Array, Array]:
+    """Frames T = R T0 at the first and second end of each element, each (ne, 3, 3), and tangents (ne, 2, 3)."""
     ne = T0.shape[0]
-    first, second = np.empty((ne, 3, 3)), np.empty((ne, 3, 3))
+    first, second, tangent = np.empty((ne, 3, 3)), np.empty((ne, 3, 3)), np.empty((ne, 2, 3))
     for e in range(ne):
         store(matmul(matrix(R[e]), matrix(T0[e, 0])), first[e])
         store(matmul(matrix(R[e + 1]), matrix(T0[e, 1])), second[e])
-    return first, second
+        tangent[e, 0], tangent[e, 1] = first[e, :, 0], second[e, :, 0]
+    return first, second, tangent
 
 
 @njit

@@ -6,9 +6,8 @@ On an element of unstressed arc length L, with xi = s/L in 0..1,
     N1 = 1 - 3 xi^2 + 2 xi^3,  N2 = L (xi - 2 xi^2 + xi^3),  N3 = 3 xi^2 - 2 xi^3,  N4 = L (xi^3 - xi^2),
 
 where t1, t2 are the unit tangents at its ends. q = (x1, t1, x2, t2) has shape (ne, 4, d) with d = 2 or 3. A
-load gives its residual F_q (ne, 4, d), conjugate to q, and its derivatives in blocks (ne, 4, 4, d, d). The
-kernels below carry them to the dofs by P = dt/dTheta (ne, 2, d, r): positions pass, tangents turn with the r
-rotation dofs of their node.
+load gives its residual F_q (ne, 4, d), conjugate to q. The kernels below carry it to the dofs by P = dt/dTheta
+(ne, 2, d, r): positions pass, tangents turn with the r rotation dofs of their node.
 """
 
 import numpy as np
@@ -60,6 +59,36 @@ def consistent_mass(L: Array, mass: Array) -> Array:
     return (mass * L)[:, None, None] * unit * scale[:, :, None] * scale[:, None, :]
 
 
+@njit
+def interleave(nodal: Array, directors: Array, D: Size) -> Array:
+    """q (ne, 4, d) of nodal translations (nn, ≥ d) and directors at element ends (ne, 2, d)."""
+    ne, d = directors.shape[0], len(D)
+    q = np.empty((ne, 4, d))
+    for e in range(ne):
+        for side in range(2):
+            for i in range(d):
+                q[e, 2 * side, i] = nodal[e + side, i]
+                q[e, 2 * side + 1, i] = directors[e, side, i]
+    return q
+
+
+def weigh(M: Array, q: Array) -> Array:
+    """M q of each element (ne, 4, d) for matrices M (ne, 4, 4) of shape functions."""
+    F: Array = _weigh(M, q, fixed(q.shape[2]))
+    return F
+
+
+@njit
+def _weigh(M: Array, q: Array, D: Size) -> Array:
+    F = np.zeros((q.shape[0], 4, len(D)))
+    for e in range(q.shape[0]):
+        for a in range(4):
+            for b in range(4):
+                for i in range(len(D)):
+                    F[e, a, i] += M[e, a, b] * q[e, b, i]
+    return F
+
+
 def pull_back(F: Array, P: Array) -> Array:
     """Element residual in the dofs, (ne, 2 (d + r)), of F (ne, 4, d) conjugate to q."""
     pulled: Array = _pull_back(F, P, fixed(P.shape[2]), fixed(P.shape[3]))
@@ -83,31 +112,27 @@ def _pull_back(F: Array, P: Array, D: Size, R: Size) -> Array:
     return out
 
 
-def add_blocks(out: Array, scale: float, P: Array, columns: Array, shift: float, K: Array) -> None:
-    """Add scale P^T K D to out (ne, n, n), D being the derivative of q, q' or q'' by the dofs.
+def add_mass(out: Array, scale: float, P: Array, columns: Array, shift: float, M: Array) -> None:
+    """Add scale P^T M D to out (ne, n, n), D being the derivative of q'' by the dofs; M (ne, 4, 4) as in `weigh`.
 
-    K: (ne, 4, 4, d, d). D: `shift` for positions, `columns` (ne, 2, d, r) for tangents; P and 1 where K
-    belongs to q.
+    D: `shift` for positions, `columns` (ne, 2, d, r) for tangents.
     """
-    _add_blocks(out, scale, P, columns, shift, K, fixed(P.shape[2]), fixed(P.shape[3]))
+    _add_mass(out, scale, P, columns, shift, M, fixed(P.shape[2]), fixed(P.shape[3]))
 
 
 @njit
-def _add_blocks(out: Array, scale: float, P: Array, columns: Array, shift: float, K: Array, D: Size, R: Size) -> None:
+def _add_mass(out: Array, scale: float, P: Array, columns: Array, shift: float, M: Array, D: Size, R: Size) -> None:
     d, r = len(D), len(R)
     n = d + r
-    S = np.empty((4, d, 2 * n))  # K D of one element
+    S = np.zeros((4, d, 2 * n))  # M D of one element
     for e in range(P.shape[0]):
         for a in range(4):
             for side in range(2):
+                position, turn = scale * shift * M[e, a, 2 * side], scale * M[e, a, 2 * side + 1]
                 for i in range(d):
-                    for k in range(d):
-                        S[a, i, side * n + k] = scale * shift * K[e, a, 2 * side, i, k]
+                    S[a, i, side * n + i] = position
                     for k in range(r):
-                        total = 0.0
-                        for j in range(d):
-                            total += K[e, a, 2 * side + 1, i, j] * columns[e, side, j, k]
-                        S[a, i, side * n + d + k] = scale * total
+                        S[a, i, side * n + d + k] = turn * columns[e, side, i, k]
         add_rows(out[e], P[e], S, D, R)
 
 

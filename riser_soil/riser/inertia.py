@@ -4,7 +4,7 @@ import numpy as np
 
 from riser_soil.arrays import Array
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
-from riser_soil.riser.hermite import consistent_mass
+from riser_soil.riser.hermite import add_mass, consistent_mass, weigh
 from riser_soil.riser.line import Line
 from riser_soil.riser.trial import Trial
 
@@ -23,14 +23,13 @@ class Inertia:
     def __init__(self, line: Line, mass: Array) -> None:
         self.line = line
         self.M = consistent_mass(line.length, mass)
-        self._blocks = np.ascontiguousarray(self.M[..., None, None] * np.eye(line.dimension))
 
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}
 
     def _F(self, trial: Trial) -> Array:
         """Residual conjugate to q (ne, 4, d)."""
-        return np.asarray(self.M @ trial.q_acceleration)
+        return weigh(self.M, trial.q_acceleration)
 
     def _element_forces(self, trial: Trial) -> Array:
         return trial.pull_back(trial.once((self, "F"), self._F))
@@ -47,13 +46,14 @@ class Inertia:
         if self.line.active:
             trial, K = self.line.trial(state), values["riser"]
             trial.add_turning(K, weights.inertia, trial.once((self, "F"), self._F))
-            trial.add_blocks(K, weights.inertia, trial.columns(weights)[2], self._blocks)
+            columns, shift = trial.columns(weights)[2]
+            add_mass(K, weights.inertia, trial.turn.P, columns, shift, self.M)
 
     def energy(self, state: State) -> Energy:
         if not self.line.active:
             return Energy()
         rate = self.line.trial(state).q_rate
-        return Energy(kinetic=0.5 * float(np.sum(rate * (self.M @ rate))))
+        return Energy(kinetic=0.5 * float(np.sum(rate * weigh(self.M, rate))))
 
     def work(self, before: State, after: State) -> Work:
         return Work()

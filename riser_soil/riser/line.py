@@ -181,7 +181,8 @@ class Line:
 
     def _make_trial(self, state: State) -> Trial:
         d, u = self.dimension, self.nodal(state.u)
-        x, chord = self.x + u[:, :d], self.chord + np.diff(u[:, :d], axis=0)
+        x = self.x + u[:, :d]
+        chord = self.chord + np.subtract(u[1:, :d], u[:-1, :d])
         return Trial(state, x, chord, self.frames.turn(u[:, d:]), (self.nodal(state.v), self.nodal(state.a)))
 
     def commit(self, state: State) -> None:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from riser_soil.arrays import Array
+from riser_soil.compiled import fixed
 from riser_soil.part import State, Weights
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import Turn
@@ -77,17 +78,8 @@ class Trial:
         geometric = self.turn.geometric(F[:, 1::2])
         hermite.add_geometric(out, weight, geometric, self.x.shape[1])
 
-    def add_blocks(self, out: Array, weight: float, columns: Columns, K: Array) -> None:
-        """Add weight times pulled back K = dF/dq, dF/dq' or dF/dq'', K (ne, 4, 4, d, d), `columns` being of
-        the same.
-        """
-        hermite.add_blocks(out, weight, self.turn.P, columns.tangent, columns.shift, K)
-
 
 def _interleave(nodal: Array, directors: Array) -> Array:
     """(ne, 4, d) from nodal translations (nn, ≥ d) and end directors (ne, 2, d), as q orders them."""
-    ne, _, d = directors.shape
-    q = np.empty((ne, 4, d))
-    q[:, 0], q[:, 2] = nodal[:-1, :d], nodal[1:, :d]
-    q[:, 1], q[:, 3] = directors[:, 0], directors[:, 1]
+    q: Array = hermite.interleave(nodal, directors, fixed(directors.shape[2]))
     return q

@@ -1,4 +1,4 @@
-"""A constant load per length on shallow-arch elements: its potential, residual and stiffness.
+"""A constant load per length on shallow-arch elements: its potential, residual and tangent.
 
 The element bows from its chord by a cubic with the end angles theta_i between chord and tangents, so a load w
 per unstressed length L has the potential
@@ -7,8 +7,7 @@ per unstressed length L has the potential
 
 e being the chord's unit vector and g = theta/sin(theta), so that psi is theta times the load across the
 chord. Taking t_i - c_i e itself (g = 1), or the cubic through the unit tangents, costs accuracy on coarse
-meshes: the elements measure their bending by the angle. Arrays follow `hermite`: residual F = dV/dq (ne, 4,
-d), stiffness (ne, 4, 4, d, d).
+meshes: the elements measure their bending by the angle. Arrays follow `hermite`: residual F = dV/dq (ne, 4, d).
 """
 
 import math
@@ -161,35 +160,62 @@ def _project(D: Size, A: Array, e: Array, l: float) -> None:
             A[i, j] = (A[i, j] - along * e[j]) / l
 
 
-def stiffness(chord: Array, tangent: Array, L: Array, w: Array) -> Array:
-    """Second derivatives of V in blocks (ne, 4, 4, d, d); arguments as in `potential`."""
-    found: Array = _stiffness(fixed(chord.shape[1]), chord, tangent, L, w)
-    return found
+def add_tangent(out: Array, weight: float, P: Array, chord: Array, tangent: Array, L: Array, w: Array) -> None:
+    """Add weight times the derivative of the residual by the dofs to out (ne, n, n), P = dt/dTheta (ne, 2, d, r) held;
+    other arguments as in `potential`.
+    """
+    _add_tangent(fixed(P.shape[2]), fixed(P.shape[3]), out, weight, P, chord, tangent, L, w)
 
 
 @njit
-def _stiffness(D: Size, chord: Array, tangent: Array, L: Array, w: Array) -> Array:
-    ne, d = chord.shape[0], len(D)
-    K = np.zeros((ne, 4, 4, d, d))
+def _add_chord_block(D: Size, out: Array, n: int, dd: Array, factor: float) -> None:
+    """Add to both ends' positions what the chord's change does."""
+    for i in range(len(D)):
+        for j in range(len(D)):
+            change = factor * dd[i, j]
+            out[i, j] += change
+            out[n + i, n + j] += change
+            out[i, n + j] -= change
+            out[n + i, j] -= change
+
+
+@njit
+def _add_turning_block(
+    D: Size, R: Size, out: Array, n: int, end: int, P: Array, tt: Array, te: Array, factor: float
+) -> None:
+    """Add what an end's tangent does to itself and, with the chord, to the positions."""
+    at = end * n + len(D)
+    for m in range(len(R)):
+        for j in range(len(D)):
+            change = 0.0
+            for i in range(len(D)):
+                change += factor * P[i, m] * te[i, j]
+            out[at + m, j] -= change
+            out[j, at + m] -= change
+            out[at + m, n + j] += change
+            out[n + j, at + m] += change
+        for k in range(len(R)):
+            for i in range(len(D)):
+                for j in range(len(D)):
+                    out[at + m, at + k] += factor * P[i, m] * tt[i, j] * P[j, k]
+
+
+@njit
+def _add_tangent(
+    D: Size, R: Size, out: Array, weight: float, P: Array, chord: Array, tangent: Array, L: Array, w: Array
+) -> None:
+    d, n = len(D), len(D) + len(R)
     e, t, by_t, by_e = np.empty(d), np.empty(d), np.empty(d), np.empty(d)
     tt, te, ee, dd = np.empty((d, d)), np.empty((d, d)), np.empty((d, d)), np.empty((d, d))
-    for k in range(ne):
+    for k in range(chord.shape[0]):
         l, load = _axis(D, chord[k], e), w[k]
         for end in range(2):
-            factor, a = (2 * end - 1) * L[k] * L[k] / 12.0, 2 * end + 1
+            factor = weight * (2 * end - 1) * L[k] * L[k] / 12.0
             t[:] = tangent[k, end]
             g = angle_over_sine(_dot(D, e, t))
             _psi_slopes(D, e, t, load, g, by_t, by_e)
             _psi_bends(D, e, t, load, g, tt, te, ee)
             _project(D, te, e, l)
             _chord_bend(D, ee, by_e, e, l, dd)
-            for i in range(d):
-                for j in range(d):
-                    K[k, a, a, i, j] = factor * tt[i, j]
-                    K[k, a, 2, i, j] = K[k, 2, a, j, i] = factor * te[i, j]
-                    K[k, a, 0, i, j] = K[k, 0, a, j, i] = -factor * te[i, j]
-                    K[k, 0, 0, i, j] += factor * dd[i, j]
-                    K[k, 2, 2, i, j] += factor * dd[i, j]
-                    K[k, 0, 2, i, j] -= factor * dd[i, j]
-                    K[k, 2, 0, i, j] -= factor * dd[i, j]
-    return K
+            _add_turning_block(D, R, out[k], n, end, P[k, end], tt, te, factor)
+            _add_chord_block(D, out[k], n, dd, factor)

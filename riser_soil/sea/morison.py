@@ -64,11 +64,10 @@ class Morison:
 
     def _derivatives(self, trial: Trial, weights: Weights) -> stations.Derivatives:
         flow = self._flow(trial)
-        by_v, drag_by_tau = law.drag_derivatives(flow.v, flow.tau, self._drag)
-        by_a, added_by_tau = law.added_derivatives(flow.a, flow.tau, self._mass)
-        by_tau = weights.force * drag_by_tau + weights.inertia * added_by_tau
-        slope = stations.follow_slope(by_tau, flow.tau, flow.stretch)
-        return stations.Derivatives(slope, weights.force * by_v, weights.inertia * by_a)
+        by_v, by_tau = law.drag_derivatives(flow.v, flow.tau, weights.force * self._drag)
+        by_a, added_by_tau = law.added_derivatives(flow.a, flow.tau, weights.inertia * self._mass)
+        by_tau += added_by_tau
+        return stations.Derivatives(stations.follow_slope(by_tau, flow.tau, flow.stretch), by_v, by_a)
 
     def energy(self, state: State) -> Energy:
         """Kinetic energy of the added mass."""
