@@ -27,12 +27,13 @@ def write_atomically(path: Path, text: str) -> None:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Gives a copy of the file to change, which takes the file's place when the block ends without an error.
+    """Gives a copy of the file to change, or a name for a new one; it takes the file's place when the block ends well.
 
     An HDF5 file torn in mid-write cannot be opened at all: a kill must meet it as it was or as it is to be.
     """
     draft = _draft(path)
-    shutil.copyfile(path, draft)
+    if path.exists():
+        shutil.copyfile(path, draft)
     yield draft
     draft.replace(path)
 

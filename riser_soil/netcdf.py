@@ -125,7 +125,7 @@ class SeriesFile:
         self._rows.clear()
 
     def _create(self, arc: Array, title: str, version: str) -> None:
-        with h5netcdf.File(self._path, "w") as file:
+        with replacing(self._path) as draft, h5netcdf.File(draft, "w") as file:
             file.dimensions = {"time": None, "step": None, "arc": arc.size, "component": 3}
             file.attrs["title"] = title
             file.attrs["version"] = version

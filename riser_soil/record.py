@@ -170,12 +170,12 @@ class Recorder:
         self.summary.seconds.update(seconds)
 
     def flush(self) -> None:
-        """Brings everything told so far to disk, the summary last."""
+        """Brings everything told so far to disk: the frames, the series that tells how far they go, the summary."""
         begun = time.monotonic()
-        self._series.flush(self.summary.finished)
         self._riser_frames.flush()
         if self._soil_frames is not None:
             self._soil_frames.flush()
+        self._series.flush(self.summary.finished)
         self.summary.write(self._folder / run_folder.SUMMARY)
         now = time.monotonic()
         self._next_flush = now + max(_FLUSH_EVERY, (now - begun) / _FLUSH_SHARE)

@@ -56,7 +56,7 @@ class XdmfFile:
         self._head = _HEAD.format(name=quoteattr(name))
         self._frames = 0
         self._waiting: list[Frame] = []
-        with h5py.File(self._heavy, "w") as store:
+        with replacing(self._heavy) as draft, h5py.File(draft, "w") as store:
             item = self._store(store, "cells", np.asarray(cells, dtype=np.int64))
             self._points = None if points is None else self._store(store, "points", points)
         kind = _polyline_of(cells) if polyline else f'TopologyType="{_CELLS[cells.shape[1]]}"'
