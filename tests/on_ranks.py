@@ -16,6 +16,14 @@ ENVIRONMENT = {
     "OMPI_MCA_mpi_yield_when_idle": "1",
     "PYTHONPATH": str(ROOT),
 }
+# A process that has started MPI alone hands these on to its children, in which mpirun then fails without a word.
+OF_ANOTHER_JOB = ("PMIX_", "OMPI_", "ORTE_")
+
+
+def environment() -> dict[str, str]:
+    """This process's environment for a new MPI job or a process on its own."""
+    mine = {name: value for name, value in os.environ.items() if not name.startswith(OF_ANOTHER_JOB)}
+    return mine | ENVIRONMENT
 
 
 def mpirun(
@@ -28,5 +36,5 @@ def mpirun(
     ended = ["timeout", str(seconds)]
     launch = ["mpirun", "-n", str(ranks), "--bind-to", "none", sys.executable, *command]
     return subprocess.run(
-        [*ended, *launch], cwd=folder, env=os.environ | ENVIRONMENT, capture_output=True, text=True, check=False
+        [*ended, *launch], cwd=folder, env=environment(), capture_output=True, text=True, check=False
     )

@@ -16,7 +16,7 @@ import pytest
 
 from riser_soil.results import Run
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.on_ranks import ENVIRONMENT, mpirun
+from tests.on_ranks import environment, mpirun
 from tests.vtk_reading import read_by_vtk
 
 RANKS = pytest.mark.parametrize("ranks", [1, 2])
@@ -104,7 +104,7 @@ def test_killed_run_leaves_what_it_has_accepted(ranks: int, tmp_path: Path) -> N
     call = [*launch, sys.executable, "-m", "riser_soil", "run", "scene.yaml", "-o", "out"]
     quiet = subprocess.DEVNULL
     process = subprocess.Popen(
-        call, cwd=tmp_path, env=os.environ | ENVIRONMENT, stdout=quiet, stderr=quiet, start_new_session=True
+        call, cwd=tmp_path, env=environment(), stdout=quiet, stderr=quiet, start_new_session=True
     )
     try:
         wait_for_steps(tmp_path / "out", 20)

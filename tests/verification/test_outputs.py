@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -17,7 +16,7 @@ from scipy.interpolate import griddata
 from riser_soil import __version__
 from riser_soil.results import Run
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.on_ranks import ENVIRONMENT, mpirun
+from tests.on_ranks import environment, mpirun
 from tests.vtk_reading import read_by_vtk
 from tests.watched_run import WatchedRun
 
@@ -201,7 +200,7 @@ def test_memory_stays_flat_over_500_steps(name: str, tmp_path: Path) -> None:
     script = Path(__file__).with_name("memory_of_run.py")
     call = [sys.executable, str(script), str(tmp_path / "scene.yaml"), str(tmp_path / "out")]
     done = subprocess.run(
-        call, env=os.environ | ENVIRONMENT, capture_output=True, text=True, timeout=200, check=False
+        call, env=environment(), capture_output=True, text=True, timeout=200, check=False
     )
     assert done.returncode == 0, done.stderr
     megabytes = np.array(json.loads((tmp_path / "out" / "memory.json").read_text(encoding="utf-8")))
