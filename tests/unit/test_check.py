@@ -1,0 +1,135 @@
+"""What `check` tells of a scene: parts, unknowns, memory, and physical doubts with their numbers."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+
+from riser_soil.check import describe
+from riser_soil.scene.reader import scene_from_mapping
+from tests.coupled_scenes import LAY, Mapping, heave, touchdown
+
+
+def report(mapping: Mapping) -> str:
+    return describe(scene_from_mapping(mapping))
+
+
+def warnings(mapping: Mapping) -> list[str]:
+    return [line for line in report(mapping).splitlines() if line.startswith("warning: ")]
+
+
+def without_soil(*stages: Mapping) -> Mapping:
+    return {key: value for key, value in touchdown(*stages).items() if key != "soil"}
+
+
+def with_value(mapping: Mapping, *path: str | int, value: Any) -> Mapping:
+    inner: Any = mapping
+    for key in path[:-1]:
+        inner = inner[key]
+    inner[path[-1]] = value
+    return mapping
+
+
+def test_a_whole_scene() -> None:
+    lines = report(touchdown(LAY, heave(1.0))).splitlines()
+    assert lines[0] == "Touchdown on a small block: 2 stages, riser in 2 dimensions"
+    assert lines[1] == "built: riser, inertia, morison, seabed, soil, contact"
+    assert lines[2:4] == [
+        "left out: springs: no end has a rotational spring",
+        "left out: loads: no stage has loads",
+    ]
+    assert "riser: 36 elements of 0.5 to 1.5 m, 107 unknowns" in lines  # 37 nodes of 3, less two held positions
+    assert "contact stiffness on the seabed: 1e+05 N/m2" in lines
+    assert lines[-1] == "no warnings"
+
+
+def test_unknowns_of_the_soil_are_those_that_are_free() -> None:
+    """A block of one cell: of its 8 nodes the bottom is fixed, the top slides down its sides."""
+    one_cell = {"kind": "hex", "size_at_riser": 9.0, "size_far": 9.0}
+    assert "soil: 1 cells, 4 unknowns" in report(with_value(touchdown(), "soil", "mesh", value=one_cell))
+
+
+@pytest.mark.parametrize(
+    ("mapping", "left_out"),
+    [
+        (without_soil(), "soil: the scene has no soil"),
+        (without_soil(), "inertia: all stages are static"),
+        (without_soil(), "morison: all stages are static, and still water does not load a riser at rest"),
+    ],
+)
+def test_reasons_of_what_is_left_out(mapping: Mapping, left_out: str) -> None:
+    assert f"left out: {left_out}" in report(mapping).splitlines()
+
+
+def test_a_dry_riser_has_no_hydrodynamics() -> None:
+    dry = without_soil(heave(1.0))
+    del dry["water"], dry["line_types"]["flexible"]["drag"], dry["line_types"]["flexible"]["added_mass"]
+    assert "left out: morison: the scene has no water" in report(dry).splitlines()
+
+
+def test_a_smooth_riser_has_no_hydrodynamics() -> None:
+    smooth = without_soil(heave(1.0))
+    del smooth["line_types"]["flexible"]["drag"], smooth["line_types"]["flexible"]["added_mass"]
+    assert "left out: morison: no line type has drag or added mass" in report(smooth).splitlines()
+
+
+def test_springs_and_loads_are_built_when_asked_for() -> None:
+    lift = {"name": "lift", "kind": "static", "loads": [{"at": 10.0, "force": [0.0, 0.0, 1.0e3]}]}
+    sprung = with_value(without_soil(lift), "riser", "end", "rotation", value={"stiffness": 1.0e4})
+    assert "built: riser, springs, loads, seabed, contact" in report(sprung).splitlines()
+
+
+def test_memory_grows_with_the_soil() -> None:
+    fine = {"kind": "hex", "size_at_riser": 0.2, "size_far": 0.5}
+    scenes = without_soil(), touchdown(), with_value(touchdown(), "soil", "mesh", value=fine)
+    told = [re.findall(r"estimated memory: (\d+) MB on 1 rank", report(scene)) for scene in scenes]
+    bare, small, large = (float(number) for (number,) in told)
+    assert 50.0 < bare < small < large
+
+
+def test_long_elements_at_touchdown_are_told_with_the_boundary_layer() -> None:
+    segments = [{"line_type": "flexible", "length": 30.0, "elements": 6}]
+    coarse = with_value(without_soil(), "riser", "segments", value=segments)
+    (found,) = warnings(coarse)
+    layer, H, most = (float(x) for x in re.findall(r"(?:= |at most )([\d.]+)", found))
+    assert "at the touchdown point" in found
+    assert "are 5 m long" in found
+    assert layer == pytest.approx(np.sqrt(5.0e4 / H), rel=1e-3)
+    assert most == pytest.approx(0.5 * layer, rel=1e-2)
+
+
+def test_long_elements_at_a_clamped_end_are_told() -> None:
+    clamped = with_value(without_soil(), "riser", "end", "rotation", value="fixed")
+    clamped["line_types"]["flexible"]["EI"] = 500.0
+    assert [w for w in warnings(clamped) if "elements at the end are 1.5 m long" in w]
+
+
+def test_a_floating_pipe_is_told_with_its_weight() -> None:
+    floating = without_soil()
+    floating["line_types"]["flexible"]["submerged_weight"] = -30.0
+    floating["riser"]["initial"] = "straight"
+    floating["riser"]["end"]["position"] = [30.0, 0.0, 0.15]
+    assert [w for w in warnings(floating) if "submerged weight is negative, -30 N/m, from arc 0 m on" in w]
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "says"),
+    [
+        (1.0e4, "contact.stiffness 1e+04 N/m2 is below the soil's Young's modulus at the surface, 1.8e+05 Pa"),
+        (1.0e10, "contact.stiffness 1e+10 N/m2 is 5.6e+04 times the soil's Young's modulus"),
+    ],
+)
+def test_penalty_far_from_the_soil_is_told(stiffness: float, says: str) -> None:
+    (found,) = warnings({**touchdown(), "contact": {"stiffness": stiffness}})
+    assert says in found
+
+
+def test_several_warnings_are_counted() -> None:
+    soft = {**touchdown(), "contact": {"stiffness": 1.0e4}}
+    soft["line_types"]["flexible"]["EI"] = 500.0
+    lines = report(soft).splitlines()
+    assert lines[-1] == f"{len(warnings(soft))} warnings"
+    assert len(warnings(soft)) == 2
