@@ -25,7 +25,7 @@ demo: setup ## a flexible riser comes down on 3D clay: results and a picture in 
 	$(PYTHON) demos/touchdown_clay/run.py
 
 test: lint ## linters, types, and the quick tests, some of them on two ranks
-	$(PYTHON) -m pytest -n $(WORKERS) --dist loadgroup
+	$(PYTHON) -m pytest -n $(WORKERS) --dist loadfile
 
 lint: setup
 	$(PYTHON) -m ruff check .

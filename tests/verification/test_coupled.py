@@ -139,7 +139,6 @@ def pressed(kind: str) -> list[Array]:
 # The demo
 
 
-@pytest.mark.xdist_group("demo")
 def test_demo_needs_few_newton_iterations(demo: WatchedRun) -> None:
     steps = demo.of_kind(static=False)
     assert len(steps) == 150
@@ -148,7 +147,6 @@ def test_demo_needs_few_newton_iterations(demo: WatchedRun) -> None:
     assert np.mean([s.iterations for s in steps]) <= 3.5
 
 
-@pytest.mark.xdist_group("demo")
 def test_demo_lays_down_the_weight_that_does_not_hang(demo: WatchedRun) -> None:
     """Contact and the start's support bear the weight of what lies; the catenary says how much that is."""
     final = Run(demo.folder).summary["stages"][0]["final"]
@@ -160,7 +158,6 @@ def test_demo_lays_down_the_weight_that_does_not_hang(demo: WatchedRun) -> None:
     assert lying == pytest.approx(world.line.arc[-1] - hanging, rel=0.01)
 
 
-@pytest.mark.xdist_group("demo")
 @pytest.mark.parametrize("part", ["contact", "soil"])
 def test_demo_contact_and_soil_only_take_energy(demo: WatchedRun, part: str) -> None:
     dissipated = np.array([s.dissipated[part] for s in demo.of_kind(static=False)])
@@ -168,7 +165,6 @@ def test_demo_contact_and_soil_only_take_energy(demo: WatchedRun, part: str) -> 
     assert dissipated.sum() > 1.0
 
 
-@pytest.mark.xdist_group("demo")
 def test_demo_balances_its_energy(demo: WatchedRun) -> None:
     """Measured: 3.7 J off at most on the way, 0.3 J in a step, of 57.5 kJ that the floater puts in."""
     run = Run(demo.folder)

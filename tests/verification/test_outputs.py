@@ -22,14 +22,12 @@ from tests.watched_run import WatchedRun
 
 HEXAHEDRON, POLYLINE = 12, 4
 ON_NODES = ("effective_tension", "bending_moment", "curvature", "contact_force")
-ON_DEMO = pytest.mark.xdist_group("demo")
 
 VECTORS, SCALARS = ("position", "force", "moment"), ("effective_tension", "angle_deg")
 WHOLE = ("touchdown_arc", "max_penetration", "contact_force")
 PLACED = ("max_bending_moment", "max_curvature", "min_effective_tension")
 
 
-@ON_DEMO
 def test_vtk_reads_the_riser(demo: WatchedRun) -> None:
     run = Run(demo.folder)
     times, frames = read_by_vtk(demo.folder / "riser.xdmf")
@@ -44,7 +42,6 @@ def test_vtk_reads_the_riser(demo: WatchedRun) -> None:
     assert frames[-1]["point:contact_force"].max() > 500.0
 
 
-@ON_DEMO
 def test_vtk_reads_the_soil(demo: WatchedRun) -> None:
     run = Run(demo.folder)
     times, frames = read_by_vtk(demo.folder / "soil.xdmf")
@@ -69,7 +66,6 @@ def test_vtk_reads_the_soil(demo: WatchedRun) -> None:
     assert last["cell:equivalent_plastic_strain"].min() >= 0.0
 
 
-@ON_DEMO
 def test_pipe_lies_on_the_soil_in_the_files(demo: WatchedRun) -> None:
     """Between pipe and settled soil is the gap at which the law gives the contact force that is recorded.
 
@@ -89,7 +85,6 @@ def test_pipe_lies_on_the_soil_in_the_files(demo: WatchedRun) -> None:
     np.testing.assert_allclose(gap, s - 2.0 * np.sqrt(s * force / k), atol=3e-6)
 
 
-@ON_DEMO
 def test_xarray_opens_the_series(demo: WatchedRun) -> None:
     with xarray.open_dataset(demo.folder / "results.nc", engine="h5netcdf", decode_times=False) as data:
         nodes = 150
@@ -111,7 +106,6 @@ def test_xarray_opens_the_series(demo: WatchedRun) -> None:
         assert np.isnan(data["energy_residual"][0])
 
 
-@ON_DEMO
 def test_summary_is_as_documented(demo: WatchedRun) -> None:
     summary = json.loads((demo.folder / "summary.json").read_text(encoding="utf-8"))
     assert set(summary) == {"title", "finished", "version", "ranks", "parts", "dofs", "stages", "seconds"}
@@ -154,7 +148,6 @@ def assert_extremes(extremes: Any) -> None:
         assert extremes[name]["min"] <= extremes[name]["max"]
 
 
-@ON_DEMO
 def test_summary_agrees_with_the_series(demo: WatchedRun) -> None:
     run = Run(demo.folder)
     final, extremes = (run.summary["stages"][1][key] for key in ("final", "extremes"))
