@@ -1,0 +1,74 @@
+"""Wrong scenes that take several changes of the good one: the message points at the place and says what is wrong."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from riser_soil.errors import SceneError
+from riser_soil.scene.reader import read_scene
+from tests.bad_scenes import GOOD
+
+Changes = tuple[tuple[str, str], ...]
+
+NO_DIAMETER = ("    outer_diameter: 0.3\n", "")
+NO_DRAG = ("    drag: {normal: 1.1, tangential: 0.05}\n", "")
+GIVEN_WEIGHT = ("    GJ", "    submerged_weight: 500.0\n    GJ")
+NO_SEABED = ("seabed: {kind: spring, level: 0.0, stiffness: 1.0e5}\n", "")
+NO_SOIL = (GOOD[GOOD.index("soil:") : GOOD.index("contact:")], "")
+STATIC_ALONE = (GOOD[GOOD.index("  - name: heave") : GOOD.index("solver:")], "")
+
+
+def arc(values: str) -> Changes:
+    return (("  initial: catenary", f"  initial: catenary\n  unstressed: {{arc: {{{values}}}}}"),)
+
+
+def history(values: str) -> Changes:
+    return (("kind: static}", f"kind: static, loads: [{{distributed: [0, 0, 1], history: {values}}}]}}"),)
+
+
+CASES: list[tuple[Changes, str, str]] = [
+    ((("    mass: 120.0\n", ""), STATIC_ALONE), "line_types.pipe.mass: missing", "the weight follows from the mass"),
+    ((NO_DIAMETER, GIVEN_WEIGHT), "line_types.pipe.outer_diameter: missing", "drag and added mass follow"),
+    ((NO_DIAMETER, NO_DRAG, GIVEN_WEIGHT), "line_types.pipe.outer_diameter: missing", "outer surface touches"),
+    ((NO_SEABED, NO_SOIL), "contact: value {", "there is nothing to touch"),
+    (
+        (("initial: catenary", "initial: straight"), ("length: 148.0", "length: 100.0")),
+        "riser.end.position",
+        "127.945 m",
+    ),
+    (arc("centre: [0, 0, 9], from: [0, 0, 0], angle_deg: 9, axis: [0, 0, 0]"), "riser.unstressed.arc.axis", "zero"),
+    (arc("centre: [0, 0, 9], from: [0, 0, 0.15], angle_deg: 9"), "riser.unstressed.arc.from", "on the circle's axis"),
+    (
+        arc("centre: [0, 0, 9], from: [0, 0, 0], angle_deg: 9, axis: [0, 1, 0]"),
+        "riser.unstressed.arc",
+        "1.41372 m long",
+    ),
+    ((("{kind: hex, size_at_riser: 0.5, size_far: 1.5}", "{file: case.yaml}"),), "soil.block", "replaces the block"),
+    ((("  block: {x: [10.0, 50.0], y: [-2.5, 2.5], depth: 2.5}\n", ""),), "soil.block: missing", "the box of soil"),
+    (history("[[0, 1], [0, 2]]"), "stages.0.loads.0.history", "times must increase"),
+    (history("[[0, 1]]"), "stages.0.loads.0.history", "at least two points"),
+    (history("[[0], [1, 2]]"), "stages.0.loads.0.history.0", "must be a list of 2 values"),
+    (
+        (("initial: catenary", "initial: {points: [[0, 0, 0]]}"),),
+        "riser.initial.points",
+        "must have at least 2 entries",
+    ),
+]
+
+
+@pytest.mark.parametrize(("changes", "place", "says"), CASES, ids=lambda x: x if isinstance(x, str) else "")
+def test_combination_is_told(changes: Changes, place: str, says: str, tmp_path: Path) -> None:
+    text = GOOD
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    file = tmp_path / "case.yaml"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(SceneError) as caught:
+        read_scene(file)
+    (line,) = str(caught.value).splitlines()
+    assert f": {place}" in line
+    assert says in line
+    assert "; " in line
