@@ -18,7 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.arrays import Array, BoolArray
 from riser_soil.compiled import njit
 from riser_soil.riser import rotations
 from riser_soil.riser.vectors import (
@@ -54,6 +54,11 @@ class PlanarTurn:
     @property
     def P(self) -> Array:
         return self.normal[..., None]
+
+    @property
+    def wound(self) -> BoolArray:
+        """Elements (ne,) whose ends differ by more than half a turn."""
+        return np.asarray(np.abs(self.end_angle[:, 1] - self.end_angle[:, 0]) > np.pi)
 
     def rates(self, v: Array, a: Array) -> tuple[Array, Array]:
         """t' and t'' (ne, 2, 2) from angular velocity and acceleration (nn, 1)."""
@@ -99,6 +104,11 @@ class SpatialTurn:
     @cached_property
     def P(self) -> Array:
         return _spatial_P(self.tangent, self.H)
+
+    @property
+    def wound(self) -> BoolArray:
+        """Elements (ne,) whose ends turn by increments that differ by more than half a turn."""
+        return np.asarray(np.linalg.norm(np.diff(self.Theta, axis=0), axis=1) > np.pi)
 
     def rates(self, v: Array, a: Array) -> tuple[Array, Array]:
         """t' and t'' (ne, 2, 3) from body-axes angular velocity and acceleration (nn, 3)."""

@@ -209,19 +209,19 @@ class Line:
         return improved
 
     def fault(self, state: State) -> str:
-        """Where an element has folded: an end's tangent points against its chord.
+        """Where an element is folded (an end's tangent points against its chord) or wound up by whole turns.
 
-        A step of Newton's method that goes far astray ends in such a tangle of folded elements; it balances the loads,
-        even stably, but a pipe knows nothing like it.
+        A step of Newton's method that goes far astray ends in such a tangle; it balances the loads, even stably, but a
+        pipe knows nothing like it, and an end spring would count the turns.
         """
         trial = self.trial(state)
         ahead = np.sum(trial.turn.tangent * trial.chord[:, None, :], axis=2).min(axis=1)
-        if np.all(ahead > 0.0):
+        faulty = np.flatnonzero((ahead <= 0.0) | trial.turn.wound)
+        if faulty.size == 0:
             return ""
-        arc = self.arc[int(np.argmin(ahead))]
         return (
-            f"the riser is folded at arc {arc:.6g} m, where an element's end turns by more than 90 degrees from its "
-            "chord; start nearer to the shape sought, or take shorter elements or steps"
+            f"the riser is folded at arc {self.arc[faulty[0]]:.6g} m, where an element's end turns by more than 90 "
+            "degrees from its chord; start nearer to the shape sought, or take shorter elements or steps"
         )
 
     def to_global(self, x: Array) -> Array:

@@ -90,3 +90,20 @@ def test_a_line_laid_out_straight_sags_and_does_not_fold(tmp_path: Path) -> None
     }
     tension = (1e8 * 490.5**2 * 50.0**2 / 24.0) ** (1.0 / 3.0)
     assert -thrust(scene, tmp_path) == pytest.approx(tension, rel=5e-3)
+
+
+def test_a_sagging_line_does_not_wind_up_its_end_spring(tmp_path: Path) -> None:
+    """From a straight line Newton's method comes back wound up by thousands of turns, which a spring would count."""
+    scene = {
+        "line_types": {"hose": PIPE},
+        "riser": {
+            "segments": [{"line_type": "hose", "length": 50.0, "elements": 25}],
+            "start": {"position": [0.0, 0.0, 0.0], "rotation": {"stiffness": 10.0}},
+            "end": {"position": [50.0, 0.0, 0.0]},
+            "initial": "straight",
+        },
+        "stages": [{"name": "sag", "kind": "static"}],
+    }
+    run(scene_from_mapping(scene), tmp_path)
+    moment = Run(tmp_path).summary["stages"][0]["final"]["start"]["moment"]
+    assert 0.0 < np.linalg.norm(moment) < 10.0 * np.pi / 2.0
