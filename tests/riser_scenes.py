@@ -11,15 +11,16 @@ from mpi4py import MPI
 
 from riser_soil.arrays import Array
 from riser_soil.build import build
-from riser_soil.march import Accepted
+from riser_soil.march import Accepted, March
 from riser_soil.observe import riser_snapshot
 from riser_soil.part import State
+from riser_soil.run import run_stage
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.snapshot import RiserSnapshot
-from riser_soil.system import System
+from riser_soil.system import Clock
 from tests.coupled_scenes import Mapping
-from tests.driven_stage import take
+from tests.driven_stage import Watcher
 
 AVERAGE = {"newmark": {"beta": 0.25, "gamma": 0.5}}
 
@@ -72,16 +73,16 @@ def tell(scene: Mapping | Scene) -> list[Told]:
     for stage in world.scene.stages:
         now = Told()
 
-        def watch(system: System, step: Accepted, now: Told = now) -> None:
+        def watch(march: March, step: Accepted, now: Told = now) -> None:
             now.t.append(step.t)
             now.dt.append(step.dt)
             now.cuts.append(step.cuts)
             now.energy.append(step.energy.total)
             now.work.append(step.work - step.dissipated)
-            now.position.append(world.line.positions3(step.solution.state))
-            now.last = riser_snapshot(world, system, step)
+            now.position.append(world.line.positions3(march.now))
+            now.last = riser_snapshot(world, march)
 
-        before = take(world, stage, before, watch)
+        before = run_stage(world, stage, before, Watcher(watch), Clock.new())
         told.append(now)
     return told
 
