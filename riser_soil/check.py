@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from mpi4py import MPI
 
+from riser_soil.arrays import IntArray
 from riser_soil.build import World, build
 from riser_soil.build.ground import surface_modulus
 from riser_soil.inventory import built, left_out, unknowns
@@ -82,6 +83,7 @@ def physical_warnings(world: World) -> Iterator[str]:
     yield from _light_pipes(world)
     yield from _coarse_elements(world)
     yield from _penalty_against_soil(world)
+    yield from _nothing_below(world)
 
 
 def _light_pipes(world: World) -> Iterator[str]:
@@ -115,11 +117,30 @@ def _boundary_layers(world: World) -> Iterator[tuple[str, int]]:
         yield "at the start", 0
     if line.end.rotation_fixed:
         yield "at the end", line.length.size - 1
-    if world.contact is not None:
-        heights = line.to_global(line.x)[:, 2]
-        lying = np.flatnonzero(heights < heights.min() + 1e-6 * line.arc[-1])
-        if lying.size > 1:
-            yield f"at the touchdown point (arc {line.arc[lying[-1]]:.4g} m)", min(int(lying[-1]), line.length.size - 1)
+    lying = _lying(world)
+    if lying.size > 1:
+        yield f"at the touchdown point (arc {line.arc[lying[-1]]:.4g} m)", min(int(lying[-1]), line.length.size - 1)
+
+
+def _lying(world: World) -> IntArray:
+    """Nodes that lie on the ground in the first shape."""
+    heights = world.line.to_global(world.line.x)[:, 2]
+    lowest = heights.min() + 1e-6 * world.line.arc[-1]
+    return np.flatnonzero(heights < lowest) if world.contact is not None else np.zeros(0, dtype=np.int64)
+
+
+def _nothing_below(world: World) -> Iterator[str]:
+    """Nodes that lie beyond the soil where there is no seabed beside it."""
+    if world.soil is None or world.scene.seabed is not None:
+        return
+    grid, lying = world.soil.grid, _lying(world)
+    xy = world.line.to_global(world.line.x)[lying, :2]
+    beyond = world.line.arc[lying[np.any((xy < grid.low[:2]) | (xy > grid.high[:2]), axis=1)]]
+    if lying.size > 1 and beyond.size:
+        yield (
+            f"{beyond.size} nodes of the riser, from arc {beyond[0]:.4g} to {beyond[-1]:.4g} m, lie beyond the soil, "
+            "where nothing bears them: add seabed, which acts beside the soil, or enlarge the soil"
+        )
 
 
 def _penalty_against_soil(world: World) -> Iterator[str]:

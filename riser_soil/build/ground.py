@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mpi4py import MPI
 
+from riser_soil.arrays import Array
 from riser_soil.build.riser import contact_radius
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from riser_soil.soil.soil import Soil
     from riser_soil.soil.surface import Surface
 
-NOMINAL_DIAMETER = 0.1  # m, for the automatic contact stiffness of a line without an outer diameter
+NOMINAL_DIAMETER = 0.1  # m, for stiffness and footprint of the contact of a line without an outer diameter
 
 
 def soil_of(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Soil:
@@ -81,19 +82,25 @@ def contact_of(
 
     stiffness [N/m2]: by ground, from `stiffnesses`. active: whether this rank evaluates contact.
     """
-    from riser_soil.contact.contact import Contact
+    from riser_soil.contact.contact import FOOTPRINT, Contact
     from riser_soil.contact.law import Penalty
 
-    radius = contact_radius(scene, elements)
+    outer_radius = float(_at_nodes(0.5 * elements.outer_diameter).mean()) or 0.5 * NOMINAL_DIAMETER
     return Contact(
         line,
-        np.maximum(np.append(radius, 0.0), np.append(0.0, radius)),
+        _at_nodes(contact_radius(scene, elements)),
         plane=_plane(scene, stiffness, settings.smoothing),
         surface=surface,
         penalty=Penalty(stiffness["soil"], settings.smoothing) if surface is not None else None,
+        footprint=FOOTPRINT * outer_radius,  # also where the axis touches: a single point finds no balance on a kink
         along=line.direction[:2],
         active=active,
     )
+
+
+def _at_nodes(values: Array) -> Array:
+    """The larger of what the two elements beside a node have (nn,)."""
+    return np.maximum(np.append(values, 0.0), np.append(0.0, values))
 
 
 def stiffnesses(scene: Scene, settings: ContactScene, elements: Elements, weight: float) -> dict[str, float]:

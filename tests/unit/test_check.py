@@ -127,6 +127,15 @@ def test_penalty_far_from_the_soil_is_told(stiffness: float, says: str) -> None:
     assert says in found
 
 
+def test_a_riser_that_lies_beyond_the_soil_is_told() -> None:
+    alone = touchdown()
+    del alone["seabed"]
+    (found,) = warnings(alone)
+    assert "nodes of the riser, from arc 0 to 1.5 m, lie beyond the soil" in found
+    alone["soil"]["block"]["x"] = [-1.0, 12.0]
+    assert not warnings(alone)
+
+
 def test_several_warnings_are_counted() -> None:
     soft = {**touchdown(), "contact": {"stiffness": 1.0e4}}
     soft["line_types"]["flexible"]["EI"] = 500.0
