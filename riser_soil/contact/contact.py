@@ -171,7 +171,8 @@ class Contact:
     def touchdown_arc(self, state: State) -> float:
         """Arc length [m] where the contact force ends, towards the riser's end; nan where nothing touches.
 
-        The gap is interpolated between the last touching node and the next, to where the force begins.
+        Where the riser's end itself touches, but not all of the riser, it is where the force begins, coming from the
+        start. The gap is interpolated between the outermost touching node and the next, to where the force begins.
         """
         if not self.active:
             return float("nan")
@@ -179,11 +180,14 @@ class Contact:
         touching = np.flatnonzero(clearance < 0.0)
         if len(touching) == 0:
             return float("nan")
-        i = int(touching[-1])
-        beyond = clearance[i + 1] if i + 1 < len(arc) else np.inf
-        if not np.isfinite(beyond):
+        i, last = int(touching[-1]), len(arc) - 1
+        j = i + 1
+        if i == last and len(touching) <= last:
+            i = int(np.flatnonzero(clearance >= 0.0)[-1]) + 1
+            j = i - 1
+        if i == last == j - 1 or not np.isfinite(clearance[j]):
             return float(arc[i])
-        return float(arc[i] + (arc[i + 1] - arc[i]) * clearance[i] / (clearance[i] - beyond))
+        return float(arc[i] + (arc[j] - arc[i]) * clearance[i] / (clearance[i] - clearance[j]))
 
     def improve(self, guess: State) -> Array:
         """First guess of a step: the guess's increment, lifted where a node would sink below its present depth.

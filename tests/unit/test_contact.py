@@ -380,6 +380,8 @@ def test_touchdown_is_interpolated_to_where_the_force_begins() -> None:
     case = level_case(np.array([0.01, 0.003, -0.005, -0.2, -0.4]), None, FLOOR)
     arc = case.contact.touchdown_arc(case.state())
     assert arc == pytest.approx(0.5 + 0.5 * (0.003 + 0.001) / (0.003 + 0.005))
+    turned = level_case(np.array([-0.4, -0.2, -0.005, 0.003, 0.01]), None, FLOOR)
+    assert turned.contact.touchdown_arc(turned.state()) == pytest.approx(2.0 - arc)
     assert np.isnan(level_case(np.full(3, -0.1), None, FLOOR).contact.touchdown_arc(case.state()))
     assert level_case(np.full(3, 0.1), None, FLOOR).contact.touchdown_arc(case.state()) == pytest.approx(1.0)
 
