@@ -18,6 +18,7 @@ from riser_soil.system import System, total
 from riser_soil.time_scheme import GeneralizedAlpha, Scheme, Static
 
 ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away
+METRE = 1.0  # over which the least force that counts does negligible work, as where a motion starts from rest
 EASY = 6  # Newton iterations up to which a step that was cut may grow again
 
 
@@ -147,7 +148,8 @@ class March:
         was = self._energy
         appeared = energy.total - was.total + dissipated - work
         in_motion = was.kinetic + was.strain + max(0.0, was.potential - energy.potential) + abs(work)
-        if appeared > in_motion + ENERGY_ROUND_OFF * abs(was.potential):
+        negligible = ENERGY_ROUND_OFF * abs(was.potential) + self.newton.settings.floor * METRE
+        if appeared > in_motion + negligible:
             raise NotConvergedError(
                 f"the step's solution makes {appeared:.3g} J out of nothing, more than the {in_motion:.3g} J in motion"
             )
