@@ -255,6 +255,33 @@ CONFLICTS = [
         "load of its own",
     ),
     Bad(
+        "period: 10.0, ramp: 5.0",
+        "period: 10.0, phase_deg: 90.0",
+        34,
+        "stages.1.motion.end.harmonic.phase_deg",
+        "90.0",
+        "jump by 1.5 m",
+    ),
+    Bad(
+        "kind: static}",
+        "kind: static, move: {end: [80, 0, -1]}}",
+        28,
+        "stages.0.move.end",
+        "[80, 0, -1]",
+        "below the seabed",
+    ),
+    Bad(
+        "kind: spring, level: 0.0, stiffness: 1.0e5}\nsoil:\n  block: {x: [10.0, 50.0], y: [-2.5, 2.5], depth: 2.5}\n"
+        "  mesh: {kind: hex, size_at_riser: 0.5, size_far: 1.5}\n"
+        "  law: {kind: von-mises, su: 4.0e3, su_gradient: 1.5e3, E_over_su: 300.0, nu: 0.49}\n"
+        "  submerged_unit_weight: 5.0e3\n",
+        "kind: rigid, level: 0.1}\n",
+        17,
+        "riser.start.position",
+        "[0.0, 0.0, 0.15]",
+        "0.1 m into the rigid seabed",
+    ),
+    Bad(
         "kind: static}",
         "kind: static, loads: [{at: end, force: [1, 0, 0], history: [[1, 0], [0, 1]]}]}",
         28,

@@ -10,6 +10,7 @@ from riser_soil.scene.problem import Problem, dotted, hint
 from riser_soil.scene.quantities import Vector
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.seabed import RigidSeabed
 from riser_soil.scene.shapes import ArcShape, PointsShape
 from riser_soil.scene.soil import Block
 from riser_soil.scene.stage_checks import stage_conflicts
@@ -19,6 +20,8 @@ _ARC_TOLERANCE = 1e-6
 _POINTS_TOLERANCE = 0.05
 # Distance between an end's position and the initial shape, relative to the riser's length.
 _MEETING = 1e-6
+# Part of its radius by which a held end may lie in a rigid seabed.
+_SUNK = 0.02
 # Strain of a riser pulled straight between its ends beyond which the positions must be a mistake.
 _GREATEST_STRAIN = 0.1
 # Part of its length by which a riser may start shorter when it is laid straight between its ends.
@@ -117,10 +120,19 @@ def _contact_with_something(scene: Scene) -> Iterator[Problem]:
 def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
     if not scene.contact:
         return
-    for key, end in {"start": scene.riser.start, "end": scene.riser.end}.items():
-        if isinstance(end, Support) and end.position[2] < scene.seabed_level:
+    types = [scene.line_types[scene.riser.segments[n].line_type] for n in (0, -1)]
+    ends = {"start": scene.riser.start, "end": scene.riser.end}
+    for (key, end), line in zip(ends.items(), types, strict=True):
+        if not isinstance(end, Support):
+            continue
+        sunk = scene.seabed_level - end.position[2]
+        radius = 0.5 * (line.outer_diameter or 0.0) if scene.contact_at == "outer" else 0.0
+        if sunk > 0.0:
             allowed = f"must not lie below the seabed (z = {scene.seabed_level:g} m)"
             yield Problem(("riser", key, "position"), allowed, "raise the position or lower seabed.level")
+        elif isinstance(scene.seabed, RigidSeabed) and scene.soil is None and sunk + radius > _SUNK * radius:
+            allowed = f"would press the pipe {sunk + radius:.3g} m into the rigid seabed"
+            yield Problem(("riser", key, "position"), allowed, f"raise it to z = {scene.seabed_level + radius:g} m")
 
 
 def _initial_shape_possible(scene: Scene) -> Iterator[Problem]:
