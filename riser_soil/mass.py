@@ -36,6 +36,11 @@ class RiserMass:
         out[at] = self._system.comm.bcast(mine)
         return out
 
+    def kinetic_energy(self, state: State) -> float:
+        """Kinetic energy [J] of the riser at an accepted state."""
+        mine = sum(part.energy(state).kinetic for part in self._parts)
+        return float(self._system.comm.allreduce(mine))
+
     def _solve(self, t: float, force: Array) -> Array:
         blocks = self._element_matrices(t)
         if self._moving is None:

@@ -12,13 +12,11 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from riser_soil.arrays import Array
+from riser_soil.direct_solver import PREFIX, defaults, factorise_directly, negative_pivots
 from riser_soil.part import Forces, State
 from riser_soil.system import System
 from riser_soil.time_scheme import Scheme
 
-PREFIX = "riser_soil_"
-# Count pivots on several ranks too (13), detect null pivots (24), room for fill-in in per cent (14).
-MUMPS_INERTIA = {"mat_mumps_icntl_13": 1, "mat_mumps_icntl_24": 1, "mat_mumps_icntl_14": 60}
 CONVERGED = PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
 DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_DTOL
 ITERATING = PETSc.SNES.ConvergedReason.ITERATING
@@ -90,7 +88,11 @@ class Newton:
         snes.setJacobian(self._jacobian, self.system.matrix.mat)
         snes.setConvergenceTest(self._test)
         snes.setTolerances(max_it=self.settings.max_iterations)
-        _set_direct_solver(snes, self.system)
+        snes.getKSP().setType(PETSc.KSP.Type.PREONLY)
+        factorise_directly(snes.getKSP().getPC(), self.system)
+        snes.setOptionsPrefix(PREFIX)
+        with defaults({"snes_linesearch_type": "basic"}):
+            snes.setFromOptions()
         return snes
 
     def solve(self, step: Step) -> Solution:
@@ -119,7 +121,7 @@ class Newton:
         if not self.system.symmetric:
             return
         self.system.assemble(solution.state, step.scheme.weights(step.dt))
-        negative = _negative_pivots(self.system)
+        negative = negative_pivots(self.system)
         if negative > 0:
             raise NotConvergedError(
                 f"the equilibrium found is unstable (its tangent has {negative} negative pivot(s)): the riser would "
@@ -202,57 +204,3 @@ class Newton:
     def destroy(self) -> None:
         for thing in (self._snes, self._x, self._f):
             thing.destroy()
-
-
-def _set_direct_solver(snes: PETSc.SNES, system: System) -> None:
-    """PETSc's own banded LU where a serial system is a chain in its natural order, MUMPS otherwise."""
-    options: dict[str, object] = {"snes_linesearch_type": "basic", "ksp_type": "preonly"}
-    if _is_chain(system):
-        options |= {"pc_type": "lu", "pc_factor_mat_ordering_type": "natural"}
-    else:
-        options |= {
-            "pc_type": "cholesky" if system.symmetric else "lu",
-            "pc_factor_mat_solver_type": "mumps",
-            "mat_mumps_icntl_14": 60,
-        }
-    _apply(snes, options)
-
-
-def _is_chain(system: System) -> bool:
-    return system.comm.size == 1 and len(system.model.fields) == 1
-
-
-def _negative_pivots(system: System) -> int:
-    """Negative pivots of the symmetric matrix: its number of negative eigenvalues."""
-    database, key = PETSc.Options(), PREFIX + "pivots_"
-    settings = {} if _is_chain(system) else MUMPS_INERTIA
-    pc = PETSc.PC().create(system.comm)
-    pc.setOptionsPrefix(key)
-    for name, value in settings.items():
-        database[key + name] = value
-    pc.setOperators(system.matrix.mat)
-    pc.setType(PETSc.PC.Type.CHOLESKY)
-    if _is_chain(system):
-        pc.setFactorOrdering("natural")
-    else:
-        pc.setFactorSolverType("mumps")
-    pc.setUp()
-    negative: int = pc.getFactorMatrix().getInertia()[0]
-    pc.destroy()
-    for name in settings:
-        database.delValue(key + name)
-    return negative
-
-
-def _apply(snes: PETSc.SNES, options: dict[str, object]) -> None:
-    """Apply defaults under the project's prefix; what the user has set wins; leave nothing behind."""
-    database = PETSc.Options()
-    added = [k for k in options if not database.hasName(PREFIX + k)]
-    for key in added:
-        database[PREFIX + key] = options[key]
-    snes.setOptionsPrefix(PREFIX)
-    snes.setFromOptions()
-    snes.getKSP().getPC().setFromOptions()
-    snes.setUp()
-    for key in added:
-        database.delValue(PREFIX + key)

@@ -67,7 +67,7 @@ class Observer:
         due = self._schedule.due(step.t, last)
         wanted = due.pictures and self._world.soil is not None
         soil = self._world.soil.output_fields() if wanted and self._world.soil is not None else None
-        previous, self._ledger = self._ledger, self._balance(step)
+        previous, self._ledger = self._ledger, self._balance(march.energy, step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
         if self._recorder is not None:
             change = self._ledger.residual - previous.residual
@@ -87,9 +87,9 @@ class Observer:
             self._recorder.finish()
             print_summary(self._recorder.summary.as_dict(), self._recorder.settlement)
 
-    def _balance(self, step: Accepted) -> Ledger:
+    def _balance(self, e: Energy, step: Accepted) -> Ledger:
         """The ledger after a step. A static stage balances no energy: its first shape need not be an equilibrium."""
-        e, before = step.energy, self._ledger
+        before = self._ledger
         dissipated, work = before.dissipated + step.dissipated, before.work + step.work
         residual = np.nan if self._static else e.total - self._begun.total + dissipated - work
         return Ledger(e.kinetic, e.strain, e.potential, dissipated, work, residual)

@@ -47,7 +47,7 @@ def run_stage(world: World, stage: Stage, before: State, observer: Observer, clo
     newton = Newton(system, _settings(world))
     try:
         march = March(system, newton, scheme_of(stage), replace(before, t=0.0))
-        observer.begin_stage(stage, system.energy(march.before))
+        observer.begin_stage(stage, march.energy)
         return _walk(world, stage, march, observer)
     finally:
         newton.destroy()

@@ -11,6 +11,8 @@ from rich.table import Table
 
 Row = tuple[str, str]
 
+DOUBTFUL = 0.01  # share of the energy turned over above which its residual is a warning
+
 
 def print_summary(
     summary: dict[str, Any], settlement: float | None = None, console: Console | None = None
@@ -78,7 +80,10 @@ def _newton(stage: dict[str, Any]) -> str:
 
 def _residual(energy: dict[str, float]) -> str:
     number = _number(energy["residual"], "J", 1.0)
-    return "not balanced in statics" if number == "-" else f"{number} of {_turnover(energy):.3g} J"
+    if number == "-":
+        return "not balanced in statics"
+    off = abs(energy["residual"]) > DOUBTFUL * _turnover(energy)
+    return f"{number} of {_turnover(energy):.3g} J" + (", WARNING: take a smaller time_step" if off else "")
 
 
 def _turnover(energy: dict[str, float]) -> float:

@@ -21,6 +21,7 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("numbering", "stepping"),
     ("matrix",),
     ("system",),
+    ("direct_solver",),
     ("mass", "newton"),
     ("march", "relax"),
     ("folder", "schedule", "progress", "inventory"),
