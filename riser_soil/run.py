@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +11,7 @@ from mpi4py import MPI
 
 from riser_soil.build import World, build
 from riser_soil.build.stage import scheme_of
+from riser_soil.doubts import physical_warnings
 from riser_soil.errors import SolveError
 from riser_soil.folder import refuse_finished
 from riser_soil.march import March
@@ -33,6 +35,9 @@ def run(scene: Scene, folder: Path, force: bool = False) -> None:
     comm, clock, since = MPI.COMM_WORLD, Clock.new(), time.perf_counter()
     world = build(scene, comm)
     clock.add("build", since)
+    for doubt in physical_warnings(world):
+        if comm.rank == 0:
+            print(f"warning: {doubt}", file=sys.stderr)
     with Observer.open(world, clock, folder, force) as observer:
         before = State.at_rest(0.0, world.size)
         for stage in scene.stages:

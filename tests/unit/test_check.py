@@ -123,8 +123,13 @@ def test_a_floating_pipe_is_told_with_its_weight() -> None:
     ],
 )
 def test_penalty_far_from_the_soil_is_told(stiffness: float, says: str) -> None:
-    (found,) = warnings({**touchdown(), "contact": {"stiffness": stiffness}})
+    (found,) = warnings({**touchdown(), "contact": {"stiffness": stiffness, "smoothing": 0.0}})
     assert says in found
+
+
+def test_a_stiff_penalty_rounded_over_a_long_way_is_told() -> None:
+    (found,) = warnings({**touchdown(), "contact": {"stiffness": 1.0e8, "smoothing": 1.0e-3}})
+    assert "pushes 2.5e+04 N/m at the moment of touching" in found
 
 
 def test_a_riser_that_lies_beyond_the_soil_is_told() -> None:

@@ -24,7 +24,7 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("direct_solver",),
     ("mass", "newton"),
     ("march", "relax"),
-    ("folder", "schedule", "progress", "inventory"),
+    ("folder", "schedule", "progress", "inventory", "doubts"),
     ("netcdf", "xdmf", "summary", "screen"),
     ("record",),
     ("observe",),

@@ -217,6 +217,18 @@ def test_the_screen_tells_the_main_results(tmp_path: Path) -> None:
         assert words in text
 
 
+def test_a_large_energy_residual_is_a_warning(tmp_path: Path) -> None:
+    record(tmp_path, mesh=block(4, 3, 2))
+    summary = Run(tmp_path).summary
+    moving = next(stage for stage in summary["stages"] if stage["kind"] == "dynamic")
+    for share, warns in ((0.002, False), (0.05, True)):
+        moving["energy"] |= {"work": 1000.0, "dissipated": 900.0, "kinetic": 1.0, "strain": 1.0}
+        moving["energy"]["residual"] = share * 1000.0
+        console = Console(width=120, record=True, file=io.StringIO())
+        print_summary(summary, 0.04, console)
+        assert ("WARNING: take a smaller time_step" in console.export_text()) == warns
+
+
 def test_progress_is_silent_off_a_terminal_and_on_other_ranks(capfd: pytest.CaptureFixture[str]) -> None:
     for enabled, console in (
         (True, Console(stderr=True)),
