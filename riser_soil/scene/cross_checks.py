@@ -52,6 +52,13 @@ def _line_types_suffice(scene: Scene) -> Iterator[Problem]:
             yield Problem(("line_types", name, key), reason, f"add {key}: {_describe(key)}")
 
 
+def _no_weight_without_gravity(scene: Scene) -> Iterator[Problem]:
+    for name, line in scene.used_line_types.items():
+        if scene.gravity == 0.0 and line.submerged_weight:
+            path = ("line_types", name, "submerged_weight")
+            yield Problem(path, "nothing weighs where gravity is 0", "leave it out, or give gravity")
+
+
 def _wanting(scene: Scene, line: LineType) -> Iterator[tuple[str, str]]:
     """Keys that a line type of this scene lacks, and why they are needed."""
     if line.mass is None and (reason := _mass_needed(scene, line)):
@@ -229,6 +236,7 @@ def _crosses(block: Block, a: Vector, b: Vector) -> bool:
 
 _CHECKS: tuple[_Check, ...] = (
     _line_types_suffice,
+    _no_weight_without_gravity,
     _water_where_it_acts,
     _contents_fit,
     _stays_in_plane,

@@ -12,6 +12,7 @@ from tests.bad_scenes import GOOD
 
 Changes = tuple[tuple[str, str], ...]
 
+POINTS = "initial: {points: [[0, 0, 0.15], [80, 0, 100]]}"
 NO_DIAMETER = ("    outer_diameter: 0.3\n", "")
 NO_DRAG = ("    drag: {normal: 1.1, tangential: 0.05}\n", "")
 GIVEN_WEIGHT = ("    GJ", "    submerged_weight: 500.0\n    GJ")
@@ -32,6 +33,11 @@ CASES: list[tuple[Changes, str, str]] = [
     ((("    mass: 120.0\n", ""), STATIC_ALONE), "line_types.pipe.mass: missing", "the weight follows from the mass"),
     ((NO_DIAMETER, GIVEN_WEIGHT), "line_types.pipe.outer_diameter: missing", "drag and added mass follow"),
     ((NO_DIAMETER, NO_DRAG, GIVEN_WEIGHT), "line_types.pipe.outer_diameter: missing", "outer surface touches"),
+    (
+        (GIVEN_WEIGHT, ("gravity: 9.81", "gravity: 0"), ("initial: catenary", POINTS)),
+        "line_types.pipe.submerged_weight: value 500",
+        "nothing weighs where gravity is 0",
+    ),
     ((NO_SEABED, NO_SOIL), "contact: value {", "there is nothing to touch"),
     (
         (("initial: catenary", "initial: straight"), ("length: 148.0", "length: 100.0")),
