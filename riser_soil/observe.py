@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -80,6 +81,9 @@ class Observer:
     def relaxed(self, iterations: int) -> None:
         """Dynamic relaxation was needed; its Newton iterations count with the next step."""
         self._relaxed = iterations
+        if self._recorder is not None:
+            text = f"dynamic relaxation was needed; it took {iterations} Newton iterations, counted with the next step"
+            print(text, file=sys.stderr)
 
     def finish(self) -> None:
         if self._recorder is not None:
