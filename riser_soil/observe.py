@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -83,7 +82,7 @@ class Observer:
         self._relaxed = iterations
         if self._recorder is not None:
             text = f"dynamic relaxation was needed; it took {iterations} Newton iterations, counted with the next step"
-            print(text, file=sys.stderr)
+            print(text)
 
     def finish(self) -> None:
         if self._recorder is not None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -37,7 +36,7 @@ def run(scene: Scene, folder: Path, force: bool = False) -> None:
     clock.add("build", since)
     for doubt in physical_warnings(world):
         if comm.rank == 0:
-            print(f"warning: {doubt}", file=sys.stderr)
+            print(f"warning: {doubt}")
     with Observer.open(world, clock, folder, force) as observer:
         before = State.at_rest(0.0, world.size)
         for stage in scene.stages:

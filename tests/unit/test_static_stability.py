@@ -70,7 +70,7 @@ def test_a_cantilever_laid_out_level_falls_to_hang(tmp_path: Path, capsys: pytes
     final = Run(tmp_path).summary["stages"][0]["final"]
     assert final["start"]["force"] == pytest.approx([0.0, 0.0, 5000.0], abs=1e-2)
     assert final["end"]["position"] == pytest.approx([0.0, 0.0, 50.0 - 0.0125], abs=1e-3)
-    assert "dynamic relaxation was needed" in capsys.readouterr().err
+    assert "dynamic relaxation was needed" in capsys.readouterr().out
 
 
 def test_a_line_laid_out_straight_sags_and_does_not_fold(tmp_path: Path) -> None:
