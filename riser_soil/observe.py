@@ -17,14 +17,19 @@ from riser_soil.march import Accepted, March
 from riser_soil.part import Energy, Forces, State
 from riser_soil.progress import Progress
 from riser_soil.record import Recorder
-from riser_soil.riser.section_forces import HasElementForces, element_residual, end_reactions, section_forces
-from riser_soil.riser.springs import EndSpring
+from riser_soil.riser.section_forces import (
+    HasElementForces,
+    HasNodalForces,
+    element_residual,
+    end_reactions,
+    section_forces,
+)
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.schedule import Schedule
 from riser_soil.screen import print_summary
 from riser_soil.snapshot import Ledger, RiserSnapshot, RunFacts, StepHealth, Touch
-from riser_soil.system import Clock, total
+from riser_soil.system import Clock
 
 
 class Observer:
@@ -104,7 +109,7 @@ def riser_snapshot(world: World, march: March) -> RiserSnapshot:
     parts = [p for p in march.system.model.parts if isinstance(p, HasElementForces)]
     residual = element_residual(line, parts, state)
     inside = section_forces(line, world.elements, state, residual)
-    start, end = end_reactions(line, state, residual, _on_nodes(world, march, residual))
+    start, end = end_reactions(line, state, residual, _on_nodes(world, march))
     tangent = line.trial(state).turn.tangent @ line.basis.T
     return RiserSnapshot(
         position=line.positions3(state),
@@ -122,15 +127,13 @@ def riser_snapshot(world: World, march: March) -> RiserSnapshot:
     )
 
 
-def _on_nodes(world: World, march: March, residual: Array) -> Array:
-    """What acts on nodes but isn't a support (nn, ndof): all forces less those of elements and of end springs."""
-    forces = march.system.forces(march.now)
-    inside, springs = np.zeros_like(forces.force), Forces.zeros(forces.force.size)
-    world.line.scatter(residual, inside)
-    for part in world.riser_parts:
-        if isinstance(part, EndSpring):
-            part.residual(march.now, springs)
-    return world.line.nodal(total(forces) - inside - springs.force)
+def _on_nodes(world: World, march: March) -> Array:
+    """Residual (nn, ndof) of what acts on nodes but isn't a support: contact, and loads at nodes."""
+    forces = Forces.zeros(march.now.u.size)
+    if world.contact is not None:
+        world.contact.residual(march.now, forces)
+    loads = [p.nodal_forces(march.now) for p in march.system.model.parts if isinstance(p, HasNodalForces)]
+    return np.asarray(sum(loads, world.line.nodal(forces.end)))
 
 
 def _contact_force(world: World, state: State) -> Array:

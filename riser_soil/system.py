@@ -106,13 +106,10 @@ class System:
         return forces.inertia[at] + forces.force[at] + forces.end[at]
 
     def commit(self, state: State) -> None:
-        """Accept a state: parts first, then the fields that they act on, each object once."""
-        seen: set[int] = set()
+        """Accept a state: parts first, then the fields that they act on."""
         owners: list[Part | Field] = [*self.model.parts, *self.model.fields]
         for owner in owners:
-            if id(owner) not in seen:
-                seen.add(id(owner))
-                owner.commit(state)
+            owner.commit(state)
 
     def describe(self, row: int) -> str:
         """Where a row of the system sits; collective."""

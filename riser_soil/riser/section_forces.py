@@ -30,6 +30,15 @@ class HasElementForces(Protocol):
         ...
 
 
+@runtime_checkable
+class HasNodalForces(Protocol):
+    """A part that acts on the line's nodes without holding them."""
+
+    def nodal_forces(self, state: State) -> Array:
+        """Residual (nn, ndof) of what acts on nodes."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class SectionForces:
     """What the line after a node exerts on the line before it, at nodes and in global axes: (nn, 3) or (nn,).

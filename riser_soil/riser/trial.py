@@ -54,11 +54,6 @@ class Trial:
         """q'' (ne, 4, d)."""
         return _interleave(self._a, self._director_rates[1])
 
-    @cached_property
-    def q(self) -> Array:
-        """q (ne, 4, d)."""
-        return _interleave(self.x, self.turn.tangent)
-
     def pull_back(self, F: Array) -> Array:
         """Element residual in the dofs (ne, 2 ndof) of F (ne, 4, d) conjugate to q."""
         return np.asarray(hermite.pull_back(F, self.turn.P))

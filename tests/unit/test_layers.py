@@ -30,9 +30,7 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("observe",),
     ("run", "check"),
     ("results",),
-    ("study",),
     ("plots",),
-    ("report",),
     ("__main__",),
 ]
 RANK = {module: rank for rank, layer in enumerate(LAYERS) for module in layer}
@@ -42,8 +40,8 @@ ONLY_IN = {  # what costs time to import, or may be absent, and the layers that 
     "ufl": {"dolfinx_compat", "soil"},
     "basix": {"dolfinx_compat", "soil"},
     "gmsh": {"dolfinx_compat", "soil"},
-    "matplotlib": {"plots", "report"},
-    "pyvista": {"plots", "report"},
+    "matplotlib": {"plots"},
+    "pyvista": {"plots"},
     "riser_soil.dolfinx_compat": {"soil"},
     "numba": {"compiled"},
 }
