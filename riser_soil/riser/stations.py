@@ -124,8 +124,9 @@ class Columns(NamedTuple):
 
 
 class Derivatives(NamedTuple):
-    """Derivatives (ne, ng, d, d) of a force per length by x', and by the rate and acceleration of x."""
+    """Derivatives (ne, ng, d, d) of a force per length by x, by x', and by the rate and acceleration of x."""
 
+    position: Array
     slope: Array
     rate: Array
     acceleration: Array
@@ -154,6 +155,7 @@ def _add_tangent(
     N: Array,
     dN: Array,
     weighted: Array,
+    by_position: Array,
     by_slope: Array,
     by_rate: Array,
     by_acceleration: Array,
@@ -181,6 +183,7 @@ def _add_tangent(
                     turning, moving = 0.0, 0.0
                     for j in range(d):
                         turning += by_slope[e, g, i, j] * q[j, c]
+                        moving += by_position[e, g, i, j] * q[j, c]
                         moving += by_rate[e, g, i, j] * q1[j, c] + by_acceleration[e, g, i, j] * q2[j, c]
                     change = dN[e, g, b] * turning + N[e, g, b] * moving
                     for a in range(4):
