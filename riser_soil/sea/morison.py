@@ -67,7 +67,8 @@ class Morison:
         by_v, by_tau = law.drag_derivatives(flow.v, flow.tau, weights.force * self._drag)
         by_a, added_by_tau = law.added_derivatives(flow.a, flow.tau, weights.inertia * self._mass)
         by_tau += added_by_tau
-        return stations.Derivatives(np.zeros_like(by_v), stations.follow_slope(by_tau, flow.tau, flow.stretch), by_v, by_a)
+        by_slope = stations.follow_slope(by_tau, flow.tau, flow.stretch)
+        return stations.Derivatives(np.zeros_like(by_v), by_slope, by_v, by_a)
 
     def energy(self, state: State) -> Energy:
         """Kinetic energy of the added mass."""

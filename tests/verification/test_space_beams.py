@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 import pytest
@@ -36,7 +37,8 @@ def helix(s: Array, m: Array, EI: float, GJ: float) -> tuple[Array, Array]:
     """
     M = np.linalg.norm(m)
     e, tangent, rate = m / M, np.array([1.0, 0.0, 0.0]), M / EI
-    along, across = (tangent @ e) * e, tangent - (tangent @ e) * e
+    along = np.asarray((tangent @ e) * e)
+    across = tangent - along
     phi = rate * s[:, None]
     aside = np.cross(e, across)
     axis = s[:, None] * along + np.sin(phi) / rate * across + (1.0 - np.cos(phi)) / rate * aside
@@ -76,11 +78,9 @@ def test_bending_and_twist_reach_the_helix_from_the_straight_beam() -> None:
 
 LENGTH, HEIGHT, WIDTH, E, NU = 0.508, 12.77e-3, 3.2024e-3, 71.7e9, 0.31
 TORSION = 1.0 / 3.0 - 0.21 * WIDTH / HEIGHT * (1.0 - (WIDTH / HEIGHT) ** 4 / 12.0)  # of height width^3; Roark
-STRIP = {
-    "EA": E * HEIGHT * WIDTH,
-    "EI": (E * HEIGHT * WIDTH**3 / 12.0, E * WIDTH * HEIGHT**3 / 12.0),
-    "GJ": 0.5 * E / (1.0 + NU) * TORSION * HEIGHT * WIDTH**3,
-}
+STRIP_EA = E * HEIGHT * WIDTH
+STRIP_EI = (E * HEIGHT * WIDTH**3 / 12.0, E * WIDTH * HEIGHT**3 / 12.0)
+STRIP_GJ = 0.5 * E / (1.0 + NU) * TORSION * HEIGHT * WIDTH**3
 
 
 @pytest.mark.parametrize("force", [4.448, 8.896, 13.345])
@@ -89,12 +89,12 @@ def test_princeton_beam(force: float, angle: float) -> None:
     """Tip force [N] at an angle [deg] from the strip's stiff direction, 90 being along its soft one."""
     tilt = np.radians(angle)
     tip_force = force * np.array([0.0, np.cos(tilt), np.sin(tilt)])
-    stiffness = np.array([STRIP["GJ"], *STRIP["EI"]]) / LENGTH**2
-    rod = Rod(1.0, STRIP["EA"], stiffness, np.zeros(3), np.eye(3))
+    stiffness = np.array([STRIP_GJ, *STRIP_EI]) / LENGTH**2
+    rod = Rod(1.0, STRIP_EA, stiffness, np.zeros(3), np.eye(3))
     exact = LENGTH * tip(rod, tip_force, np.zeros(3))
     errors = []
     for n in (4, 8, 16):
-        chain = straight_space(n, LENGTH, **STRIP)
+        chain = straight_space(n, LENGTH, STRIP_EA, STRIP_EI, STRIP_GJ)
         load(chain, np.concatenate([tip_force, np.zeros(3)]), steps=8)
         errors.append(float(np.linalg.norm(chain.x[-1] - exact)))
     assert errors[0] < 1e-4 * LENGTH
@@ -155,14 +155,14 @@ def _slope(f: Callable[[Array], Array], x: Array, k: int, h: float) -> Array:
     return (f(x + step) - f(x - step)) / (2.0 * h)
 
 
-STRIP_ACROSS = (1.0, 1e3)  # EI of a cantilever of unit length; it hardly bends in its plane
-STRIP_GJ, STRIP_EA = 0.5, 1e5
+BLADE_EI = (1.0, 1e3)  # of a cantilever of unit length; it hardly bends in its plane
+BLADE_GJ, BLADE_EA = 0.5, 1e5
 
 
 def lateral_torsional(n: int) -> float:
     """Critical tip force of n elements."""
-    chain = lambda: straight_space(n, 1.0, STRIP_EA, STRIP_ACROSS, STRIP_GJ)  # noqa: E731
-    return critical_load(chain, np.array([0.0, 1.0, 0.0]), 2.0, 3.5)
+    blade = partial(straight_space, n, 1.0, BLADE_EA, BLADE_EI, BLADE_GJ)
+    return critical_load(blade, np.array([0.0, 1.0, 0.0]), 2.0, 3.5)
 
 
 def test_lateral_torsional_buckling_of_a_cantilever() -> None:
@@ -171,8 +171,8 @@ def test_lateral_torsional_buckling_of_a_cantilever() -> None:
     P = 4.0126 sqrt(EI GJ)/L^2; Timoshenko & Gere, Theory of Elastic Stability (1961), section 6.3.
     """
     root = brentq(lambda y: jv(-0.25, y), 1.5, 2.5, xtol=1e-14)
-    closed_form = 2.0 * root * np.sqrt(STRIP_GJ)
-    rod = Rod(1.0, STRIP_EA, np.array([STRIP_GJ, *STRIP_ACROSS]), np.zeros(3), np.eye(3))
+    closed_form = 2.0 * root * np.sqrt(BLADE_GJ)
+    rod = Rod(1.0, BLADE_EA, np.array([BLADE_GJ, *BLADE_EI]), np.zeros(3), np.eye(3))
     exact = first_buckling([(rod, np.eye(3))], np.array([0.0, 1.0, 0.0]), 2.0, 3.5)
     assert exact == pytest.approx(closed_form, rel=1.5e-3)
     errors = [abs(lateral_torsional(n) / exact - 1.0) for n in (4, 8, 16)]
@@ -184,7 +184,8 @@ def test_lateral_torsional_buckling_of_a_cantilever() -> None:
 # Comput. Methods Appl. Mech. Engng 20 (1979); N and mm
 
 LEG = 240.0
-FRAME = {"EA": 71240.0 * 30.0 * 0.6, "EI": (71240.0 * 30.0 * 0.6**3 / 12.0, 71240.0 * 0.6 * 30.0**3 / 12.0)}
+FRAME_EA = 71240.0 * 30.0 * 0.6
+FRAME_EI = (71240.0 * 30.0 * 0.6**3 / 12.0, 71240.0 * 0.6 * 30.0**3 / 12.0)
 FRAME_GJ = 71240.0 / (2.0 * 1.31) * 30.0 * 0.6**3 / 3.0
 PUSH = np.array([1.0, 0.0, 0.0])
 LEGS = (np.eye(3), np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]))  # tangents along x, then -y
@@ -196,17 +197,16 @@ def right_angle(n: int) -> SpaceChain:
     first, second = np.stack([at, o, o], axis=1), np.stack([LEG + o, -at, o], axis=1)
     frames = np.repeat(np.stack(LEGS), n, axis=0)
     count = 2 * n
-    EIy, EIz = FRAME["EI"]
-    full = [np.full(count, value) for value in (FRAME["EA"], EIy, EIz, FRAME_GJ)]
+    full = [np.full(count, value) for value in (FRAME_EA, *FRAME_EI, FRAME_GJ)]
     return SpaceChain(
         np.concatenate([first, second[1:]]), np.stack([frames, frames]), np.full(count, LEG / n), beam3d.Section(*full)
     )
 
 
 def test_right_angle_frame_buckles_out_of_its_plane() -> None:
-    rod = Rod(LEG, FRAME["EA"], np.array([FRAME_GJ, *FRAME["EI"]]), np.zeros(3), np.eye(3))
+    rod = Rod(LEG, FRAME_EA, np.array([FRAME_GJ, *FRAME_EI]), np.zeros(3), np.eye(3))
     exact = first_buckling([(rod, leg) for leg in LEGS], PUSH, 0.9, 1.3)
     assert exact == pytest.approx(1.088, abs=0.003)  # Simo & Vu-Quoc, Comput. Methods Appl. Mech. Engng 58 (1986)
-    errors = [abs(critical_load(lambda n=n: right_angle(n), PUSH, 0.8, 1.3) / exact - 1.0) for n in (3, 6, 12)]
+    errors = [abs(critical_load(partial(right_angle, n), PUSH, 0.8, 1.3) / exact - 1.0) for n in (3, 6, 12)]
     assert errors[-1] < 1e-5
     assert orders(errors).min() > FOURTH
