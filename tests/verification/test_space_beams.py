@@ -38,7 +38,7 @@ def helix(s: Array, m: Array, EI: float, GJ: float) -> tuple[Array, Array]:
     M = np.linalg.norm(m)
     e, tangent, rate = m / M, np.array([1.0, 0.0, 0.0]), M / EI
     along = np.asarray((tangent @ e) * e)
-    across = tangent - along
+    across: Array = tangent - along
     phi = rate * s[:, None]
     aside = np.cross(e, across)
     axis = s[:, None] * along + np.sin(phi) / rate * across + (1.0 - np.cos(phi)) / rate * aside
