@@ -10,8 +10,9 @@ from riser_soil.arrays import Array
 from riser_soil.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
+from riser_soil.riser.ends import End, Turning
 from riser_soil.riser.inertia import Inertia
-from riser_soil.riser.line import End, Line
+from riser_soil.riser.line import Line
 from riser_soil.riser.loads import Load, PointLoads
 from riser_soil.riser.sections import Elements, LineType, Segment, Surroundings, elements
 from riser_soil.riser.springs import EndSpring
@@ -72,6 +73,12 @@ class Sample:
 
     def spring(self) -> EndSpring:
         return EndSpring(self.line, -1, 800.0)
+
+    def turned_spring(self) -> EndSpring:
+        """Its support has turned about the normal of the sample's plane."""
+        rotation, still = 0.9 * np.cross(DIRECTION, UP), np.zeros(3)
+        self.line.end.turning = lambda t: Turning(t * rotation, rotation, still)
+        return self.spring()
 
     def forces(self) -> PointLoads:
         """A force within an element, one at the end, and a distributed load."""

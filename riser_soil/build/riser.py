@@ -7,7 +7,8 @@ import numpy as np
 from riser_soil.arrays import Array
 from riser_soil.part import Part
 from riser_soil.riser import sections, shapes
-from riser_soil.riser.line import End, Line
+from riser_soil.riser.ends import End
+from riser_soil.riser.line import Line
 from riser_soil.riser.springs import EndSpring
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.plane import resolved_dimension, vertical_plane

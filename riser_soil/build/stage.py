@@ -11,7 +11,8 @@ from riser_soil.arrays import Array
 from riser_soil.motion.harmonic import Harmonic
 from riser_soil.motion.move import Move
 from riser_soil.part import Part
-from riser_soil.riser.line import Line, Motion
+from riser_soil.riser.ends import Motion
+from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import Load as LoadScene
@@ -35,6 +36,7 @@ def set_motions(line: Line, stage: Stage) -> None:
     """Give the held ends their motions in this stage, from where they are now; without one they stay there."""
     for end, node, name in ((line.start, 0, "start"), (line.end, -1, "end")):
         end.motion = _motion(line.to_global(line.x[node]), stage, name) if end.held else None
+    line.begin_stage()
 
 
 def _motion(origin: Array, stage: Stage, name: str) -> Motion | None:

@@ -51,6 +51,10 @@ class PlanarTurn:
         self.angle = angle
         self.end_angle, self.tangent, self.normal = _planar_ends(angle, alpha0)
 
+    def at(self, node: int) -> Array:
+        """Orientation of a node: its angle (1,)."""
+        return self.angle[node : node + 1]
+
     @property
     def P(self) -> Array:
         return self.normal[..., None]
@@ -86,6 +90,22 @@ class PlanarFrames:
     def __init__(self, angle: Array, alpha0: Array) -> None:
         self.angle, self.alpha0 = angle, alpha0
 
+    def turned(self, orientation: Array, rotation: Array) -> Array:
+        """An orientation turned by an angle (1,)."""
+        return orientation + rotation
+
+    def rotation(self, first: Array, second: Array) -> Array:
+        """Angle (1,) from one orientation to another."""
+        return second - first
+
+    def increment(self, node: int, orientation: Array) -> Array:
+        """Increment (1,) that brings a node to an orientation."""
+        return orientation - self.angle[node]
+
+    def in_body_axes(self, orientation: Array, rate: Array) -> Array:
+        """An angular rate (1,) as the dofs have it."""
+        return rate
+
     def turn(self, increment: Array) -> PlanarTurn:
         return PlanarTurn(self.angle + increment[:, 0], self.alpha0)
 
@@ -100,6 +120,10 @@ class SpatialTurn:
         self.Rn, self.Theta, self.T0 = Rn, Theta, T0
         self.R, self.H = node_frames(Rn, Theta)
         self.frame1, self.frame2, self.tangent = end_frames(self.R, T0)
+
+    def at(self, node: int) -> Array:
+        """Orientation of a node: its frame (3, 3)."""
+        return self.R[node]
 
     @cached_property
     def P(self) -> Array:
@@ -134,6 +158,22 @@ class SpatialFrames:
 
     def __init__(self, R: Array, T0: Array) -> None:
         self.R, self.T0 = np.ascontiguousarray(R), np.ascontiguousarray(T0)
+
+    def turned(self, orientation: Array, rotation: Array) -> Array:
+        """An orientation turned by a rotation vector (3,) in global axes."""
+        return np.array(rotations.exp(vector(rotation))) @ orientation
+
+    def rotation(self, first: Array, second: Array) -> Array:
+        """Rotation vector (3,) in global axes, no longer than pi, from one orientation to another."""
+        return np.array(rotations.log(matrix(second @ first.T)))
+
+    def increment(self, node: int, orientation: Array) -> Array:
+        """Increment (3,), no longer than pi, that brings a node to an orientation."""
+        return np.array(rotations.log(matrix(self.R[node].T @ orientation)))
+
+    def in_body_axes(self, orientation: Array, rate: Array) -> Array:
+        """An angular rate (3,) in global axes as the dofs have it."""
+        return np.asarray(orientation.T @ rate)
 
     def turn(self, increment: Array) -> SpatialTurn:
         return SpatialTurn(self.R, np.ascontiguousarray(increment), self.T0)

@@ -7,7 +7,6 @@ an angle, p along the horizontal unit vector d, the angle positive from d toward
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,13 +17,8 @@ from riser_soil.compiled import njit
 from riser_soil.errors import SceneError
 from riser_soil.part import Block, State
 from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames
+from riser_soil.riser.ends import End, Turning
 from riser_soil.riser.trial import Trial
-
-Kinematics = tuple[Array, Array, Array]
-Motion = Callable[[float], Kinematics]
-"""Seconds since the stage began (load factor in statics) -> position, velocity, acceleration (3,) in global
-axes.
-"""
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -46,15 +40,6 @@ class Layout:
     chord0: Array
     position: Array
     rotation: Array
-
-
-@dataclass
-class End:
-    """How an end is held. motion, when given, moves a held position; without it the end stays where it is."""
-
-    held: bool
-    rotation_fixed: bool = False
-    motion: Motion | None = None
 
 
 class Line:
@@ -85,6 +70,7 @@ class Line:
         self.direction = np.array([1.0, 0.0, 0.0]) if direction is None else direction
         self.normal = np.cross(self.direction, UP)
         self.basis, self.origin = self._axes(layout.position[0])
+        self.turning_axes = np.eye(3) if dimension == 3 else self.normal[:, None]
         self._check_plane(layout)
         self.chord0 = layout.chord0 @ (self.basis if dimension == 2 else layout.T0[0, 0])
         self.frames: Frames = (
@@ -92,6 +78,8 @@ class Line:
         )
         self.x = (layout.position - self.origin) @ self.basis
         self.chord = np.diff(self.x, axis=0)
+        unturned = self.frames.turn(np.zeros((self.arc.size, self.frames.dofs)))
+        self._supports = self._bases = {node: unturned.at(node).copy() for node in (0, self.arc.size - 1)}
         self.offset = 0
         self._first: Trial | None = None
         self._trials: deque[Trial] = deque(maxlen=2)
@@ -192,7 +180,20 @@ class Line:
         trial = self.trial(state)
         self.x, self.chord = trial.x, trial.chord
         self.frames.commit(self.nodal(state.u)[:, self.dimension :])
+        self._supports = {node: self.support(node, state.t) for node in self._supports}
         self.forget()
+
+    def begin_stage(self) -> None:
+        """Supports turn from where they are now."""
+        self._bases = self._supports
+
+    def support(self, node: int, t: float) -> Array:
+        """Orientation of the support of the first or last node, as the turn's `at` gives that of the node: the
+        node's own at first, then as its turning says.
+        """
+        turning = (self.end if node else self.start).turning
+        base = self._bases[node]
+        return base if turning is None else self.frames.turned(base, turning(t).rotation @ self.turning_axes)
 
     def improve(self, guess: State) -> Array:
         """First guess of a step: the guess's increment, with what the held ends move beyond it spread along the line.
@@ -242,6 +243,16 @@ class Line:
                 position, velocity, acceleration = end.motion(t)
                 u[at] = (position - self.origin) @ self.basis - self.x[node]
                 v[at], a[at] = velocity @ self.basis, acceleration @ self.basis
+            if end.rotation_fixed and end.turning is not None:
+                self._turn(node, end.turning(t), self.support(node, t), (u, v, a))
+
+    def _turn(self, node: int, turning: Turning, support: Array, values: tuple[Array, Array, Array]) -> None:
+        """Write the increment, rate and acceleration of a rotation that follows its support."""
+        at = slice(node * self.ndof + self.dimension, (node + 1) * self.ndof)
+        u, v, a = values
+        u[at] = self.frames.increment(node, support)
+        v[at] = self.frames.in_body_axes(support, turning.angular_velocity @ self.turning_axes)
+        a[at] = self.frames.in_body_axes(support, turning.angular_acceleration @ self.turning_axes)
 
     def describe(self, entry: int) -> str:
         """ "riser node at arc 24 m, vertical force"."""

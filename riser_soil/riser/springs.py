@@ -7,15 +7,16 @@ import numpy as np
 from riser_soil.arrays import Array
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.riser import rotations
-from riser_soil.riser.directors import PlanarTurn, SpatialTurn, moment_stiffness
+from riser_soil.riser.directors import SpatialTurn, moment_stiffness
 from riser_soil.riser.line import Line
 
 
 class EndSpring:
-    """Moment stiffness times the rotation vector from the end's direction when the part is made (group F).
+    """Moment stiffness times the rotation vector from the support's orientation to the end's (group F).
 
     line: the riser's field. node: 0 for the start, -1 for the end. stiffness: N m/rad.
-    In space the rotation is below pi and counts twist too; in the plane it is unlimited.
+    At rest in the line's first configuration, from where the support may turn. In space the rotation is below pi and
+    counts twist too; in the plane it is unlimited.
     """
 
     symmetric = True
@@ -24,8 +25,6 @@ class EndSpring:
         self.line, self.stiffness = line, stiffness
         self.node = node % line.nodes
         self.name = "start spring" if self.node == 0 else "end spring"
-        turn = line.frames.turn(np.zeros((line.nodes, line.frames.dofs)))
-        self._rest = turn.angle[self.node] if isinstance(turn, PlanarTurn) else turn.R[self.node].copy()
 
     def blocks(self) -> dict[str, Block]:
         if not self.line.active:
@@ -39,10 +38,8 @@ class EndSpring:
         return -self.stiffness * self._rotation(state)
 
     def _rotation(self, state: State) -> Array:
-        turn = self.line.trial(state).turn
-        if isinstance(turn, PlanarTurn):
-            return np.array([turn.angle[self.node] - self._rest])
-        return np.array(rotations.log(turn.R[self.node] @ self._rest.T))
+        support = self.line.support(self.node, state.t)
+        return self.line.frames.rotation(support, self.line.trial(state).turn.at(self.node))
 
     def residual(self, state: State, forces: Forces) -> None:
         if self.line.active:
@@ -70,7 +67,11 @@ class EndSpring:
         return Energy(strain=0.5 * self.stiffness * float(phi @ phi))
 
     def work(self, before: State, after: State) -> Work:
-        return Work()
+        """Of the support's turning against the spring: the mean moment times the rotation."""
+        if not self.line.active:
+            return Work()
+        rotation = self.line.frames.rotation(*(self.line.support(self.node, state.t) for state in (before, after)))
+        return Work(external=0.5 * float((self.moment(before) + self.moment(after)) @ rotation))
 
     def commit(self, state: State) -> None:
         pass

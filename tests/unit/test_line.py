@@ -12,7 +12,8 @@ from riser_soil.errors import SceneError
 from riser_soil.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
-from riser_soil.riser.line import End, Kinematics, Line
+from riser_soil.riser.ends import End, Kinematics
+from riser_soil.riser.line import Line
 from riser_soil.riser.loads import Load, PointLoads
 from riser_soil.riser.section_forces import element_residual, end_reactions, section_forces
 from riser_soil.riser.sections import Elements, LineType, Segment, Surroundings, elements

@@ -26,6 +26,7 @@ MAKERS: dict[str, Callable[[Sample], Part]] = {
     "inertia": Sample.inertia,
     "morison": Sample.morison,
     "spring": Sample.spring,
+    "turned spring": Sample.turned_spring,
     "forces": Sample.forces,
     "moments": Sample.moments,
 }
@@ -125,6 +126,7 @@ def without_director_rates(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
         ("forces", 3, without_geometric),
         ("moments", 3, without_turning_moments),
         ("spring", 3, without_turning_moments),
+        ("turned spring", 3, without_turning_moments),
     ],
 )
 def test_each_term_of_the_tangent_matters(

@@ -8,7 +8,8 @@ import pytest
 from riser_soil.arrays import Array
 from riser_soil.part import State, Weights
 from riser_soil.riser import shapes
-from riser_soil.riser.line import End, Line
+from riser_soil.riser.ends import End
+from riser_soil.riser.line import Line
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
 from tests.dense_chain import residual

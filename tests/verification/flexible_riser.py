@@ -14,7 +14,8 @@ from riser_soil.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.catenary import Catenary, catenary
-from riser_soil.riser.line import End, Line
+from riser_soil.riser.ends import End
+from riser_soil.riser.line import Line
 from riser_soil.riser.section_forces import (
     Reaction,
     SectionForces,

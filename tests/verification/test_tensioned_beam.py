@@ -10,8 +10,9 @@ from riser_soil.arrays import Array
 from riser_soil.part import State, Weights
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
+from riser_soil.riser.ends import End, Kinematics
 from riser_soil.riser.inertia import Inertia
-from riser_soil.riser.line import End, Kinematics, Line
+from riser_soil.riser.line import Line
 from riser_soil.riser.sections import LineType, Segment, Surroundings, elements
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses
