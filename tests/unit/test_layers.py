@@ -11,7 +11,7 @@ import riser_soil
 PACKAGE = Path(riser_soil.__file__).parent
 
 LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one another
-    ("errors", "arrays", "compiled"),
+    ("errors", "arrays", "compiled", "smooth_step"),
     ("part", "snapshot"),
     ("scene", "dolfinx_compat", "time_scheme"),
     ("riser",),

@@ -1,0 +1,19 @@
+"""A steady current that changes with height."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.arrays import Array
+
+
+def at_heights(z: Array, level: Array, velocity: Array) -> tuple[Array, Array]:
+    """Horizontal velocity [m/s] and its derivative by z [1/s], each (n, 2), at heights z (n,).
+
+    level (m,) [m] increases; velocity (m, 2) holds there. Linear between the levels, constant beyond them; at a level,
+    the derivative is that of the layer above it.
+    """
+    slopes = np.zeros((level.size + 1, 2))
+    slopes[1:-1] = np.diff(velocity, axis=0) / np.diff(level)[:, None]
+    values = np.stack([np.interp(z, level, u) for u in velocity.T], axis=-1)
+    return values, slopes[np.searchsorted(level, z, side="right")]

@@ -1,0 +1,64 @@
+"""The JONSWAP spectrum of wind waves, and a sea drawn from it."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.sea.components import Components
+from riser_soil.sea.dispersion import wave_number
+
+# Frequencies of a sea's components, over the peak's. What lies outside is 0.0 % below and 0.1 to 0.2 % above of the
+# spectrum's energy (gamma 7 to 1).
+LOWEST, HIGHEST = 0.5, 5.0
+_STEP = 1e-3  # of the logarithm of the frequency, in quadratures
+
+
+def spectrum(w: Array, Hs: float, Tp: float, gamma: float) -> Array:
+    """One-sided spectral density of the surface [m2 s/rad] at angular frequencies w > 0 [rad/s].
+
+    Its integral is Hs^2/16 exactly: the shape of Hasselmann et al. (1973), with widths 0.07 below and 0.09 above the
+    peak, is normalised by quadrature.
+    """
+    peak = 2.0 * np.pi / Tp
+    return Hs**2 / (16.0 * peak * _area(gamma)) * _shape(w / peak, gamma)
+
+
+def components(
+    Hs: float, Tp: float, gamma: float, count: int, seed: int, direction: float, g: float, h: float
+) -> Components:
+    """A sea of `count` waves towards `direction` [rad] in water of depth h [m]; the same seed gives the same sea.
+
+    The frequencies from LOWEST to HIGHEST times the peak's are cut into bins of equal energy, one for each wave. Within
+    its bin a wave's frequency is drawn with the spectrum as its density, so that no frequency is preferred and the sea
+    never repeats itself; phases are drawn evenly. All amplitudes are alike, and the sum of a^2/2 is Hs^2/16.
+    """
+    draw = np.random.default_rng(seed)
+    share = (np.arange(count) + draw.random(count)) / count
+    w = 2.0 * np.pi / Tp * _quantiles(share, gamma)
+    every = np.ones(count)
+    phase = 2.0 * np.pi * draw.random(count)
+    return Components(Hs / np.sqrt(8.0 * count) * every, w, wave_number(w, g, h), direction * every, phase)
+
+
+def _shape(x: Array, gamma: float) -> Array:
+    """Density over the frequency x, relative to the peak's; of any size."""
+    width = np.where(x <= 1.0, 0.07, 0.09)
+    return x**-5.0 * np.exp(-1.25 * x**-4.0) * gamma ** np.exp(-0.5 * ((x - 1.0) / width) ** 2)
+
+
+@cache
+def _area(gamma: float) -> float:
+    """Integral of the shape over all frequencies; the kink of the width lies on a point of the trapezoidal rule."""
+    x = np.exp(_STEP * np.arange(-1500.0, 7000.0))
+    return float(np.sum(x * _shape(x, gamma)) * _STEP)
+
+
+def _quantiles(share: Array, gamma: float) -> Array:
+    """Relative frequencies below which the given shares (0 to 1) of the energy from LOWEST to HIGHEST lie."""
+    log = np.arange(np.log(LOWEST), np.log(HIGHEST) + _STEP, _STEP)
+    density = np.exp(log) * _shape(np.exp(log), gamma)
+    energy = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]))])
+    return np.exp(np.interp(share, energy / energy[-1], log))
