@@ -30,6 +30,7 @@ def _reasons(scene: Scene) -> dict[str, str]:
         "springs": "" if sprung else "no end has a rotational spring",
         "loads": "" if any(s.loads for s in scene.stages) else "no stage has loads",
         "inertia": "" if has_dynamics(scene) else "all stages are static",
+        "rotary inertia": _no_rotary_inertia(scene),
         "morison": _no_morison(scene),
         "seabed": "" if scene.seabed is not None else "the scene has no seabed",
         "soil": "" if scene.soil is not None else "the scene has no soil",
@@ -39,6 +40,13 @@ def _reasons(scene: Scene) -> dict[str, str]:
 
 def has_dynamics(scene: Scene) -> bool:
     return any(s.kind == "dynamic" for s in scene.stages)
+
+
+def _no_rotary_inertia(scene: Scene) -> str:
+    if not has_dynamics(scene):
+        return "all stages are static"
+    given = any(t.rotary_inertia for t in scene.used_line_types.values())
+    return "" if given else "no line type has rotary inertia"
 
 
 def _no_morison(scene: Scene) -> str:

@@ -14,6 +14,7 @@ from riser_soil.riser.ends import End, Turning
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.loads import Load, PointLoads
+from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.sections import Elements, LineType, Segment, Surroundings, elements
 from riser_soil.riser.springs import EndSpring
 from riser_soil.sea.morison import Morison
@@ -32,6 +33,7 @@ THICK = LineType(
     mass=150.0,
     drag=(1.2, 0.1),
     added_mass=(1.0, 0.2),
+    rotary_inertia=None,
 )
 THIN = LineType(
     EA=3.0e4,
@@ -42,6 +44,7 @@ THIN = LineType(
     mass=120.0,
     drag=(0.9, 0.05),
     added_mass=(0.8, 0.0),
+    rotary_inertia=1.7,
 )
 AROUND = Surroundings(gravity=9.81, contents=850.0, water=1025.0)
 RHO = 1025.0
@@ -64,6 +67,9 @@ class Sample:
 
     def inertia(self) -> Inertia:
         return Inertia(self.line, self.elements.mass)
+
+    def rotary(self) -> RotaryInertia:
+        return RotaryInertia(self.line, self.elements.rotary_inertia)
 
     def morison(self) -> Morison:
         e = self.elements

@@ -44,6 +44,7 @@ def _line_type(given: LineType) -> sections.LineType:
         submerged_weight=given.submerged_weight,
         drag=(given.drag.normal, given.drag.tangential) if given.drag else (0.0, 0.0),
         added_mass=(given.added_mass.normal, given.added_mass.tangential) if given.added_mass else (0.0, 0.0),
+        rotary_inertia=None if given.rotary_inertia is True else float(given.rotary_inertia),
     )
 
 
@@ -59,7 +60,6 @@ def line_of(scene: Scene, elements: sections.Elements, active: bool) -> tuple[Li
         start,
         end,
         direction=np.asarray(vertical_plane(scene).direction),
-        hold_spin=not _holds_spin(scene.riser),
         active=active,
     )
     return line, tension
@@ -69,9 +69,9 @@ def _end(given: str | Support) -> End:
     return End(held=isinstance(given, Support), rotation_fixed=isinstance(given, Support) and given.rotation == "fixed")
 
 
-def _holds_spin(riser: Riser) -> bool:
-    """Whether an end keeps the riser from spinning about its own axis."""
-    return any(isinstance(end, Support) and end.rotation != "free" for end in (riser.start, riser.end))
+def spins_freely(riser: Riser) -> bool:
+    """Whether no end keeps the riser from spinning about its own axis."""
+    return not any(isinstance(end, Support) and end.rotation != "free" for end in (riser.start, riser.end))
 
 
 def springs_of(riser: Riser, line: Line) -> list[Part]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from riser_soil.arrays import Array
+from riser_soil.build.riser import spins_freely
 from riser_soil.motion.harmonic import Harmonic
 from riser_soil.motion.move import Move
 from riser_soil.part import Part
@@ -15,8 +16,8 @@ from riser_soil.riser.ends import Motion
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage, NewmarkScheme, Stage, StaticStage
 from riser_soil.scene.stages import Load as LoadScene
-from riser_soil.scene.stages import NewmarkScheme, Stage, StaticStage
 from riser_soil.time_scheme import GeneralizedAlpha, Scheme, Static
 
 if TYPE_CHECKING:
@@ -48,6 +49,12 @@ def _motion(origin: Array, stage: Stage, name: str) -> Motion | None:
         return None
     h = given.harmonic
     return Harmonic(origin, np.asarray(h.amplitude), h.period, h.ramp, np.radians(h.phase_deg))
+
+
+def hold_spin(scene: Scene, line: Line, stage: Stage, elements: Elements) -> None:
+    """Hold the start's spin about the pipe's axis in stages where neither an end nor rotary inertia resists it."""
+    resisted = isinstance(stage, DynamicStage) and elements.rotary_inertia.any()
+    line.hold_spin(spins_freely(scene.riser) and not resisted)
 
 
 def loads_of(line: Line, stage: Stage) -> list[Part]:
@@ -83,6 +90,10 @@ def dynamic_parts(scene: Scene, line: Line, elements: Elements) -> list[Part]:
     from riser_soil.riser.inertia import Inertia
 
     parts: list[Part] = [Inertia(line, elements.mass)]
+    if elements.rotary_inertia.any():
+        from riser_soil.riser.rotary_inertia import RotaryInertia
+
+        parts.append(RotaryInertia(line, elements.rotary_inertia))
     if scene.water is not None and (elements.drag.any() or elements.added_mass.any()):
         from riser_soil.sea import morison_law
         from riser_soil.sea.morison import Morison

@@ -9,7 +9,7 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.build.riser import elements_of, line_of, springs_of
-from riser_soil.build.stage import dynamic_parts, loads_of, set_motions
+from riser_soil.build.stage import dynamic_parts, hold_spin, loads_of, set_motions
 from riser_soil.part import Field, Model, Part
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.line import Line
@@ -66,6 +66,7 @@ class World:
     def begin(self, stage: Stage) -> Model:
         """Set the ends in motion and name the parts of a stage."""
         set_motions(self.line, stage)
+        hold_spin(self.scene, self.line, stage, self.elements)
         parts = [*self.riser_parts, *loads_of(self.line, stage)]
         if isinstance(stage, DynamicStage):
             parts += dynamic_parts(self.scene, self.line, self.elements)

@@ -47,7 +47,7 @@ class Line:
 
     dimension: 2 or 3. A planar line needs a layout in one vertical plane (`shapes.vertical_direction`).
     Where no end holds the rotation of a line in space, `hold_spin` keeps the start from spinning about the
-    pipe's axis: nothing else would, as a round pipe spins at no cost.
+    pipe's axis: nothing else would, as a round pipe spins at no cost (in motion, unless it has rotary inertia).
     active: whether this rank evaluates and owns the riser.
     """
 
@@ -83,7 +83,8 @@ class Line:
         self.offset = 0
         self._first: Trial | None = None
         self._trials: deque[Trial] = deque(maxlen=2)
-        self._number(hold_spin and dimension == 3)
+        self._number()
+        self.hold_spin(hold_spin)
 
     def _axes(self, first: Array) -> tuple[Array, Array]:
         """Constant basis (3, d) and origin of the in-plane coordinates; z is counted from zero, not from the
@@ -102,17 +103,20 @@ class Line:
                 f"dimension: 2: the riser's shapes leave the vertical plane by {away:.3g} m; use 3"
             )
 
-    def _number(self, hold_spin: bool) -> None:
+    def _number(self) -> None:
         self.ndof = self.dimension + self.frames.dofs
         self.nodes = self.arc.size
         self.size = self.nodes * self.ndof
         self.global_index: IntArray = np.arange(self.size, dtype=np.int64)
         self.owned: BoolArray = np.full(self.size, self.active)
+
+    def hold_spin(self, held: bool) -> None:
+        """Whether the start of a line in space is kept from spinning about the pipe's axis; until the next call."""
         prescribed = np.zeros((self.nodes, self.ndof), dtype=bool)
         for node, end in ((0, self.start), (-1, self.end)):
             prescribed[node, : self.dimension] = end.held
             prescribed[node, self.dimension :] = end.rotation_fixed
-        prescribed[0, self.dimension] |= hold_spin
+        prescribed[0, self.dimension] |= held and self.dimension == 3
         self.prescribed: BoolArray = prescribed.ravel()
         self._held: IntArray = np.flatnonzero(self.prescribed)
 

@@ -20,6 +20,7 @@ class LineType:
     one.
     drag and added_mass: (normal, tangential) coefficients of Morison's formula, see
     `riser_soil.sea.morison_law`.
+    rotary_inertia: kg m about an axis across the pipe; None computes it from masses and diameters.
     """
 
     EA: float
@@ -32,6 +33,7 @@ class LineType:
     submerged_weight: float | None = None
     drag: tuple[float, float] = (0.0, 0.0)
     added_mass: tuple[float, float] = (0.0, 0.0)
+    rotary_inertia: float | None = 0.0
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,7 @@ class Surroundings:
 @dataclass(frozen=True, eq=False)
 class Elements:
     """Properties per element (ne,); drag and added_mass (ne, 2). mass includes the contents, weight is
-    submerged.
+    submerged. rotary_inertia: kg m about an axis across the pipe.
     """
 
     length: Array
@@ -68,6 +70,7 @@ class Elements:
     weight: Array
     drag: Array
     added_mass: Array
+    rotary_inertia: Array
 
     @property
     def arc(self) -> Array:
@@ -78,6 +81,17 @@ class Elements:
 def mass_with_contents(line: LineType, around: Surroundings) -> float:
     """Mass of pipe and contents, kg/m."""
     return line.mass + around.contents * 0.25 * np.pi * line.inner_diameter**2
+
+
+def rotary_inertia(line: LineType, around: Surroundings) -> float:
+    """(m (do^2 + di^2) + m_contents di^2)/16 [kg m] about an axis across the pipe, unless it is given.
+
+    The wall's mass m is spread evenly between the diameters; the contents turn with the pipe.
+    """
+    if line.rotary_inertia is not None:
+        return line.rotary_inertia
+    outside, inside = line.outer_diameter**2, line.inner_diameter**2
+    return (line.mass * outside + mass_with_contents(line, around) * inside) / 16.0
 
 
 def submerged_weight(line: LineType, around: Surroundings) -> float:
@@ -109,4 +123,5 @@ def elements(segments: Sequence[Segment], around: Surroundings) -> Elements:
         weight=spread([submerged_weight(t, around) for t in types]),
         drag=spread([t.drag for t in types]),
         added_mass=spread([t.added_mass for t in types]),
+        rotary_inertia=spread([rotary_inertia(t, around) for t in types]),
     )

@@ -80,6 +80,8 @@ def _mass_needed(scene: Scene, line: LineType) -> str | None:
 def _diameter_needed(scene: Scene, line: LineType) -> str | None:
     if scene.water and scene.gravity > 0.0 and line.submerged_weight is None:
         return "buoyancy follows from the outer diameter, unless submerged_weight is given"
+    if line.rotary_inertia is True and any(stage.kind == "dynamic" for stage in scene.stages):
+        return "rotary inertia follows from the diameters, unless it is given in kg.m"
     if line.drag or line.added_mass:
         return "drag and added mass follow from the outer diameter"
     if scene.contact and scene.contact_at == "outer":

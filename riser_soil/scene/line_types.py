@@ -1,8 +1,8 @@
 """Line types: the properties of the pipe's cross-section."""
 
-from typing import Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, Field, model_validator
+from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
 from riser_soil.scene.quantities import FROZEN, NonNegative, Positive, Real, wrong
 
@@ -25,6 +25,16 @@ class AddedMass(BaseModel):
 
     normal: NonNegative = Field(description="added mass coefficient across the pipe [-]")
     tangential: NonNegative = Field(default=0.0, description="added mass coefficient along the pipe [-]")
+
+
+def _switch_or_number(value: Any) -> str:
+    return "<word>" if isinstance(value, bool) else "<number>"
+
+
+RotaryInertia = Annotated[
+    Annotated[Literal[True, False], Tag("<word>")] | Annotated[NonNegative, Tag("<number>")],
+    Discriminator(_switch_or_number),
+]
 
 
 class LineType(BaseModel):
@@ -57,6 +67,11 @@ class LineType(BaseModel):
     )
     drag: Drag | None = Field(default=None, description="drag coefficients; none by default")
     added_mass: AddedMass | None = Field(default=None, description="added mass coefficients; none by default")
+    rotary_inertia: RotaryInertia = Field(
+        default=False,
+        description="inertia of the cross-section about an axis across the pipe [kg.m], twice that about the pipe's "
+        "axis; true: (m (D^2 + d^2) + m_contents d^2)/16 from masses and diameters; false: none",
+    )
 
     @model_validator(mode="after")
     def _bore_inside_wall(self) -> Self:

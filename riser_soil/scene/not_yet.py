@@ -14,7 +14,6 @@ KEYS: dict[tuple[str, ...], tuple[Any, ...]] = {
     ("water", "surface_level"): (None,),
     ("water", "current"): (None,),
     ("water", "waves"): (None,),
-    ("line_types", "*", "rotary_inertia"): (None, False, 0, 0.0),
     ("line_types", "*", "damping"): (None, 0, 0.0),
     ("seabed", "slope"): (None, 0, 0.0),
     ("seabed", "slope_deg"): (None, 0, 0.0),

@@ -32,6 +32,11 @@ def history(values: str) -> Changes:
 CASES: list[tuple[Changes, str, str]] = [
     ((("    mass: 120.0\n", ""), STATIC_ALONE), "line_types.pipe.mass: missing", "the weight follows from the mass"),
     ((NO_DIAMETER, GIVEN_WEIGHT), "line_types.pipe.outer_diameter: missing", "drag and added mass follow"),
+    (
+        (NO_DIAMETER, NO_DRAG, GIVEN_WEIGHT, ("    EA:", "    rotary_inertia: true\n    EA:")),
+        "line_types.pipe.outer_diameter: missing",
+        "rotary inertia follows",
+    ),
     ((NO_DIAMETER, NO_DRAG, GIVEN_WEIGHT), "line_types.pipe.outer_diameter: missing", "outer surface touches"),
     (
         (GIVEN_WEIGHT, ("gravity: 9.81", "gravity: 0"), ("initial: catenary", POINTS)),

@@ -52,6 +52,8 @@ def test_spin_is_held_at_the_start_about_the_pipes_axis() -> None:
     tangent = made.trial(State.at_rest(0.0, made.size)).turn.tangent[0, 0]
     held = Line(3, shapes_layout(), End(True), End(True), hold_spin=True)
     assert np.flatnonzero(held.prescribed).tolist() == [0, 1, 2, 3, *range(held.size - 6, held.size - 3)]
+    held.hold_spin(False)
+    assert not held.prescribed[3]
     spin = np.zeros((made.nodes, 3))
     spin[0, 0] = 0.4
     assert made.frames.turn(spin).tangent[0, 0] == pytest.approx(tangent, abs=1e-15)

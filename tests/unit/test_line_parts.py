@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
 
 from riser_soil.arrays import Array
 from riser_soil.part import Forces, Part, State, Weights
-from riser_soil.riser import hermite, loads, springs, stations
+from riser_soil.riser import hermite, loads, spinning, springs, stations
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.directors import PlanarTurn, SpatialTurn
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.loads import PointLoads
+from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.section_forces import element_residual
 from riser_soil.sea.morison import Morison
 from tests.dense_chain import residual, tangent
@@ -24,6 +26,7 @@ WEIGHTS = Weights(inertia=0.7, force=1.3, shift_v=4.0, shift_a=9.0)
 MAKERS: dict[str, Callable[[Sample], Part]] = {
     "beam": Sample.beam,
     "inertia": Sample.inertia,
+    "rotary": Sample.rotary,
     "morison": Sample.morison,
     "spring": Sample.spring,
     "turned spring": Sample.turned_spring,
@@ -110,6 +113,27 @@ def without_director_rates(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
         monkeypatch.setattr(turn, "maps", still)
 
 
+def without(name: str, change: Callable[[Array], Array]) -> Callable[[pytest.MonkeyPatch, Part], None]:
+    """Leaves a state's increments, rates or accelerations out of the tangent of rotary inertia."""
+
+    def leave_out(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
+        original = spinning.add_tangent
+
+        def changed(K: Array, weight: float, J: Array, *rest: Any) -> None:
+            values = dict(zip(("Theta", "W", "A", "shift_v", "shift_a"), rest, strict=True))
+            values[name] = change(values[name])
+            original(K, weight, J, *values.values())
+
+        monkeypatch.setattr(spinning, "add_tangent", changed)
+
+    return leave_out
+
+
+def without_rotary_inertia(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
+    assert isinstance(part, RotaryInertia)
+    monkeypatch.setattr(part._sections, "add_tangent", no_operation)
+
+
 @pytest.mark.parametrize(
     ("name", "dimension", "leave_out"),
     [
@@ -119,6 +143,9 @@ def without_director_rates(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
         ("inertia", 3, without_geometric),
         ("inertia", 2, without_director_rates),
         ("inertia", 3, without_director_rates),
+        ("rotary", 2, without_rotary_inertia),
+        ("rotary", 3, without_rotary_inertia),
+        *(("rotary", 3, without(name, lambda x: 0.0 * x)) for name in ("Theta", "W", "A", "shift_v", "shift_a")),
         ("morison", 2, without_direction_changes),
         ("morison", 3, without_direction_changes),
         ("morison", 3, without_director_rates),
@@ -155,9 +182,10 @@ def test_conservative_forces_are_the_gradient_of_the_energy(name: str, dimension
 
 
 @both_dimensions
-def test_inertia_takes_up_the_rate_of_kinetic_energy(dimension: int) -> None:
+@pytest.mark.parametrize("name", ["inertia", "rotary"])
+def test_inertia_takes_up_the_rate_of_kinetic_energy(name: str, dimension: int) -> None:
     at = sample(dimension)
-    part, start = at.inertia(), at.state(3)
+    part, start = MAKERS[name](at), at.state(3)
     start = State(0.0, 0.0 * start.u, start.v, start.a)
 
     def kinetic(h: float) -> Array:
@@ -199,7 +227,7 @@ def in_space(plane: Sample, values: Array) -> Array:
 def test_residual_survives_a_commit(name: str, dimension: int) -> None:
     at = sample(dimension)
     part, state = MAKERS[name](at), at.state(5)
-    rates = Weights(0.0, 1.0, 0.0, 0.0) if name != "inertia" else Weights(1.0, 0.0, 0.0, 0.0)
+    rates = Weights(0.0, 1.0, 0.0, 0.0) if name not in ("inertia", "rotary") else Weights(1.0, 0.0, 0.0, 0.0)
     still = State(state.t, state.u, 0.0 * state.v, 0.0 * state.a)
     before = forces_in_global_axes(at, still, part, rates)
     at.line.commit(still)
@@ -219,12 +247,12 @@ def forces_in_global_axes(at: Sample, state: State, part: Part, weights: Weights
 
 
 @both_dimensions
-@pytest.mark.parametrize("name", ["beam", "inertia", "morison", "forces"])
+@pytest.mark.parametrize("name", ["beam", "inertia", "rotary", "morison", "forces"])
 def test_element_forces_add_up_to_the_residual(name: str, dimension: int) -> None:
     at = sample(dimension)
     part, state = MAKERS[name](at), at.state(6)
     total = np.zeros(at.line.size)
-    assert isinstance(part, Beam | Inertia | Morison | PointLoads)
+    assert isinstance(part, Beam | Inertia | RotaryInertia | Morison | PointLoads)
     at.line.scatter(element_residual(at.line, [part], state), total)
     nodal = part.nodal_forces(state).ravel() if isinstance(part, PointLoads) else 0.0
     assert total + nodal == pytest.approx(

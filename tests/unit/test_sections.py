@@ -9,7 +9,7 @@ import pytest
 
 from riser_soil.errors import SceneError
 from riser_soil.part import State, Weights
-from riser_soil.riser.sections import LineType, Segment, Surroundings, elements, submerged_weight
+from riser_soil.riser.sections import LineType, Segment, Surroundings, elements, rotary_inertia, submerged_weight
 from tests.dense_chain import residual
 from tests.sample_line import sample
 
@@ -38,6 +38,15 @@ def test_segments_become_elements_in_order() -> None:
     assert found.EA.tolist() == [15.38e8, 15.38e8, 1.0, 1.0, 1.0]
     assert found.drag.tolist() == [[0.0, 0.0]] * 2 + [[1.1, 0.1]] * 3
     assert found.mass[0] == pytest.approx(57.5 + 1025.0 * 0.25 * np.pi * 0.2**2)
+
+
+def test_rotary_inertia_of_wall_and_contents() -> None:
+    """rho pi (D^4 - d^4)/64 of the wall, rho pi d^4/64 of what fills it."""
+    density = 57.5 / (0.25 * np.pi * (0.26**2 - 0.2**2))
+    wall, filling = (rho * np.pi / 64.0 for rho in (density, 1025.0))
+    exact = wall * (0.26**4 - 0.2**4) + filling * 0.2**4
+    types = [replace(FLEXIBLE, rotary_inertia=given) for given in (None, 3.0, 0.0)]
+    assert [rotary_inertia(line, FLOODED) for line in types] == pytest.approx([exact, 3.0, 0.0], rel=1e-14)
 
 
 def test_no_segments_is_an_error() -> None:

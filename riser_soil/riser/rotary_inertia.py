@@ -1,0 +1,107 @@
+"""Inertia of the cross-sections against turning: the part "rotary inertia" of dynamic stages."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.riser import spinning
+from riser_soil.riser.directors import PlanarFrames, SpatialFrames
+from riser_soil.riser.line import Line
+
+
+class PlanarSections:
+    """Sections that turn in the line's plane; inertia [kg m2] of each element end."""
+
+    def __init__(self, inertia: Array) -> None:
+        self._inertia = inertia
+
+    def forces(self, u: Array, v: Array, a: Array) -> Array:
+        """Moments (ne, 2, 1) from the nodes' rotation dofs, increments and rates (nn, 1)."""
+        return np.asarray(self._inertia[:, None, None] * np.stack([a[:-1], a[1:]], axis=1))
+
+    def add_tangent(self, K: Array, weights: Weights, u: Array, v: Array, a: Array) -> None:
+        """Add to K (ne, 6, 6)."""
+        for at in (2, 5):
+            K[:, at, at] += weights.inertia * weights.shift_a * self._inertia
+
+    def kinetic_energy(self, v: Array) -> float:
+        return 0.5 * float(np.sum(self._inertia[:, None] * (v[:-1] ** 2 + v[1:] ** 2)))
+
+
+class SpatialSections:
+    """Sections that turn in space; inertia [kg m2] of each element end about an axis across the pipe.
+
+    They are round, so the polar inertia is twice that. T0 (ne, 2, 3, 3): unstressed frames at element ends.
+    """
+
+    def __init__(self, inertia: Array, T0: Array) -> None:
+        of_section = np.diag([2.0, 1.0, 1.0])
+        self._J = np.ascontiguousarray(inertia[:, None, None, None] * (T0 @ of_section @ np.swapaxes(T0, 2, 3)))
+
+    def forces(self, u: Array, v: Array, a: Array) -> Array:
+        """Moments (ne, 2, 3) from the nodes' rotation dofs, increments and rates (nn, 3)."""
+        return np.asarray(spinning.moments(self._J, u, v, a))
+
+    def add_tangent(self, K: Array, weights: Weights, u: Array, v: Array, a: Array) -> None:
+        """Add to K (ne, 12, 12)."""
+        spinning.add_tangent(K, weights.inertia, self._J, u, v, a, weights.shift_v, weights.shift_a)
+
+    def kinetic_energy(self, v: Array) -> float:
+        return float(spinning.kinetic_energy(self._J, v))
+
+
+class RotaryInertia:
+    """Rotary inertia of the sections, gathered at the nodes (group I).
+
+    line: the riser's field. inertia: kg m per element (ne,) about an axis across the pipe (rho I of the section);
+    about the pipe's own axis it is twice that. Half of an element's belongs to each of its ends, so that its share
+    in a frequency is second-order accurate.
+    """
+
+    name = "rotary inertia"
+
+    def __init__(self, line: Line, inertia: Array) -> None:
+        self.line, self.symmetric = line, line.dimension == 2
+        self._sections = _sections(line, 0.5 * line.length * inertia)
+
+    def blocks(self) -> dict[str, Block]:
+        return {"riser": self.line.element_block()} if self.line.active else {}
+
+    def _turning(self, values: Array) -> Array:
+        """Rotation dofs of the nodes (nn, r)."""
+        return np.ascontiguousarray(self.line.nodal(values)[:, self.line.dimension :])
+
+    def element_forces(self, state: State) -> tuple[Array, None]:
+        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
+        moments = self._sections.forces(*map(self._turning, (state.u, state.v, state.a)))
+        out = np.zeros((len(moments), 2, self.line.ndof))
+        out[:, :, self.line.dimension :] = moments
+        return out.reshape(len(moments), -1), None
+
+    def residual(self, state: State, forces: Forces) -> None:
+        if self.line.active:
+            self.line.scatter(self.element_forces(state)[0], forces.inertia)
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        if self.line.active:
+            self._sections.add_tangent(values["riser"], weights, *map(self._turning, (state.u, state.v, state.a)))
+
+    def energy(self, state: State) -> Energy:
+        if not self.line.active:
+            return Energy()
+        return Energy(kinetic=self._sections.kinetic_energy(self._turning(state.v)))
+
+    def work(self, before: State, after: State) -> Work:
+        return Work()
+
+    def commit(self, state: State) -> None:
+        pass
+
+
+def _sections(line: Line, inertia: Array) -> PlanarSections | SpatialSections:
+    if isinstance(line.frames, PlanarFrames):
+        return PlanarSections(inertia)
+    assert isinstance(line.frames, SpatialFrames)
+    return SpatialSections(inertia, line.frames.T0)
