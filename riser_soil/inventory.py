@@ -28,6 +28,7 @@ def _reasons(scene: Scene) -> dict[str, str]:
     return {
         "riser": "",
         "springs": "" if sprung else "no end has a rotational spring",
+        "attachments": "" if scene.riser.attachments else "nothing is attached to the riser",
         "loads": "" if any(s.loads for s in scene.stages) else "no stage has loads",
         "inertia": "" if has_dynamics(scene) else "all stages are static",
         "rotary inertia": _no_rotary_inertia(scene),

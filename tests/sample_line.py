@@ -9,6 +9,7 @@ import numpy as np
 from riser_soil.arrays import Array
 from riser_soil.part import State
 from riser_soil.riser import shapes
+from riser_soil.riser.attachments import Attachment, Attachments, mass_matrices
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.ends import End, Turning
 from riser_soil.riser.inertia import Inertia
@@ -66,7 +67,7 @@ class Sample:
         return beam
 
     def inertia(self) -> Inertia:
-        return Inertia(self.line, self.elements.mass)
+        return Inertia(self.line, self.elements.mass, mass_matrices(self.line, self.attached()))
 
     def rotary(self) -> RotaryInertia:
         return RotaryInertia(self.line, self.elements.rotary_inertia)
@@ -85,6 +86,13 @@ class Sample:
         rotation, still = 0.9 * np.cross(DIRECTION, UP), np.zeros(3)
         self.line.end.turning = lambda t: Turning(t * rotation, rotation, still)
         return self.spring()
+
+    def attached(self) -> list[Attachment]:
+        """A module within an element, a clump weight at a node and another at the end."""
+        return [Attachment(2.7, 80.0, -240.0, 0.1), Attachment(3.0, 300.0, 2600.0), Attachment(8.0, 50.0, 120.0)]
+
+    def attachments(self) -> Attachments:
+        return Attachments(self.line, self.attached())
 
     def forces(self) -> PointLoads:
         """A force within an element, one at the end, and a distributed load."""

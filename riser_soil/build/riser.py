@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from riser_soil.arrays import Array
@@ -15,6 +18,9 @@ from riser_soil.scene.plane import resolved_dimension, vertical_plane
 from riser_soil.scene.riser import Riser, RotationSpring, Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.shapes import ArcShape, PointsShape
+
+if TYPE_CHECKING:
+    from riser_soil.riser.attachments import Attachment
 
 
 def elements_of(scene: Scene) -> sections.Elements:
@@ -46,6 +52,36 @@ def _line_type(given: LineType) -> sections.LineType:
         added_mass=(given.added_mass.normal, given.added_mass.tangential) if given.added_mass else (0.0, 0.0),
         rotary_inertia=None if given.rotary_inertia is True else float(given.rotary_inertia),
     )
+
+
+def attachments_of(scene: Scene) -> tuple[Attachment, ...]:
+    """Everything attached to the riser, one by one."""
+    if not scene.riser.attachments:
+        return ()
+    from riser_soil.riser.attachments import Attachment
+
+    water = scene.water.density if scene.water else 0.0
+    return tuple(
+        Attachment(
+            arc,
+            mass=given.mass,
+            net_weight=scene.gravity * (given.mass - water * given.volume),
+            volume=given.volume,
+            drag_area=given.drag_area,
+            added_mass=given.added_mass,
+        )
+        for given in scene.riser.attachments
+        for arc in given.arcs
+    )
+
+
+def attached_weight(line: Line, attachments: Sequence[Attachment]) -> list[Part]:
+    """The part of the attachments' weight less buoyancy, if there are any."""
+    if not attachments:
+        return []
+    from riser_soil.riser.attachments import Attachments
+
+    return [Attachments(line, attachments)]
 
 
 def line_of(scene: Scene, elements: sections.Elements, active: bool) -> tuple[Line, float | None]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +21,7 @@ from riser_soil.scene.stages import Load as LoadScene
 from riser_soil.time_scheme import GeneralizedAlpha, Scheme, Static
 
 if TYPE_CHECKING:
+    from riser_soil.riser.attachments import Attachment
     from riser_soil.riser.loads import Load
 
 
@@ -85,11 +86,13 @@ def _factor(given: LoadScene, static: bool) -> Callable[[float], float]:
     return lambda t: float(np.interp(t, times, factors))
 
 
-def dynamic_parts(scene: Scene, line: Line, elements: Elements) -> list[Part]:
+def dynamic_parts(
+    scene: Scene, line: Line, elements: Elements, attachments: Sequence[Attachment] = ()
+) -> list[Part]:
     """What acts only in motion: inertia, and drag and added mass where there is water for them."""
     from riser_soil.riser.inertia import Inertia
 
-    parts: list[Part] = [Inertia(line, elements.mass)]
+    parts: list[Part] = [Inertia(line, elements.mass, _attached_mass(line, attachments))]
     if elements.rotary_inertia.any():
         from riser_soil.riser.rotary_inertia import RotaryInertia
 
@@ -102,3 +105,11 @@ def dynamic_parts(scene: Scene, line: Line, elements: Elements) -> list[Part]:
         drag = morison_law.drag_coefficients(rho, D, *elements.drag.T)
         parts.append(Morison(line, drag, morison_law.added_masses(rho, D, *elements.added_mass.T)))
     return parts
+
+
+def _attached_mass(line: Line, attachments: Sequence[Attachment]) -> Array | None:
+    if not attachments:
+        return None
+    from riser_soil.riser.attachments import mass_matrices
+
+    return mass_matrices(line, attachments)

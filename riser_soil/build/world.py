@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil.build.riser import elements_of, line_of, springs_of
+from riser_soil.build.riser import attached_weight, attachments_of, elements_of, line_of, springs_of
 from riser_soil.build.stage import dynamic_parts, hold_spin, loads_of, set_motions
 from riser_soil.part import Field, Model, Part
 from riser_soil.riser.beam import Beam
@@ -19,6 +19,7 @@ from riser_soil.scene.stages import DynamicStage, Stage
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import Contact
+    from riser_soil.riser.attachments import Attachment
     from riser_soil.soil.soil import Soil
 
 FORCE_FLOOR = 1e-14  # of EA: a residual below this is round-off even where all forces vanish
@@ -29,6 +30,7 @@ LEAST_WEIGHT = 1e-6  # of EA/L: stands for the weight of a line that has none
 class World:
     """A scene's fields and lasting parts; soil and contact are None where the scene has none.
 
+    attachments: point masses and buoyancy modules on the line; their weight less buoyancy is among `riser_parts`.
     horizontal_tension [N]: of the initial catenary, None for other first shapes.
     contact_stiffness [N/m2]: force per length and penetration, by ground (soil, plane).
     """
@@ -39,6 +41,7 @@ class World:
     elements: Elements
     riser_parts: list[Part]
     horizontal_tension: float | None
+    attachments: tuple[Attachment, ...] = ()
     soil: Soil | None = None
     contact: Contact | None = None
     contact_stiffness: dict[str, float] = field(default_factory=dict)
@@ -69,7 +72,7 @@ class World:
         hold_spin(self.scene, self.line, stage, self.elements)
         parts = [*self.riser_parts, *loads_of(self.line, stage)]
         if isinstance(stage, DynamicStage):
-            parts += dynamic_parts(self.scene, self.line, self.elements)
+            parts += dynamic_parts(self.scene, self.line, self.elements, self.attachments)
         parts += [p for p in (self.soil, self.contact) if p is not None]
         return Model(self.fields, parts)
 
@@ -78,7 +81,9 @@ def build(scene: Scene, comm: MPI.Intracomm) -> World:
     """Build the parts of a scene; collective. Raises SceneError or MeshError."""
     elements = elements_of(scene)
     line, tension = line_of(scene, elements, active=comm.rank == 0)
-    world = World(scene, comm, line, elements, [Beam(line, elements), *springs_of(scene.riser, line)], tension)
+    attachments = attachments_of(scene)
+    parts = [Beam(line, elements), *springs_of(scene.riser, line), *attached_weight(line, attachments)]
+    world = World(scene, comm, line, elements, parts, tension, attachments)
     if scene.contact is not None:
         _add_ground(world)
     return world

@@ -10,9 +10,10 @@ from riser_soil.riser.trial import Trial
 
 
 class Inertia:
-    """Consistent mass of the cubic line, turning with the tangents (group I).
+    """Consistent mass of the cubic line and of what is attached to it, turning with the tangents (group I).
 
-    line: the riser's field. mass: kg/m per element (ne,), contents included, water excluded.
+    line: the riser's field. mass: kg/m per element (ne,), contents included, water excluded. attached: further mass
+    matrices (ne, 4, 4), see `attachments.mass_matrices`.
     The section's own rotary inertia is left out: it is (diameter/wavelength)^2 of the rest.
     The tangent is not symmetric, as the tangents' accelerations depend on their rates.
     """
@@ -20,9 +21,11 @@ class Inertia:
     name = "inertia"
     symmetric = False
 
-    def __init__(self, line: Line, mass: Array) -> None:
+    def __init__(self, line: Line, mass: Array, attached: Array | None = None) -> None:
         self.line = line
         self.M = consistent_mass(line.length, mass)
+        if attached is not None:
+            self.M += attached
 
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}

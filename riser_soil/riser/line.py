@@ -151,6 +151,14 @@ class Line:
         half = 0.5 * self.length
         return np.asarray(np.append(half, 0.0) + np.append(0.0, half))
 
+    def place(self, arc: float) -> tuple[int, float]:
+        """Element at an arc length and the place xi in it, exactly 0 or 1 at a node: 0, save at the line's end."""
+        after = int(np.searchsorted(self.arc, arc + 1e-9 * self.arc[-1], side="right")) - 1
+        e = min(max(after, 0), self.length.size - 1)
+        xi = (arc - self.arc[e]) / self.length[e]
+        near = float(np.clip(np.round(xi), 0.0, 1.0))
+        return e, near if abs(arc - self.arc[e] - near * self.length[e]) < 1e-9 * self.arc[-1] else float(xi)
+
     def trial(self, state: State) -> Trial:
         """The line at a state, whose arrays must not change from then on.
 

@@ -68,22 +68,15 @@ class PointLoads:
             raise SceneError(
                 f"stages: loads: at arc {load.arc:.6g} m: the riser ends at {line.arc[-1]:.6g} m"
             )
-        e, xi = self._element(load.arc)
+        e, xi = line.place(load.arc)
         force = np.zeros(3) if load.force is None else load.force
         return slice(e, e + 1), hermite.shapes(np.array([xi]), line.length[e : e + 1])[:, :, None] * (
             force @ line.basis
         )
 
-    def _element(self, arc: float) -> tuple[int, float]:
-        """Element at an arc length and the place xi in it, exactly 0 or 1 at a node."""
-        line = self.line
-        e = min(max(int(np.searchsorted(line.arc, arc, side="right")) - 1, 0), line.length.size - 1)
-        xi = (arc - line.arc[e]) / line.length[e]
-        return e, float(np.round(xi)) if abs(xi - np.round(xi)) < 1e-9 else float(xi)
-
     def _inside(self, load: Load) -> bool:
         """Whether a load acts within elements rather than on a node."""
-        return load.distributed is not None or self._element(load.arc)[1] not in (0.0, 1.0)
+        return load.distributed is not None or self.line.place(load.arc)[1] not in (0.0, 1.0)
 
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}

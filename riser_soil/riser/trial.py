@@ -40,6 +40,11 @@ class Trial:
         return self._kept[key]
 
     @cached_property
+    def q(self) -> Array:
+        """q (ne, 4, d)."""
+        return _interleave(self.x, self.turn.tangent)
+
+    @cached_property
     def _director_rates(self) -> tuple[Array, Array]:
         d = self.x.shape[1]
         return self.turn.rates(self._v[:, d:], self._a[:, d:])

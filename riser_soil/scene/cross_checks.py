@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
-from riser_soil.scene.problem import Problem, dotted, hint
+from riser_soil.scene.problem import Path, Problem, dotted, hint
 from riser_soil.scene.quantities import Vector
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
@@ -106,6 +106,20 @@ def _water_where_it_acts(scene: Scene) -> Iterator[Problem]:
                 yield Problem(
                     ("line_types", name, key), "acts in water only, and the scene has no water", remedy
                 )
+
+
+def _attachments_fit(scene: Scene) -> Iterator[Problem]:
+    length = scene.riser.length
+    for n, given in enumerate(scene.riser.attachments):
+        path: Path = ("riser", "attachments", n)
+        for m, arc in enumerate(given.arcs):
+            if arc > length * (1.0 + 1e-9):
+                place = (*path, "at", m) if isinstance(given.at, tuple) else (*path, "at")
+                yield Problem(place, f"must not exceed the riser's length ({length:.6g} m)", "correct the arc length")
+        for key in ("volume", "drag_area"):
+            if getattr(given, key) > 0.0 and scene.water is None:
+                remedy = f"add water: {{density: 1025.0}}, or leave out {key}"
+                yield Problem((*path, key), "acts in water only, and the scene has no water", remedy)
 
 
 def _contents_fit(scene: Scene) -> Iterator[Problem]:
@@ -240,6 +254,7 @@ _CHECKS: tuple[_Check, ...] = (
     _line_types_suffice,
     _no_weight_without_gravity,
     _water_where_it_acts,
+    _attachments_fit,
     _contents_fit,
     _stays_in_plane,
     _contact_with_something,

@@ -5,6 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
+from riser_soil.scene.attachments import Attachment
 from riser_soil.scene.quantities import FROZEN, Count, Positive, Text, Vector, word_or, wrong
 from riser_soil.scene.shapes import Initial, Unstressed
 
@@ -95,6 +96,9 @@ class Riser(BaseModel):
 
     segments: tuple[Segment, ...] = Field(min_length=1, description="the riser's stretches from start to end")
     contents: Contents | None = Field(default=None, description="what fills the pipe; empty by default")
+    attachments: tuple[Attachment, ...] = Field(
+        default=(), description="point masses, clump weights and buoyancy modules; none by default"
+    )
     start: End = Field(description="the end at arc length 0: free, or position and rotation")
     end: End = Field(description="the end at the full arc length: free, or position and rotation")
     unstressed: Unstressed = Field(

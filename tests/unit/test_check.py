@@ -39,7 +39,7 @@ def test_a_whole_scene() -> None:
     assert lines[1] == "built: riser, inertia, morison, seabed, soil, contact"
     assert lines[2:4] == [
         "left out: springs: no end has a rotational spring",
-        "left out: loads: no stage has loads",
+        "left out: attachments: nothing is attached to the riser",
     ]
     assert "riser: 36 elements of 0.5 to 1.5 m, 107 unknowns" in lines  # 37 nodes of 3, less two held positions
     assert "contact stiffness on the seabed: 1e+05 N/m2" in lines

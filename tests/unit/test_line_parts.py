@@ -12,6 +12,7 @@ import pytest
 from riser_soil.arrays import Array
 from riser_soil.part import Forces, Part, State, Weights
 from riser_soil.riser import hermite, loads, spinning, springs, stations
+from riser_soil.riser.attachments import Attachments
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.directors import PlanarTurn, SpatialTurn
 from riser_soil.riser.inertia import Inertia
@@ -29,6 +30,7 @@ MAKERS: dict[str, Callable[[Sample], Part]] = {
     "rotary": Sample.rotary,
     "morison": Sample.morison,
     "spring": Sample.spring,
+    "attachments": Sample.attachments,
     "turned spring": Sample.turned_spring,
     "forces": Sample.forces,
     "moments": Sample.moments,
@@ -149,6 +151,8 @@ def without_rotary_inertia(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
         ("morison", 2, without_direction_changes),
         ("morison", 3, without_direction_changes),
         ("morison", 3, without_director_rates),
+        ("attachments", 2, without_geometric),
+        ("attachments", 3, without_geometric),
         ("forces", 2, without_geometric),
         ("forces", 3, without_geometric),
         ("moments", 3, without_turning_moments),
@@ -168,7 +172,7 @@ def test_each_term_of_the_tangent_matters(
 
 
 @both_dimensions
-@pytest.mark.parametrize("name", ["beam", "spring"])
+@pytest.mark.parametrize("name", ["beam", "spring", "attachments"])
 def test_conservative_forces_are_the_gradient_of_the_energy(name: str, dimension: int) -> None:
     at = sample(dimension)
     part, state = MAKERS[name](at), at.state(2)
@@ -247,12 +251,12 @@ def forces_in_global_axes(at: Sample, state: State, part: Part, weights: Weights
 
 
 @both_dimensions
-@pytest.mark.parametrize("name", ["beam", "inertia", "rotary", "morison", "forces"])
+@pytest.mark.parametrize("name", ["beam", "inertia", "rotary", "morison", "forces", "attachments"])
 def test_element_forces_add_up_to_the_residual(name: str, dimension: int) -> None:
     at = sample(dimension)
     part, state = MAKERS[name](at), at.state(6)
     total = np.zeros(at.line.size)
-    assert isinstance(part, Beam | Inertia | RotaryInertia | Morison | PointLoads)
+    assert isinstance(part, Attachments | Beam | Inertia | RotaryInertia | Morison | PointLoads)
     at.line.scatter(element_residual(at.line, [part], state), total)
     nodal = part.nodal_forces(state).ravel() if isinstance(part, PointLoads) else 0.0
     assert total + nodal == pytest.approx(

@@ -72,5 +72,5 @@ def test_mass_adds_up(dimension: int) -> None:
     at.line.nodal(a)[:, :dimension] = np.arange(1.0, 1.0 + dimension)
     state = State(0.0, 0.0 * a, 0.0 * a, a)
     nodal = at.line.nodal(residual([at.inertia()], state, Weights(1.0, 0.0, 0.0, 0.0)))
-    total = at.elements.mass @ at.line.length
+    total = at.elements.mass @ at.line.length + sum(attachment.mass for attachment in at.attached())
     assert nodal[:, :dimension].sum(axis=0) == pytest.approx(total * np.arange(1.0, 1.0 + dimension))

@@ -1,0 +1,99 @@
+"""Point masses and buoyancy modules on the line, and their weight less buoyancy: the part "attachments".
+
+What acts at xi of an element reaches its q by the shape functions N(xi): a weight w as w N, a mass m as m N N^T. At a
+node that is the classical lumped weight and mass. There it counts with the element after the node (at the riser's end
+with the last one), so section forces given at an attachment's node are those just before it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from riser_soil.arrays import Array, IntArray
+from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.riser import hermite
+from riser_soil.riser.line import UP, Line
+from riser_soil.riser.trial import Trial
+
+
+@dataclass(frozen=True)
+class Attachment:
+    """A point mass or buoyancy module.
+
+    arc: place on the line [m]. mass: kg. net_weight: weight less the buoyancy of the whole volume [N], positive
+    downwards. volume: m3. drag_area: drag coefficient times area [m2]. added_mass: coefficient, on the water displaced.
+    Drag and added mass are the same in all directions.
+    """
+
+    arc: float
+    mass: float = 0.0
+    net_weight: float = 0.0
+    volume: float = 0.0
+    drag_area: float = 0.0
+    added_mass: float = 0.0
+
+
+def shares(line: Line, attachments: Sequence[Attachment]) -> tuple[IntArray, Array]:
+    """Elements (m,) of the attachments, and N1..N4 (m, 4) where they sit."""
+    places = [line.place(attachment.arc) for attachment in attachments]
+    element = np.array([e for e, _ in places], dtype=np.int64)
+    return element, hermite.shapes(np.array([xi for _, xi in places]), line.length[element])
+
+
+def mass_matrices(line: Line, attachments: Sequence[Attachment]) -> Array:
+    """Sums of m N N^T by element (ne, 4, 4), to be added to `hermite.consistent_mass`."""
+    M = np.zeros((line.length.size, 4, 4))
+    element, N = shares(line, attachments)
+    mass = np.array([attachment.mass for attachment in attachments])
+    np.add.at(M, element, mass[:, None, None] * N[:, :, None] * N[:, None, :])
+    return M
+
+
+class Attachments:
+    """Weight less buoyancy of attachments (group F), with a potential.
+
+    line: the riser's field. attachments: on it, in any order.
+    """
+
+    name = "attachments"
+    symmetric = True
+
+    def __init__(self, line: Line, attachments: Sequence[Attachment]) -> None:
+        self.line = line
+        element, N = shares(line, attachments)
+        weight = np.array([attachment.net_weight for attachment in attachments])
+        self._F = np.zeros((line.length.size, 4, line.dimension))  # residual conjugate to q
+        np.add.at(self._F, element, (weight[:, None] * N)[:, :, None] * (UP @ line.basis))
+
+    def blocks(self) -> dict[str, Block]:
+        return {"riser": self.line.element_block()} if self.line.active else {}
+
+    def _element_forces(self, trial: Trial) -> Array:
+        return trial.pull_back(self._F)
+
+    def element_forces(self, state: State) -> tuple[None, Array]:
+        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
+        return None, self.line.trial(state).once((self, "element forces"), self._element_forces)
+
+    def residual(self, state: State, forces: Forces) -> None:
+        if self.line.active:
+            self.line.scatter(self.element_forces(state)[1], forces.force)
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        if self.line.active:
+            self.line.trial(state).add_turning(values["riser"], weights.force, self._F)
+
+    def energy(self, state: State) -> Energy:
+        """Potential of weight less buoyancy, zero at the origin of the axes."""
+        if not self.line.active:
+            return Energy()
+        return Energy(potential=float(np.sum(self._F * self.line.trial(state).q)))
+
+    def work(self, before: State, after: State) -> Work:
+        return Work()
+
+    def commit(self, state: State) -> None:
+        pass
