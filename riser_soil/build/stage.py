@@ -1,4 +1,4 @@
-"""What a stage adds: motions of the ends, loads, inertia, hydrodynamics, and its time scheme."""
+"""What a stage adds: motions of the ends, loads, inertia, and its time scheme."""
 
 from __future__ import annotations
 
@@ -86,10 +86,8 @@ def _factor(given: LoadScene, static: bool) -> Callable[[float], float]:
     return lambda t: float(np.interp(t, times, factors))
 
 
-def dynamic_parts(
-    scene: Scene, line: Line, elements: Elements, attachments: Sequence[Attachment] = ()
-) -> list[Part]:
-    """What acts only in motion: inertia, and drag and added mass where there is water for them."""
+def dynamic_parts(line: Line, elements: Elements, attachments: Sequence[Attachment] = ()) -> list[Part]:
+    """What a riser has only in motion."""
     from riser_soil.riser.inertia import Inertia
 
     parts: list[Part] = [Inertia(line, elements.mass, _attached_mass(line, attachments))]
@@ -97,13 +95,6 @@ def dynamic_parts(
         from riser_soil.riser.rotary_inertia import RotaryInertia
 
         parts.append(RotaryInertia(line, elements.rotary_inertia))
-    if scene.water is not None and (elements.drag.any() or elements.added_mass.any()):
-        from riser_soil.sea import morison_law
-        from riser_soil.sea.morison import Morison
-
-        rho, D = scene.water.density, elements.outer_diameter
-        drag = morison_law.drag_coefficients(rho, D, *elements.drag.T)
-        parts.append(Morison(line, drag, morison_law.added_masses(rho, D, *elements.added_mass.T)))
     return parts
 
 

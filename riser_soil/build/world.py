@@ -9,6 +9,7 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.build.riser import attached_weight, attachments_of, elements_of, line_of, springs_of
+from riser_soil.build.sea_loads import sea_loads
 from riser_soil.build.stage import dynamic_parts, hold_spin, loads_of, set_motions
 from riser_soil.part import Field, Model, Part
 from riser_soil.riser.beam import Beam
@@ -72,7 +73,8 @@ class World:
         hold_spin(self.scene, self.line, stage, self.elements)
         parts = [*self.riser_parts, *loads_of(self.line, stage)]
         if isinstance(stage, DynamicStage):
-            parts += dynamic_parts(self.scene, self.line, self.elements, self.attachments)
+            parts += dynamic_parts(self.line, self.elements, self.attachments)
+        parts += sea_loads(self.scene, self.line, self.elements, stage)
         parts += [p for p in (self.soil, self.contact) if p is not None]
         return Model(self.fields, parts)
 

@@ -1,16 +1,15 @@
-"""Morison's formula for a slender pipe in still water: what the water resists with, per length.
+"""Morison's formula for a slender pipe: what the water resists with, per length.
 
-With the pipe's rate v, acceleration a, unit tangent tau, v_t = v.tau and v_n = v - v_t tau, the pipe feels
+With the pipe's velocity v through the water, acceleration a, unit tangent tau, v_t = v.tau and v_n = v - v_t tau, the
+pipe feels
 
     drag        -(D/2) rho Cdn |v_n| v_n - (pi D/2) rho Cdt |v_t| v_t tau
     added mass  -rho (pi D^2/4) [Can (a - (a.tau) tau) + Cat (a.tau) tau]
 
-The functions return the resistance, that is the negative of these forces (N/m), and its derivatives (..., d,
-d), tau
-being varied freely, at ng points of each element: v, a, tau (ne, ng, d); c, m: coefficients (ne, 2), normal
-and tangential.
-Source: Morison et al., Petroleum Transactions 189 (1950); tangential drag on the wetted perimeter as in DNV-
-RP-C205.
+The functions return the resistance, that is the negative of these forces (N/m), and its derivatives (..., d, d), tau
+being varied freely, at ng points of each element: v, a, tau (ne, ng, d); c, m: coefficients (ne, 2), normal and
+tangential. With tau = 0 they are those of a body alike in all directions, by the normal coefficients.
+Source: Morison et al., Petroleum Transactions 189 (1950); tangential drag on the wetted perimeter as in DNV-RP-C205.
 """
 
 import math

@@ -19,7 +19,13 @@ from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.loads import PointLoads
 from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.section_forces import element_residual
+from riser_soil.riser.trial import Trial
+from riser_soil.sea import wetting
+from riser_soil.sea.buoyancy import Buoyancy
 from riser_soil.sea.morison import Morison
+from riser_soil.sea.moving_water import Stream
+from riser_soil.sea.water import WaterMotion
+from tests import sample_water
 from tests.dense_chain import residual, tangent
 from tests.sample_line import Sample, sample
 
@@ -34,7 +40,14 @@ MAKERS: dict[str, Callable[[Sample], Part]] = {
     "turned spring": Sample.turned_spring,
     "forces": Sample.forces,
     "moments": Sample.moments,
+    "current": sample_water.current,
+    "waves": sample_water.waves,
+    "half out of still water": sample_water.half_out,
+    "half out of waves": sample_water.half_out_in_waves,
+    "buoyancy": sample_water.floating,
+    "buoyancy in waves": sample_water.floating_in_waves,
 }
+WITHIN_ELEMENTS = ["beam", "inertia", "rotary", "morison", "forces", "attachments", "half out of waves", "buoyancy"]
 every_part = pytest.mark.parametrize("name", list(MAKERS))
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 STENCIL = ((1, 3.0 / 4.0), (2, -3.0 / 20.0), (3, 1.0 / 60.0))
@@ -49,7 +62,7 @@ def slope(f: Callable[[float], Array], h: float) -> Array:
     return np.asarray(sum(c * (f(k * h) - f(-k * h)) for k, c in STENCIL) / h)
 
 
-def difference_tangent(part: Part, state: State, weights: Weights, h: float = 2e-3) -> Array:
+def difference_tangent(part: Part, state: State, weights: Weights, h: float = 5e-4) -> Array:
     """dR/du by differences, rates following by the shifts."""
     columns = []
     for direction in np.eye(state.u.size):
@@ -131,9 +144,28 @@ def without(name: str, change: Callable[[Array], Array]) -> Callable[[pytest.Mon
     return leave_out
 
 
+def without_water(field: str) -> Callable[[pytest.MonkeyPatch, Part], None]:
+    """Leave out one of the water's gradients."""
+
+    def leave_out(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
+        usual = Stream.at
+
+        def at(stream: Stream, trial: Trial) -> WaterMotion:
+            motion = usual(stream, trial)
+            return motion._replace(**{field: 0.0 * getattr(motion, field)})
+
+        monkeypatch.setattr(Stream, "at", at)
+
+    return leave_out
+
+
 def without_rotary_inertia(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
     assert isinstance(part, RotaryInertia)
     monkeypatch.setattr(part._sections, "add_tangent", no_operation)
+
+
+def without_wet_slope(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
+    monkeypatch.setattr(wetting, "wet_slope", lambda h, b: 0.0 * h)
 
 
 @pytest.mark.parametrize(
@@ -153,6 +185,24 @@ def without_rotary_inertia(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
         ("morison", 3, without_director_rates),
         ("attachments", 2, without_geometric),
         ("attachments", 3, without_geometric),
+        *[
+            (name, dimension, leave_out)
+            for dimension in (2, 3)
+            for name, leave_out in (
+                ("current", without_water("velocity_gradient")),
+                ("waves", without_water("velocity_gradient")),
+                ("waves", without_water("acceleration_gradient")),
+                ("waves", without_direction_changes),
+                ("half out of still water", without_wet_slope),
+                ("half out of waves", without_water("velocity_gradient")),
+                ("half out of waves", without_water("acceleration_gradient")),
+                ("half out of waves", without_water("immersion_gradient")),
+                ("half out of waves", without_wet_slope),
+                ("buoyancy", without_wet_slope),
+                ("buoyancy", without_geometric),
+                ("buoyancy in waves", without_water("immersion_gradient")),
+            )
+        ],
         ("forces", 2, without_geometric),
         ("forces", 3, without_geometric),
         ("moments", 3, without_turning_moments),
@@ -172,7 +222,7 @@ def test_each_term_of_the_tangent_matters(
 
 
 @both_dimensions
-@pytest.mark.parametrize("name", ["beam", "spring", "attachments"])
+@pytest.mark.parametrize("name", ["beam", "spring", "attachments", "buoyancy"])
 def test_conservative_forces_are_the_gradient_of_the_energy(name: str, dimension: int) -> None:
     at = sample(dimension)
     part, state = MAKERS[name](at), at.state(2)
@@ -251,12 +301,12 @@ def forces_in_global_axes(at: Sample, state: State, part: Part, weights: Weights
 
 
 @both_dimensions
-@pytest.mark.parametrize("name", ["beam", "inertia", "rotary", "morison", "forces", "attachments"])
+@pytest.mark.parametrize("name", WITHIN_ELEMENTS)
 def test_element_forces_add_up_to_the_residual(name: str, dimension: int) -> None:
     at = sample(dimension)
     part, state = MAKERS[name](at), at.state(6)
     total = np.zeros(at.line.size)
-    assert isinstance(part, Attachments | Beam | Inertia | RotaryInertia | Morison | PointLoads)
+    assert isinstance(part, Attachments | Beam | Inertia | RotaryInertia | Morison | PointLoads | Buoyancy)
     at.line.scatter(element_residual(at.line, [part], state), total)
     nodal = part.nodal_forces(state).ravel() if isinstance(part, PointLoads) else 0.0
     assert total + nodal == pytest.approx(

@@ -1,0 +1,110 @@
+"""Loads of moving water on the pipe, per length at its stations: relative velocity, and accelerating water.
+
+The pipe's velocity v and acceleration a meet those of the undisturbed water at its axis, u and u'. With the cross-
+section A = pi D^2/4 and the added mass m of `morison_law`,
+
+    force = drag of (v - u) - m a + m u' + rho A u'.
+
+The last term, that of Froude and Krylov, is what the pressure of the undisturbed water does to a piece of the pipe of
+length ds closed at both ends: minus its gradient rho u' times the volume A ds, in all directions. A piece within the
+line is open; the dynamic pressure on its ends is part of the effective tension, as the static one is (Sparks, Journal
+of Energy Resources Technology 106, 1984, on closed pressure fields; DNV-RP-C205, 6.2, for the whole formula). All terms
+with u' are known from where the pipe is; as external forces they belong to group F, so that the time scheme stays of
+second order, while m a is inertia.
+Source: Morison et al., Petroleum Transactions 189 (1950), in its relative form.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.part import Weights
+from riser_soil.riser import stations
+from riser_soil.riser.stations import Derivatives
+from riser_soil.riser.trial import Trial
+from riser_soil.sea import morison_law as law
+from riser_soil.sea.pipe import Flow, Pipe
+from riser_soil.sea.still_water import StationLoads, StillWater
+from riser_soil.sea.water import Water, WaterMotion
+
+
+class Stream:
+    """Moving water around the pipe."""
+
+    def __init__(self, pipe: Pipe, water: Water) -> None:
+        self.pipe, self._water = pipe, water
+
+    def at(self, trial: Trial) -> WaterMotion:
+        """The water's motion at the stations: arrays (ne, ng, ...) in the line's axes."""
+        motion: WaterMotion = trial.once((self, "motion"), self._see)
+        return motion
+
+    def immersion(self, trial: Trial) -> tuple[Array, Array]:
+        """Height of the surface above the stations (ne, ng) [m] and its gradient (ne, ng, d)."""
+        motion = self.at(trial)
+        return motion.immersion, motion.immersion_gradient
+
+    def _see(self, trial: Trial) -> WaterMotion:
+        x, basis = self.pipe.position(trial), self.pipe.line.basis
+        found = self._water(trial.state.t, self.pipe.line.to_global(x).reshape(-1, 3))
+        vectors = [values @ basis for values in (found.velocity, found.acceleration)]
+        gradients = [basis.T @ values @ basis for values in (found.velocity_gradient, found.acceleration_gradient)]
+        seen = (*vectors, *gradients, found.immersion, found.immersion_gradient @ basis)
+        return WaterMotion(*(np.ascontiguousarray(s.reshape(*x.shape[:2], *s.shape[1:])) for s in seen))
+
+
+class RelativeDrag:
+    """Still water's loads, with drag on the velocity through the water."""
+
+    dissipative = False
+
+    def __init__(self, still: StillWater, stream: Stream) -> None:
+        self._still, self._stream = still, stream
+
+    def forces(self, trial: Trial) -> tuple[Array, Array]:
+        return self._still.resist(self._through(trial))
+
+    def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
+        by = self._still.yielding(self._through(trial), weights)
+        return by._replace(position=-by.rate @ self._stream.at(trial).velocity_gradient)
+
+    def momentum(self, trial: Trial, v: Array) -> Array:
+        return self._still.momentum(trial, v)
+
+    def _through(self, trial: Trial) -> Flow:
+        flow: Flow = trial.once((self, "flow"), self._see)
+        return flow
+
+    def _see(self, trial: Trial) -> Flow:
+        flow = self._still.pipe.flow(trial)
+        return flow._replace(v=flow.v - self._stream.at(trial).velocity)
+
+
+class AcceleratedWater:
+    """What the water's acceleration adds to other loads: rho A u' and m u'.
+
+    mass: (ne, 2) as in `StillWater`. displaced: rho A (ne,) [kg/m].
+    """
+
+    dissipative = False
+
+    def __init__(self, loads: StationLoads, stream: Stream, mass: Array, displaced: Array) -> None:
+        self._loads, self._stream, self._pipe = loads, stream, stream.pipe
+        self._mass = mass + displaced[:, None]  # rho A is the same across and along the pipe
+
+    def forces(self, trial: Trial) -> tuple[Array, Array]:
+        inertia, force = self._loads.forces(trial)
+        acceleration, tau = self._stream.at(trial).acceleration, self._pipe.flow(trial).tau
+        return inertia, force - law.added(acceleration, tau, self._mass)
+
+    def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
+        by, flow, water = self._loads.derivatives(trial, weights), self._pipe.flow(trial), self._stream.at(trial)
+        by_a, by_tau = law.added_derivatives(water.acceleration, flow.tau, -weights.force * self._mass)
+        return by._replace(
+            position=by.position + by_a @ water.acceleration_gradient,
+            slope=by.slope + stations.follow_slope(by_tau, flow.tau, flow.stretch),
+        )
+
+    def momentum(self, trial: Trial, v: Array) -> Array:
+        return self._loads.momentum(trial, v)

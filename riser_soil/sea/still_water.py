@@ -1,0 +1,70 @@
+"""Loads of still water on the pipe, per length at its stations; what moving water and a surface build upon."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.part import Weights
+from riser_soil.riser import stations
+from riser_soil.riser.stations import Derivatives
+from riser_soil.riser.trial import Trial
+from riser_soil.sea import morison_law as law
+from riser_soil.sea.pipe import Flow, Pipe
+
+
+class StationLoads(Protocol):
+    """Resistance of the water per length [N/m], the negative of its force on the pipe, in the line's axes.
+
+    dissipative: whether all work of the group F is lost, and none can be put in.
+    """
+
+    dissipative: bool
+
+    def forces(self, trial: Trial) -> tuple[Array, Array]:
+        """Groups I and F, each (ne, ng, d)."""
+        ...
+
+    def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
+        """Of both groups, weighed and summed."""
+        ...
+
+    def momentum(self, trial: Trial, v: Array) -> Array:
+        """Momentum per length (ne, ng, d) [kg/s] that the added mass would have at the velocities v (ne, ng, d)."""
+        ...
+
+
+class StillWater:
+    """Drag (group F) and added mass (group I).
+
+    drag, mass: coefficients (ne, 2), normal and tangential, of `morison_law.drag_coefficients` [kg/m2] and
+    `morison_law.added_masses` [kg/m].
+    """
+
+    dissipative = True
+
+    def __init__(self, pipe: Pipe, drag: Array, mass: Array) -> None:
+        self.pipe, self._drag, self.mass = pipe, drag, mass
+
+    def forces(self, trial: Trial) -> tuple[Array, Array]:
+        return self.resist(self.pipe.flow(trial))
+
+    def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
+        return self.yielding(self.pipe.flow(trial), weights)
+
+    def momentum(self, trial: Trial, v: Array) -> Array:
+        return law.added(v, self.pipe.flow(trial).tau, self.mass)
+
+    def resist(self, flow: Flow) -> tuple[Array, Array]:
+        """Resistance to a motion through the water."""
+        return law.added(flow.a, flow.tau, self.mass), law.drag(flow.v, flow.tau, self._drag)
+
+    def yielding(self, flow: Flow, weights: Weights) -> Derivatives:
+        """Derivatives of `resist` by the motion through the water, weighed and summed."""
+        by_v, by_tau = law.drag_derivatives(flow.v, flow.tau, weights.force * self._drag)
+        by_a, added_by_tau = law.added_derivatives(flow.a, flow.tau, weights.inertia * self.mass)
+        by_tau += added_by_tau
+        by_slope = stations.follow_slope(by_tau, flow.tau, flow.stretch)
+        return Derivatives(np.zeros_like(by_v), by_slope, by_v, by_a)
