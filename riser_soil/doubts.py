@@ -25,6 +25,10 @@ def physical_warnings(world: World) -> Iterator[str]:
     yield from _penalty_against_soil(world)
     yield from _corner_against_weight(world)
     yield from _nothing_below(world)
+    if world.scene.water is not None and world.scene.water.waves is not None:
+        from riser_soil.wave_doubts import wave_doubts
+
+        yield from wave_doubts(world.scene)
 
 
 def _light_pipes(world: World) -> Iterator[str]:

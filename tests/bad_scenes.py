@@ -349,16 +349,6 @@ CONFLICTS = [
 ]
 
 NOT_YET = [
-    Bad("{density: 1025.0}", "{surface_level: 9.0}", 3, "water.surface_level", "9.0", "not supported yet"),
-    Bad(
-        "{density: 1025.0}",
-        "{current: {profile: []}}",
-        3,
-        "water.current",
-        '{"profile": []}',
-        "not supported yet",
-    ),
-    Bad("{density: 1025.0}", "{waves: {airy: {}}}", 3, "water.waves", '{"airy": {}}', "not supported yet"),
     Bad("    EA:", "    damping: 0.1\n    EA:", 9, "line_types.pipe.damping", "0.1", "not supported yet"),
     Bad("kind: spring", "kind: hysteretic", 20, "seabed.kind", '"hysteretic"', "not supported yet"),
     Bad("soil:\n", "soil:\n  inertia: true\n", 22, "soil.inertia", "true", "not supported yet"),
@@ -400,4 +390,59 @@ NOT_YET = [
     ),
 ]
 
-ALL = KEYS + VALUES + MISSING + CONFLICTS + NOT_YET
+
+def water(more: str, path: str, value: str, says: str) -> Bad:
+    """What is added to the water, and the message about it."""
+    return Bad("{density: 1025.0}", f"{{density: 1025.0, {more}}}", 3, f"water.{path}", value, says)
+
+
+def airy(values: str, path: str, value: str, says: str) -> Bad:
+    return water(f"surface_level: 100.0, waves: {{airy: {{{values}}}}}", f"waves.{path}", value, says)
+
+
+def jonswap(values: str, path: str, value: str, says: str) -> Bad:
+    return water(f"surface_level: 100.0, waves: {{jonswap: {{{values}}}}}", f"waves.jonswap.{path}", value, says)
+
+
+WATER = [
+    water("surfacelevel: 9.0", "surfacelevel", "9.0", 'did you mean "surface_level"?'),
+    water("surface_level: high", "surface_level", '"high"', "must be a number"),
+    water("surface_level: -3.0", "surface_level", "-3.0", "must lie above the seabed (z = 0 m)"),
+    water("depth: 0", "depth", "0", "must be greater than 0"),
+    water("current: 1.0", "current", "1.0", "must be a mapping with the keys profile"),
+    water("current: {profile: []}", "current.profile", "[]", "must have at least 1 entries"),
+    water("current: {profile: [[0, 1]]}", "current.profile.0", "[0, 1]", "must be a list of 3 values"),
+    water("current: {profile: [[0, 1, .inf]]}", "current.profile.0.2", "Infinity", "must be a finite number"),
+    water("current: {profile: [[0, 1, 0], [0, 2, 0]]}", "current.profile", "[[0, 1, 0], [0", "heights z must increase"),
+    water("waves: {airy: {height: 2, period: 9}}", "surface_level", "missing", "waves need a surface"),
+    water("surface_level: 9.0, waves: {}", "waves.airy", "missing", "no wave is given"),
+    water("surface_level: 9.0, waves: {stokes: {}}", "waves.stokes", "{}", "known are airy, jonswap, stretching, ramp"),
+    water(
+        "surface_level: 9.0, waves: {airy: {height: 2, period: 9}, jonswap: {Hs: 2, Tp: 9}}",
+        "waves.jonswap",
+        '{"Hs": 2, "Tp": 9}',
+        "both given",
+    ),
+    airy("period: 9.0", "airy.height", "missing", "add it: height from trough to crest [m]"),
+    airy("height: 2.0", "airy.period", "missing", "add it: period [s]"),
+    airy("height: 0, period: 9", "airy.height", "0", "must be greater than 0"),
+    airy("height: 2, period: .inf", "airy.period", "Infinity", "must be a finite number"),
+    airy("height: 2, period: nine", "airy.period", '"nine"', "must be a number"),
+    airy("height: 9, period: 6", "airy.height", "9", "must not exceed 7.981 m"),
+    airy("height: 2, period: 9}, stretching: {a: 1", "stretching", '{"a": 1}', "must be one of wheeler, vertical"),
+    water(
+        "surface_level: 9.0, waves: {ramp: -1.0, airy: {height: 2, period: 9}}",
+        "waves.ramp",
+        "-1.0",
+        "must be at least 0",
+    ),
+    jonswap("Hs: 2.0", "Tp", "missing", "add it: period of the spectrum's peak [s]"),
+    jonswap("Hs: -2.0, Tp: 9.0", "Hs", "-2.0", "must be greater than 0"),
+    jonswap("Hs: 9.0, Tp: 5.0", "Hs", "9.0", "must not exceed 5.543 m"),
+    jonswap("Hs: 2.0, Tp: 9.0, gamma: 0.9", "gamma", "0.9", "must be at least 1"),
+    jonswap("Hs: 2.0, Tp: 9.0, gamma: 8", "gamma", "8", "must be at most 7"),
+    jonswap("Hs: 2.0, Tp: 9.0, seed: 1.5", "seed", "1.5", "must be a whole number"),
+    jonswap("Hs: 2.0, Tp: 9.0, components: 0", "components", "0", "must be at least 1"),
+]
+
+ALL = KEYS + VALUES + MISSING + CONFLICTS + NOT_YET + WATER

@@ -14,6 +14,7 @@ from riser_soil.scene.seabed import RigidSeabed
 from riser_soil.scene.shapes import ArcShape, PointsShape
 from riser_soil.scene.soil import Block
 from riser_soil.scene.stage_checks import stage_conflicts
+from riser_soil.scene.water_checks import water_conflicts
 
 # A given unstressed shape may differ from the segments' length by this part; points leave out the curve.
 _ARC_TOLERANCE = 1e-6
@@ -265,5 +266,6 @@ _CHECKS: tuple[_Check, ...] = (
     _unstressed_shape_fits,
     _initial_shape_meets_the_supports,
     _passes_over_block,
+    water_conflicts,
     stage_conflicts,
 )

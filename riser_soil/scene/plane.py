@@ -108,7 +108,8 @@ def _points(scene: Scene) -> Iterator[tuple[Path, Vector]]:
 
 
 def _vectors(scene: Scene) -> Iterator[tuple[Path, Vector]]:
-    """Forces and displacements in the scene."""
+    """Forces, displacements, currents and directions of waves in the scene."""
+    yield from _flows(scene)
     for n, stage in enumerate(scene.stages):
         for m, load in enumerate(stage.loads):
             given = {"force": load.force, "distributed": load.distributed}
@@ -117,6 +118,19 @@ def _vectors(scene: Scene) -> Iterator[tuple[Path, Vector]]:
             for key, motion in {"start": stage.motion.start, "end": stage.motion.end}.items():
                 if motion:
                     yield ("stages", n, "motion", key, "harmonic", "amplitude"), motion.harmonic.amplitude
+
+
+def _flows(scene: Scene) -> Iterator[tuple[Path, Vector]]:
+    """What moves the water."""
+    current = scene.water.current if scene.water else None
+    for n, (_, ux, uy) in enumerate(current.profile if current else ()):
+        yield ("water", "current", "profile", n), (ux, uy, 0.0)
+    waves = scene.water.waves if scene.water else None
+    if waves:
+        for kind, given in {"airy": waves.airy, "jonswap": waves.jonswap}.items():
+            if given:
+                angle = math.radians(given.direction_deg)
+                yield ("water", "waves", kind, "direction_deg"), (math.cos(angle), math.sin(angle), 0.0)
 
 
 def _axes(scene: Scene) -> Iterator[tuple[Path, Vector]]:

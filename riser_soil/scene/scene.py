@@ -1,5 +1,6 @@
 """The scene: everything that a run is made of."""
 
+import math
 from typing import Any, Literal
 
 from pydantic import BaseModel, Field, model_validator
@@ -49,6 +50,19 @@ class Scene(BaseModel):
     def seabed_level(self) -> float:
         """Height z of the seabed and of the soil's top face [m]."""
         return self.seabed.level if self.seabed else 0.0
+
+    @property
+    def has_ground(self) -> bool:
+        """Whether the scene has a seabed or soil."""
+        return self.seabed is not None or self.soil is not None
+
+    @property
+    def water_depth(self) -> float:
+        """Depth of the water for waves [m]; inf in a scene that has neither ground nor a depth."""
+        if self.water is None or self.water.surface_level is None:
+            return math.inf
+        down = self.water.surface_level - self.seabed_level if self.has_ground else math.inf
+        return self.water.depth or down
 
     @property
     def contact_at(self) -> ContactAt:

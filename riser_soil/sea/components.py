@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from riser_soil.arrays import Array
+from riser_soil.sea.dispersion import wave_number
 
 
 class Components(NamedTuple):
@@ -20,3 +23,9 @@ class Components(NamedTuple):
     wave_number: Array
     direction: Array
     phase: Array
+
+
+def regular(height: float, period: float, direction: float, phase: float, g: float, h: float) -> Components:
+    """A single wave from trough to crest of `height` [m], with `period` [s], in water of depth h [m]; angles in rad."""
+    w = np.array([2.0 * np.pi / period])
+    return Components(np.array([0.5 * height]), w, wave_number(w, g, h), np.array([direction]), np.array([phase]))

@@ -37,7 +37,7 @@ def components(
     """
     draw = np.random.default_rng(seed)
     share = (np.arange(count) + draw.random(count)) / count
-    w = 2.0 * np.pi / Tp * _quantiles(share, gamma)
+    w = 2.0 * np.pi / Tp * quantiles(share, gamma)
     every = np.ones(count)
     phase = 2.0 * np.pi * draw.random(count)
     return Components(Hs / np.sqrt(8.0 * count) * every, w, wave_number(w, g, h), direction * every, phase)
@@ -56,7 +56,7 @@ def _area(gamma: float) -> float:
     return float(np.sum(x * _shape(x, gamma)) * _STEP)
 
 
-def _quantiles(share: Array, gamma: float) -> Array:
+def quantiles(share: Array, gamma: float) -> Array:
     """Relative frequencies below which the given shares (0 to 1) of the energy from LOWEST to HIGHEST lie."""
     log = np.arange(np.log(LOWEST), np.log(HIGHEST) + _STEP, _STEP)
     density = np.exp(log) * _shape(np.exp(log), gamma)

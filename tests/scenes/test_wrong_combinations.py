@@ -21,6 +21,13 @@ NO_SOIL = (GOOD[GOOD.index("soil:") : GOOD.index("contact:")], "")
 STATIC_ALONE = (GOOD[GOOD.index("  - name: heave") : GOOD.index("solver:")], "")
 
 
+def waves(more: str, **water: float) -> tuple[str, str]:
+    """Waves of 2 m and 8 s in water with a surface."""
+    keys = "".join(f", {key}: {value}" for key, value in water.items())
+    sea = f"surface_level: 100.0{keys}, waves: {{airy: {{height: 2.0, period: 8.0{more}}}}}"
+    return "{density: 1025.0}", f"{{density: 1025.0, {sea}}}"
+
+
 def arc(values: str) -> Changes:
     return (("  initial: catenary", f"  initial: catenary\n  unstressed: {{arc: {{{values}}}}}"),)
 
@@ -65,6 +72,22 @@ CASES: list[tuple[Changes, str, str]] = [
         (("initial: catenary", "initial: {points: [[0, 0, 0]]}"),),
         "riser.initial.points",
         "must have at least 2 entries",
+    ),
+    (
+        (("gravity: 9.81", "gravity: 0"), ("initial: catenary", POINTS), waves("")),
+        "water.waves: value {",
+        "there are no waves without gravity",
+    ),
+    ((waves("", depth=2.0),), "water.waves.airy.height: value 2.0", "higher waves of 8 s in 2 m of water break"),
+    (
+        (("title: base", "dimension: 2"), waves(", direction_deg: 90.0")),
+        "water.waves.airy.direction_deg: value 90.0",
+        "leaves the riser's vertical plane",
+    ),
+    (
+        (("title: base", "dimension: 2"), ("{density: 1025.0}", "{current: {profile: [[0, 1, 0], [9, 1, 0.1]]}}")),
+        "water.current.profile.1: value [9, 1, 0.1]",
+        "leaves the riser's vertical plane",
     ),
 ]
 

@@ -1,0 +1,91 @@
+"""What the water of a scene does: the only place that asks what moves it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import takewhile
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
+from riser_soil.scene.water import Current
+
+if TYPE_CHECKING:
+    from riser_soil.sea.components import Components
+    from riser_soil.sea.current import SteadyCurrent
+    from riser_soil.sea.sea import Flow
+    from riser_soil.sea.water import Water
+    from riser_soil.sea.wave_field import WaveField
+
+
+def water_of(scene: Scene, stage: Stage) -> Water | None:
+    """The water in a stage: current, in dynamic stages waves, and the surface.
+
+    None where nothing moves and there is no surface: still water around a submerged riser, or no water at all.
+    """
+    if scene.water is None:
+        return None
+    flows = list(_flows(scene, stage))
+    if not flows and scene.water.surface_level is None:
+        return None
+    from riser_soil.sea.sea import Sea
+
+    return Sea(scene.water.surface_level, flows)
+
+
+def components_of(scene: Scene) -> Components | None:
+    """The scene's waves; None where it has none. Waves that move a vessel are these very waves."""
+    waves = scene.water.waves if scene.water is not None else None
+    if waves is None:
+        return None
+    if waves.jonswap is not None:
+        from riser_soil.sea import jonswap
+
+        sea = waves.jonswap
+        direction = np.radians(sea.direction_deg)
+        return jonswap.components(
+            sea.Hs, sea.Tp, sea.gamma, sea.components, sea.seed, direction, scene.gravity, scene.water_depth
+        )
+    assert waves.airy is not None  # the scene's checks have seen to it
+    from riser_soil.sea.components import regular
+
+    wave = waves.airy
+    angles = np.radians(wave.direction_deg), np.radians(wave.phase_deg)
+    return regular(wave.height, wave.period, *angles, scene.gravity, scene.water_depth)
+
+
+def wave_clock(scene: Scene, stage: Stage) -> float:
+    """What the waves' clock shows when a stage begins [s]: it runs through the dynamic stages."""
+    before = takewhile(lambda other: other.name != stage.name, scene.stages)
+    return sum(other.duration for other in before if isinstance(other, DynamicStage))
+
+
+def _flows(scene: Scene, stage: Stage) -> Iterator[Flow]:
+    assert scene.water is not None
+    if scene.water.current is not None:
+        yield _current(scene, scene.water.current, stage)
+    if scene.water.waves is not None and isinstance(stage, DynamicStage):
+        yield _waves(scene, stage)
+
+
+def _current(scene: Scene, given: Current, stage: Stage) -> SteadyCurrent:
+    """It grows with the load factor when the run begins with a static stage; else it is there in full."""
+    from riser_soil.sea.current import SteadyCurrent
+
+    profile = np.array(given.profile)
+    grows = isinstance(stage, StaticStage) and stage.name == scene.stages[0].name
+    return SteadyCurrent(profile[:, 0], profile[:, 1:], (lambda t: t) if grows else (lambda t: 1.0))
+
+
+def _waves(scene: Scene, stage: Stage) -> WaveField:
+    from riser_soil.sea.wave_field import WaveField
+
+    components = components_of(scene)
+    assert components is not None
+    assert scene.water is not None
+    assert scene.water.waves is not None
+    assert scene.water.surface_level is not None
+    waves, level = scene.water.waves, scene.water.surface_level
+    return WaveField(components, scene.water_depth, level, waves.stretching, waves.ramp, wave_clock(scene, stage))

@@ -1,0 +1,52 @@
+"""Waves as a flow of the sea: in time, from their beginning on."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from riser_soil.arrays import Array
+from riser_soil.sea import waves
+from riser_soil.sea.components import Components
+from riser_soil.sea.water import WaterMotion
+from riser_soil.smooth_step import smooth_step
+
+Stretching = Literal["wheeler", "vertical"]
+
+
+class WaveField:
+    """Linear waves that grow smoothly, with surface, velocity and acceleration ramped alike.
+
+    The acceleration is the rate of the ramped velocity, the ramp's own share included. depth [m] may be inf.
+    surface_level: z of the mean surface [m]. ramp [s] is counted on the waves' clock, as their phases are; clock: what
+    it shows when the stage begins [s].
+    """
+
+    def __init__(
+        self,
+        components: Components,
+        depth: float,
+        surface_level: float,
+        stretching: Stretching = "wheeler",
+        ramp: float = 0.0,
+        clock: float = 0.0,
+    ) -> None:
+        self._train, self._depth, self._level = waves.train(components, depth), depth, surface_level
+        self._stretching, self._ramp, self._clock = stretching, ramp, clock
+
+    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
+        time = self._clock + t
+        r, rate, _ = smooth_step(time, self._ramp)
+        cosine, sine = waves.circular(self._train, time, x)
+        eta, slope = (r * part for part in waves.surface(self._train, cosine, sine))
+        full = waves.kinematics(self._train, cosine, sine, self._heights(x[:, 2] - self._level, eta, slope))
+        motion.velocity[:] += r * full.v
+        motion.velocity_gradient[:] += r * full.dv
+        motion.acceleration[:] += r * full.a + rate * full.v
+        motion.acceleration_gradient[:] += r * full.da + rate * full.dv
+        motion.immersion[:] += eta
+        motion.immersion_gradient[:, :2] += slope
+
+    def _heights(self, z: Array, eta: Array, slope: Array) -> waves.Heights:
+        if self._stretching == "wheeler":
+            return waves.wheeler(z, eta, slope, self._depth)
+        return waves.vertical(z, self._depth)

@@ -1,0 +1,76 @@
+"""Doubts about a scene's waves: too steep for linear theory, or in water of another depth than the scene's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import StaticStage
+from riser_soil.scene.water import Waves
+from riser_soil.sea.dispersion import wave_number
+
+# Height over Miche's breaking height from which linear theory is well off: Stokes's crests are a tenth higher there.
+STEEP = 0.5
+# Ursell's number H L^2/h^3 from which waves in shallow water are cnoidal.
+SHALLOW = 40.0
+# Part by which a given depth may differ from the height of the surface above the seabed.
+OTHER_DEPTH = 0.05
+
+
+def wave_doubts(scene: Scene) -> Iterator[str]:
+    """What an engineer would question about the waves, each with its numbers."""
+    assert scene.water is not None
+    assert scene.water.waves is not None
+    waves, h = scene.water.waves, scene.water_depth
+    k = float(wave_number(np.array([2.0 * np.pi / waves.period]), scene.gravity, h)[0])
+    yield from (_steep(waves, k, h) if waves.airy else _steep_sea(scene.gravity, waves))
+    yield from _shallow(waves, k, h)
+    yield from _other_depth(scene)
+    if all(isinstance(stage, StaticStage) for stage in scene.stages):
+        yield "water.waves: waves act in dynamic stages, and all stages are static: nothing will come of them"
+
+
+def _steep(waves: Waves, k: float, h: float) -> Iterator[str]:
+    """Miche's limit (1944): H = 0.142 L tanh kh."""
+    length = 2.0 * np.pi / k
+    breaking = 0.142 * length * np.tanh(k * h)
+    if waves.height > STEEP * breaking:
+        yield (
+            f"water.waves.airy: H = {waves.height:g} m over L = {length:.4g} m is steep: {waves.height / breaking:.2g} "
+            f"of the height at which such waves break, {breaking:.4g} m; linear theory gives them too low crests"
+        )
+
+
+def _steep_sea(g: float, waves: Waves) -> Iterator[str]:
+    """Limit of a sea's steepness in DNV-RP-C205: 1/15 up to Tp = 8 s, 1/25 from 15 s on."""
+    steepness = 2.0 * np.pi * waves.height / (g * waves.period**2)
+    limit = float(np.interp(waves.period, [8.0, 15.0], [1.0 / 15.0, 1.0 / 25.0]))
+    if steepness > limit:
+        yield (
+            f"water.waves.jonswap: the steepness 2 pi Hs/(g Tp^2) = {steepness:.3g} is more than seas with a peak at "
+            f"{waves.period:g} s reach, {limit:.3g}: that is Hs = {waves.height * limit / steepness:.3g} m"
+        )
+
+
+def _shallow(waves: Waves, k: float, h: float) -> Iterator[str]:
+    ursell = waves.height * (2.0 * np.pi / k) ** 2 / h**3
+    if ursell > SHALLOW:
+        yield (
+            f"water.waves: in {h:g} m of water Ursell's number H L^2/h^3 = {ursell:.3g} is above {SHALLOW:g}: such "
+            "waves have sharper crests and flatter troughs than linear theory gives them"
+        )
+
+
+def _other_depth(scene: Scene) -> Iterator[str]:
+    assert scene.water is not None
+    assert scene.water.surface_level is not None
+    if scene.water.depth is None or not scene.has_ground:
+        return
+    down = scene.water.surface_level - scene.seabed_level
+    if abs(scene.water.depth - down) > OTHER_DEPTH * down:
+        yield (
+            f"water.depth is {scene.water.depth:g} m, but the surface lies {down:.6g} m above the seabed: leave depth "
+            "out, or correct surface_level or seabed.level"
+        )
