@@ -81,6 +81,25 @@ VALUES = [
     Bad("length: 148.0", 'length: "148 m"', 16, "riser.segments.0.length", '"148 m"', "without a unit"),
     Bad("length: 148.0", "length: 0", 16, "riser.segments.0.length", "0", "must be greater than 0"),
     Bad("elements: 74", "elements: 7.5", 16, "riser.segments.0.elements", "7.5", "must be a whole number"),
+    Bad(
+        "elements: 74", "element_length: fine", 16, "riser.segments.0.element_length", '"fine"', "must be a number"
+    ),
+    Bad(
+        "elements: 74",
+        "element_length: [1, 2, 3]",
+        16,
+        "riser.segments.0.element_length",
+        "[1, 2, 3]",
+        "a list of 2 values",
+    ),
+    Bad(
+        "elements: 74",
+        "element_length: [0.5, 0]",
+        16,
+        "riser.segments.0.element_length.1",
+        "0",
+        "must be greater than 0",
+    ),
     Bad("elements: 74", "elements: 0", 16, "riser.segments.0.elements", "0", "must be at least 1"),
     Bad("    EA:", "    rotary_inertia: -2\n    EA:", 9, "line_types.pipe.rotary_inertia", "-2", "must be at least 0"),
     Bad(
@@ -140,6 +159,73 @@ VALUES = [
     Bad("{interval: 0.1}", "{interval: 0}", 36, "output.interval", "0", "must be greater than 0"),
     Bad("{interval: 0.1}", "{fields: [tension]}", 36, "output.fields.0", '"tension"', '"effective_tension"'),
     Bad("{interval: 0.1}", "{fields: all}", 36, "output.fields", '"all"', "must be a list"),
+]
+
+ATTACHED = [
+    Bad(
+        "  contents:",
+        "  attachments: [{at: 150.0, mass: 10.0}]\n  contents:",
+        14,
+        "riser.attachments.0.at",
+        "150.0",
+        "must not exceed the riser's length (148 m)",
+    ),
+    Bad(
+        "  contents:",
+        "  attachments: [{at: [20.0, 150.0], mass: 10.0}]\n  contents:",
+        14,
+        "riser.attachments.0.at.1",
+        "150.0",
+        "must not exceed the riser's length (148 m)",
+    ),
+    Bad(
+        "  contents:",
+        "  attachments: [{at: -2, mass: 10.0}]\n  contents:",
+        14,
+        "riser.attachments.0.at",
+        "-2",
+        "must be at least 0",
+    ),
+    Bad(
+        "  contents:",
+        "  attachments: [{at: top, mass: 10.0}]\n  contents:",
+        14,
+        "riser.attachments.0.at",
+        '"top"',
+        "must be a number",
+    ),
+    Bad(
+        "  contents:",
+        "  attachments: [{at: [], mass: 10.0}]\n  contents:",
+        14,
+        "riser.attachments.0.at",
+        "[]",
+        "must have at least 1",
+    ),
+    Bad(
+        "  contents:",
+        "  attachments: [{at: 20.0}]\n  contents:",
+        14,
+        "riser.attachments.0.mass",
+        "missing",
+        "has no mass, volume or drag_area",
+    ),
+    Bad(
+        "  contents:",
+        "  attachments: [{at: 20.0, mass: 9.0, added_mass: 0.5}]\n  contents:",
+        14,
+        "riser.attachments.0.added_mass",
+        "0.5",
+        "volume is 0",
+    ),
+    Bad(
+        "  contents:",
+        "  attachments: [{at: 20.0, weight: 9.0}]\n  contents:",
+        14,
+        "riser.attachments.0.weight",
+        "9.0",
+        "known are at, mass, volume, drag_area, added_mass",
+    ),
 ]
 
 MISSING = [
@@ -445,4 +531,4 @@ WATER = [
     jonswap("Hs: 2.0, Tp: 9.0, components: 0", "components", "0", "must be at least 1"),
 ]
 
-ALL = KEYS + VALUES + MISSING + CONFLICTS + NOT_YET + WATER
+ALL = KEYS + VALUES + ATTACHED + MISSING + CONFLICTS + NOT_YET + WATER

@@ -121,7 +121,7 @@ def sample(
     dimension: int, ends: tuple[End, End] | None = None, offset: int = 0, shaken: bool = True
 ) -> Sample:
     """The riser with an unstressed bend in the plane; shaken: after three random steps."""
-    e = elements([Segment(THICK, 3.0, 2), Segment(THIN, 5.0, 3)], AROUND)
+    e = elements([Segment.even(THICK, 3.0, 2), Segment.even(THIN, 5.0, 3)], AROUND)
     radius, normal = 6.0, np.cross(UP, DIRECTION)
     bend = shapes.circle(e.arc, START - radius * UP, START, 8.0 / radius, normal)
     layout = shapes.layout(e.arc, e.outer_diameter, bend, shapes.through(e.arc, planar_points()))

@@ -31,9 +31,7 @@ def elements_of(scene: Scene) -> sections.Elements:
         water=scene.water.density if scene.water else 0.0,
     )
     types = {name: _line_type(t) for name, t in scene.used_line_types.items()}
-    segments = [
-        sections.Segment(types[s.line_type], s.length, s.number_of_elements) for s in scene.riser.segments
-    ]
+    segments = [sections.Segment(types[s.line_type], s.element_lengths) for s in scene.riser.segments]
     return sections.elements(segments, around)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -38,11 +39,15 @@ class LineType:
 
 @dataclass(frozen=True)
 class Segment:
-    """A run of equal elements: unstressed length in m."""
+    """A run of elements of one line type: their unstressed lengths in m."""
 
     line_type: LineType
-    length: float
-    elements: int
+    lengths: tuple[float, ...]
+
+    @classmethod
+    def even(cls, line_type: LineType, length: float, elements: int) -> Self:
+        """Equal elements that add up to a length [m]."""
+        return cls(line_type, (length / elements,) * elements)
 
 
 @dataclass(frozen=True)
@@ -106,14 +111,14 @@ def elements(segments: Sequence[Segment], around: Surroundings) -> Elements:
     """Properties of all elements, from start to end."""
     if not segments:
         raise SceneError("riser.segments: none given; at least one is needed")
-    count = np.array([s.elements for s in segments])
+    count = np.array([len(s.lengths) for s in segments])
     types = [s.line_type for s in segments]
 
     def spread(values: list[float] | list[tuple[float, float]]) -> Array:
         return np.repeat(np.asarray(values, dtype=float), count, axis=0)
 
     return Elements(
-        length=spread([s.length / s.elements for s in segments]),
+        length=np.concatenate([s.lengths for s in segments]),
         EA=spread([t.EA for t in types]),
         EI_y=spread([t.EI_y for t in types]),
         EI_z=spread([t.EI_z for t in types]),

@@ -1,25 +1,39 @@
 """The riser: its segments, contents, ends and shapes."""
 
 import math
-from typing import Annotated, Literal, Self
+from itertools import accumulate
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
 from riser_soil.scene.attachments import Attachment
+from riser_soil.scene.grading import graded_lengths
 from riser_soil.scene.quantities import FROZEN, Count, Positive, Text, Vector, word_or, wrong
 from riser_soil.scene.shapes import Initial, Unstressed
 
 
+def _one_or_two(value: Any) -> str:
+    return "<list>" if isinstance(value, list | tuple) else "<number>"
+
+
+ElementLength = Annotated[
+    Annotated[tuple[Positive, Positive], Tag("<list>")] | Annotated[Positive, Tag("<number>")],
+    Discriminator(_one_or_two),
+]
+
+
 class Segment(BaseModel):
-    """A stretch of riser of one line type, cut into elements of equal length."""
+    """A stretch of riser of one line type, cut into elements of equal or of steadily growing length."""
 
     model_config = FROZEN
 
     line_type: Text = Field(description="name of its line type, a key of `line_types`")
     length: Positive = Field(description="unstressed length [m]")
     elements: Count | None = Field(default=None, description="number of elements; or give element_length")
-    element_length: Positive | None = Field(
-        default=None, description="greatest length of an element [m]; or give elements"
+    element_length: ElementLength | None = Field(
+        default=None,
+        description="greatest length of an element [m], or [at the segment's start, at its end], between which it "
+        "changes by equal ratios; or give elements",
     )
 
     @model_validator(mode="after")
@@ -33,12 +47,13 @@ class Segment(BaseModel):
         return self
 
     @property
-    def number_of_elements(self) -> int:
-        """The number of elements, whichever way it was given."""
+    def element_lengths(self) -> tuple[float, ...]:
+        """Lengths of the elements from start to end [m], whichever way they were given."""
         if self.elements is not None:
-            return self.elements
+            return (self.length / self.elements,) * self.elements
         assert self.element_length is not None  # the validator has seen to it
-        return max(1, math.ceil(self.length / self.element_length - 1e-9))
+        given = self.element_length
+        return graded_lengths(self.length, *(given if isinstance(given, tuple) else (given, given)))
 
 
 class Contents(BaseModel):
@@ -116,3 +131,8 @@ class Riser(BaseModel):
     def length(self) -> float:
         """Unstressed length of the riser [m]."""
         return math.fsum(segment.length for segment in self.segments)
+
+    @property
+    def node_arcs(self) -> list[float]:
+        """Arc lengths of the nodes [m]."""
+        return list(accumulate((x for segment in self.segments for x in segment.element_lengths), initial=0.0))

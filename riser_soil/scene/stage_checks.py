@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator
-from itertools import accumulate, pairwise
 
 from riser_soil.scene.problem import Path, Problem
 from riser_soil.scene.quantities import Vector
@@ -51,14 +50,7 @@ def _load_on_riser(scene: Scene, path: Path, load: Load) -> Iterator[Problem]:
 
 
 def _nearest_node(scene: Scene, arc: float) -> float:
-    segments = scene.riser.segments
-    joints = list(accumulate((segment.length for segment in segments), initial=0.0))
-    nodes = (
-        first + (last - first) * n / segment.number_of_elements
-        for segment, (first, last) in zip(segments, pairwise(joints), strict=True)
-        for n in range(segment.number_of_elements + 1)
-    )
-    return min(nodes, key=lambda node: abs(node - arc))
+    return min(scene.riser.node_arcs, key=lambda node: abs(node - arc))
 
 
 def _static(scene: Scene, n: int, stage: StaticStage) -> Iterator[Problem]:

@@ -115,7 +115,7 @@ BAR = LineType(EA=1.0e7, EI_y=2.0e4, EI_z=2.0e4, GJ=1.0e4, outer_diameter=0.2, s
 
 def bar(dimension: int, start: End, end: End, count: int = 6, kind: LineType = BAR) -> tuple[Line, Elements]:
     """A straight bar of 12 m along x."""
-    e = elements([Segment(kind, 12.0, count)], Surroundings())
+    e = elements([Segment.even(kind, 12.0, count)], Surroundings())
     straight = shapes.straight(e.arc)
     return Line(dimension, shapes.layout(e.arc, e.outer_diameter, straight, straight), start, end), e
 
@@ -169,7 +169,7 @@ def test_a_spring_holds_the_end_like_its_stiffness_says(dimension: int) -> None:
     line, _ = bar(dimension, End(True), End(False))
     loads = PointLoads(line, [Load(lambda t: t, 12.0, moment=np.array([0.0, -200.0, 0.0]))])
     kind = LineType(EA=1.0e7, EI_y=2.0e4, EI_z=2.0e4, GJ=1.0e4)
-    weightless = Beam(line, elements([Segment(kind, 12.0, 6)], Surroundings()))
+    weightless = Beam(line, elements([Segment.even(kind, 12.0, 6)], Surroundings()))
     spring = EndSpring(line, 0, 1000.0)
     solve(line, [weightless, loads, spring])
     state = State.at_rest(1.0, line.size)

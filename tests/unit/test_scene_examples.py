@@ -79,7 +79,7 @@ def test_clay_has_contact_and_elements_by_length() -> None:
     scene = read_scene(SCENES["clay"])
     assert scene.contact is not None
     assert scene.contact.stiffness == "auto"
-    assert [segment.number_of_elements for segment in scene.riser.segments] == [100, 49]
+    assert [len(segment.element_lengths) for segment in scene.riser.segments] == [100, 49]
     assert scene.seabed_level == 0.0
     assert scene.contact_at == "outer"
 

@@ -33,7 +33,7 @@ def test_in_air_nothing_floats() -> None:
 
 def test_segments_become_elements_in_order() -> None:
     thin = replace(FLEXIBLE, EA=1.0, drag=(1.1, 0.1))
-    found = elements([Segment(FLEXIBLE, 10.0, 2), Segment(thin, 3.0, 3)], FLOODED)
+    found = elements([Segment.even(FLEXIBLE, 10.0, 2), Segment.even(thin, 3.0, 3)], FLOODED)
     assert found.arc.tolist() == [0.0, 5.0, 10.0, 11.0, 12.0, 13.0]
     assert found.EA.tolist() == [15.38e8, 15.38e8, 1.0, 1.0, 1.0]
     assert found.drag.tolist() == [[0.0, 0.0]] * 2 + [[1.1, 0.1]] * 3
@@ -47,6 +47,11 @@ def test_rotary_inertia_of_wall_and_contents() -> None:
     exact = wall * (0.26**4 - 0.2**4) + filling * 0.2**4
     types = [replace(FLEXIBLE, rotary_inertia=given) for given in (None, 3.0, 0.0)]
     assert [rotary_inertia(line, FLOODED) for line in types] == pytest.approx([exact, 3.0, 0.0], rel=1e-14)
+
+
+def test_uneven_elements_keep_their_lengths() -> None:
+    found = elements([Segment(FLEXIBLE, (1.0, 2.0, 4.0)), Segment.even(FLEXIBLE, 3.0, 2)], FLOODED)
+    assert found.arc.tolist() == [0.0, 1.0, 3.0, 7.0, 8.5, 10.0]
 
 
 def test_no_segments_is_an_error() -> None:

@@ -58,7 +58,7 @@ class Hanging:
 
 
 def properties(count: int, EI: float = EI) -> Elements:
-    return elements([Segment(replace(KIND, EI_y=EI, EI_z=EI), LENGTH, count)], FLOODED)
+    return elements([Segment.even(replace(KIND, EI_y=EI, EI_z=EI), LENGTH, count)], FLOODED)
 
 
 def guess(e: Elements) -> Catenary:

@@ -25,7 +25,7 @@ MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
 def frequencies(dimension: int, count: int, moving: list[int]) -> Array:
     """Angular frequencies (rad/s), ascending, of a pinned pipe's dofs `moving`."""
     kind = LineType(EA, EI, EI, GJ, mass=MASS, rotary_inertia=INERTIA)
-    e = elements([Segment(kind, LENGTH, count)], Surroundings(gravity=0.0))
+    e = elements([Segment.even(kind, LENGTH, count)], Surroundings(gravity=0.0))
     straight = shapes.straight(e.arc)
     line = Line(dimension, shapes.layout(e.arc, e.outer_diameter, straight, straight), End(True), End(True))
     state, free = State.at_rest(0.0, line.size), np.zeros((line.nodes, line.ndof), dtype=bool)

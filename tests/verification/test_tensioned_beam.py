@@ -33,7 +33,7 @@ def exact(mass: float, n: Array) -> Array:
 
 def frequencies(dimension: int, count: int, tension: float = TENSION, added: float = 0.0) -> Array:
     """All transverse angular frequencies (rad/s), ascending; in space each comes twice."""
-    e = elements([Segment(LineType(EA, EI, EI, GJ=EI, mass=MASS), LENGTH, count)], Surroundings(gravity=0.0))
+    e = elements([Segment.even(LineType(EA, EI, EI, GJ=EI, mass=MASS), LENGTH, count)], Surroundings(gravity=0.0))
     straight = shapes.straight(e.arc)
 
     def stretch(t: float) -> Kinematics:
