@@ -9,7 +9,7 @@ import numpy as np
 from riser_soil.arrays import Array
 from riser_soil.part import State
 from riser_soil.riser import shapes
-from riser_soil.riser.attachments import Attachment, Attachments, mass_matrices
+from riser_soil.riser.attachments import Attachment, Attachments, masses
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.ends import End, Turning
 from riser_soil.riser.inertia import Inertia
@@ -69,7 +69,7 @@ class Sample:
         return beam
 
     def inertia(self) -> Inertia:
-        return Inertia(self.line, self.elements.mass, mass_matrices(self.line, self.attached()))
+        return Inertia(self.line, self.elements.mass, masses(self.line, self.attached()))
 
     def rotary(self) -> RotaryInertia:
         return RotaryInertia(self.line, self.elements.rotary_inertia)

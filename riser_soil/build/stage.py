@@ -21,7 +21,7 @@ from riser_soil.scene.stages import Load as LoadScene
 from riser_soil.time_scheme import GeneralizedAlpha, Scheme, Static
 
 if TYPE_CHECKING:
-    from riser_soil.riser.attachments import Attachment
+    from riser_soil.riser.attachments import Attachment, Masses
     from riser_soil.riser.loads import Load
 
 
@@ -98,9 +98,9 @@ def dynamic_parts(line: Line, elements: Elements, attachments: Sequence[Attachme
     return parts
 
 
-def _attached_mass(line: Line, attachments: Sequence[Attachment]) -> Array | None:
+def _attached_mass(line: Line, attachments: Sequence[Attachment]) -> Masses | None:
     if not attachments:
         return None
-    from riser_soil.riser.attachments import mass_matrices
+    from riser_soil.riser.attachments import masses
 
-    return mass_matrices(line, attachments)
+    return masses(line, attachments)

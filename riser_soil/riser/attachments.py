@@ -1,14 +1,16 @@
 """Point masses and buoyancy modules on the line, and their weight less buoyancy: the part "attachments".
 
 What acts at xi of an element reaches its q by the shape functions N(xi): a weight w as w N, a mass m as m N N^T. At a
-node that is the classical lumped weight and mass. There it counts with the element after the node (at the riser's end
-with the last one), so section forces given at an attachment's node are those just before it.
+node that is the classical lumped weight and mass. There it counts with the element after the node, so section forces
+given at an attachment's node are those just before it; at the riser's two ends they are those of the line, without what
+sits there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,7 +18,6 @@ from riser_soil.arrays import Array, IntArray
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.riser import hermite
 from riser_soil.riser.line import UP, Line
-from riser_soil.riser.trial import Trial
 
 
 @dataclass(frozen=True)
@@ -43,13 +44,42 @@ def shares(line: Line, attachments: Sequence[Attachment]) -> tuple[IntArray, Arr
     return element, hermite.shapes(np.array([xi for _, xi in places]), line.length[element])
 
 
-def mass_matrices(line: Line, attachments: Sequence[Attachment]) -> Array:
-    """Sums of m N N^T by element (ne, 4, 4), to be added to `hermite.consistent_mass`."""
+def split(line: Line, attachments: Sequence[Attachment]) -> tuple[list[Attachment], list[Attachment]]:
+    """Those along the line, and those at its two ends."""
+    ends = (0, 0.0), (line.length.size - 1, 1.0)
+    sorted_out: tuple[list[Attachment], list[Attachment]] = ([], [])
+    for attachment in attachments:
+        sorted_out[line.place(attachment.arc) in ends].append(attachment)
+    return sorted_out
+
+
+class Masses(NamedTuple):
+    """Sums of m N N^T by element (ne, 4, 4), kg, of what sits along the line and of what sits at its ends."""
+
+    along: Array
+    ends: Array
+
+
+def masses(line: Line, attachments: Sequence[Attachment]) -> Masses:
+    along, ends = (_mass_matrices(line, some) for some in split(line, attachments))
+    return Masses(along, ends)
+
+
+def _mass_matrices(line: Line, attachments: Sequence[Attachment]) -> Array:
     M = np.zeros((line.length.size, 4, 4))
     element, N = shares(line, attachments)
     mass = np.array([attachment.mass for attachment in attachments])
     np.add.at(M, element, mass[:, None, None] * N[:, :, None] * N[:, None, :])
     return M
+
+
+def _residual(line: Line, attachments: Sequence[Attachment]) -> Array:
+    """Residual of weight less buoyancy, conjugate to q (ne, 4, d)."""
+    F = np.zeros((line.length.size, 4, line.dimension))
+    element, N = shares(line, attachments)
+    weight = np.array([attachment.net_weight for attachment in attachments])
+    np.add.at(F, element, (weight[:, None] * N)[:, :, None] * (UP @ line.basis))
+    return F
 
 
 class Attachments:
@@ -63,24 +93,23 @@ class Attachments:
 
     def __init__(self, line: Line, attachments: Sequence[Attachment]) -> None:
         self.line = line
-        element, N = shares(line, attachments)
-        weight = np.array([attachment.net_weight for attachment in attachments])
-        self._F = np.zeros((line.length.size, 4, line.dimension))  # residual conjugate to q
-        np.add.at(self._F, element, (weight[:, None] * N)[:, :, None] * (UP @ line.basis))
+        self._along, self._ends = (_residual(line, some) for some in split(line, attachments))
+        self._F = self._along + self._ends
 
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}
 
-    def _element_forces(self, trial: Trial) -> Array:
-        return trial.pull_back(self._F)
-
     def element_forces(self, state: State) -> tuple[None, Array]:
-        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
-        return None, self.line.trial(state).once((self, "element forces"), self._element_forces)
+        """Element residuals (inertia, force), each (ne, 2 ndof) or None, of what sits along the line."""
+        return None, self.line.trial(state).pull_back(self._along)
+
+    def nodal_forces(self, state: State) -> Array:
+        """Residual (nn, ndof) of what sits at the line's ends."""
+        return self.line.gathered(self.line.trial(state).pull_back(self._ends))
 
     def residual(self, state: State, forces: Forces) -> None:
         if self.line.active:
-            self.line.scatter(self.element_forces(state)[1], forces.force)
+            self.line.scatter(self.line.trial(state).pull_back(self._F), forces.force)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:

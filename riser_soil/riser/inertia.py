@@ -4,6 +4,7 @@ import numpy as np
 
 from riser_soil.arrays import Array
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.riser.attachments import Masses
 from riser_soil.riser.hermite import add_mass, consistent_mass, weigh
 from riser_soil.riser.line import Line
 from riser_soil.riser.trial import Trial
@@ -12,8 +13,7 @@ from riser_soil.riser.trial import Trial
 class Inertia:
     """Consistent mass of the cubic line and of what is attached to it, turning with the tangents (group I).
 
-    line: the riser's field. mass: kg/m per element (ne,), contents included, water excluded. attached: further mass
-    matrices (ne, 4, 4), see `attachments.mass_matrices`.
+    line: the riser's field. mass: kg/m per element (ne,), contents included, water excluded. attached: further masses.
     The section's own rotary inertia is left out: it is (diameter/wavelength)^2 of the rest.
     The tangent is not symmetric, as the tangents' accelerations depend on their rates.
     """
@@ -21,11 +21,12 @@ class Inertia:
     name = "inertia"
     symmetric = False
 
-    def __init__(self, line: Line, mass: Array, attached: Array | None = None) -> None:
+    def __init__(self, line: Line, mass: Array, attached: Masses | None = None) -> None:
         self.line = line
         self.M = consistent_mass(line.length, mass)
+        self._at_ends = None if attached is None else attached.ends
         if attached is not None:
-            self.M += attached
+            self.M += attached.along + attached.ends
 
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}
@@ -37,13 +38,26 @@ class Inertia:
     def _element_forces(self, trial: Trial) -> Array:
         return trial.pull_back(trial.once((self, "F"), self._F))
 
+    def _all_forces(self, state: State) -> Array:
+        forces: Array = self.line.trial(state).once((self, "element forces"), self._element_forces)
+        return forces
+
+    def _end_forces(self, state: State) -> Array | float:
+        """Share (ne, 2 ndof) of what sits at the line's ends."""
+        trial = self.line.trial(state)
+        return 0.0 if self._at_ends is None else trial.pull_back(weigh(self._at_ends, trial.q_acceleration))
+
     def element_forces(self, state: State) -> tuple[Array, None]:
-        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
-        return self.line.trial(state).once((self, "element forces"), self._element_forces), None
+        """Element residuals (inertia, force), each (ne, 2 ndof) or None, without what sits at the line's ends."""
+        return self._all_forces(state) - self._end_forces(state), None
+
+    def nodal_forces(self, state: State) -> Array:
+        """Residual (nn, ndof) of what sits at the line's ends."""
+        return self.line.gathered(self._end_forces(state) + np.zeros((self.line.length.size, 2 * self.line.ndof)))
 
     def residual(self, state: State, forces: Forces) -> None:
         if self.line.active:
-            self.line.scatter(self.element_forces(state)[0], forces.inertia)
+            self.line.scatter(self._all_forces(state), forces.inertia)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:

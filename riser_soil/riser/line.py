@@ -133,6 +133,12 @@ class Line:
         """Add element arrays (ne, 2 ndof) along the chain to the riser's slice of a local array."""
         _scatter(element, self.nodal(values))
 
+    def gathered(self, element: Array) -> Array:
+        """Sums at the nodes (nn, ndof) of element arrays (ne, 2 ndof)."""
+        nodal = np.zeros((self.nodes, self.ndof))
+        _scatter(element, nodal)
+        return nodal
+
     def element_block(self) -> Block:
         """Pattern "riser": all dofs of each element."""
         first = self.offset + self.ndof * np.arange(self.nodes - 1, dtype=np.int64)

@@ -18,7 +18,7 @@ from riser_soil.riser.directors import PlanarTurn, SpatialTurn
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.loads import PointLoads
 from riser_soil.riser.rotary_inertia import RotaryInertia
-from riser_soil.riser.section_forces import element_residual
+from riser_soil.riser.section_forces import HasNodalForces, element_residual
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import wetting
 from riser_soil.sea.buoyancy import Buoyancy
@@ -308,7 +308,7 @@ def test_element_forces_add_up_to_the_residual(name: str, dimension: int) -> Non
     total = np.zeros(at.line.size)
     assert isinstance(part, Attachments | Beam | Inertia | RotaryInertia | Morison | PointLoads | Buoyancy)
     at.line.scatter(element_residual(at.line, [part], state), total)
-    nodal = part.nodal_forces(state).ravel() if isinstance(part, PointLoads) else 0.0
+    nodal = part.nodal_forces(state).ravel() if isinstance(part, HasNodalForces) else 0.0
     assert total + nodal == pytest.approx(
         residual([part], state, Weights(1.0, 1.0, 0.0, 0.0)), rel=1e-13, abs=1e-12
     )
