@@ -46,6 +46,13 @@ def test_peak_is_enhanced_by_gamma() -> None:
     assert ratio[0] / ratio[1] == pytest.approx(3.3, rel=1e-12)
 
 
+def test_peak_is_narrower_below_than_above() -> None:
+    """One width from the peak, 0.07 below and 0.09 above, the enhancement is gamma^exp(-1/2)."""
+    w = PEAK * np.array([0.93, 1.09, 3.0])
+    ratio = spectrum(w, HS, TP, 3.3) / spectrum(w, HS, TP, 1.0)
+    assert ratio[:2] / ratio[2] == pytest.approx([3.3 ** np.exp(-0.5)] * 2, rel=1e-12)
+
+
 @pytest.mark.parametrize("gamma", [1.0, 7.0])
 def test_range_of_frequencies_leaves_little_energy_out(gamma: float) -> None:
     assert energy(0.1, LOWEST, gamma) < 1e-6 * HS**2 / 16.0

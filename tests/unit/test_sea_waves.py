@@ -160,6 +160,8 @@ def test_ramp_is_the_smooth_step_on_the_waves_clock() -> None:
     full = Sea(LEVEL, [WaveField(wave, 50.0, LEVEL, "vertical")])
     ramped = Sea(LEVEL, [WaveField(wave, 50.0, LEVEL, "vertical", ramp=10.0, clock=4.0)])
     assert ramped(1.0, x).velocity == pytest.approx(0.5 * full(5.0, x).velocity)
+    assert ramped(1.0, x).immersion - 20.0 == pytest.approx(0.5 * (full(5.0, x).immersion - 20.0))
+    assert ramped(1.0, x).immersion_gradient[:, :2] == pytest.approx(0.5 * full(5.0, x).immersion_gradient[:, :2])
     assert not ramped(-4.0, x).velocity.any()
     assert ramped(6.0, x).acceleration == pytest.approx(full(10.0, x).acceleration, rel=1e-13)
 
@@ -198,15 +200,18 @@ def test_nothing_overflows(stretching: Literal["wheeler", "vertical"], h: float)
         assert motion.velocity[2] == pytest.approx(motion.velocity[3], rel=1e-12, abs=1e-14)
 
 
-def test_short_waves_vanish_in_the_deep() -> None:
-    """What is left out is below round-off of the sum at the surface."""
-    h = np.inf
-    every, long = several(h), one(2.0, 20.0, h)
-    both = Components(*(np.concatenate(pair) for pair in zip(every, long, strict=True)))
-    x = np.array([[1.0, 2.0, LEVEL - 80.0]])
-    kinds = [Sea(LEVEL, [WaveField(part, h, LEVEL, "vertical")])(1.0, x).velocity for part in (every, long, both)]
-    assert kinds[2] == pytest.approx(kinds[0] + kinds[1], abs=1e-12)
-    assert np.abs(kinds[2]).max() > 1e-2
+@pytest.mark.parametrize("h", [np.inf, 200.0])
+def test_waves_are_followed_down_to_round_off(h: float) -> None:
+    """A short wave beside a long one, where the short one has decayed to 1e-11; much deeper it is left out."""
+    short, long = one(1.0, 3.0, h), one(2.0, 20.0, h)
+    w, k = 2.0 * np.pi / 3.0, short.wave_number[0]
+    flow = Sea(LEVEL, [WaveField(short, h, LEVEL, "vertical")])
+    x = np.array([[0.0, 0.0, LEVEL - 25.0 / k], [0.0, 0.0, LEVEL - 35.0 / k]])
+    assert flow(0.0, x).velocity[:, 0] == pytest.approx([0.5 * w * np.exp(-25.0), 0.0], rel=1e-12)
+    both = Components(*(np.concatenate(pair) for pair in zip(short, long, strict=True)))
+    alone, together = (Sea(LEVEL, [WaveField(part, h, LEVEL, "vertical")])(1.0, x).velocity for part in (long, both))
+    assert together == pytest.approx(alone, rel=1e-9)
+    assert np.abs(alone).max() > 1e-2
 
 
 def test_motion_in_a_plane_sees_the_derivative_along_it() -> None:

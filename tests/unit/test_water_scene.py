@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,6 +22,7 @@ PIPE = {"outer_diameter": 0.3, "mass": 120.0, "EA": 3.0e8, "EI": 5.0e4, "GJ": 4.
 AIRY = {"airy": {"height": 3.0, "period": 8.0}}
 CURRENT = {"profile": [[0.0, 0.2, 0.0], [100.0, 1.0, 0.0]]}
 STAGES = (static("lay"), dynamic(20.0, 0.1, "calm"), static("rest"), dynamic(30.0, 0.1, "storm"))
+ROOT = Path(__file__).parents[2]
 MIDDLE = np.array([[10.0, 0.0, 50.0]])
 
 
@@ -62,6 +66,16 @@ def test_current_is_there_at_once_where_dynamics_come_first() -> None:
         water = water_of(scene, stage)
         assert water is not None
         assert water(0.3, MIDDLE).velocity[0, 0] == pytest.approx(0.6)
+
+
+def test_a_current_imports_no_waves() -> None:
+    code = (
+        "import sys; from tests.unit.test_water_scene import *; s = scene_in({'current': CURRENT});"
+        "water_of(s, s.stages[1])(0.0, MIDDLE); print([m for m in sys.modules if 'riser_soil.sea.' in m])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert "riser_soil.sea.current" in done.stdout
+    assert not [name for name in ("sea.wave", "jonswap", "components") if name in done.stdout]
 
 
 def test_waves_run_on_through_dynamic_stages() -> None:
