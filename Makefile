@@ -13,7 +13,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo test lint verify bench verify-fresh docker clean
+.PHONY: help setup demo demos test lint verify bench verify-fresh docker clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -23,6 +23,9 @@ setup: ## Debian packages, the environment .venv, riser_soil in it; does nothing
 
 demo: setup ## a flexible riser comes down on 3D clay: results and a picture in demos/touchdown_clay/results
 	$(PYTHON) demos/touchdown_clay/run.py
+
+demos: demo ## all demos: that one, and each in demos/*/README.md, with tables and pictures
+	$(PYTHON) -m demos.catenary.run
 
 test: lint ## linters, types, and the quick tests, some of them on two ranks
 	$(PYTHON) -m pytest -n $(WORKERS) --dist loadfile

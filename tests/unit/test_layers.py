@@ -31,6 +31,7 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("observe",),
     ("run", "check"),
     ("results",),
+    ("derived",),
     ("plots",),
     ("__main__",),
 ]

@@ -1,0 +1,107 @@
+"""Curves of a run on matplotlib's axes: shapes, quantities along the arc, reactions and tensions in time.
+
+Each function draws on axes that the caller has made, from the files of a finished or unfinished run; `sheet` and `save`
+make and write a figure. Records are counted as in results.nc: 0 is the first, −1 the last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from riser_soil.arrays import Array
+from riser_soil.derived import along, reactions
+from riser_soil.results import Run
+
+# Along the arc: what the axis says, and the factor that makes it so.
+ALONG_ARC: dict[str, tuple[str, float]] = {
+    "effective_tension": ("effective tension [kN], + pulls", 1e-3),
+    "bending_moment": ("bending moment, magnitude [kN m]", 1e-3),
+    "curvature": ("curvature, magnitude [1/m]", 1.0),
+    "contact_force": ("contact force per length [kN/m], ≥ 0", 1e-3),
+}
+_REACTIONS = {
+    "H1": "H at the start [kN], + towards start",
+    "H2": "H at the end [kN], + towards end",
+    "V1": "V at the start [kN], + upwards",
+    "V2": "V at the end [kN], + upwards",
+}
+_ARC, _TIME = "arc length from the start [m]", "time [s]"
+
+
+def sheet(rows: int, columns: int, width: float = 9.0, height: float = 3.2) -> tuple[Figure, list[Axes]]:
+    """A figure and its axes, row by row; height [in] of each row."""
+    figure = Figure(figsize=(width, height * rows), layout="constrained")
+    panels = figure.subplots(rows, columns, squeeze=False)
+    for axes in panels.flat:
+        axes.grid(alpha=0.3)
+    return figure, list(panels.flat)
+
+
+def save(figure: Figure, png: Path | str) -> Path:
+    figure.savefig(png, dpi=120)
+    return Path(png)
+
+
+def shapes(axes: Axes, run: Run, at: Sequence[int] = (-1,), labels: Sequence[str] = (), **style: Any) -> None:
+    """The axis in the vertical plane from start to end, at some records; out-of-plane motion is not seen."""
+    position = run["position"]
+    direction = along(position[0])
+    names = labels or [f"t = {run.time[i]:.3g} s" for i in at]
+    for i, name in zip(at, names, strict=True):
+        axes.plot((position[i] - position[0, 0]) @ direction, position[i, :, 2], label=name, **style)
+    axes.set_xlabel("horizontal distance from the start [m]")
+    axes.set_ylabel("z [m], upwards")
+    axes.set_aspect("equal")
+    axes.legend()
+
+
+def along_arc(axes: Axes, run: Run, name: str, at: int = -1, label: str | None = None, **style: Any) -> None:
+    """A quantity of ALONG_ARC at one record, node by node."""
+    words, factor = ALONG_ARC[name]
+    axes.plot(run.arc, factor * run[name][at], label=label, **style)
+    _name(axes, _ARC, words)
+
+
+def envelope(axes: Axes, run: Run, name: str, since: float = 0.0, label: str | None = None) -> None:
+    """Smallest and largest value of a quantity of ALONG_ARC at each node, over the records from `since` [s] on."""
+    words, factor = ALONG_ARC[name]
+    values = factor * run[name][run.time >= since]
+    axes.fill_between(run.arc, values.min(axis=0), values.max(axis=0), alpha=0.5, label=label)
+    _name(axes, _ARC, words)
+
+
+def end_reactions(panels: Sequence[Axes], runs: Mapping[str, Run], since: float = 0.0) -> None:
+    """H1, H2, V1, V2 in time on four axes: forces of the supports on the riser, runs by their labels."""
+    for label, run in runs.items():
+        found, seen = reactions(run), run.time >= since
+        for axes, (name, words) in zip(panels, _REACTIONS.items(), strict=True):
+            axes.plot(run.time[seen], 1e-3 * getattr(found, name)[seen], label=label, linewidth=1.0)
+            axes.set_xlabel(_TIME)
+            axes.set_ylabel(words)
+    panels[0].legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=len(runs), frameon=False)
+
+
+def end_tension(axes: Axes, run: Run, since: float = 0.0, label: str | None = None) -> None:
+    """Effective tension of the last node in time."""
+    seen = run.time >= since
+    axes.plot(run.time[seen], 1e-3 * run["effective_tension"][seen, -1], label=label, linewidth=1.0)
+    _name(axes, _TIME, "effective tension at the end [kN], + pulls")
+
+
+def instants(run: Run, since: float, until: float, count: int) -> list[int]:
+    """Records nearest to `count` instants evenly spread from `since` to `until` [s]."""
+    wanted: Array = np.linspace(since, until, count)
+    return [int(np.abs(run.time - t).argmin()) for t in wanted]
+
+
+def _name(axes: Axes, x: str, y: str) -> None:
+    axes.set_xlabel(x)
+    axes.set_ylabel(y)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend()
