@@ -14,14 +14,14 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def block(page: str, name: str) -> str:
     """What stands between a page's marks of this name. Raises KeyError where there are none."""
-    return page[slice(*_place(page, name))]
+    return page[slice(*_place(page, name))].rstrip("\n")
 
 
 def filled(page: str, blocks: Mapping[str, str]) -> str:
     """The page with other text between its marks."""
     for name, text in blocks.items():
         begin, end = _place(page, name)
-        page = page[:begin] + text + page[end:]
+        page = page[:begin] + text + "\n" + page[end:]
     return page
 
 
@@ -39,4 +39,4 @@ def _place(page: str, name: str) -> tuple[int, int]:
     if page.count(first) != 1 or page.count(last) != 1:
         raise KeyError(f"the page needs one {first.strip()} and one {last}")
     begin = page.index(first) + len(first)
-    return begin, max(begin, page.index(last) - 1)
+    return begin, page.index(last)
