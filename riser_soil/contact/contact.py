@@ -20,6 +20,7 @@ from riser_soil.contact.encounter import (
 from riser_soil.contact.ground import ASPECT, ContactPoints, Soil, SoilSurface
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.patch import Patch, around, nothing
+from riser_soil.contact.touchdown import touchdown
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.seabed.plane import Plane
 
@@ -169,25 +170,10 @@ class Contact:
         return np.asarray(-sum((g.sum(axis=0) for g in on_soil), np.zeros(3)))
 
     def touchdown_arc(self, state: State) -> float:
-        """Arc length [m] where the contact force ends, towards the riser's end; nan where nothing touches.
-
-        Where the riser's end itself touches, but not all of the riser, it is where the force begins, coming from the
-        start. The gap is interpolated between the outermost touching node and the next, to where the force begins.
-        """
+        """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""
         if not self.active:
             return float("nan")
-        clearance, arc = self._clearance(state), self._riser.arc
-        touching = np.flatnonzero(clearance < 0.0)
-        if len(touching) == 0:
-            return float("nan")
-        i, last = int(touching[-1]), len(arc) - 1
-        j = i + 1
-        if i == last and len(touching) <= last:
-            i = int(np.flatnonzero(clearance >= 0.0)[-1]) + 1
-            j = i - 1
-        if i == last == j - 1 or not np.isfinite(clearance[j]):
-            return float(arc[i])
-        return float(arc[i] + (arc[j] - arc[i]) * clearance[i] / (clearance[i] - clearance[j]))
+        return touchdown(self._riser.arc, self._clearance(state))
 
     def improve(self, guess: State) -> Array:
         """First guess of a step: the guess's increment, lifted where a node would sink below its present depth.

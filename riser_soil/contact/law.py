@@ -6,6 +6,7 @@ Penetration δ = −gap [m]; force f [N/m] pushes the two sides apart; f = dψ/d
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -17,6 +18,39 @@ PENETRATION_AT_REST = 1e-3
 #: Contact stiffness over Young's modulus at the surface. A strip that loads a half space settles by about
 #: force per length over E, so the penalty adds about a tenth to the settlement that it passes on.
 STIFFNESS_OVER_SOIL = 10.0
+
+
+class NormalLaw(Protocol):
+    """Force per length of riser by its penetration, with a history of nh numbers a point, kept between steps.
+
+    Penetrations, forces and slopes have one shape (...); a history is (..., nh). Nothing is kept here: `renewed` gives
+    the history after a step that is accepted.
+    """
+
+    @property
+    def start(self) -> float:
+        """Gap [m] at which a riser that comes down begins to feel the ground."""
+        ...
+
+    def fresh(self, shape: tuple[int, ...]) -> Array:
+        """History of ground that has never been touched (*shape, nh)."""
+        ...
+
+    def touched(self, penetration: Array, history: Array) -> BoolArray:
+        """Where there may be a force."""
+        ...
+
+    def respond(self, penetration: Array, history: Array) -> tuple[Array, Array]:
+        """Force [N/m], positive where it pushes the riser away, and its derivative by the penetration [N/m2]."""
+        ...
+
+    def stored(self, penetration: Array, history: Array) -> Array:
+        """Energy per length that the ground gives back [N]."""
+        ...
+
+    def renewed(self, penetration: Array, history: Array) -> Array:
+        """History after a step to this penetration."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -47,6 +81,25 @@ class Penalty:
         k, s = self.stiffness, self.smoothing
         parabola = np.where(penetration > 0.0, 0.5 * k * penetration**2 + k * s**2 / 6.0, 0.0)
         return np.where(self._rounded(penetration), k * (penetration + s) ** 3 / self._width(12.0), parabola)
+
+    @property
+    def start(self) -> float:
+        return self.smoothing
+
+    def fresh(self, shape: tuple[int, ...]) -> Array:
+        return np.empty((*shape, 0))
+
+    def touched(self, penetration: Array, history: Array) -> BoolArray:
+        return penetration > -self.smoothing
+
+    def respond(self, penetration: Array, history: Array) -> tuple[Array, Array]:
+        return self.force(penetration), self.slope(penetration)
+
+    def stored(self, penetration: Array, history: Array) -> Array:
+        return self.potential(penetration)
+
+    def renewed(self, penetration: Array, history: Array) -> Array:
+        return history
 
     def _rounded(self, penetration: Array) -> BoolArray:
         return np.abs(penetration) < self.smoothing

@@ -1,0 +1,197 @@
+"""Contact of the riser with a seabed that has no dofs: a load along its elements, by a law at their stations."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.arrays import Array, IntArray
+from riser_soil.contact.law import NormalLaw
+from riser_soil.contact.touchdown import touchdown
+from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.riser import stations
+from riser_soil.riser.line import Line
+from riser_soil.riser.trial import Trial
+from riser_soil.seabed.grounds import Ground
+
+
+class Touching(NamedTuple):
+    """What touches at a trial, element by element: m elements, ng stations each, d dimensions.
+
+    elements (m,). force, slope (m, ng): force per length [N/m] and its derivative by the penetration [N/m2]. away
+    (m, ng, d): gradient of the distance from the ground; bend (m, ng, d, d) its derivative, None where it is zero.
+    resistance (m, ng, d): minus the force per length on the riser [N/m].
+    """
+
+    elements: IntArray
+    force: Array
+    slope: Array
+    away: Array
+    bend: Array | None
+    resistance: Array
+
+
+class Seen(NamedTuple):
+    """The line over the ground at a trial: position (ne, ng, d) and penetration (ne, ng) of the stations [m]."""
+
+    position: Array
+    penetration: Array
+    touching: Touching
+
+
+class SeabedContact:
+    """Part "seabed": force per length of riser by its penetration into the ground, in group E.
+
+    line: the riser's field. radius (ne,): distance [m] from the axis to the line that touches, 0 for the axis itself.
+    rule: the stations of an element, Gauss points by default; its two ends make it the classical contact of nodes.
+    """
+
+    name = "seabed"
+    symmetric = True
+    at_end = True
+
+    def __init__(
+        self, line: Line, radius: Array, ground: Ground, law: NormalLaw, rule: stations.Rule = stations.GAUSS
+    ) -> None:
+        self.line, self.ground, self.law = line, ground, law
+        self._radius = radius
+        self._at = stations.stations(line.length, rule)
+        self._share = line.length[:, None] * rule.weights
+        self._arc = line.arc[:-1, None] + line.length[:, None] * rule.points
+        self._linear = np.stack([1.0 - rule.points, rule.points])
+        self._history = law.fresh((line.length.size, rule.points.size))
+
+    def see(self, trial: Trial) -> Seen:
+        """The stations over the ground, and what touches."""
+        seen: Seen = trial.once((self, "seen"), self._see)
+        return seen
+
+    def _see(self, trial: Trial) -> Seen:
+        x = stations.interpolate(self._at, trial.q)
+        value, gradient, hessian = self.ground.distance(self.line.to_global(x).reshape(-1, 3))
+        penetration = self._radius[:, None] - value.reshape(x.shape[:2])
+        touched = self.law.touched(penetration, self._history).any(axis=1)
+        at = np.flatnonzero(touched)
+        force, slope = self.law.respond(penetration[at], self._history[at])
+        away = (gradient @ self.line.basis).reshape(x.shape)[at]
+        bend = None
+        if hessian is not None:
+            local = self.line.basis.T @ hessian @ self.line.basis
+            bend = local.reshape(*x.shape, x.shape[2])[at]
+        return Seen(x, penetration, Touching(at, force, slope, away, bend, -force[..., None] * away))
+
+    def blocks(self) -> dict[str, Block]:
+        return {"riser": self.line.element_block()} if self.line.active else {}
+
+    def element_forces(self, state: State) -> tuple[None, Array]:
+        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
+        found: Array = self.line.trial(state).once((self, "element forces"), self._element_forces)
+        return None, found
+
+    def _element_forces(self, trial: Trial) -> Array:
+        return trial.pull_back(trial.once((self, "F"), self._F))
+
+    def _F(self, trial: Trial) -> Array:
+        """Residual conjugate to q (ne, 4, d)."""
+        touching = self.see(trial).touching
+        F = np.zeros((self.line.length.size, 4, self.line.dimension))
+        F[touching.elements] = stations.integrate(self._at.of(touching.elements), touching.resistance)
+        return F
+
+    def residual(self, state: State, forces: Forces) -> None:
+        if self.line.active:
+            self.line.scatter(self.element_forces(state)[1], forces.end)
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        """Unweighted: contact stands at the end of the step."""
+        if not self.line.active:
+            return
+        trial, K = self.line.trial(state), values["riser"]
+        touching = self.see(trial).touching
+        if touching.elements.size == 0:
+            return
+        stations.add_stiffness(K, self._at, touching.elements, self._by_position(touching), trial.turn.P)
+        trial.add_turning(K, 1.0, trial.once((self, "F"), self._F))
+
+    def _by_position(self, t: Touching) -> Array:
+        """Derivative (m, ng, d, d) of the resistance by the position."""
+        pushed = t.slope[..., None, None] * t.away[..., :, None] * t.away[..., None, :]
+        return pushed if t.bend is None else pushed - t.force[..., None, None] * t.bend
+
+    def energy(self, state: State) -> Energy:
+        """What the law gives back."""
+        if not self.line.active:
+            return Energy()
+        penetration = self.see(self.line.trial(state)).penetration
+        return Energy(potential=float(np.sum(self._share * self.law.stored(penetration, self._history))))
+
+    def work(self, before: State, after: State) -> Work:
+        """What the force at the end of the step took out beyond the change of what it stores; never negative on a plane,
+        where the stored energy is convex in the penetration.
+        """
+        if not self.line.active:
+            return Work()
+        first, last = (self.see(self.line.trial(state)) for state in (before, after))
+        at = last.touching.elements
+        moved = last.position[at] - first.position[at]
+        taken = float(np.sum(self._share[at] * np.sum(last.touching.resistance * moved, axis=2)))
+        return Work(dissipated=taken - self.energy(after).potential + self.energy(before).potential)
+
+    def commit(self, state: State) -> None:
+        """Keep the law's history."""
+        if self.line.active:
+            penetration = self.see(self.line.trial(state)).penetration
+            self._history = self.law.renewed(penetration, self._history)
+
+    def force_per_length(self, state: State) -> Array:
+        """Contact force per length at the nodes (nn,) [N/m]: the stations' forces, shared linearly between two nodes."""
+        touching = self.see(self.line.trial(state)).touching
+        shares = (self._share[touching.elements] * touching.force) @ self._linear.T
+        total = np.zeros(self.line.nodes)
+        np.add.at(total, touching.elements, shares[:, 0])
+        np.add.at(total, touching.elements + 1, shares[:, 1])
+        return np.asarray(total / self.line.tributary_length)
+
+    def max_penetration(self, state: State) -> float:
+        """Deepest penetration of a station [m], >= 0: an error where the ground is rigid."""
+        return max(0.0, float(self.see(self.line.trial(state)).penetration.max())) if self.line.active else 0.0
+
+    def force_on_riser(self, state: State) -> Array:
+        """Sum of the contact forces on the riser (3,) [N], global axes."""
+        if not self.line.active:
+            return np.zeros(3)
+        touching = self.see(self.line.trial(state)).touching
+        per_station = self._share[touching.elements][..., None] * touching.resistance
+        return np.asarray(-self.line.basis @ per_station.sum(axis=(0, 1)))
+
+    def touchdown_arc(self, state: State) -> float:
+        """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""
+        if not self.line.active:
+            return float("nan")
+        penetration = self.see(self.line.trial(state)).penetration
+        return touchdown(self._arc.ravel(), -penetration.ravel() - self.law.start)
+
+    def improve(self, guess: State) -> Array:
+        """First guess of a step: the guess's increment, lifted where a node would sink below its present depth.
+
+        The motion of the last step carries landing nodes deep into the ground, where the law is far stiffer than
+        at the depth at which they come to rest. They start instead from half the law's rounded corner.
+        """
+        if not self.line.active:
+            return guess.u
+        now = self._clearance(self.line.trial(State.at_rest(guess.t, guess.u.size)))
+        lift = np.maximum(np.minimum(now, -0.5 * self.law.start) - self._clearance(self.line.trial(guess)), 0.0)
+        improved = guess.u.copy()
+        self.line.nodal(improved)[:, self.line.dimension - 1] += lift
+        return improved
+
+    def _clearance(self, trial: Trial) -> Array:
+        """Gap (nn,) of the nodes less that at which the force begins [m]."""
+        value = self.ground.distance(self.line.to_global(trial.x)).value
+        return value - nodal_radius(self._radius) - self.law.start
+
+
+def nodal_radius(radius: Array) -> Array:
+    """The larger of what the two elements beside a node have (nn,)."""
+    return np.maximum(np.append(radius, 0.0), np.append(0.0, radius))

@@ -1,0 +1,60 @@
+"""Distances from the seabed: closed forms, and derivatives against differences."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from riser_soil.arrays import Array
+from riser_soil.seabed.grounds import Ground, Plane, Profile
+
+X = np.random.default_rng(4).uniform(-3.0, 12.0, size=(40, 3))
+HILL = Profile(
+    np.array([1.0, -2.0]), np.array([0.6, 0.8]), np.array([0.0, 2.0, 5.0, 9.0]), np.array([0.0, 0.8, -0.5, 0.3])
+)
+SLOPE = Plane.sloping(np.array([1.0, 2.0, -3.0]), np.radians(12.0), np.radians(50.0))
+GROUNDS: dict[str, Ground] = {"level": Plane.level(-1.5), "slope": SLOPE, "profile": HILL}
+
+
+def differences(ground: Ground, x: Array, h: float = 1e-5) -> tuple[Array, Array]:
+    """Gradient of the distance and of its gradient by central differences."""
+    steps = [(ground.distance(x + h * e), ground.distance(x - h * e)) for e in np.eye(3)]
+    gradient = np.stack([(a.value - b.value) / (2.0 * h) for a, b in steps], axis=1)
+    hessian = np.stack([(a.gradient - b.gradient) / (2.0 * h) for a, b in steps], axis=2)
+    return gradient, hessian
+
+
+@pytest.mark.parametrize("name", GROUNDS)
+def test_derivatives_of_the_distance(name: str) -> None:
+    found = GROUNDS[name].distance(X)
+    gradient, hessian = differences(GROUNDS[name], X)
+    assert found.gradient == pytest.approx(gradient, abs=1e-8)
+    exact = np.zeros((len(X), 3, 3)) if found.hessian is None else found.hessian
+    assert exact == pytest.approx(hessian, abs=1e-7)
+
+
+def test_distance_from_a_slope_is_normal_to_it() -> None:
+    uphill = np.array([np.cos(np.radians(50.0)), np.sin(np.radians(50.0)), np.tan(np.radians(12.0))])
+    on_ground = SLOPE.point + 3.0 * uphill
+    found = SLOPE.distance(np.array([on_ground, on_ground + [0.0, 0.0, 2.0]]))
+    assert found.value == pytest.approx([0.0, 2.0 * np.cos(np.radians(12.0))], abs=1e-12)
+
+
+def test_profile_passes_through_its_points_and_goes_on_straight() -> None:
+    s = np.array([0.0, 2.0, 5.0, 9.0])
+    at = np.concatenate([HILL.origin + s[:, None] * HILL.direction, HILL.z[:, None]], axis=1)
+    assert HILL.distance(at).value == pytest.approx(np.zeros(4), abs=1e-12)
+    beyond = np.array([*(HILL.origin + 20.0 * HILL.direction), 0.0])
+    ends = HILL.distance(np.array([beyond, beyond + [0.6, 0.8, 0.0]]))
+    assert ends.gradient[0] == pytest.approx(ends.gradient[1], abs=1e-12)
+    across = np.array([-0.8, 0.6, 0.0])
+    assert HILL.distance(X + 7.0 * across).value == pytest.approx(HILL.distance(X).value, abs=1e-10)
+
+
+def test_profile_of_a_straight_slope_is_the_plane() -> None:
+    slope = np.radians(12.0)
+    s = np.array([-5.0, 5.0])
+    profile = Profile(np.array([1.0, 2.0]), np.array([1.0, 0.0]), s, -3.0 + s * np.tan(slope))
+    plane = Plane.sloping(np.array([1.0, 2.0, -3.0]), slope, 0.0)
+    assert profile.distance(X).value == pytest.approx(plane.distance(X).value, abs=1e-12)
+    assert profile.distance(X).gradient == pytest.approx(np.asarray(plane.distance(X).gradient), abs=1e-12)
