@@ -52,7 +52,7 @@ class SeabedContact:
     at_end = True
 
     def __init__(
-        self, line: Line, radius: Array, ground: Ground, law: NormalLaw, rule: stations.Rule = stations.GAUSS
+        self, line: Line, radius: Array, ground: Ground, law: NormalLaw, rule: stations.Rule = stations.THREE_POINTS
     ) -> None:
         self.line, self.ground, self.law = line, ground, law
         self._radius = radius
@@ -127,8 +127,9 @@ class SeabedContact:
         return Energy(potential=float(np.sum(self._share * self.law.stored(penetration, self._history))))
 
     def work(self, before: State, after: State) -> Work:
-        """What the force at the end of the step took out beyond the change of what it stores; never negative on a plane,
-        where the stored energy is convex in the penetration.
+        """What the force at the end of the step took out beyond the change of what it stores.
+
+        Never negative on a plane, where the stored energy is convex in the penetration.
         """
         if not self.line.active:
             return Work()
@@ -145,7 +146,7 @@ class SeabedContact:
             self._history = self.law.renewed(penetration, self._history)
 
     def force_per_length(self, state: State) -> Array:
-        """Contact force per length at the nodes (nn,) [N/m]: the stations' forces, shared linearly between two nodes."""
+        """Contact force per length at the nodes (nn,) [N/m]: the stations' forces, shared linearly by two nodes."""
         touching = self.see(self.line.trial(state)).touching
         shares = (self._share[touching.elements] * touching.force) @ self._linear.T
         total = np.zeros(self.line.nodes)

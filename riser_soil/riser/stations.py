@@ -1,21 +1,40 @@
 """Quadrature stations along the line's elements: from q to values there, and back to residuals and their
 blocks.
 
-Arrays follow `hermite`: q (ne, 4, d). A field has values (ne, ng, d) at the ng = 3 Gauss stations of each
-element.
+Arrays follow `hermite`: q (ne, 4, d). A field has values (ne, ng, d) at the ng stations of each element, three Gauss
+points unless another rule is given.
 """
+
+from __future__ import annotations
 
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.arrays import Array, IntArray
 from riser_soil.compiled import fixed, njit
 from riser_soil.riser.hermite import Size, add_rows, shapes, slopes
 
 POINTS = 0.5 + np.sqrt(0.6) * np.array([-0.5, 0.0, 0.5])
 GAUSS = np.array([5.0, 8.0, 5.0]) / 18.0
+
+
+class Rule(NamedTuple):
+    """Quadrature over an element: places xi in 0..1 and weights that sum to one, each (ng,)."""
+
+    points: Array
+    weights: Array
+
+
+THREE_POINTS = Rule(POINTS, GAUSS)
+ENDS = Rule(np.array([0.0, 1.0]), np.array([0.5, 0.5]))
+
+
+def gauss(n: int) -> Rule:
+    """Gauss and Legendre's rule of n points."""
+    x, w = np.polynomial.legendre.leggauss(n)
+    return Rule(0.5 + 0.5 * x, 0.5 * w)
 
 
 class Stations(NamedTuple):
@@ -25,12 +44,16 @@ class Stations(NamedTuple):
     dN: Array
     weighted: Array
 
+    def of(self, elements: IntArray) -> Stations:
+        """Those of some elements."""
+        return Stations(*(values[elements] for values in self))
 
-def stations(L: Array) -> Stations:
-    """Three Gauss stations on elements of unstressed lengths L (ne,)."""
-    N = np.stack([shapes(np.full(L.size, p), L) for p in POINTS], axis=1)
-    dN = np.stack([slopes(np.full(L.size, p), L) for p in POINTS], axis=1)
-    return Stations(N, dN, GAUSS[:, None] * L[:, None, None] * N)
+
+def stations(L: Array, rule: Rule = THREE_POINTS) -> Stations:
+    """Stations on elements of unstressed lengths L (ne,)."""
+    N = np.stack([shapes(np.full(L.size, p), L) for p in rule.points], axis=1)
+    dN = np.stack([slopes(np.full(L.size, p), L) for p in rule.points], axis=1)
+    return Stations(N, dN, rule.weights[:, None] * L[:, None, None] * N)
 
 
 def interpolate(at: Stations, q: Array) -> Array:
@@ -188,4 +211,33 @@ def _add_tangent(
                     change = dN[e, g, b] * turning + N[e, g, b] * moving
                     for a in range(4):
                         rows[a, i, c] += weighted[e, g, a] * change
+        add_rows(out[e], P[e], rows, D, R)
+
+
+def add_stiffness(out: Array, at: Stations, elements: IntArray, by_position: Array, P: Array) -> None:
+    """Add to out (ne, n, n), for some elements (m,), the derivative by the dofs of the residual of a force per length
+    that depends on the position alone, by_position (m, ng, d, d); P = dt/dTheta (ne, 2, d, r) held.
+    """
+    _add_stiffness(out, at.N, at.weighted, elements, by_position, P, fixed(P.shape[2]), fixed(P.shape[3]))
+
+
+@njit
+def _add_stiffness(
+    out: Array, N: Array, weighted: Array, elements: IntArray, by_position: Array, P: Array, D: Size, R: Size
+) -> None:
+    d, half = len(D), len(D) + len(R)
+    q, rows = np.empty((d, 2 * half)), np.empty((4, d, 2 * half))
+    for m in range(elements.size):
+        e = elements[m]
+        _spread(P, 1.0, e, q, D, R)
+        rows[:] = 0.0
+        for g in range(by_position.shape[1]):
+            for i in range(d):
+                for c in range(2 * half):
+                    b = 2 * (c // half) + (1 if c % half >= d else 0)
+                    change = 0.0
+                    for j in range(d):
+                        change += by_position[m, g, i, j] * q[j, c]
+                    for a in range(4):
+                        rows[a, i, c] += weighted[e, g, a] * N[e, g, b] * change
         add_rows(out[e], P[e], rows, D, R)

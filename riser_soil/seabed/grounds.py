@@ -16,7 +16,7 @@ from riser_soil.arrays import Array
 
 
 class Distance(NamedTuple):
-    """Of points (n, 3) from the ground: value (n,) [m], gradient (n, 3), hessian (n, 3, 3) [1/m], None where it is zero."""
+    """Of points (n, 3): value (n,) [m], gradient (n, 3), hessian (n, 3, 3) [1/m], None where it is zero."""
 
     value: Array
     gradient: Array

@@ -36,7 +36,7 @@ def test_derivatives_of_the_distance(name: str) -> None:
 def test_distance_from_a_slope_is_normal_to_it() -> None:
     uphill = np.array([np.cos(np.radians(50.0)), np.sin(np.radians(50.0)), np.tan(np.radians(12.0))])
     on_ground = SLOPE.point + 3.0 * uphill
-    found = SLOPE.distance(np.array([on_ground, on_ground + [0.0, 0.0, 2.0]]))
+    found = SLOPE.distance(np.array([on_ground, on_ground + 2.0 * np.eye(3)[2]]))
     assert found.value == pytest.approx([0.0, 2.0 * np.cos(np.radians(12.0))], abs=1e-12)
 
 
@@ -45,7 +45,7 @@ def test_profile_passes_through_its_points_and_goes_on_straight() -> None:
     at = np.concatenate([HILL.origin + s[:, None] * HILL.direction, HILL.z[:, None]], axis=1)
     assert HILL.distance(at).value == pytest.approx(np.zeros(4), abs=1e-12)
     beyond = np.array([*(HILL.origin + 20.0 * HILL.direction), 0.0])
-    ends = HILL.distance(np.array([beyond, beyond + [0.6, 0.8, 0.0]]))
+    ends = HILL.distance(np.array([beyond, beyond + np.array([0.6, 0.8, 0.0])]))
     assert ends.gradient[0] == pytest.approx(ends.gradient[1], abs=1e-12)
     across = np.array([-0.8, 0.6, 0.0])
     assert HILL.distance(X + 7.0 * across).value == pytest.approx(HILL.distance(X).value, abs=1e-10)

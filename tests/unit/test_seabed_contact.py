@@ -1,0 +1,101 @@
+"""Contact along the elements with a seabed without dofs: tangent, closed forms, energy, readings."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from riser_soil.arrays import Array
+from riser_soil.contact.law import Penalty
+from riser_soil.contact.seabed_contact import SeabedContact
+from riser_soil.part import Forces, State
+from riser_soil.riser import hermite, shapes, stations
+from riser_soil.riser.line import End, Line
+from riser_soil.seabed.grounds import Ground, Plane, Profile
+from tests.dense_chain import tangent
+from tests.sample_line import DIRECTION, START, Sample, sample
+from tests.unit.test_line_parts import WEIGHTS, difference_tangent, error, no_operation
+
+both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
+ROUND = Penalty(4.0e4, smoothing=30.0)  # its rounded corner holds the whole sample, so that differences are smooth
+HILL = Profile(START[:2], DIRECTION[:2], np.array([-1.0, 2.0, 4.0, 8.0]), START[2] + np.array([0.5, -0.6, 0.3, 1.0]))
+GROUNDS: dict[str, Ground] = {
+    "level": Plane.level(START[2] - 0.1),
+    "slope": Plane.sloping(START, 0.2, np.arctan2(DIRECTION[1], DIRECTION[0])),
+    "profile": HILL,
+}
+RULES = {"ends": stations.ENDS, "three points": stations.THREE_POINTS, "five points": stations.gauss(5)}
+
+
+def contact(at: Sample, ground: Ground, law: Penalty = ROUND, rule: str = "three points") -> SeabedContact:
+    return SeabedContact(at.line, 0.5 * at.elements.outer_diameter, ground, law, RULES[rule])
+
+
+@both_dimensions
+@pytest.mark.parametrize("ground", GROUNDS)
+@pytest.mark.parametrize("rule", RULES)
+def test_tangent_is_the_derivative_of_the_residual(dimension: int, ground: str, rule: str) -> None:
+    at = sample(dimension)
+    part, state = contact(at, GROUNDS[ground], rule=rule), at.state(1)
+    K = tangent([part], state, WEIGHTS)
+    assert error(K, difference_tangent(part, state, WEIGHTS)) < 1e-7
+    assert np.abs(K - K.T).max() < 1e-11 * np.abs(K).max()
+
+
+@both_dimensions
+@pytest.mark.parametrize("left_out", ["add_geometric", "bend"])
+def test_tangent_needs_all_its_terms(dimension: int, left_out: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    at = sample(dimension)
+    part, state = contact(at, HILL), at.state(1)
+    expected = difference_tangent(part, state, WEIGHTS)
+    if left_out == "add_geometric":
+        monkeypatch.setattr(hermite, "add_geometric", no_operation)
+    else:
+        monkeypatch.setattr(
+            SeabedContact, "_by_position", lambda self, t: t.slope[..., None, None] * _dyads(t.away)
+        )
+    assert error(tangent([part], state, WEIGHTS), expected) > 1e-4
+
+
+def _dyads(away: Array) -> Array:
+    return away[..., :, None] * away[..., None, :]
+
+
+@both_dimensions
+def test_forces_are_the_derivative_of_the_stored_energy(dimension: int) -> None:
+    at = sample(dimension)
+    part, state = contact(at, HILL), at.state(2)
+    forces = Forces.zeros(state.u.size)
+    part.residual(state, forces)
+    h, direction = 1e-5, np.random.default_rng(3).normal(size=state.u.size)
+    ahead, behind = (State(state.t, state.u + s * h * direction, state.v, state.a) for s in (1.0, -1.0))
+    slope = (part.energy(ahead).potential - part.energy(behind).potential) / (2.0 * h)
+    assert float(forces.end @ direction) == pytest.approx(slope, rel=1e-8)
+    assert not forces.force.any()
+    assert not forces.inertia.any()
+
+
+@both_dimensions
+@pytest.mark.parametrize("rule", RULES)
+def test_sum_and_nodal_forces_of_a_line_pressed_evenly(dimension: int, rule: str) -> None:
+    """A level line 0.2 m deep everywhere feels k 0.2 on its length, whatever the rule."""
+    arc = np.array([0.0, 1.0, 1.5, 3.5, 4.0])
+    flat = shapes.straight(arc, (0.0, 0.0, -0.2))
+    line = Line(dimension, shapes.layout(arc, np.full(4, 0.1), flat, flat), End(True), End(False))
+    part = SeabedContact(line, np.zeros(4), Plane.level(0.0), Penalty(1e3, 1e-3), RULES[rule])
+    state = State.at_rest(0.0, line.size)
+    assert part.force_per_length(state) == pytest.approx(np.full(5, 200.0))
+    assert part.force_on_riser(state) == pytest.approx([0.0, 0.0, 800.0])
+    assert part.max_penetration(state) == pytest.approx(0.2)
+    assert part.touchdown_arc(state) == pytest.approx(4.0, abs=0.2)
+
+
+@both_dimensions
+def test_landing_takes_energy_and_never_gives_it(dimension: int) -> None:
+    at = sample(dimension, shaken=False)
+    part = contact(at, Plane.level(START[2] - 1.0), Penalty(4.0e4, 1e-3))
+    rest = State.at_rest(0.0, at.line.size)
+    for seed in range(6):
+        moved = at.state(seed, 0.5)
+        assert part.work(rest, moved).dissipated >= 0.0
+        assert part.work(rest, moved).external == 0.0
