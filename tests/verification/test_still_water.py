@@ -7,10 +7,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from riser_soil.arrays import Array
+from tests.coupled_scenes import Mapping
 from tests.riser_scenes import AVERAGE, Told, dynamic, held, riser_scene, static, tell
 
 RHO, D, CD, CA, MASS, WEIGHT = 1025.0, 0.3, 1.1, 1.0, 150.0, 800.0
-PIPE = {"EA": 1.0e7, "EI": 1.0e4, "outer_diameter": D, "mass": MASS, "submerged_weight": WEIGHT}
+PIPE: Mapping = {"EA": 1.0e7, "EI": 1.0e4, "outer_diameter": D, "mass": MASS, "submerged_weight": WEIGHT}
 PIPE |= {"drag": {"normal": CD}, "added_mass": {"normal": CA}}
 WATER = {"density": RHO}
 
@@ -36,7 +37,6 @@ def test_a_lying_pipe_falls_by_the_hyperbolic_tangent(dimension: int) -> None:
     mass = MASS + CA * RHO * 0.25 * np.pi * D**2
     final = np.sqrt(WEIGHT / (0.5 * RHO * D * CD))
     time = mass * final / WEIGHT
-    assert 3.0 > 2.5 * time
     coarse, fine = (fallen(dt, dimension) for dt in (0.04, 0.02))
     heights = [np.array([x[:, 2].mean() for x in told.position]) for told in (coarse, fine)]
     exact = -final * time * np.log(np.cosh(np.array(coarse.t) / time))
@@ -60,7 +60,7 @@ FIRST = 4.0 * PUSH * LENGTH**2 * STRETCH / (TENSION * np.pi**3)  # the first mod
 
 def string(steps_per_cycle: int) -> Array:
     """Amplitude of the first mode after each step, let go from the parabola of a uniform push."""
-    pipe = {"EA": EA, "EI": 1.0, "outer_diameter": D, "mass": STRING_MASS, "drag": {"normal": STRING_DRAG}}
+    pipe = {"EA": EA, "EI": 0.02, "outer_diameter": D, "mass": STRING_MASS, "drag": {"normal": STRING_DRAG}}
     period = 2.0 * np.pi / OMEGA
     scene = riser_scene(
         static("stretch", move={"end": [LENGTH * STRETCH, 0.0, 0.0]}),
@@ -99,8 +99,8 @@ def first_mode(t: Array, count: int = 10) -> Array:
 def test_a_string_dies_away_by_quadratic_drag() -> None:
     """Against other equations; the average acceleration's period error is extrapolated away. And against the law of a
     mode that keeps its shape: the energy m L (w A)^2/4 loses c (w A)^3 times the means (4/3 pi)^2 of |sin|^3 over time
-    and length, so that 1/A grows by 32 rho D Cd/(9 pi m) in a cycle. Drag also drives the other modes, to first order in
-    rho D Cd A/m = 0.3, so the law is met the better the smaller A has become.
+    and length, so that 1/A grows by 32 rho D Cd/(9 pi m) in a cycle. Drag also drives the other modes, to first order
+    in rho D Cd A/m = 0.3, so the law is met the better the smaller A has become.
     """
     coarse, fine = string(100), string(200)[1::2]
     exact = first_mode(np.arange(1, coarse.size + 1) * 2.0 * np.pi / OMEGA / 100)
