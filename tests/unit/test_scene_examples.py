@@ -71,6 +71,7 @@ def test_catenary_as_it_is_written() -> None:
     assert surge.motion is not None
     assert surge.motion.start is None
     assert surge.motion.end is not None
+    assert surge.motion.end.harmonic is not None
     assert surge.motion.end.harmonic.amplitude == (2.01, 0.0, 0.0)
     assert isinstance(surge.scheme, GeneralizedAlphaScheme)
 
