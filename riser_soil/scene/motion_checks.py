@@ -17,7 +17,7 @@ def motion_conflicts(path: Path, motion: EndMotion, end: End, duration: float) -
     """Conflicts of the motion at a path with its end and its stage's duration [s]."""
     yield from _jumps(path, motion)
     if motion.table:
-        yield from _covers((*path, "table"), motion.table, duration)
+        yield from _table((*path, "table"), motion.table, duration)
     if motion.rotation and isinstance(end, Support) and end.rotation == "free":
         allowed = f"riser.{path[-1]}.rotation is free, so that nothing turns with the support"
         yield Problem((*path, "rotation"), allowed, "set it to fixed or a stiffness, or leave this out")
@@ -37,8 +37,16 @@ def _jumps(path: Path, motion: EndMotion) -> Iterator[Problem]:
             angle = abs(swing.amplitude_deg * math.sin(math.radians(swing.phase_deg)))
             if angle > _AT_ZERO * abs(swing.amplitude_deg):
                 yield _jump((*path, key, "phase_deg"), f"{angle:.4g} deg")
-    if motion.table and not motion.table.ramp:
-        yield from _table_jumps((*path, "table"), motion.table)
+
+
+def _table(path: Path, table: Table, duration: float) -> Iterator[Problem]:
+    """Times count from the stage's beginning, to its end."""
+    time = table.columns.values["t"]
+    if time[0] != 0.0 or time[-1] < duration * (1.0 - _LATE):
+        allowed = f"{table.file} covers {time[0]:g} to {time[-1]:g} s, but the stage lasts from 0 to {duration:g} s"
+        yield Problem(path, allowed, "begin the table at 0 s, the stage's beginning, and let it last to its end")
+    elif not table.ramp:
+        yield from _table_jumps(path, table)
 
 
 def _table_jumps(path: Path, table: Table) -> Iterator[Problem]:
@@ -53,10 +61,3 @@ def _jump(path: Path, how_far: str) -> Problem:
     allowed = f"without a ramp the {path[3]} would jump by {how_far} as the stage begins"
     return Problem(path, allowed, "give a ramp [s], or phase_deg: 0")
 
-
-def _covers(path: Path, table: Table, duration: float) -> Iterator[Problem]:
-    """Times count from the stage's beginning, to its end."""
-    time = table.columns.values["t"]
-    if time[0] != 0.0 or time[-1] < duration * (1.0 - _LATE):
-        allowed = f"{table.file} covers {time[0]:g} to {time[-1]:g} s, but the stage lasts from 0 to {duration:g} s"
-        yield Problem(path, allowed, "begin the table at 0 s, the stage's beginning, and let it last to its end")
