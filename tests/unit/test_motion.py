@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -67,12 +68,16 @@ def derivative(f: Callable[[float], Array], t: float, h: float = 1e-3) -> Array:
     return (8.0 * (f(t + h) - f(t - h)) - f(t + 2.0 * h) + f(t - 2.0 * h)) / (12.0 * h)
 
 
+def order(motion: Motion, k: int, t: float) -> Array:
+    return motion(t)[k]
+
+
 @pytest.mark.parametrize("t", [0.3, 2.0, 3.9, 4.1, 11.0])
 @pytest.mark.parametrize("name", MOTIONS)
 def test_rates_are_derivatives(name: str, t: float) -> None:
     motion = MOTIONS[name]
     for k in (0, 1):
-        assert derivative(lambda s, k=k: motion(s)[k], t) == pytest.approx(motion(t)[k + 1], abs=1e-9)
+        assert derivative(partial(order, motion, k), t) == pytest.approx(motion(t)[k + 1], abs=1e-9)
 
 
 @pytest.mark.parametrize("name", MOTIONS)
