@@ -33,6 +33,7 @@ def _reasons(scene: Scene) -> dict[str, str]:
         "inertia": "" if has_dynamics(scene) else "all stages are static",
         "rotary inertia": _no_rotary_inertia(scene),
         "morison": _no_morison(scene),
+        "buoyancy": _no_buoyancy(scene),
         "seabed": "" if scene.seabed is not None else "the scene has no seabed",
         "soil": "" if scene.soil is not None else "the scene has no soil",
         "contact": "" if ground else "the scene has neither seabed nor soil",
@@ -51,12 +52,20 @@ def _no_rotary_inertia(scene: Scene) -> str:
 
 
 def _no_morison(scene: Scene) -> str:
-    if not has_dynamics(scene):
-        return "all stages are static, and still water does not load a riser at rest"
     if scene.water is None:
         return "the scene has no water"
+    if not has_dynamics(scene) and scene.water.current is None:
+        return "all stages are static, and still water does not load a riser at rest"
     types = scene.used_line_types.values()
-    return "" if any(t.drag or t.added_mass for t in types) else "no line type has drag or added mass"
+    if any(t.drag or t.added_mass for t in types) or (scene.water.waves and has_dynamics(scene)):
+        return ""
+    return "no line type has drag or added mass"
+
+
+def _no_buoyancy(scene: Scene) -> str:
+    if scene.water is None:
+        return "the scene has no water"
+    return "the water has no surface: all is submerged" if scene.water.surface_level is None else ""
 
 
 def unknowns(comm: MPI.Intracomm, field: Field) -> int:

@@ -458,21 +458,41 @@ NOT_YET = [
         "[1, 0, 0]",
         "not supported yet",
     ),
+]
+
+HEAVE = "{harmonic: {amplitude: [0.0, 0.0, 1.5], period: 10.0, ramp: 5.0}}"
+MOTION = "stages.1.motion.end"
+ARC = "hub: [80, 0, 110], amplitude_deg: 5.0, period: 10.0"
+MOTIONS = [
+    Bad(HEAVE, "{table: t.csv}", 34, f"{MOTION}.table", '"t.csv"', "there is no such file as"),
+    Bad(HEAVE, "{table: {file: t.csv}}", 34, f"{MOTION}.table.file", '"t.csv"', "there is no such file as"),
+    Bad(HEAVE, "{table: case.yaml}", 34, f"{MOTION}.table", '"case.yaml"', "names no column with its unit"),
+    Bad(HEAVE, "{table: 3}", 34, f"{MOTION}.table", "3", "mapping with the keys file, ramp"),
+    Bad(HEAVE, "{arc: {period: 9, amplitude_deg: 5}}", 34, f"{MOTION}.arc.hub", "missing", "add it: the hub"),
+    Bad(HEAVE, f"{{arc: {{{ARC}, plane: zx}}}}", 34, f"{MOTION}.arc.plane", '"zx"', "must be one of xz, yz, xy"),
+    Bad(HEAVE, f"{{arc: {{{ARC}, phase_deg: 30}}}}", 34, f"{MOTION}.arc.phase_deg", "30", "end would jump by 2.5 deg"),
+    Bad(HEAVE, f"{{arc: {{{ARC.replace('110', '100')}}}}}", 34, f"{MOTION}.arc.hub", "[80, 0, 100]", "lies at its hub"),
+    Bad(HEAVE, f"{{arc: {{{ARC}}}, table: case.yaml}}", 34, f"{MOTION}.table", '"case.yaml"', "names no column"),
+    Bad(HEAVE, f"{{arc: {{{ARC}}}, {HEAVE[1:]}", 34, f"{MOTION}.arc", '{"hub"', "moves by harmonic already"),
+    Bad(HEAVE, "{}", 34, f"{MOTION}.harmonic", "missing", "there is no motion"),
+    Bad("ramp: 5.0", "phase_deg: [0, 30, 90]", 34, f"{MOTION}.harmonic.phase_deg", "[0, 30, 90]", "jump by 1.5 m"),
+    Bad("ramp: 5.0", "phase_deg: [0, 30]", 34, f"{MOTION}.harmonic.phase_deg", "[0, 30]", "must be a list of 3 values"),
+    Bad("ramp: 5.0", "phase_deg: x", 34, f"{MOTION}.harmonic.phase_deg", '"x"', "must be a number"),
     Bad(
-        "{harmonic: {amplitude: [0.0, 0.0, 1.5], period: 10.0, ramp: 5.0}}",
-        "{table: t.csv}",
+        HEAVE,
+        "{rotation: {axis: [0, 1, 0], amplitude_deg: 5, period: 9}}",
         34,
-        "stages.1.motion.end.table",
-        '"t.csv"',
-        "not supported yet",
+        f"{MOTION}.rotation",
+        '{"axis"',
+        "riser.end.rotation is free",
     ),
     Bad(
-        "{harmonic: {amplitude: [0.0, 0.0, 1.5], period: 10.0, ramp: 5.0}}",
-        "{arc: {period: 10.0}}",
+        HEAVE,
+        "{rotation: {axis: [0, 0, 0], amplitude_deg: 5, period: 9}}",
         34,
-        "stages.1.motion.end.arc",
-        '{"period": 10.0}',
-        "not supported yet",
+        f"{MOTION}.rotation.axis",
+        "[0, 0, 0]",
+        "must not be zero",
     ),
 ]
 
@@ -531,4 +551,4 @@ WATER = [
     jonswap("Hs: 2.0, Tp: 9.0, components: 0", "components", "0", "must be at least 1"),
 ]
 
-ALL = KEYS + VALUES + ATTACHED + MISSING + CONFLICTS + NOT_YET + WATER
+ALL = KEYS + VALUES + ATTACHED + MISSING + CONFLICTS + MOTIONS + NOT_YET + WATER

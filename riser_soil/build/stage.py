@@ -1,4 +1,4 @@
-"""What a stage adds: motions of the ends, loads, inertia, and its time scheme."""
+"""What a stage adds: loads, inertia, and its time scheme."""
 
 from __future__ import annotations
 
@@ -7,12 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.arrays import Array
 from riser_soil.build.riser import spins_freely
-from riser_soil.motion.harmonic import Harmonic
-from riser_soil.motion.move import Move
 from riser_soil.part import Part
-from riser_soil.riser.ends import Motion
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.scene import Scene
@@ -32,24 +28,6 @@ def scheme_of(stage: Stage) -> Scheme:
     if isinstance(stage.scheme, NewmarkScheme):
         return GeneralizedAlpha.newmark(stage.scheme.newmark.beta, stage.scheme.newmark.gamma)
     return GeneralizedAlpha.from_rho_inf(stage.scheme.generalized_alpha.rho_inf)
-
-
-def set_motions(line: Line, stage: Stage) -> None:
-    """Give the held ends their motions in this stage, from where they are now; without one they stay there."""
-    for end, node, name in ((line.start, 0, "start"), (line.end, -1, "end")):
-        end.motion = _motion(line.to_global(line.x[node]), stage, name) if end.held else None
-    line.begin_stage()
-
-
-def _motion(origin: Array, stage: Stage, name: str) -> Motion | None:
-    if isinstance(stage, StaticStage):
-        target = getattr(stage.move, name, None)
-        return None if target is None else Move(origin, np.asarray(target))
-    given = getattr(stage.motion, name, None)
-    if given is None:
-        return None
-    h = given.harmonic
-    return Harmonic(origin, np.asarray(h.amplitude), h.period, h.ramp, np.radians(h.phase_deg))
 
 
 def hold_spin(scene: Scene, line: Line, stage: Stage, elements: Elements) -> None:

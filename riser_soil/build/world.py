@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mpi4py import MPI
 
+from riser_soil.build.motions import set_motions
 from riser_soil.build.riser import attached_weight, attachments_of, elements_of, line_of, springs_of
 from riser_soil.build.sea_loads import sea_loads
-from riser_soil.build.stage import dynamic_parts, hold_spin, loads_of, set_motions
+from riser_soil.build.stage import dynamic_parts, hold_spin, loads_of
 from riser_soil.part import Field, Model, Part
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.line import Line

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from riser_soil.scene.language import Spot, spot
-from riser_soil.scene.problem import Path, Problem, did_you_mean, hint, value_at
+from riser_soil.scene.problem import NOTHING, Path, Problem, did_you_mean, hint, value_at
 
 
 @dataclass(frozen=True)
@@ -156,6 +156,13 @@ def _said_by_a_check(failure: Failure) -> Problem:
     return Problem((*failure.path, key) if key else failure.path, allowed, remedy)
 
 
+def _about_a_file(failure: Failure) -> Problem:
+    """A file may be named without the key that holds its name."""
+    allowed, _, remedy = failure.context["text"].partition("; ")
+    named = failure.path if failure.value is not NOTHING else failure.path[:-1]
+    return Problem(named, allowed, remedy)
+
+
 def _bound(relation: str, name: str) -> _Explain:
     def explain(failure: Failure) -> Problem:
         return failure.problem(f"must be {relation} {failure.context[name]:g}")
@@ -180,7 +187,7 @@ _EXPLAIN: dict[str, _Explain] = {
     "choice": _choice,
     "kind": _kind,
     "conflict": _said_by_a_check,
-    "missing_file": _said_by_a_check,
+    "wrong_file": _about_a_file,
     "greater_than": _bound("greater than", "gt"),
     "greater_than_equal": _bound("at least", "ge"),
     "less_than": _bound("less than", "lt"),

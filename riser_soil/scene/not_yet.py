@@ -18,8 +18,6 @@ KEYS: dict[tuple[str, ...], tuple[Any, ...]] = {
     ("contact", "suction"): (None, 0, 0.0, False),
     ("stages", "*", "initial_velocity"): (None,),
     ("stages", "*", "tolerance"): (None,),
-    ("stages", "*", "motion", "*", "arc"): (None,),
-    ("stages", "*", "motion", "*", "table"): (None,),
 }
 
 # key -> values of the language that can't be chosen yet; the key is part of the models.

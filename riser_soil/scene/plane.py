@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
+from riser_soil.scene.motion_plane import displacements, rotation_axes
 from riser_soil.scene.problem import Path
 from riser_soil.scene.quantities import Vector
 from riser_soil.scene.riser import Support
@@ -115,9 +116,8 @@ def _vectors(scene: Scene) -> Iterator[tuple[Path, Vector]]:
             given = {"force": load.force, "distributed": load.distributed}
             yield from ((("stages", n, "loads", m, key), v) for key, v in given.items() if v is not None)
         if isinstance(stage, DynamicStage) and stage.motion:
-            for key, motion in {"start": stage.motion.start, "end": stage.motion.end}.items():
-                if motion:
-                    yield ("stages", n, "motion", key, "harmonic", "amplitude"), motion.harmonic.amplitude
+            for key, motion in stage.motion.by_end.items():
+                yield from displacements(("stages", n, "motion", key), motion)
 
 
 def _flows(scene: Scene) -> Iterator[tuple[Path, Vector]]:
@@ -139,5 +139,8 @@ def _axes(scene: Scene) -> Iterator[tuple[Path, Vector]]:
         for m, load in enumerate(stage.loads):
             if load.moment is not None:
                 yield ("stages", n, "loads", m, "moment"), load.moment
+        if isinstance(stage, DynamicStage) and stage.motion:
+            for key, motion in stage.motion.by_end.items():
+                yield from rotation_axes(("stages", n, "motion", key), motion)
     if isinstance(scene.riser.unstressed, ArcShape):
         yield ("riser", "unstressed", "arc", "axis"), scene.riser.unstressed.arc.axis

@@ -1,20 +1,10 @@
 """The soil continuum: its block or mesh, its law and its initial stress."""
 
-from pathlib import Path
 from typing import Annotated, Literal, Self
 
-from pydantic import (
-    BaseModel,
-    Discriminator,
-    Field,
-    Tag,
-    ValidationInfo,
-    field_serializer,
-    field_validator,
-    model_validator,
-)
-from pydantic_core import PydanticCustomError
+from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
+from riser_soil.scene.files import NamedFile
 from riser_soil.scene.quantities import (
     FROZEN,
     Interval,
@@ -71,20 +61,7 @@ class MeshFile(BaseModel):
 
     model_config = FROZEN
 
-    file: Path = Field(description="gmsh file (.msh); a relative name is sought beside the scene file")
-
-    @field_validator("file", mode="after")
-    @classmethod
-    def _is_there(cls, file: Path, info: ValidationInfo) -> Path:
-        path = (Path((info.context or {}).get("folder", ".")) / file).absolute()
-        if not path.is_file():
-            text = f"there is no such file as {path}; correct the name: it is sought beside the scene file"
-            raise PydanticCustomError("missing_file", "{text}", {"text": text})
-        return path
-
-    @field_serializer("file")
-    def _as_text(self, file: Path) -> str:
-        return str(file)
+    file: NamedFile = Field(description="gmsh file (.msh); a relative name is sought beside the scene file")
 
 
 def _pick_mesh(value: object) -> str | None:

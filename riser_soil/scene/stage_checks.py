@@ -3,16 +3,15 @@
 import math
 from collections.abc import Iterator
 
+from riser_soil.scene.motion_checks import motion_conflicts
 from riser_soil.scene.problem import Path, Problem
 from riser_soil.scene.quantities import Vector
 from riser_soil.scene.riser import End, Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, Harmonic, Load, StaticStage
+from riser_soil.scene.stages import DynamicStage, Load, StaticStage
 
 # Strain of a riser pulled straight beyond which a new position must be a mistake.
 _GREATEST_STRAIN = 0.1
-# Sine of a phase that round-off may leave where the motion is to begin at its middle.
-_AT_ZERO = 1e-9
 
 
 def stage_conflicts(scene: Scene) -> Iterator[Problem]:
@@ -80,24 +79,14 @@ def _swings_freely(scene: Scene) -> bool:
 def _dynamic(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
     if stage.motion:
         ends = {"start": scene.riser.start, "end": scene.riser.end}
-        motions = {"start": stage.motion.start, "end": stage.motion.end}
-        yield from _held(ends, {("stages", n, "motion", k): k for k, v in motions.items() if v is not None})
-        yield from (_jumps(n, k, v.harmonic) for k, v in motions.items() if v and _begins_displaced(v.harmonic))
+        yield from _held(ends, {("stages", n, "motion", key): key for key in stage.motion.by_end})
+        for key, motion in stage.motion.by_end.items():
+            yield from motion_conflicts(("stages", n, "motion", key), motion, ends[key], stage.duration)
     if scene.solver.min_time_step > stage.time_step:
         allowed = f"must not be smaller than solver.min_time_step ({scene.solver.min_time_step:g} s)"
         yield Problem(
             ("stages", n, "time_step"), allowed, "lower solver.min_time_step or take a longer time_step"
         )
-
-
-def _begins_displaced(motion: Harmonic) -> bool:
-    return motion.ramp == 0.0 and abs(math.sin(math.radians(motion.phase_deg))) > _AT_ZERO
-
-
-def _jumps(n: int, end: str, motion: Harmonic) -> Problem:
-    jump = math.hypot(*motion.amplitude) * abs(math.sin(math.radians(motion.phase_deg)))
-    allowed = f"without a ramp the {end} would jump by {jump:.4g} m as the stage begins"
-    return Problem(("stages", n, "motion", end, "harmonic", "phase_deg"), allowed, "give a ramp [s], or phase_deg: 0")
 
 
 def _held(ends: dict[str, End], places: dict[Path, str]) -> Iterator[Problem]:

@@ -5,6 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
+from riser_soil.scene.motions import Motion
 from riser_soil.scene.quantities import (
     FROZEN,
     NonNegative,
@@ -78,36 +79,6 @@ class Move(BaseModel):
 
     start: Vector | None = Field(default=None, description="new position of the start, [x, y, z] [m]")
     end: Vector | None = Field(default=None, description="new position of the end, [x, y, z] [m]")
-
-
-class Harmonic(BaseModel):
-    """Displacement amplitude · sin(2π t/period + phase) from the position at the stage's beginning."""
-
-    model_config = FROZEN
-
-    amplitude: Vector = Field(description="amplitude, [x, y, z] [m]")
-    period: Positive = Field(description="period [s]")
-    ramp: NonNegative = Field(
-        default=0.0, description="time over which the motion grows smoothly to its full size [s]"
-    )
-    phase_deg: Real = Field(default=0.0, description="phase at the stage's beginning [deg]")
-
-
-class EndMotion(BaseModel):
-    """The prescribed motion of one end."""
-
-    model_config = FROZEN
-
-    harmonic: Harmonic = Field(description="harmonic motion: amplitude, period, ramp, phase_deg")
-
-
-class Motion(BaseModel):
-    """Prescribed motions of held ends."""
-
-    model_config = FROZEN
-
-    start: EndMotion | None = Field(default=None, description="motion of the start, {harmonic: ...}")
-    end: EndMotion | None = Field(default=None, description="motion of the end, {harmonic: ...}")
 
 
 class Newmark(BaseModel):

@@ -27,6 +27,7 @@ SCENES = {
     "bend": ROOT / "tests/scenes/bend45.yaml",
     "catenary": ROOT / "tests/scenes/catenary.yaml",
     "stages": ROOT / "tests/scenes/catenary-three-stages.yaml",
+    "tank": ROOT / "tests/scenes/tank.yaml",
     "clay": ROOT / "demos/touchdown_clay/scene.yaml",
 }
 
@@ -71,6 +72,7 @@ def test_catenary_as_it_is_written() -> None:
     assert surge.motion is not None
     assert surge.motion.start is None
     assert surge.motion.end is not None
+    assert surge.motion.end.harmonic is not None
     assert surge.motion.end.harmonic.amplitude == (2.01, 0.0, 0.0)
     assert isinstance(surge.scheme, GeneralizedAlphaScheme)
 
@@ -84,7 +86,7 @@ def test_clay_has_contact_and_elements_by_length() -> None:
     assert scene.contact_at == "outer"
 
 
-@pytest.mark.parametrize(("name", "dimension"), [("bend", 3), ("catenary", 2), ("stages", 2), ("clay", 2)])
+@pytest.mark.parametrize(("name", "dimension"), [("bend", 3), ("catenary", 2), ("stages", 2), ("tank", 2), ("clay", 2)])
 def test_dimension_follows_from_what_leaves_the_plane(name: str, dimension: int) -> None:
     assert resolved_dimension(read_scene(SCENES[name])) == dimension
 
@@ -100,6 +102,11 @@ def catenary_with(*overrides: str) -> Any:
         ("riser.end.position=[90.0, 120.0, 150.0]", 3),
         ("stages.1.motion.end.harmonic.amplitude=[0.0, 0.0, 1.0]", 2),
         ("stages.1.motion.end.harmonic.amplitude=[0.0, 1.0, 0.0]", 3),
+        ("stages.1.motion.end.harmonic.phase_deg=[90.0, 5.0, 0.0]", 2),
+        ("stages.1.motion.end={arc: {hub: [150, 0, 160], amplitude_deg: 9, period: 9}}", 2),
+        ("stages.1.motion.end={arc: {hub: [150, 0, 160], amplitude_deg: 9, period: 9, plane: yz}}", 3),
+        ("stages.1.motion.end={arc: {hub: [160, 0, 150], amplitude_deg: 9, period: 9, plane: xy}}", 3),
+        ("riser.end.rotation=fixed", 2),
         ("stages.0.loads=[{at: end, moment: [0.0, 1.0, 0.0]}]", 2),
         ("stages.0.loads=[{at: end, moment: [0.0, 0.0, 1.0]}]", 3),
         ("stages.0.loads=[{distributed: [0.0, 1.0, 0.0]}]", 3),
@@ -120,6 +127,20 @@ def test_plane_turns_with_the_ends() -> None:
     plane = vertical_plane(scene)
     assert plane.direction == pytest.approx((0.6, 0.8, 0.0), abs=1e-15)
     assert resolved_dimension(scene) == 2
+
+
+@pytest.mark.parametrize(("axis", "dimension"), [([0.0, -1.0, 0.0], 2), ([0.0, 1.0, 1.0], 3)])
+def test_a_support_that_rocks_across_the_plane_stays_in_it(axis: list[float], dimension: int) -> None:
+    rocking = {"axis": axis, "amplitude_deg": 5.0, "period": 9.0}
+    scene = catenary_with("riser.end.rotation=fixed", f"stages.1.motion.end={{rotation: {rocking}}}")
+    assert resolved_dimension(scene) == dimension
+
+
+@pytest.mark.parametrize(("phases", "dimension"), [([0.0, 0.0, 40.0], 2), ([0.0, 40.0, 0.0], 3)])
+def test_phases_lead_an_oblique_motion_out_of_its_plane(phases: list[float], dimension: int) -> None:
+    end = "stages.1.motion.end.harmonic"
+    oblique = ("riser.end.position=[90.0, 120.0, 150.0]", f"{end}.amplitude=[0.6, 0.8, 0.5]")
+    assert resolved_dimension(catenary_with(*oblique, f"{end}.phase_deg={phases}")) == dimension
 
 
 def test_arc_in_a_vertical_plane_is_planar() -> None:

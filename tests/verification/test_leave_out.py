@@ -20,6 +20,7 @@ from tests.on_ranks import environment
 FOR_SOIL = {"dolfinx", "dolfinx_cpp", "ufl", "ffcx", "basix", "gmsh"}
 FOR_PICTURES = {"pyvista", "vtk", "vtkmodules", "matplotlib"}
 OWN_FOR_SOIL = {"riser_soil.soil.soil", "riser_soil.dolfinx_compat"}
+FOR_HEAVE = {False: set[str](), True: {f"riser_soil.motion.{name}" for name in ("harmonic", "ramped")}}
 NODES = 37
 
 
@@ -68,6 +69,7 @@ def test_without_soil_its_libraries_are_not_imported(name: str, tmp_path: Path) 
     assert ("riser_soil.sea.morison" in found) == (name != "hanging, static")
     assert ("riser_soil.riser.inertia" in found) == (name != "hanging, static")
     assert "riser_soil.riser.loads" not in found
+    assert not {m for m in found if m.startswith("riser_soil.motion.")} - FOR_HEAVE[name != "hanging, static"]
 
 
 def test_with_soil_they_are(tmp_path: Path) -> None:

@@ -1,0 +1,73 @@
+"""From the scene's motions of the ends to functions of time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.riser.ends import End, Motion, Turning
+from riser_soil.riser.line import Line
+from riser_soil.scene.motions import Arc, EndMotion, Harmonic, Rotation, Table
+from riser_soil.scene.quantities import Vector
+from riser_soil.scene.stages import Stage, StaticStage
+
+
+def set_motions(line: Line, stage: Stage) -> None:
+    """Give the held ends their motions in this stage, from where they are now; without one they stay there."""
+    for end, node, name in ((line.start, 0, "start"), (line.end, -1, "end")):
+        end.motion = end.turning = None
+        if isinstance(stage, StaticStage):
+            _move(end, line.to_global(line.x[node]), getattr(stage.move, name, None))
+        elif stage.motion is not None and name in stage.motion.by_end:
+            _set(end, line.to_global(line.x[node]), stage.motion.by_end[name])
+    line.begin_stage()
+
+
+def _move(end: End, origin: Array, target: Vector | None) -> None:
+    if target is not None:
+        from riser_soil.motion.move import Move
+
+        end.motion = Move(origin, np.asarray(target))
+
+
+def _set(end: End, origin: Array, given: EndMotion) -> None:
+    if given.harmonic is not None:
+        end.motion = _harmonic(origin, given.harmonic)
+    if given.arc is not None:
+        end.motion = _arc(origin, given.arc)
+    if given.rotation is not None:
+        end.turning = _rocking(given.rotation)
+    if given.table is not None:
+        end.motion, end.turning = _table(origin, given.table)
+
+
+def _harmonic(origin: Array, given: Harmonic) -> Motion:
+    from riser_soil.motion.harmonic import Harmonic
+
+    return Harmonic(origin, np.array(given.amplitude), given.period, given.ramp, np.array(given.phases))
+
+
+def _arc(origin: Array, given: Arc) -> Motion:
+    from riser_soil.motion.swing import Arc, Swing
+
+    swing = Swing(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
+    return Arc(origin, np.array(given.hub), np.array(given.axis), swing)
+
+
+def _rocking(given: Rotation) -> Callable[[float], Turning]:
+    from riser_soil.motion.swing import Rocking, Swing
+
+    swing = Swing(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
+    return Rocking(np.array(given.axis) / np.linalg.norm(given.axis), swing)
+
+
+def _table(origin: Array, given: Table) -> tuple[Motion, Callable[[float], Turning]]:
+    from riser_soil.motion.carried import Displaced, Turned
+    from riser_soil.motion.table import Table
+
+    rows = Table(
+        np.array(given.columns.values["t"]), np.hstack([given.displacements, given.rotations]), given.ramp
+    )
+    return Displaced(origin, rows), Turned(rows)

@@ -1,0 +1,25 @@
+"""Motion through the rows of a table."""
+
+from __future__ import annotations
+
+from scipy.interpolate import CubicSpline
+
+from riser_soil.arrays import Array
+from riser_soil.motion.ramped import ramped
+from riser_soil.riser.ends import Kinematics
+
+
+class Table:
+    """Cubic splines through rows, twice continuously differentiable, times a smooth step of t/ramp.
+
+    time: (n,) increasing [s]. values: (n, 6) displacement [m] and rotation vector [rad]. Not-a-knot at both ends, which
+    keeps the splines' fourth order there.
+    """
+
+    def __init__(self, time: Array, values: Array, ramp: float = 0.0) -> None:
+        self._spline, self._ramp = CubicSpline(time, values, bc_type="not-a-knot"), ramp
+
+    def __call__(self, t: float) -> Kinematics:
+        """Displacement and rotation vector (6,) at t [s], and their derivatives."""
+        x, v, a = (self._spline(t, order) for order in range(3))
+        return ramped(t, self._ramp, x, v, a)

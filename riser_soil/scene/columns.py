@@ -1,0 +1,125 @@
+"""Columns of numbers from a CSV file whose header names each with its unit: `t [s], x [m], y [m], z [m]`.
+
+Separated by commas or, where the header has any, by semicolons; empty lines and lines that begin with # don't count.
+"""
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from riser_soil.scene.files import wrong_file
+from riser_soil.scene.problem import hint
+
+Units = Mapping[str, float]
+"""Accepted units of a column, each with its size in SI units."""
+
+TIME: Units = {"s": 1.0, "min": 60.0, "ms": 1e-3}
+LENGTH: Units = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "ft": 0.3048}
+ANGLE: Units = {"deg": math.pi / 180.0, "rad": 1.0}
+
+Known = Mapping[str, Units]
+_Line = tuple[int, list[str]]
+
+
+@dataclass(frozen=True)
+class Columns:
+    """A file's columns by name, in SI units, and the line of each row in the file."""
+
+    file: Path
+    values: Mapping[str, tuple[float, ...]]
+    lines: tuple[int, ...]
+
+    @property
+    def rows(self) -> int:
+        return len(self.lines)
+
+    def get(self, name: str) -> tuple[float, ...]:
+        """A column; zeros where the file has none of this name."""
+        return self.values.get(name, (0.0,) * self.rows)
+
+
+def read_columns(file: Path, known: Known, required: tuple[str, ...]) -> Columns:
+    """Read a file that may have the known columns and must have the required ones; PydanticCustomError, with the file
+    and its line, for what is wrong."""
+    lines = list(_lines(file))
+    if not lines:
+        raise wrong_file(f"{file}: the file is empty; its first line must name the columns: {_header(known)}")
+    names, units = _columns(file, lines[0], known)
+    missing = [name for name in required if name not in names]
+    if missing:
+        text = f"there is no column {missing[0]}; the header must be like {_header(known)}"
+        raise wrong_file(f"{file}:{lines[0][0]}: {text}")
+    rows = [_row(file, line, names) for line in lines[1:]]
+    values = {name: tuple(row[i] * units[i] for row in rows) for i, name in enumerate(names)}
+    return Columns(file, values, tuple(number for number, _ in lines[1:]))
+
+
+def _lines(file: Path) -> Iterator[_Line]:
+    """Numbers and cells of the lines that count."""
+    separator = ""
+    for number, line in enumerate(_text(file).splitlines(), start=1):
+        if line.strip() and not line.lstrip().startswith("#"):
+            separator = separator or (";" if ";" in line else ",")
+            yield number, [cell.strip() for cell in line.split(separator)]
+
+
+def _text(file: Path) -> str:
+    try:
+        return file.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as err:
+        line = err.object.count(b"\n", 0, err.start) + 1
+        raise wrong_file(f"{file}:{line}: not UTF-8 text; save the table as CSV in UTF-8") from err
+    except OSError as err:
+        raise wrong_file(f"{file}: can't be read ({err.strerror}); check the file and its permissions") from err
+
+
+def _columns(file: Path, header: _Line, known: Known) -> tuple[list[str], list[float]]:
+    """Names and unit sizes of the columns."""
+    number, cells = header
+    names, units = [], []
+    for cell in cells:
+        name, unit = _name_and_unit(f"{file}:{number}", cell, known)
+        if name in names:
+            raise wrong_file(f"{file}:{number}: there are two columns {name}; remove one of them")
+        names.append(name)
+        units.append(known[name][unit])
+    return names, units
+
+
+def _name_and_unit(place: str, cell: str, known: Known) -> tuple[str, str]:
+    match = re.fullmatch(r"(.*\S)\s*\[\s*(.*\S)\s*\]", cell)
+    if not match:
+        raise wrong_file(f'{place}: "{cell}" names no column with its unit; write them like {_header(known)}')
+    name, unit = " ".join(match[1].lower().split()), match[2]
+    if name not in known:
+        text = f'no such column as "{name}", known are {", ".join(known)}; correct or remove it{hint(name, known)}'
+        raise wrong_file(f"{place}: {text}")
+    if unit not in known[name]:
+        accepted = ", ".join(known[name])
+        raise wrong_file(f"{place}: {name} can't be in [{unit}], accepted are {accepted}; convert the column")
+    return name, unit
+
+
+def _header(known: Known) -> str:
+    return ", ".join(f"{name} [{next(iter(units))}]" for name, units in known.items())
+
+
+def _row(file: Path, line: _Line, names: list[str]) -> list[float]:
+    number, cells = line
+    if len(cells) != len(names):
+        raise wrong_file(
+            f"{file}:{number}: the row has {len(cells)} values, but the header names {len(names)} columns; complete it"
+        )
+    return [_number(f"{file}:{number}: {name}", cell) for name, cell in zip(names, cells, strict=True)]
+
+
+def _number(place: str, cell: str) -> float:
+    try:
+        value = float(cell)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise wrong_file(f'{place}: "{cell}" is not a finite number; write plain numbers, with a point for decimals')
+    return value

@@ -1,0 +1,23 @@
+"""Files that a scene names."""
+
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import AfterValidator, ValidationInfo
+from pydantic_core import PydanticCustomError
+
+
+def wrong_file(text: str) -> PydanticCustomError:
+    """An error about a named file: what is wrong; what to do."""
+    return PydanticCustomError("wrong_file", "{text}", {"text": text})
+
+
+def _found(file: Path, info: ValidationInfo) -> Path:
+    path = (Path((info.context or {}).get("folder", ".")) / file).absolute()
+    if not path.is_file():
+        raise wrong_file(f"there is no such file as {path}; correct the name: it is sought beside the scene file")
+    return path
+
+
+NamedFile = Annotated[Path, AfterValidator(_found)]
+"""A file that is there, by its absolute path; a relative name is sought beside the scene file."""

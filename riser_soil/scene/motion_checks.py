@@ -1,0 +1,63 @@
+"""Conflicts of a prescribed motion with its stage and its end."""
+
+import math
+from collections.abc import Iterator
+
+from riser_soil.scene.motions import EndMotion, Table
+from riser_soil.scene.problem import Path, Problem
+from riser_soil.scene.riser import End, Support
+
+# What round-off may leave of a displacement [m] or an angle [rad] where the motion is to begin at its middle.
+_AT_ZERO = 1e-9
+# Part of the stage's duration by which its last step may miss its end.
+_LATE = 1e-9
+
+
+def motion_conflicts(path: Path, motion: EndMotion, end: End, duration: float) -> Iterator[Problem]:
+    """Conflicts of the motion at a path with its end and its stage's duration [s]."""
+    yield from _jumps(path, motion)
+    if motion.table:
+        yield from _table((*path, "table"), motion.table, duration)
+    if motion.rotation and isinstance(end, Support) and end.rotation == "free":
+        allowed = f"riser.{path[-1]}.rotation is free, so that nothing turns with the support"
+        yield Problem((*path, "rotation"), allowed, "set it to fixed or a stiffness, or leave this out")
+    if motion.arc and isinstance(end, Support) and end.position == motion.arc.hub:
+        yield Problem((*path, "arc", "hub"), f"the {path[-1]} lies at its hub and can't turn about it", "move the hub")
+
+
+def _jumps(path: Path, motion: EndMotion) -> Iterator[Problem]:
+    """Without a ramp a motion must begin at its middle."""
+    if motion.harmonic and not motion.harmonic.ramp:
+        h = motion.harmonic
+        jump = math.hypot(*(a * math.sin(phase) for a, phase in zip(h.amplitude, h.phases, strict=True)))
+        if jump > _AT_ZERO * math.hypot(*h.amplitude):
+            yield _jump((*path, "harmonic", "phase_deg"), f"{jump:.4g} m")
+    for key, swing in {"arc": motion.arc, "rotation": motion.rotation}.items():
+        if swing and not swing.ramp:
+            angle = abs(swing.amplitude_deg * math.sin(math.radians(swing.phase_deg)))
+            if angle > _AT_ZERO * abs(swing.amplitude_deg):
+                yield _jump((*path, key, "phase_deg"), f"{angle:.4g} deg")
+
+
+def _table(path: Path, table: Table, duration: float) -> Iterator[Problem]:
+    """Times count from the stage's beginning, to its end."""
+    time = table.columns.values["t"]
+    if time[0] != 0.0 or time[-1] < duration * (1.0 - _LATE):
+        allowed = f"{table.file} covers {time[0]:g} to {time[-1]:g} s, but the stage lasts from 0 to {duration:g} s"
+        yield Problem(path, allowed, "begin the table at 0 s, the stage's beginning, and let it last to its end")
+    elif not table.ramp:
+        yield from _table_jumps(path, table)
+
+
+def _table_jumps(path: Path, table: Table) -> Iterator[Problem]:
+    x, angle = math.hypot(*table.displacements[0]), math.degrees(math.hypot(*table.rotations[0]))
+    if x > _AT_ZERO or angle > _AT_ZERO:
+        how_far = f"{x:.4g} m" if x > _AT_ZERO else f"{angle:.4g} deg"
+        allowed = f"{table.file}:{table.columns.lines[0]}: {_jump(path, how_far).allowed}"
+        yield Problem(path, allowed, "give {file, ramp}, or a first row of zeros")
+
+
+def _jump(path: Path, how_far: str) -> Problem:
+    allowed = f"without a ramp the {path[3]} would jump by {how_far} as the stage begins"
+    return Problem(path, allowed, "give a ramp [s], or phase_deg: 0")
+

@@ -1,0 +1,177 @@
+"""Prescribed motions of held ends in dynamic stages."""
+
+import math
+from functools import cached_property
+from itertools import pairwise
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
+
+from riser_soil.scene.columns import ANGLE, LENGTH, TIME, Columns, read_columns
+from riser_soil.scene.files import NamedFile, wrong_file
+from riser_soil.scene.quantities import FROZEN, NonNegative, Positive, Real, Vector, wrong
+
+PLANES: dict[str, Vector] = {"xz": (0.0, -1.0, 0.0), "yz": (1.0, 0.0, 0.0), "xy": (0.0, 0.0, 1.0)}
+"""Axes about which an end turns from a plane's first axis towards its second."""
+
+# A cubic spline without knots beside its ends needs this many rows.
+_LEAST_ROWS = 4
+
+_RAMP = "time over which the motion grows smoothly to its full size [s]"
+_PHASE = "phase at the stage's beginning [deg]"
+
+
+def _number_or_vector(value: Any) -> str:
+    return "<vector>" if isinstance(value, list | tuple) else "<number>"
+
+
+PhaseDeg = Annotated[
+    Annotated[Real, Tag("<number>")] | Annotated[Vector, Tag("<vector>")], Discriminator(_number_or_vector)
+]
+
+
+class Harmonic(BaseModel):
+    """Displacement amplitude · sin(2π t/period + phase) from the position at the stage's beginning."""
+
+    model_config = FROZEN
+
+    amplitude: Vector = Field(description="amplitude, [x, y, z] [m]")
+    period: Positive = Field(description="period [s]")
+    ramp: NonNegative = Field(default=0.0, description=_RAMP)
+    phase_deg: PhaseDeg = Field(default=0.0, description=f"{_PHASE}, one for all components or [px, py, pz]")
+
+    @property
+    def phases(self) -> Vector:
+        """Phase of each component [rad]."""
+        given = self.phase_deg if isinstance(self.phase_deg, tuple) else (self.phase_deg,) * 3
+        return math.radians(given[0]), math.radians(given[1]), math.radians(given[2])
+
+
+class Arc(BaseModel):
+    """The end turns about its hub by amplitude · sin(2π t/period + phase), from where it is at the stage's beginning.
+
+    The axis runs through the hub, across the plane; positive angles turn the plane's first axis towards its second, so
+    that an end that hangs below its hub moves along the first.
+    """
+
+    model_config = FROZEN
+
+    hub: Vector = Field(description="the hub, [x, y, z] [m]")
+    amplitude_deg: Real = Field(description="amplitude of the angle about the hub [deg]")
+    period: Positive = Field(description="period [s]")
+    ramp: NonNegative = Field(default=0.0, description=_RAMP)
+    plane: Literal["xz", "yz", "xy"] = Field(default="xz", description="plane of the arc: xz, yz or xy")
+    phase_deg: Real = Field(default=0.0, description=_PHASE)
+
+    @property
+    def axis(self) -> Vector:
+        return PLANES[self.plane]
+
+
+class Rotation(BaseModel):
+    """The support turns about an axis by amplitude · sin(2π t/period + phase), and with it an end that isn't free."""
+
+    model_config = FROZEN
+
+    axis: Vector = Field(description="axis of the rotation, right-handed, [x, y, z] [-]")
+    amplitude_deg: Real = Field(description="amplitude of the rotation [deg]")
+    period: Positive = Field(description="period [s]")
+    ramp: NonNegative = Field(default=0.0, description=_RAMP)
+    phase_deg: Real = Field(default=0.0, description=_PHASE)
+
+    @model_validator(mode="after")
+    def _has_an_axis(self) -> Self:
+        if not any(self.axis):
+            raise wrong("axis", "must not be zero", "give the direction of the axis, such as [0, 1, 0]")
+        return self
+
+
+class Table(BaseModel):
+    """Displacements (and rotations) from the stage's beginning, read from a CSV file; cubic splines between its rows.
+
+    Columns: t, x, y, z and, if wanted, the components rx, ry, rz of a rotation vector; the header gives their units.
+    """
+
+    model_config = FROZEN
+
+    file: NamedFile = Field(
+        description="CSV file with a header such as t [s], x [m], y [m], z [m], rx [deg], ry [deg], rz [deg]; a "
+        "relative name is sought beside the scene file"
+    )
+    ramp: NonNegative = Field(default=0.0, description=_RAMP)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_name(cls, data: Any) -> Any:
+        return {"file": data} if isinstance(data, str) else data
+
+    @model_validator(mode="after")
+    def _can_be_read(self) -> Self:
+        rows, time = self.columns, self.columns.values["t"]
+        if rows.rows < _LEAST_ROWS:
+            raise wrong_file(f"{self.file}: a table of {rows.rows} rows; cubic splines need at least {_LEAST_ROWS}")
+        for line, (a, b) in zip(rows.lines[1:], pairwise(time), strict=True):
+            if b <= a:
+                raise wrong_file(f"{self.file}:{line}: times must increase, but {b:g} s follows {a:g} s; sort the rows")
+        return self
+
+    @cached_property
+    def columns(self) -> Columns:
+        """What the file holds."""
+        known = {"t": TIME, **dict.fromkeys("xyz", LENGTH), **dict.fromkeys(("rx", "ry", "rz"), ANGLE)}
+        return read_columns(self.file, known, required=("t", "x", "y", "z"))
+
+    @property
+    def displacements(self) -> list[Vector]:
+        """[x, y, z] [m] of each row."""
+        return list(zip(*(self.columns.get(name) for name in ("x", "y", "z")), strict=True))
+
+    @property
+    def rotations(self) -> list[Vector]:
+        """Rotation vector [rad] of each row."""
+        return list(zip(*(self.columns.get(name) for name in ("rx", "ry", "rz")), strict=True))
+
+
+class EndMotion(BaseModel):
+    """The prescribed motion of one end: one of harmonic, arc and table; rotation beside it or alone."""
+
+    model_config = FROZEN
+
+    harmonic: Harmonic | None = Field(
+        default=None, description="harmonic motion: amplitude, period, ramp, phase_deg"
+    )
+    arc: Arc | None = Field(
+        default=None, description="motion on an arc about a hub: hub, amplitude_deg, period, ramp, plane, phase_deg"
+    )
+    table: Table | None = Field(
+        default=None, description="motion from a CSV file: its name, or {file, ramp}"
+    )
+    rotation: Rotation | None = Field(
+        default=None, description="rotation of the support: axis, amplitude_deg, period, ramp, phase_deg"
+    )
+
+    @model_validator(mode="after")
+    def _moves_in_one_way(self) -> Self:
+        given = [key for key in ("harmonic", "arc", "table") if getattr(self, key) is not None]
+        if len(given) > 1:
+            raise wrong(given[1], f"the end moves by {given[0]} already", "leave one of the two out")
+        if not given and self.rotation is None:
+            raise wrong("harmonic", "there is no motion", "give harmonic, arc, table or rotation, or leave the end out")
+        if self.rotation and self.table and any(map(any, self.table.rotations)):
+            raise wrong("rotation", "the table has rotations already", "leave one of the two out")
+        return self
+
+
+class Motion(BaseModel):
+    """Prescribed motions of held ends."""
+
+    model_config = FROZEN
+
+    start: EndMotion | None = Field(default=None, description="motion of the start, {harmonic, arc or table}")
+    end: EndMotion | None = Field(default=None, description="motion of the end, {harmonic, arc or table}")
+
+    @property
+    def by_end(self) -> dict[str, EndMotion]:
+        """The motions given, by end."""
+        ends = {"start": self.start, "end": self.end}
+        return {key: motion for key, motion in ends.items() if motion is not None}
