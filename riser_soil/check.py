@@ -51,8 +51,7 @@ def _unknowns(world: World) -> Iterator[str]:
         cells = world.comm.allreduce(world.soil.blocks()["soil"].shape[0])
         yield f"soil: {cells} cells, {unknowns(world.comm, world.soil.field)} unknowns"
     for ground, stiffness in world.contact_stiffness.items():
-        name = "seabed" if ground == "plane" else ground
-        yield f"contact stiffness on the {name}: {stiffness:.4g} N/m2"
+        yield f"contact stiffness on the {ground}: {stiffness:.4g} N/m2"
 
 
 def _memory_line(world: World) -> str:

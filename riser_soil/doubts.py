@@ -71,7 +71,7 @@ def _lying(world: World) -> IntArray:
     """Nodes that lie on the ground in the first shape."""
     heights = world.line.to_global(world.line.x)[:, 2]
     lowest = heights.min() + 1e-6 * world.line.arc[-1]
-    return np.flatnonzero(heights < lowest) if world.contact is not None else np.zeros(0, dtype=np.int64)
+    return np.flatnonzero(heights < lowest) if world.contacts else np.zeros(0, dtype=np.int64)
 
 
 def _nothing_below(world: World) -> Iterator[str]:

@@ -12,7 +12,7 @@ from riser_soil.arrays import Array
 from riser_soil.errors import SolveError
 from riser_soil.mass import RiserMass
 from riser_soil.newton import Newton, NotConvergedError, Solution, Step
-from riser_soil.part import Energy, Forces, State
+from riser_soil.part import Energy, Forces, Impulsive, State
 from riser_soil.stepping import StepControl
 from riser_soil.system import System, total
 from riser_soil.time_scheme import GeneralizedAlpha, Scheme, Static
@@ -65,8 +65,8 @@ class March:
         owners = (*system.model.fields, *system.model.parts)
         self._foreseeing = [owner for owner in owners if isinstance(owner, Foreseeing)]
         self._adaptive = [part for part in system.model.parts if isinstance(part, Adaptive)]
-        beyond_riser = any(set(part.blocks()) - {"riser"} for part in system.model.parts)
-        self._contact = system.comm.allreduce(beyond_riser, MPI.LOR)
+        mine = any(isinstance(part, Impulsive) for part in system.model.parts)
+        self._contact = system.comm.allreduce(mine, MPI.LOR)
         self.before = self.now = before
         self.restart()
         if isinstance(scheme, GeneralizedAlpha):

@@ -128,26 +128,27 @@ def riser_snapshot(world: World, march: March) -> RiserSnapshot:
 
 
 def _on_nodes(world: World, march: March) -> Array:
-    """Residual (nn, ndof) of what acts on nodes but isn't a support: contact, and loads at nodes."""
+    """Residual (nn, ndof) of what acts on nodes but isn't a support: contact with soil, and loads at nodes."""
     forces = Forces.zeros(march.now.u.size)
-    if world.contact is not None:
-        world.contact.residual(march.now, forces)
+    if world.soil_contact is not None:
+        world.soil_contact.residual(march.now, forces)
     loads = [p.nodal_forces(march.now) for p in march.system.model.parts if isinstance(p, HasNodalForces)]
     return np.asarray(sum(loads, world.line.nodal(forces.end)))
 
 
 def _contact_force(world: World, state: State) -> Array:
-    if world.contact is None:
-        return np.zeros(world.line.nodes)
-    return world.contact.force_per_length(state)
+    forces = (contact.force_per_length(state) for contact in world.contacts)
+    return np.asarray(sum(forces, np.zeros(world.line.nodes)))
 
 
 def touch(world: World, state: State) -> Touch:
-    """Where the riser touches the seabed, on the rank that holds contact."""
-    if world.contact is None:
-        return Touch(float("nan"), 0.0, np.zeros(3))
-    contact = world.contact
-    return Touch(contact.touchdown_arc(state), contact.max_penetration(state), contact.force_on_riser(state))
+    """Where the riser touches the ground, on the rank that holds contact."""
+    arcs = [arc for contact in world.contacts if np.isfinite(arc := contact.touchdown_arc(state))]
+    return Touch(
+        max(arcs, default=float("nan")),
+        max((contact.max_penetration(state) for contact in world.contacts), default=0.0),
+        np.asarray(sum((contact.force_on_riser(state) for contact in world.contacts), np.zeros(3))),
+    )
 
 
 def facts(world: World) -> RunFacts:

@@ -12,7 +12,7 @@ A residual has no memory: it depends on the trial state alone. History changes o
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -132,6 +132,13 @@ class Part(Protocol):
     def commit(self, state: State) -> None:
         """Accept the step: keep its configuration and history; increments restart from zero."""
         ...
+
+
+@runtime_checkable
+class Impulsive(Protocol):
+    """A part in group E whose forces on the riser may jump from step to step, as where it lands."""
+
+    impulsive: bool
 
 
 class Field(Protocol):

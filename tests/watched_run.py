@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from riser_soil.arrays import Array
-from riser_soil.contact.contact import Contact
+from riser_soil.contact.seabed_contact import SeabedContact
+from riser_soil.contact.soil_contact import SoilContact
 from riser_soil.march import Accepted
 from riser_soil.part import State
 from riser_soil.run import run
@@ -20,7 +21,7 @@ from tests.driven_stage import before_commit
 
 @dataclass(frozen=True)
 class StepFacts:
-    """One accepted step; J, N. dissipated: by contact and by the soil in this step."""
+    """One accepted step; J, N. dissipated: by contacts and by the soil in this step."""
 
     static: bool
     t: float
@@ -61,8 +62,8 @@ def watched_run(scene: Scene, folder: Path, at_each: Callable[[], None] | None =
 def _facts(system: System, step: Accepted) -> StepFacts:
     after = step.solution.state
     before = State.at_rest(0.0, after.u.size)
-    turned = {p.name: p.work(before, after) for p in system.model.parts if p.name in ("contact", "soil")}
-    contact = [p for p in system.model.parts if isinstance(p, Contact)]
+    turned = {p.name: p.work(before, after) for p in system.model.parts if p.name in ("contact", "seabed", "soil")}
+    contact = [p for p in system.model.parts if isinstance(p, SoilContact | SeabedContact)]
     return StepFacts(
         static=not after.a.any(),
         t=step.t,

@@ -19,11 +19,11 @@ from riser_soil.scene.soil import LinearElastic, MeshFile
 from riser_soil.scene.soil import Soil as SoilScene
 
 if TYPE_CHECKING:
-    from riser_soil.contact.contact import Contact
-    from riser_soil.seabed.plane import Plane
+    from riser_soil.build.world import World
+    from riser_soil.contact.seabed_contact import SeabedContact
+    from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.soil.grid import Grid
     from riser_soil.soil.soil import Soil
-    from riser_soil.soil.surface import Surface
 
 NOMINAL_DIAMETER = 0.1  # m, for stiffness and footprint of the contact of a line without an outer diameter
 
@@ -69,32 +69,36 @@ def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Gr
     )
 
 
-def contact_of(
-    scene: Scene,
-    settings: ContactScene,
-    line: Line,
-    elements: Elements,
-    surface: Surface | None,
-    stiffness: dict[str, float],
-    active: bool,
-) -> Contact:
-    """Contact of the riser with all grounds of the scene.
-
-    stiffness [N/m2]: by ground, from `stiffnesses`. active: whether this rank evaluates contact.
-    """
-    from riser_soil.contact.contact import FOOTPRINT, Contact
+def soil_contact_of(scene: Scene, settings: ContactScene, world: World) -> SoilContact:
+    """Contact of the riser with the soil; evaluated on the first rank."""
     from riser_soil.contact.law import Penalty
+    from riser_soil.contact.soil_contact import FOOTPRINT, SoilContact
 
-    outer_radius = float(_at_nodes(0.5 * elements.outer_diameter).mean()) or 0.5 * NOMINAL_DIAMETER
-    return Contact(
-        line,
-        _at_nodes(contact_radius(scene, elements)),
-        plane=_plane(scene, stiffness, settings.smoothing),
-        surface=surface,
-        penalty=Penalty(stiffness["soil"], settings.smoothing) if surface is not None else None,
+    assert world.soil is not None
+    outer_radius = float(_at_nodes(0.5 * world.elements.outer_diameter).mean()) or 0.5 * NOMINAL_DIAMETER
+    return SoilContact(
+        world.line,
+        _at_nodes(contact_radius(scene, world.elements)),
+        world.soil.surface,
+        Penalty(world.contact_stiffness["soil"], settings.smoothing),
         footprint=FOOTPRINT * outer_radius,  # also where the axis touches: a single point finds no balance on a kink
-        along=line.direction[:2],
-        active=active,
+        along=world.line.direction[:2],
+        active=world.line.active,
+    )
+
+
+def seabed_contact_of(scene: Scene, settings: ContactScene, world: World) -> SeabedContact:
+    """Contact of the riser with the seabed, beside the soil where there is one."""
+    from riser_soil.contact.law import Penalty
+    from riser_soil.contact.seabed_contact import SeabedContact
+    from riser_soil.seabed.grounds import Plane
+
+    return SeabedContact(
+        world.line,
+        contact_radius(scene, world.elements),
+        Plane.level(scene.seabed_level),
+        Penalty(world.contact_stiffness["seabed"], settings.smoothing),
+        covered=world.soil_contact.covers if world.soil_contact is not None else None,
     )
 
 
@@ -116,7 +120,7 @@ def stiffnesses(scene: Scene, settings: ContactScene, elements: Elements, weight
         automatic = settings.stiffness == "auto"
         out[ground] = automatic_stiffness(E, weight, size) if automatic else float(settings.stiffness)
     if isinstance(scene.seabed, SpringSeabed):
-        out["plane"] = scene.seabed.stiffness
+        out["seabed"] = scene.seabed.stiffness
     return out
 
 
@@ -125,15 +129,10 @@ def _penalty_grounds(scene: Scene) -> Iterator[tuple[str, float | None]]:
     if scene.soil is not None:
         yield "soil", surface_modulus(scene.soil)
     if isinstance(scene.seabed, RigidSeabed):
-        yield "plane", None
+        yield "seabed", None
 
 
 def surface_modulus(soil: SoilScene) -> float:
     """Young's modulus at the soil's surface [Pa]."""
     return soil.law.E if isinstance(soil.law, LinearElastic) else soil.law.E_over_su * soil.law.su
 
-
-def _plane(scene: Scene, stiffness: dict[str, float], smoothing: float) -> Plane | None:
-    from riser_soil.seabed.plane import Plane
-
-    return Plane(scene.seabed.level, stiffness["plane"], smoothing) if scene.seabed is not None else None

@@ -20,7 +20,8 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage
 
 if TYPE_CHECKING:
-    from riser_soil.contact.contact import Contact
+    from riser_soil.contact.seabed_contact import SeabedContact
+    from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.riser.attachments import Attachment
     from riser_soil.soil.soil import Soil
 
@@ -30,11 +31,11 @@ LEAST_WEIGHT = 1e-6  # of EA/L: stands for the weight of a line that has none
 
 @dataclass(eq=False)
 class World:
-    """A scene's fields and lasting parts; soil and contact are None where the scene has none.
+    """A scene's fields and lasting parts; what the scene lacks is None.
 
     attachments: point masses and buoyancy modules on the line; their weight less buoyancy is among `riser_parts`.
     horizontal_tension [N]: of the initial catenary, None for other first shapes.
-    contact_stiffness [N/m2]: force per length and penetration, by ground (soil, plane).
+    contact_stiffness [N/m2]: force per length and penetration, by ground (soil, seabed).
     """
 
     scene: Scene
@@ -45,13 +46,19 @@ class World:
     horizontal_tension: float | None
     attachments: tuple[Attachment, ...] = ()
     soil: Soil | None = None
-    contact: Contact | None = None
+    soil_contact: SoilContact | None = None
+    seabed: SeabedContact | None = None
     contact_stiffness: dict[str, float] = field(default_factory=dict)
 
     @property
     def fields(self) -> list[Field]:
         soil: list[Field] = [self.soil.field, self.soil.surface] if self.soil is not None else []
         return [self.line, *soil]
+
+    @property
+    def contacts(self) -> list[SoilContact | SeabedContact]:
+        """What the riser may touch."""
+        return [contact for contact in (self.soil_contact, self.seabed) if contact is not None]
 
     @property
     def size(self) -> int:
@@ -76,8 +83,8 @@ class World:
         if isinstance(stage, DynamicStage):
             parts += dynamic_parts(self.line, self.elements, self.attachments)
         parts += sea_loads(self.scene, self.line, self.elements, stage)
-        parts += [p for p in (self.soil, self.contact) if p is not None]
-        return Model(self.fields, parts)
+        soil = [self.soil] if self.soil is not None else []
+        return Model(self.fields, [*parts, *soil, *self.contacts])
 
 
 def build(scene: Scene, comm: MPI.Intracomm) -> World:
@@ -97,10 +104,9 @@ def _add_ground(world: World) -> None:
 
     scene, settings = world.scene, world.scene.contact
     assert settings is not None
+    world.contact_stiffness = ground.stiffnesses(scene, settings, world.elements, world.weight)
     if scene.soil is not None:
         world.soil = ground.soil_of(scene, scene.soil, world.line, world.comm)
-    surface = world.soil.surface if world.soil is not None else None
-    world.contact_stiffness = ground.stiffnesses(scene, settings, world.elements, world.weight)
-    world.contact = ground.contact_of(
-        scene, settings, world.line, world.elements, surface, world.contact_stiffness, world.comm.rank == 0
-    )
+        world.soil_contact = ground.soil_contact_of(scene, settings, world)
+    if scene.seabed is not None:
+        world.seabed = ground.seabed_contact_of(scene, settings, world)

@@ -15,8 +15,7 @@ from riser_soil.contact.ground import ContactPoints, Soil
 from riser_soil.contact.law import Penalty
 from riser_soil.part import State
 
-PLANE, SOIL = "contact.plane", "contact.soil"
-NONE = -1
+SOIL = "contact.soil"
 
 
 class RiserNodes(Protocol):
@@ -48,14 +47,12 @@ class RiserNodes(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Touching:
-    """Contact points that carry force on one ground; n points, nr dofs each, the riser's d translations
-    first.
+    """Contact points that carry force; n points, nr dofs each, the riser's d translations first.
 
-    node, facet (n,): facet −1 on a plane. length (n,): of riser [m]. penetration (n,) [m]. rows (n, nr):
-    local dofs. forms (n, 5, nr), H (n, 2, 2): derivatives of the gap, see `gap`.
+    node, facet (n,). length (n,): of riser [m]. penetration (n,) [m]. rows (n, nr): local dofs. forms (n, 5, nr),
+    H (n, 2, 2): derivatives of the gap, see `gap`.
     """
 
-    key: str
     law: Penalty
     node: IntArray
     facet: IntArray
@@ -100,77 +97,40 @@ class Encounter:
     facet: IntArray
     gap: Array
     surface: Array
-    touching: list[Touching]
-
-    @property
-    def potential(self) -> float:
-        return sum(t.potential for t in self.touching)
+    touching: Touching
 
 
 class Grounds:
-    """Riser, soil and plane, and the laws by which they push: `meet` brings them together at a state.
+    """Riser and soil, and the law by which they push: `meet` brings them together at a state.
 
-    laws: the penalty law of each ground that exists, by its key. level: height of the plane [m]. radius
-    (nn,): [m] from the axis to the line that touches. near: height [m] over the highest ground up to which
+    radius (nn,): [m] from the axis to the line that touches. near: height [m] over the soil's highest point up to which
     nodes are looked at.
     """
 
     def __init__(
-        self,
-        riser: RiserNodes,
-        radius: Array,
-        points: ContactPoints,
-        laws: dict[str, Penalty],
-        level: float,
-        soil: Soil | None,
-        near: float,
+        self, riser: RiserNodes, radius: Array, points: ContactPoints, law: Penalty, soil: Soil, near: float
     ) -> None:
         self._riser, self._radius, self._points = riser, radius, points
-        self._laws, self._level, self._soil, self._near = laws, level, soil, near
+        self._law, self._soil, self._near = law, soil, near
 
     def meet(self, state: State) -> Encounter:
         """Gaps at a state, and forces where the riser touches."""
-        x = self._riser.positions3(state)
-        surface = np.empty((0, 3)) if self._soil is None else self._soil.deformed(state)
-        ceiling = max(self._level, surface[:, 2].max(initial=-np.inf))
-        points = self._points.of_chosen(x[:, 2] - self._radius < ceiling + self._near)
-        facet, xi, soil_height = self._soil_below(x[points.node, :2] + points.offset, surface)
-        ground = np.where(facet >= 0, soil_height, self._level)
+        x, surface = self._riser.positions3(state), self._soil.deformed(state)
+        points = self._points.of_chosen(x[:, 2] - self._radius < surface[:, 2].max() + self._near)
+        facet, xi = self._soil.locate(x[points.node, :2] + points.offset, surface)
+        ground = heights(facet, xi, self._soil.facets, surface)
         gap = x[points.node, 2] - self._radius[points.node] - ground
-        encounter = Encounter(state, points, facet, gap, surface, [])
-        for key, law in self._laws.items():
-            on_this = (facet >= 0) == (key == SOIL)
-            at = np.flatnonzero(on_this & (gap < law.smoothing))
-            encounter.touching.append(self._touch(key, law, encounter, at, xi[at]))
-        return encounter
+        at = np.flatnonzero(gap < self._law.smoothing)
+        return Encounter(state, points, facet, gap, surface, self._touch(points, facet, gap, surface, at, xi[at]))
 
-    def starts(self, facet: IntArray) -> Array:
-        """Gap [m] at which the force begins, over soil (facet ≥ 0) and over the plane."""
-        soil, plane = (self._laws[k].smoothing if k in self._laws else 0.0 for k in (SOIL, PLANE))
-        return np.where(facet >= 0, soil, plane)
-
-    def _soil_below(self, xy: Array, surface: Array) -> tuple[IntArray, Array, Array]:
-        if self._soil is None:
-            return np.full(len(xy), NONE), np.zeros((len(xy), 2)), np.zeros(len(xy))
-        facet, xi = self._soil.locate(xy, surface)
-        return facet, xi, heights(facet, xi, self._soil.facets, surface)
-
-    def _touch(self, key: str, law: Penalty, met: Encounter, at: IntArray, xi: Array) -> Touching:
-        node, facet = met.points.node[at], met.facet[at]
-        rows = self._riser.translation_dofs[node]
-        if key == SOIL and self._soil is not None:
-            forms, H = gap_forms(facet, xi, self._soil.facets, met.surface)
-            forms = np.concatenate((forms[:, :, :3] @ self._riser.basis, forms[:, :, 3:]), axis=2)
-            rows = np.hstack((rows, self._soil.facet_dofs(facet)))
-        else:
-            forms, H = self._level_forms(len(at)), np.zeros((len(at), 2, 2))
-        return Touching(key, law, node, facet, met.points.length[at], -met.gap[at], rows, forms, H)
-
-    def _level_forms(self, n: int) -> Array:
-        """On a plane the gap grows with the height alone."""
-        forms = np.zeros((n, 5, self._riser.basis.shape[1]))
-        forms[:, 0] = self._riser.basis[2]
-        return forms
+    def _touch(
+        self, points: ContactPoints, facet: IntArray, gap: Array, surface: Array, at: IntArray, xi: Array
+    ) -> Touching:
+        node, below = points.node[at], facet[at]
+        forms, H = gap_forms(below, xi, self._soil.facets, surface)
+        forms = np.concatenate((forms[:, :, :3] @ self._riser.basis, forms[:, :, 3:]), axis=2)
+        rows = np.hstack((self._riser.translation_dofs[node], self._soil.facet_dofs(below)))
+        return Touching(self._law, node, below, points.length[at], -gap[at], rows, forms, H)
 
 
 @njit

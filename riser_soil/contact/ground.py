@@ -91,6 +91,11 @@ class Soil:
         u = state.u[s.offset : s.offset + s.size].reshape(-1, 3)
         return np.asarray(s.points + s.committed + u)
 
+    @property
+    def settled(self) -> Array:
+        """Points (np, 3) of the surface as accepted so far [m]."""
+        return np.asarray(self._surface.points + self._surface.committed)
+
     def locate(self, xy: Array, points: Array) -> tuple[IntArray, Array]:
         """Facet (n,), −1 outside, and place on it (n, 2) below positions xy (n, 2), at deformed points."""
         return self._pairing.locate(xy, points)

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array, IntArray
+from riser_soil.arrays import Array, BoolArray, IntArray
 from riser_soil.contact.law import NormalLaw
 from riser_soil.contact.touchdown import touchdown
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
 from riser_soil.riser.trial import Trial
-from riser_soil.seabed.grounds import Ground
+from riser_soil.seabed.grounds import Distance, Ground
+
+Covered = Callable[[Array], BoolArray]
+"""Horizontal positions (n, 2) [m] -> whether something other than the seabed lies there, such as a block of soil."""
 
 
 class Touching(NamedTuple):
@@ -45,17 +49,24 @@ class SeabedContact:
 
     line: the riser's field. radius (ne,): distance [m] from the axis to the line that touches, 0 for the axis itself.
     rule: the stations of an element, Gauss points by default; its two ends make it the classical contact of nodes.
+    covered: where the seabed does not act.
     """
 
     name = "seabed"
     symmetric = True
-    at_end = True
+    impulsive = True
 
     def __init__(
-        self, line: Line, radius: Array, ground: Ground, law: NormalLaw, rule: stations.Rule = stations.THREE_POINTS
+        self,
+        line: Line,
+        radius: Array,
+        ground: Ground,
+        law: NormalLaw,
+        rule: stations.Rule = stations.THREE_POINTS,
+        covered: Covered | None = None,
     ) -> None:
         self.line, self.ground, self.law = line, ground, law
-        self._radius = radius
+        self._radius, self._covered = radius, covered
         self._at = stations.stations(line.length, rule)
         self._share = line.length[:, None] * rule.weights
         self._arc = line.arc[:-1, None] + line.length[:, None] * rule.points
@@ -69,7 +80,7 @@ class SeabedContact:
 
     def _see(self, trial: Trial) -> Seen:
         x = stations.interpolate(self._at, trial.q)
-        value, gradient, hessian = self.ground.distance(self.line.to_global(x).reshape(-1, 3))
+        value, gradient, hessian = self._distance(self.line.to_global(x).reshape(-1, 3))
         penetration = self._radius[:, None] - value.reshape(x.shape[:2])
         touched = self.law.touched(penetration, self._history).any(axis=1)
         at = np.flatnonzero(touched)
@@ -80,6 +91,13 @@ class SeabedContact:
             local = self.line.basis.T @ hessian @ self.line.basis
             bend = local.reshape(*x.shape, x.shape[2])[at]
         return Seen(x, penetration, Touching(at, force, slope, away, bend, -force[..., None] * away))
+
+    def _distance(self, x: Array) -> Distance:
+        """From the ground, inf where something else covers it; x (n, 3) in global axes."""
+        found = self.ground.distance(x)
+        if self._covered is None:
+            return found
+        return found._replace(value=np.where(self._covered(x[:, :2]), np.inf, found.value))
 
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}
@@ -189,7 +207,7 @@ class SeabedContact:
 
     def _clearance(self, trial: Trial) -> Array:
         """Gap (nn,) of the nodes less that at which the force begins [m]."""
-        value = self.ground.distance(self.line.to_global(trial.x)).value
+        value = self._distance(self.line.to_global(trial.x)).value
         return value - nodal_radius(self._radius) - self.law.start
 
 

@@ -10,13 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from riser_soil.arrays import Array, IntArray
-from riser_soil.contact.contact import Contact, Reach
 from riser_soil.contact.law import Penalty
+from riser_soil.contact.soil_contact import Reach, SoilContact
 from riser_soil.part import Forces, State, Weights
-from riser_soil.seabed.plane import Plane
 
 LAW = Penalty(stiffness=2.0e5, smoothing=1e-3)
-FLOOR = Plane(level=0.0, stiffness=5.0e4, smoothing=1e-3)
 WEIGHTS = Weights(inertia=0.0, force=0.0, shift_v=0.0, shift_a=0.0)
 RADIUS = 0.15
 FOOTPRINT = 0.04
@@ -93,40 +91,31 @@ def in_plane(angle: float = 0.0) -> Array:
 
 @dataclass
 class Case:
-    """A riser over a surface and a plane; dofs of another field lie between them."""
+    """A riser over a surface; dofs of another field lie between them."""
 
     riser: Nodes
-    surface: Top | None
-    contact: Contact
+    surface: Top
+    contact: SoilContact
 
     @classmethod
     def build(
         cls,
         riser: Nodes,
-        surface: Top | None,
-        plane: Plane | None = None,
+        surface: Top,
         footprint: float = FOOTPRINT,
         along: Array | None = None,
     ) -> Case:
         riser.offset = 2
-        if surface is not None:
-            surface.offset = 2 + riser.size + 3
+        surface.offset = 2 + riser.size + 3
         radius = np.full(len(riser.position), RADIUS)
-        contact = Contact(
-            riser,
-            radius,
-            plane=plane,
-            surface=surface,
-            penalty=LAW,
-            footprint=footprint,
-            along=along,
-            reach=Reach(0.5, 0.3),
+        contact = SoilContact(
+            riser, radius, surface, LAW, footprint=footprint, along=along, reach=Reach(0.5, 0.3)
         )
         return cls(riser, surface, contact)
 
     @property
     def size(self) -> int:
-        return self.riser.offset + self.riser.size + (3 + self.surface.size if self.surface else 0)
+        return self.riser.offset + self.riser.size + 3 + self.surface.size
 
     def state(self, u: Array | None = None) -> State:
         z = np.zeros(self.size)
@@ -161,7 +150,7 @@ def deformed_case(kind: str, dimension: int, footprint: float = FOOTPRINT) -> Ca
     x = np.linspace(-0.77, 3.61, 12)
     basis = in_plane(0.1) if dimension == 2 else np.eye(3)
     position = np.column_stack([x, 0.1 * x - 0.03, np.full(12, RADIUS - 0.02)])
-    return Case.build(Nodes(position, basis), surface, FLOOR, footprint)
+    return Case.build(Nodes(position, basis), surface, footprint)
 
 
 def small(case: Case, size: float = 2e-3, seed: int = 1) -> Array:
@@ -189,10 +178,7 @@ def test_tangent_is_the_residuals_derivative(kind: str, dimension: int, footprin
     u = small(case)
     K = case.dense_tangent(u)
     assert not case.contact.outgrown
-    assert {t.key: len(t.node) > 0 for t in case.contact.meet(case.state(u)).touching} == {
-        "contact.plane": True,
-        "contact.soil": True,
-    }
+    assert len(case.contact.meet(case.state(u)).touching.node) > 4
     np.testing.assert_allclose(K, differences(case, u), atol=1e-7 * abs(K).max())
     np.testing.assert_allclose(K, K.T, atol=1e-14 * abs(K).max())
 
@@ -201,7 +187,7 @@ def test_tangent_is_the_residuals_derivative(kind: str, dimension: int, footprin
 def test_tangent_needs_the_gaps_second_derivative(kind: str) -> None:
     case = deformed_case(kind, 3)
     state = case.state(small(case))
-    soil = case.contact.meet(state).touching[-1]
+    soil = case.contact.meet(state).touching
     slope = soil.length * soil.law.slope(soil.penetration)
     gradient = soil.forms[:, 0]
     first = slope[:, None, None] * gradient[:, :, None] * gradient[:, None, :]
@@ -227,9 +213,7 @@ def test_residual_is_the_potentials_gradient(kind: str, dimension: int) -> None:
 @DIMENSIONS
 def test_forces_balance_to_round_off(kind: str, dimension: int) -> None:
     case = deformed_case(kind, dimension)
-    case.contact = Contact(
-        case.riser, np.full(12, RADIUS), surface=case.surface, penalty=LAW, footprint=FOOTPRINT
-    )
+    case.contact = SoilContact(case.riser, np.full(12, RADIUS), case.surface, LAW, footprint=FOOTPRINT)
     state = case.state(small(case))
     on_riser, on_soil = case.contact.force_on_riser(state), case.contact.force_on_soil(state)
     assert on_riser[2] > 100.0
@@ -243,7 +227,7 @@ def test_the_footprint_follows_the_riser_in_space_as_in_a_plane() -> None:
     def forces(basis: Array, along: Array | None) -> Array:
         y = np.linspace(-0.8, 0.8, 6)
         position = np.column_stack([np.full(6, 1.3), y, np.full(6, RADIUS - 0.02)])
-        case = Case.build(Nodes(position, basis), deformed_case("quad4", 3).surface, FLOOR, along=along)
+        case = Case.build(Nodes(position, basis), deformed_case("quad4", 3).surface, along=along)
         return case.contact.force_per_length(case.state())
 
     planar = forces(in_plane(0.5 * np.pi), None)
@@ -260,45 +244,36 @@ def test_force_on_riser_is_minus_its_residual() -> None:
     )
 
 
-def level_case(depth: Array, surface: Top | None, plane: Plane | None, basis: Array | None = None) -> Case:
+def level_case(depth: Array, surface: Top, basis: Array | None = None) -> Case:
     """A level row of nodes over x = 0.25, 0.75, …, each sunk in by its depth [m]."""
     n = len(depth)
     position = np.column_stack([0.25 + 0.5 * np.arange(n), np.zeros(n), RADIUS - depth])
-    return Case.build(Nodes(position, np.eye(3) if basis is None else basis), surface, plane)
+    return Case.build(Nodes(position, np.eye(3) if basis is None else basis), surface)
 
 
+@KINDS
 @pytest.mark.parametrize("basis", [np.eye(3), in_plane()])
-def test_flat_soil_and_plane_give_the_law_itself(basis: Array) -> None:
+def test_flat_soil_gives_the_law_itself(kind: str, basis: Array) -> None:
     depth = np.array([0.01, 0.002, 0.0, -0.01])
-    soft = Plane(0.0, LAW.stiffness, LAW.smoothing)
-    for surface, plane in ((top("quad4"), None), (top("tri6"), soft), (None, soft)):
-        case = level_case(depth, surface, plane, basis)
-        state = case.state()
-        np.testing.assert_allclose(case.contact.force_per_length(state), LAW.force(depth), rtol=1e-10)
-        total = float(case.riser.tributary_length @ LAW.force(depth))
-        np.testing.assert_allclose(case.contact.force_on_riser(state), [0.0, 0.0, total], atol=1e-9)
-        assert case.contact.max_penetration(state) == pytest.approx(0.01, rel=1e-12)
+    case = level_case(depth, top(kind), basis)
+    state = case.state()
+    np.testing.assert_allclose(case.contact.force_per_length(state), LAW.force(depth), rtol=1e-10)
+    total = float(case.riser.tributary_length @ LAW.force(depth))
+    np.testing.assert_allclose(case.contact.force_on_riser(state), [0.0, 0.0, total], atol=1e-9)
+    assert case.contact.max_penetration(state) == pytest.approx(0.01, rel=1e-12)
 
 
-def test_plane_acts_outside_the_block_only() -> None:
-    """The block's middle has settled; nodes over it find the settled surface, the others the plane."""
+def test_nothing_bears_nodes_beside_the_block() -> None:
+    """The block's middle has settled; nodes over it find the settled surface, the others nothing."""
     surface = top("quad4", nx=4)
     surface.committed[:, 2] = -0.01
-    depth = np.full(8, 0.012)
-    case = level_case(depth, surface, FLOOR)
+    case = level_case(np.full(8, 0.012), surface)
     force = case.contact.force_per_length(case.state())
-    expected = np.where(
-        np.arange(8) < 4, LAW.force(np.array(0.002)), Penalty(FLOOR.stiffness, FLOOR.smoothing).force(depth)
-    )
+    expected = np.where(np.arange(8) < 4, LAW.force(np.array(0.002)), 0.0)
     np.testing.assert_allclose(force, expected, rtol=1e-9)
-    assert case.contact.force_on_soil(case.state())[2] == pytest.approx(
-        -0.5 * 3.5 * LAW.force(np.array(0.002))
-    )
-
-
-def test_no_plane_no_force_outside_the_block() -> None:
-    case = level_case(np.full(8, 0.012), top("quad4", nx=4), None)
-    np.testing.assert_array_equal(case.contact.force_per_length(case.state())[4:], 0.0)
+    assert case.contact.force_on_soil(case.state())[2] == pytest.approx(-0.5 * 3.5 * LAW.force(np.array(0.002)))
+    xy = case.riser.position[:, :2]
+    np.testing.assert_array_equal(case.contact.covers(xy), np.arange(8) < 4)
 
 
 def test_node_over_a_valley_of_the_mesh_feels_no_side_force() -> None:
@@ -308,20 +283,20 @@ def test_node_over_a_valley_of_the_mesh_feels_no_side_force() -> None:
     side = {}
     for footprint in (0.0, FOOTPRINT):
         position = np.array([[1.0, 0.0, RADIUS - 0.01], [1.5, 0.0, RADIUS - 0.01]])
-        case = Case.build(Nodes(position, np.eye(3)), surface, None, footprint)
+        case = Case.build(Nodes(position, np.eye(3)), surface, footprint)
         side[footprint] = abs(case.contact.force_on_riser(case.state())[1])
     assert side[0.0] > 10.0
     assert side[FOOTPRINT] < 1e-10
 
 
 def test_weightless_groups_and_inactive_ranks() -> None:
-    case = level_case(np.full(4, 0.01), top("quad4"), FLOOR)
+    case = level_case(np.full(4, 0.01), top("quad4"))
     forces = Forces.zeros(case.size)
     case.contact.residual(case.state(), forces)
     assert abs(forces.end).max() > 0.0
     assert not forces.inertia.any()
     assert not forces.force.any()
-    idle = Contact(case.riser, np.full(4, RADIUS), plane=FLOOR, penalty=LAW, active=False)
+    idle = SoilContact(case.riser, np.full(4, RADIUS), case.surface, LAW, active=False)
     idle.rebuild(case.state())
     assert idle.blocks() == {}
     assert idle.energy(case.state()).potential == 0.0
@@ -334,9 +309,8 @@ depths = st.lists(st.floats(-0.01, 0.02), min_size=4, max_size=4)
 @settings(max_examples=60, deadline=None)
 @given(before=depths, after=depths, sunk=st.lists(st.floats(-0.01, 0.01), min_size=4, max_size=4))
 def test_vertical_steps_never_gain_energy(before: list[float], after: list[float], sunk: list[float]) -> None:
-    """Riser and soil move vertically, on soil (three nodes) and plane (the fourth)."""
-    case = level_case(np.array(before), top("quad4", nx=3), FLOOR)
-    assert case.surface is not None
+    """Riser and soil move vertically; two nodes of four are over it."""
+    case = level_case(np.array(before), top("quad4", nx=2))
     u = np.zeros(case.size)
     u[case.riser.translation_dofs[:, 2]] = np.array(before) - np.array(after)
     heights = np.resize(sunk, len(case.surface.points))
@@ -350,14 +324,15 @@ def test_vertical_steps_never_gain_energy(before: list[float], after: list[float
 
 
 def test_pattern_is_outgrown_and_rebuilt() -> None:
-    case = level_case(np.array([0.01, 0.01, -1.0, -1.0, 0.01]), top("quad4", nx=4), FLOOR)
-    assert case.contact.blocks()["contact.plane"].shape == (3, 3, 3)
+    case = level_case(np.array([0.01, 0.01, -1.0, -1.0, 0.01]), top("quad4", nx=4))
+    pairs = case.contact.blocks()["contact.soil"].shape[0]
     u = np.zeros(case.size)
     u[case.riser.translation_dofs[2, 2]] = -1.01
     np.testing.assert_array_equal(case.dense_tangent(u), case.dense_tangent(np.zeros(case.size)))
     assert case.outgrows(u)
     case.contact.rebuild(case.state())
     assert not case.outgrows(u), "the node that was missed belongs to the new pattern"
+    assert case.contact.blocks()["contact.soil"].shape[0] > pairs
     K = case.dense_tangent(u)
     np.testing.assert_allclose(K, differences(case, u), atol=1e-7 * abs(K).max())
     case.contact.rebuild(case.state())
@@ -367,7 +342,7 @@ def test_pattern_is_outgrown_and_rebuilt() -> None:
 
 
 def test_sliding_within_the_patch_keeps_the_pattern() -> None:
-    case = level_case(np.full(3, 0.01), top("quad4"), None)
+    case = level_case(np.full(3, 0.01), top("quad4"))
     assert case.contact.blocks()["contact.soil"].shape[1:] == (15, 15)
     u = np.zeros(case.size)
     u[case.riser.translation_dofs[:, 0]] = 0.45
@@ -377,18 +352,17 @@ def test_sliding_within_the_patch_keeps_the_pattern() -> None:
 
 
 def test_touchdown_is_interpolated_to_where_the_force_begins() -> None:
-    case = level_case(np.array([0.01, 0.003, -0.005, -0.2, -0.4]), None, FLOOR)
+    case = level_case(np.array([0.01, 0.003, -0.005, -0.2, -0.4]), top("quad4"))
     arc = case.contact.touchdown_arc(case.state())
     assert arc == pytest.approx(0.5 + 0.5 * (0.003 + 0.001) / (0.003 + 0.005))
-    turned = level_case(np.array([-0.4, -0.2, -0.005, 0.003, 0.01]), None, FLOOR)
+    turned = level_case(np.array([-0.4, -0.2, -0.005, 0.003, 0.01]), top("quad4"))
     assert turned.contact.touchdown_arc(turned.state()) == pytest.approx(2.0 - arc)
-    assert np.isnan(level_case(np.full(3, -0.1), None, FLOOR).contact.touchdown_arc(case.state()))
-    assert level_case(np.full(3, 0.1), None, FLOOR).contact.touchdown_arc(case.state()) == pytest.approx(1.0)
+    assert np.isnan(level_case(np.full(3, -0.1), top("quad4")).contact.touchdown_arc(case.state()))
+    assert level_case(np.full(3, 0.1), top("quad4")).contact.touchdown_arc(case.state()) == pytest.approx(1.0)
 
 
 def test_committed_settlement_counts_and_memory_is_dropped() -> None:
-    case = level_case(np.full(4, 0.01), top("quad4"), None)
-    assert case.surface is not None
+    case = level_case(np.full(4, 0.01), top("quad4"))
     state = case.state()
     force = case.contact.force_per_length(state)
     case.contact.commit(state)
@@ -410,8 +384,7 @@ def balance(kind: str, dimension: int, footprint: float) -> tuple[list[float], A
     """Newton's residual norms [N] and the force on the riser; weights press nodes into points of the mesh."""
     position = np.column_stack([0.5 * np.arange(1, 6), np.zeros(5), np.full(5, RADIUS)])
     basis = np.eye(3) if dimension == 3 else in_plane()
-    case = Case.build(Nodes(position, basis), top(kind), None, footprint)
-    assert case.surface is not None
+    case = Case.build(Nodes(position, basis), top(kind), footprint)
     rows, soil = case.riser.translation_dofs, slice(case.surface.offset, case.size)
     K, weight = np.zeros((case.size, case.size)), np.zeros(case.size)
     K[soil, soil] = soil_springs(case.surface, 1.2e6)
@@ -443,25 +416,16 @@ def test_one_point_on_a_kink_has_no_balance(kind: str) -> None:
 
 def test_default_footprint_is_an_eighth_of_the_diameter() -> None:
     case = deformed_case("quad4", 3)
-    contact = Contact(case.riser, np.full(12, RADIUS), surface=case.surface, penalty=LAW)
+    contact = SoilContact(case.riser, np.full(12, RADIUS), case.surface, LAW)
     np.testing.assert_allclose(
         contact.meet(case.state()).points.offset[:4, 1], RADIUS / 4 * np.array([-1, 1, -1, 1])
     )
 
 
 def test_riser_far_above_touches_nothing() -> None:
-    case = level_case(np.full(4, -20.0), top("quad4"), FLOOR)
+    case = level_case(np.full(4, -20.0), top("quad4"))
     assert not case.residual(np.zeros(case.size)).any()
-    assert {key: block.shape[0] for key, block in case.contact.blocks().items()} == {
-        "contact.plane": 0,
-        "contact.soil": 0,
-    }
+    assert {key: block.shape[0] for key, block in case.contact.blocks().items()} == {"contact.soil": 0}
     assert not case.outgrows(np.zeros(case.size))
     assert case.contact.max_penetration(case.state()) == 0.0
     assert np.isnan(case.contact.touchdown_arc(case.state()))
-
-
-def test_soil_without_a_law_is_refused() -> None:
-    case = deformed_case("quad4", 3)
-    with pytest.raises(ValueError, match="penalty"):
-        Contact(case.riser, np.full(12, RADIUS), surface=case.surface)

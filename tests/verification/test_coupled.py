@@ -39,8 +39,8 @@ class Laid:
         take(self.world, self.world.scene.stages[0], watch=keep)
 
     def contact(self, ask: Callable[..., Array]) -> Array:
-        assert self.world.contact is not None
-        return ask(self.world.contact)
+        assert self.world.soil_contact is not None
+        return ask(self.world.soil_contact)
 
     @property
     def weight(self) -> float:

@@ -46,9 +46,8 @@ class Case:
     @property
     def touched(self) -> dict[str, IntArray]:
         """Rows of the riser's and of the soil's dofs on which contact acts at x."""
-        assert self.world.contact is not None
-        touching = self.world.contact.meet(self.step.state(self.x)).touching
-        rows = np.concatenate([self.step.rows(t.rows.ravel()) for t in touching])
+        assert self.world.soil_contact is not None
+        rows = self.step.rows(self.world.soil_contact.meet(self.step.state(self.x)).touching.rows.ravel())
         return {
             "touched riser": np.intersect1d(rows, self.riser),
             "touched soil": np.intersect1d(rows, self.soil),

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from riser_soil.arrays import Array
-from riser_soil.contact.contact import Contact
 from riser_soil.march import Accepted
 from riser_soil.newton import Newton, Solution, Step
 from riser_soil.part import Forces, State, Weights
@@ -78,9 +77,9 @@ class Fall:
 
         def watch(system: System, step: Accepted) -> None:
             steps.append(step)
-            assert world.contact is not None
+            assert world.seabed is not None
             after = step.solution.state
-            taken = world.contact.work(State.at_rest(0.0, after.u.size), after).dissipated
+            taken = world.seabed.work(State.at_rest(0.0, after.u.size), after).dissipated
             self.least_dissipated_by_contact = min(self.least_dissipated_by_contact, taken)
 
         watcher = Watcher()
@@ -134,19 +133,19 @@ def test_step_that_makes_energy_out_of_nothing_is_cut(monkeypatch: pytest.Monkey
 
 def test_contact_averaged_with_the_pipe_would_gain_energy(monkeypatch: pytest.MonkeyPatch) -> None:
     """The cure is what keeps the energy: contact weighed as the pipe's other forces fails the same bound."""
-    at_the_end, exact = Contact.residual, Contact.tangent
+    at_the_end, exact = SeabedContact.residual, SeabedContact.tangent
 
-    def averaged(self: Contact, state: State, forces: Forces) -> None:
+    def averaged(self: SeabedContact, state: State, forces: Forces) -> None:
         at_the_end(self, state, Forces(forces.inertia, forces.force, end=forces.force))
 
-    def tangent(self: Contact, state: State, weights: Weights, values: dict[str, Array]) -> None:
+    def tangent(self: SeabedContact, state: State, weights: Weights, values: dict[str, Array]) -> None:
         own = {key: np.zeros_like(v) for key, v in values.items()}
         exact(self, state, weights, own)
         for key, value in own.items():
             values[key] += weights.force * value
 
-    monkeypatch.setattr(Contact, "residual", averaged)
-    monkeypatch.setattr(Contact, "tangent", tangent)
+    monkeypatch.setattr(SeabedContact, "residual", averaged)
+    monkeypatch.setattr(SeabedContact, "tangent", tangent)
     monkeypatch.setattr(GeneralizedAlpha, "split_contact", lambda self, state, contact, dt: state)
     monkeypatch.setattr("riser_soil.march.WRONG_ROOT", np.inf)  # or its steps would be cut
     scene = flat(1e8, 0.005)

@@ -65,7 +65,7 @@ def imported(name: str, folder: Path) -> set[str]:
 def test_without_soil_its_libraries_are_not_imported(name: str, tmp_path: Path) -> None:
     found = imported(name, tmp_path)
     assert not found & (FOR_SOIL | FOR_PICTURES | OWN_FOR_SOIL)
-    assert ("riser_soil.contact.contact" in found) == (name == "over springs")
+    assert ("riser_soil.contact.seabed_contact" in found) == (name == "over springs")
     assert ("riser_soil.sea.morison" in found) == (name != "hanging, static")
     assert ("riser_soil.riser.inertia" in found) == (name != "hanging, static")
     assert "riser_soil.riser.loads" not in found
@@ -119,8 +119,8 @@ def names(world: World, stage: int) -> list[str]:
 
 def test_static_stages_build_nothing_of_dynamics() -> None:
     world = built(touchdown(LAY, heave(0.2)))
-    assert names(world, 0) == ["riser", "soil", "contact"]
-    assert names(world, 1) == ["riser", "inertia", "morison", "soil", "contact"]
+    assert names(world, 0) == ["riser", "soil", "contact", "seabed"]
+    assert names(world, 1) == ["riser", "inertia", "morison", "soil", "contact", "seabed"]
 
 
 def test_without_water_nothing_of_the_sea() -> None:
@@ -130,7 +130,7 @@ def test_without_water_nothing_of_the_sea() -> None:
     world = built(scene)
     assert names(world, 1) == ["riser", "inertia"]
     assert world.soil is None
-    assert world.contact is None
+    assert world.contacts == []
 
 
 def test_symmetric_where_nothing_makes_it_unsymmetric() -> None:
