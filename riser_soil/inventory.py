@@ -32,6 +32,7 @@ def _reasons(scene: Scene) -> dict[str, str]:
         "loads": "" if any(s.loads for s in scene.stages) else "no stage has loads",
         "inertia": "" if has_dynamics(scene) else "all stages are static",
         "rotary inertia": _no_rotary_inertia(scene),
+        "structural damping": _no_structural_damping(scene),
         "morison": _no_morison(scene),
         "buoyancy": _no_buoyancy(scene),
         "seabed": "" if scene.seabed is not None else "the scene has no seabed",
@@ -49,6 +50,13 @@ def _no_rotary_inertia(scene: Scene) -> str:
         return "all stages are static"
     given = any(t.rotary_inertia for t in scene.used_line_types.values())
     return "" if given else "no line type has rotary inertia"
+
+
+def _no_structural_damping(scene: Scene) -> str:
+    if not has_dynamics(scene):
+        return "all stages are static"
+    damped = any(t.damping and t.damping.ratio for t in scene.used_line_types.values())
+    return "" if damped else "no line type has damping"
 
 
 def _no_morison(scene: Scene) -> str:

@@ -20,9 +20,11 @@ from riser_soil.record import Recorder
 from riser_soil.riser.section_forces import (
     HasElementForces,
     HasNodalForces,
+    HasViscousForces,
     element_residual,
     end_reactions,
     section_forces,
+    viscous_residual,
 )
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.stages import Stage, StaticStage
@@ -108,7 +110,8 @@ def riser_snapshot(world: World, march: March) -> RiserSnapshot:
     line, state = world.line, march.now
     parts = [p for p in march.system.model.parts if isinstance(p, HasElementForces)]
     residual = element_residual(line, parts, state)
-    inside = section_forces(line, world.elements, state, residual)
+    viscous = [p for p in parts if isinstance(p, HasViscousForces)]
+    inside = section_forces(line, world.elements, state, residual, viscous_residual(line, viscous, state))
     start, end = end_reactions(line, state, residual, _on_nodes(world, march))
     tangent = line.trial(state).turn.tangent @ line.basis.T
     return RiserSnapshot(

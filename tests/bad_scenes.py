@@ -101,6 +101,23 @@ VALUES = [
         "must be greater than 0",
     ),
     Bad("elements: 74", "elements: 0", 16, "riser.segments.0.elements", "0", "must be at least 1"),
+    Bad("    EA:", "    damping: 0.1\n    EA:", 9, "line_types.pipe.damping", "0.1", "with the keys ratio, frequency"),
+    Bad(
+        "    EA:",
+        "    damping: {ratio: 1.5, frequency: 1.0}\n    EA:",
+        9,
+        "line_types.pipe.damping.ratio",
+        "1.5",
+        "must be less than 1",
+    ),
+    Bad(
+        "    EA:",
+        "    damping: {ratio: 0.02}\n    EA:",
+        9,
+        "line_types.pipe.damping.frequency",
+        "missing",
+        "the key is required here",
+    ),
     Bad("    EA:", "    rotary_inertia: -2\n    EA:", 9, "line_types.pipe.rotary_inertia", "-2", "must be at least 0"),
     Bad(
         "    EA:",
@@ -435,7 +452,6 @@ CONFLICTS = [
 ]
 
 NOT_YET = [
-    Bad("    EA:", "    damping: 0.1\n    EA:", 9, "line_types.pipe.damping", "0.1", "not supported yet"),
     Bad("kind: spring", "kind: hysteretic", 20, "seabed.kind", '"hysteretic"', "not supported yet"),
     Bad("soil:\n", "soil:\n  inertia: true\n", 22, "soil.inertia", "true", "not supported yet"),
     Bad("method: node", "method: surface", 26, "contact.method", '"surface"', "not supported yet"),

@@ -22,6 +22,7 @@ class LineType:
     drag and added_mass: (normal, tangential) coefficients of Morison's formula, see
     `riser_soil.sea.morison_law`.
     rotary_inertia: kg m about an axis across the pipe; None computes it from masses and diameters.
+    damping: s, ratio of viscous to elastic stiffness.
     """
 
     EA: float
@@ -35,6 +36,7 @@ class LineType:
     drag: tuple[float, float] = (0.0, 0.0)
     added_mass: tuple[float, float] = (0.0, 0.0)
     rotary_inertia: float | None = 0.0
+    damping: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,7 @@ class Surroundings:
 @dataclass(frozen=True, eq=False)
 class Elements:
     """Properties per element (ne,); drag and added_mass (ne, 2). mass includes the contents, weight is
-    submerged. rotary_inertia: kg m about an axis across the pipe.
+    submerged. rotary_inertia: kg m about an axis across the pipe; damping: s, of viscous over elastic stiffness.
     """
 
     length: Array
@@ -76,6 +78,7 @@ class Elements:
     drag: Array
     added_mass: Array
     rotary_inertia: Array
+    damping: Array
 
     @property
     def arc(self) -> Array:
@@ -129,4 +132,5 @@ def elements(segments: Sequence[Segment], around: Surroundings) -> Elements:
         drag=spread([t.drag for t in types]),
         added_mass=spread([t.added_mass for t in types]),
         rotary_inertia=spread([rotary_inertia(t, around) for t in types]),
+        damping=spread([t.damping for t in types]),
     )

@@ -283,7 +283,7 @@ LEFT_OUT = {
 
 def interpret(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs the tangent's own functions uncompiled, so that they see substitutes."""
-    for name in ("_vary", "_tangent"):
+    for name in ("move", "strain_of", "forces_change", "_vary", "_tangent"):
         monkeypatch.setattr(beam3d, name, getattr(beam3d, name).py_func)
 
 
