@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from mpi4py import MPI
 
+from riser_soil.build.pressures import no_wall_tension
 from riser_soil.part import Field
 from riser_soil.scene.riser import RotationSpring, Support
 from riser_soil.scene.scene import Scene
@@ -16,8 +17,9 @@ def built(scene: Scene) -> tuple[str, ...]:
 
 
 def left_out(scene: Scene) -> dict[str, str]:
-    """Names of the parts that are never built, imported or solved for, each with its reason."""
-    return {name: reason for name, reason in _reasons(scene).items() if reason}
+    """What is never built, imported or solved for, or not told of, each with its reason."""
+    told = {**_reasons(scene), "wall tension": no_wall_tension(scene)}
+    return {name: reason for name, reason in told.items() if reason}
 
 
 def _reasons(scene: Scene) -> dict[str, str]:

@@ -174,11 +174,21 @@ VALUES = [
         "must not exceed the stage's duration",
     ),
     Bad("{interval: 0.1}", "{interval: 0}", 36, "output.interval", "0", "must be greater than 0"),
-    Bad("{interval: 0.1}", "{fields: [tension]}", 36, "output.fields.0", '"tension"', '"effective_tension"'),
+    Bad(
+        "{interval: 0.1}",
+        "{fields: [effektive_tension]}",
+        36,
+        "output.fields.0",
+        '"effektive_tension"',
+        'did you mean "effective_tension"?',
+    ),
     Bad("{interval: 0.1}", "{fields: all}", 36, "output.fields", '"all"', "must be a list"),
 ]
 
 ATTACHED = [
+    Bad("850.0}", "850.0, pressure: 2 bar}", 14, "riser.contents.pressure", '"2 bar"', "must be a number"),
+    Bad("850.0}", "850.0, pressure_level: top}", 14, "riser.contents.pressure_level", '"top"', "must be a number"),
+    Bad("850.0}", "850.0, presure: 2.0}", 14, "riser.contents.presure", "2.0", 'did you mean "pressure"?'),
     Bad(
         "  contents:",
         "  attachments: [{at: 150.0, mass: 10.0}]\n  contents:",

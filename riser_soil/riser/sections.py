@@ -73,6 +73,7 @@ class Elements:
     EI_z: Array
     GJ: Array
     outer_diameter: Array
+    inner_diameter: Array
     mass: Array
     weight: Array
     drag: Array
@@ -127,6 +128,7 @@ def elements(segments: Sequence[Segment], around: Surroundings) -> Elements:
         EI_z=spread([t.EI_z for t in types]),
         GJ=spread([t.GJ for t in types]),
         outer_diameter=spread([t.outer_diameter for t in types]),
+        inner_diameter=spread([t.inner_diameter for t in types]),
         mass=spread([mass_with_contents(t, around) for t in types]),
         weight=spread([submerged_weight(t, around) for t in types]),
         drag=spread([t.drag for t in types]),
