@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from mpi4py import MPI
 
+from riser_soil.build.pressures import no_wall_tension
 from riser_soil.part import Field
 from riser_soil.scene.riser import RotationSpring, Support
 from riser_soil.scene.scene import Scene
@@ -16,8 +17,9 @@ def built(scene: Scene) -> tuple[str, ...]:
 
 
 def left_out(scene: Scene) -> dict[str, str]:
-    """Names of the parts that are never built, imported or solved for, each with its reason."""
-    return {name: reason for name, reason in _reasons(scene).items() if reason}
+    """What is never built, imported or solved for, or not told of, each with its reason."""
+    told = {**_reasons(scene), "wall tension": no_wall_tension(scene)}
+    return {name: reason for name, reason in told.items() if reason}
 
 
 def _reasons(scene: Scene) -> dict[str, str]:
@@ -32,6 +34,7 @@ def _reasons(scene: Scene) -> dict[str, str]:
         "loads": "" if any(s.loads for s in scene.stages) else "no stage has loads",
         "inertia": "" if has_dynamics(scene) else "all stages are static",
         "rotary inertia": _no_rotary_inertia(scene),
+        "structural damping": _no_structural_damping(scene),
         "morison": _no_morison(scene),
         "buoyancy": _no_buoyancy(scene),
         "seabed": "" if scene.seabed is not None else "the scene has no seabed",
@@ -49,6 +52,13 @@ def _no_rotary_inertia(scene: Scene) -> str:
         return "all stages are static"
     given = any(t.rotary_inertia for t in scene.used_line_types.values())
     return "" if given else "no line type has rotary inertia"
+
+
+def _no_structural_damping(scene: Scene) -> str:
+    if not has_dynamics(scene):
+        return "all stages are static"
+    damped = any(t.damping and t.damping.ratio for t in scene.used_line_types.values())
+    return "" if damped else "no line type has damping"
 
 
 def _no_morison(scene: Scene) -> str:

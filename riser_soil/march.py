@@ -10,9 +10,10 @@ from mpi4py import MPI
 
 from riser_soil.arrays import Array
 from riser_soil.errors import SolveError
+from riser_soil.extrapolation import Extrapolation
 from riser_soil.mass import RiserMass
 from riser_soil.newton import Newton, NotConvergedError, Solution, Step
-from riser_soil.part import Energy, Forces, Impulsive, State
+from riser_soil.part import Energy, Forces, State
 from riser_soil.stepping import StepControl
 from riser_soil.system import System, total
 from riser_soil.time_scheme import GeneralizedAlpha, Scheme, Static
@@ -65,8 +66,6 @@ class March:
         owners = (*system.model.fields, *system.model.parts)
         self._foreseeing = [owner for owner in owners if isinstance(owner, Foreseeing)]
         self._adaptive = [part for part in system.model.parts if isinstance(part, Adaptive)]
-        mine = any(isinstance(part, Impulsive) for part in system.model.parts)
-        self._contact = system.comm.allreduce(mine, MPI.LOR)
         self.before = self.now = before
         self.restart()
         if isinstance(scheme, GeneralizedAlpha):
@@ -78,7 +77,7 @@ class March:
     def restart(self) -> None:
         """Start anew from the configuration that the parts hold now."""
         self._forces = self.system.forces(self.before)
-        self._increment, self._dt = np.zeros(self.system.numbering.size), 0.0
+        self._past = Extrapolation(self.system.numbering.size, smooth=self.system.riser_alone)
 
     def _start_rates(self, before: State) -> None:
         """Accelerations in balance with the forces at the start of a dynamic stage; prescribed rates."""
@@ -117,8 +116,8 @@ class March:
         return solution
 
     def _guess(self, t: float, dt: float) -> Array:
-        """The last increment, scaled to the step, as fields and parts improve it."""
-        guess = self._increment * (dt / self._dt if self._dt > 0.0 else 0.0)
+        """The motion of the last steps continued, as fields and parts improve it."""
+        guess = self._past.increments(dt)
         for owner in self._foreseeing:
             guess = owner.improve(State(t, guess, self.before.v, self.before.a))
         return guess
@@ -163,7 +162,7 @@ class March:
         self.before, self.now = self._rates_after(step)
         self._forces, self._history = forces, self._forces_at_start()
         self.energy = self._energy_after(step)
-        self._increment, self._dt = state.u, step.dt
+        self._past.accept(state.u, step.dt)
         control.accept(easy=step.solution.iterations <= EASY)
         self._renew_pattern()
 
@@ -171,7 +170,7 @@ class March:
         """The state just committed, increments zero: with the bulk's rates alone, and as the riser moves."""
         solved, forces = step.solution.state, step.solution.forces
         state = State(solved.t, np.zeros_like(solved.u), solved.v, solved.a)
-        if not self._contact or self._mass is None or not isinstance(self.scheme, GeneralizedAlpha):
+        if self.system.riser_alone or self._mass is None or not isinstance(self.scheme, GeneralizedAlpha):
             return state, state
         contact = self._mass.accelerations(state.t, -forces.end)
         bulk = self.scheme.split_contact(state, contact, step.dt)
@@ -179,7 +178,7 @@ class March:
 
     def _energy_after(self, step: Accepted) -> Energy:
         """Stored energy of the accepted state: the step's, but kinetic as the riser moves."""
-        if not self._contact or self._mass is None:
+        if self.system.riser_alone or self._mass is None:
             return step.energy
         return replace(step.energy, kinetic=self._mass.kinetic_energy(self.now))
 

@@ -41,6 +41,9 @@ SERIES: dict[str, Variable] = {
         ("time", "arc", "component"), "m", "position of the riser's axis", "global axes, z up"
     ),
     "effective_tension": Variable(("time", "arc"), "N", "effective tension", "positive in tension"),
+    "wall_tension": Variable(
+        ("time", "arc"), "N", "tension in the pipe's wall, T + p_i A_i - p_o A_o", "positive in tension"
+    ),
     "bending_moment": Variable(("time", "arc"), "N m", "magnitude of the bending moment"),
     "curvature": Variable(("time", "arc"), "m-1", "magnitude of the curvature"),
     "contact_force": Variable(

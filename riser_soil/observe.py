@@ -20,9 +20,11 @@ from riser_soil.record import Recorder
 from riser_soil.riser.section_forces import (
     HasElementForces,
     HasNodalForces,
+    HasViscousForces,
     element_residual,
     end_reactions,
     section_forces,
+    viscous_residual,
 )
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.stages import Stage, StaticStage
@@ -52,7 +54,7 @@ class Observer:
                 return
             scene = world.scene
             with Recorder.open(
-                folder, known, world.line.arc, mesh, dump_scene(scene), scene.output.fields, force
+                folder, known, world.line.arc, mesh, dump_scene(scene), _known_fields(world), force
             ) as recorder:
                 yield cls(world, clock, recorder, progress)
 
@@ -103,17 +105,25 @@ class Observer:
         return Ledger(e.kinetic, e.strain, e.potential, dissipated, work, residual)
 
 
+def _known_fields(world: World) -> tuple[str, ...]:
+    """What the scene wants to be told of, as far as it is known."""
+    wanted = world.scene.output.fields
+    return tuple(name for name in wanted if name != "wall_tension" or world.pressures is not None)
+
+
 def riser_snapshot(world: World, march: March) -> RiserSnapshot:
     """The riser at the accepted state; on the rank that holds it."""
     line, state = world.line, march.now
     parts = [p for p in march.system.model.parts if isinstance(p, HasElementForces)]
     residual = element_residual(line, parts, state)
-    inside = section_forces(line, world.elements, state, residual)
+    viscous = [p for p in parts if isinstance(p, HasViscousForces)]
+    inside = section_forces(line, world.elements, state, residual, viscous_residual(line, viscous, state))
     start, end = end_reactions(line, state, residual, _on_nodes(world, march))
-    tangent = line.trial(state).turn.tangent @ line.basis.T
+    tangent, position = line.trial(state).turn.tangent @ line.basis.T, line.positions3(state)
     return RiserSnapshot(
-        position=line.positions3(state),
+        position=position,
         effective_tension=inside.effective_tension,
+        wall_tension=_wall_tension(world, inside.effective_tension, position[:, 2]),
         bending_moment=inside.bending_moment,
         curvature=inside.curvature,
         contact_force=_contact_force(world, state),
@@ -125,6 +135,12 @@ def riser_snapshot(world: World, march: March) -> RiserSnapshot:
         start_tangent=tangent[0, 0],
         end_tangent=tangent[-1, 1],
     )
+
+
+def _wall_tension(world: World, effective: Array, z: Array) -> Array:
+    if world.pressures is None:
+        return np.full(world.line.nodes, np.nan)
+    return world.pressures.wall_tension(effective, z)
 
 
 def _on_nodes(world: World, march: March) -> Array:

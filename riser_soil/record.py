@@ -17,7 +17,7 @@ from riser_soil.snapshot import Ledger, RiserSnapshot, RunFacts, SoilMesh, SoilS
 from riser_soil.summary import StageTally, Summary, final_state, pack
 from riser_soil.xdmf import Frame, XdmfFile, polyline
 
-RISER_FIELDS = ("effective_tension", "bending_moment", "curvature", "contact_force", "moment_vector")
+RISER_FIELDS = ("effective_tension", "wall_tension", "bending_moment", "curvature", "contact_force", "moment_vector")
 SOIL_FIELDS = ("displacement", "von_mises_stress", "equivalent_plastic_strain")
 FIELDS = RISER_FIELDS + SOIL_FIELDS
 

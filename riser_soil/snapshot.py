@@ -19,6 +19,7 @@ class RiserSnapshot:
 
     position: Array  # (nn, 3) m
     effective_tension: Array  # (nn,) N, positive in tension
+    wall_tension: Array  # (nn,) N, positive in tension; nan where the pressures are unknown
     bending_moment: Array  # (nn,) N.m, magnitude >= 0
     curvature: Array  # (nn,) 1/m, magnitude >= 0
     contact_force: Array  # (nn,) N/m, magnitude >= 0

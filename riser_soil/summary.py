@@ -22,9 +22,12 @@ _WHOLE = (
     ("max_bending_moment", 1),
     ("max_curvature", 1),
     ("min_effective_tension", 1),
+    ("min_wall_tension", 1),
+    ("max_wall_tension", 1),
     ("max_penetration", 1),
     ("contact_force", 1),
 )
+_OF_WALL = ("min_wall_tension", "max_wall_tension")  # left out where the pressures are unknown
 # Where each number of the packed vector of observables belongs in the nested summary.
 _PLACES: tuple[tuple[tuple[str, ...], int], ...] = (
     *((("start", name), size) for name, size in _END),
@@ -40,13 +43,13 @@ def angle_deg(tangent: Array) -> float:
 
 def pack(riser: RiserSnapshot, touch: Touch) -> Array:
     """All observables of one instant as one vector, in the order of the summary."""
-    tension, position = riser.effective_tension, riser.position
+    tension, wall, position = riser.effective_tension, riser.wall_tension, riser.position
     start_angle, end_angle = angle_deg(riser.start_tangent), angle_deg(riser.end_tangent)
     return np.concatenate([
         position[0], riser.start_force, riser.start_moment, [tension[0], start_angle],
         position[-1], riser.end_force, riser.end_moment, [tension[-1], end_angle],
         [touch.touchdown_arc, riser.bending_moment.max(), riser.curvature.max(), tension.min()],
-        [touch.max_penetration, touch.contact_force[2]],
+        [wall.min(), wall.max(), touch.max_penetration, touch.contact_force[2]],
     ])  # fmt: skip
 
 
@@ -68,9 +71,11 @@ def final_state(arc: Array, riser: RiserSnapshot, touch: Touch) -> dict[str, Any
         ("max_bending_moment", riser.bending_moment.argmax()),
         ("max_curvature", riser.curvature.argmax()),
         ("min_effective_tension", riser.effective_tension.argmin()),
+        ("min_wall_tension", riser.wall_tension.argmin()),
+        ("max_wall_tension", riser.wall_tension.argmax()),
     ):
         final[name] = {"value": final[name], "arc": float(arc[where])}
-    return final
+    return {name: value for name, value in final.items() if name not in _OF_WALL or math.isfinite(value["value"])}
 
 
 class Extremes:
@@ -93,7 +98,8 @@ class Extremes:
         parts = {key: unpack(values) for key, values in columns.items()}
         nested: dict[str, Any] = {}
         for path, _ in _PLACES:
-            _put(nested, path, {key: _get(part, path) for key, part in parts.items()})
+            if path[0] not in _OF_WALL or math.isfinite(parts["min"][path[0]]):
+                _put(nested, path, {key: _get(part, path) for key, part in parts.items()})
         return nested
 
 

@@ -12,7 +12,7 @@ from mpi4py import MPI
 from riser_soil.arrays import Array, BoolArray, IntArray
 from riser_soil.matrix import Matrix
 from riser_soil.numbering import Numbering
-from riser_soil.part import Block, Energy, Field, Forces, Model, Part, State, Weights, Work
+from riser_soil.part import Block, Energy, Field, Forces, Impulsive, Model, Part, State, Weights, Work
 
 
 @dataclass
@@ -42,8 +42,10 @@ class System:
         self.comm, self.model, self.clock = comm, model, clock
         self.numbering = Numbering(comm, model.fields)
         self.prescribed: BoolArray = self._gather_prescribed()
-        self._held: IntArray = np.flatnonzero(self.prescribed)
+        self.held: IntArray = np.flatnonzero(self.prescribed)
         self.symmetric: bool = comm.allreduce(all(p.symmetric for p in model.parts), MPI.LAND)
+        meets = any(set(part.blocks()) - {"riser"} or isinstance(part, Impulsive) for part in model.parts)
+        self.riser_alone: bool = not comm.allreduce(meets, MPI.LOR)
         self.matrix = self._new_matrix()
 
     def _gather_prescribed(self) -> BoolArray:
@@ -98,11 +100,11 @@ class System:
     def work_of_supports(self, start: Forces, end: Forces, u: Array) -> float:
         """Work [J] that prescribed motions put in over a step: mean reaction times increment."""
         mean = 0.5 * (self.reactions(start) + self.reactions(end))
-        return self.sum([float(mean @ u[self._held])])[0]
+        return self.sum([float(mean @ u[self.held])])[0]
 
     def reactions(self, forces: Forces) -> Array:
         """What the supports of this rank's prescribed dofs exert [N, N.m]."""
-        at = self._held
+        at = self.held
         return forces.inertia[at] + forces.force[at] + forces.end[at]
 
     def commit(self, state: State) -> None:

@@ -101,6 +101,23 @@ VALUES = [
         "must be greater than 0",
     ),
     Bad("elements: 74", "elements: 0", 16, "riser.segments.0.elements", "0", "must be at least 1"),
+    Bad("    EA:", "    damping: 0.1\n    EA:", 9, "line_types.pipe.damping", "0.1", "with the keys ratio, frequency"),
+    Bad(
+        "    EA:",
+        "    damping: {ratio: 1.5, frequency: 1.0}\n    EA:",
+        9,
+        "line_types.pipe.damping.ratio",
+        "1.5",
+        "must be less than 1",
+    ),
+    Bad(
+        "    EA:",
+        "    damping: {ratio: 0.02}\n    EA:",
+        9,
+        "line_types.pipe.damping.frequency",
+        "missing",
+        "the key is required here",
+    ),
     Bad("    EA:", "    rotary_inertia: -2\n    EA:", 9, "line_types.pipe.rotary_inertia", "-2", "must be at least 0"),
     Bad(
         "    EA:",
@@ -157,11 +174,21 @@ VALUES = [
         "must not exceed the stage's duration",
     ),
     Bad("{interval: 0.1}", "{interval: 0}", 36, "output.interval", "0", "must be greater than 0"),
-    Bad("{interval: 0.1}", "{fields: [tension]}", 36, "output.fields.0", '"tension"', '"effective_tension"'),
+    Bad(
+        "{interval: 0.1}",
+        "{fields: [effektive_tension]}",
+        36,
+        "output.fields.0",
+        '"effektive_tension"',
+        'did you mean "effective_tension"?',
+    ),
     Bad("{interval: 0.1}", "{fields: all}", 36, "output.fields", '"all"', "must be a list"),
 ]
 
 ATTACHED = [
+    Bad("850.0}", "850.0, pressure: 2 bar}", 14, "riser.contents.pressure", '"2 bar"', "must be a number"),
+    Bad("850.0}", "850.0, pressure_level: top}", 14, "riser.contents.pressure_level", '"top"', "must be a number"),
+    Bad("850.0}", "850.0, presure: 2.0}", 14, "riser.contents.presure", "2.0", 'did you mean "pressure"?'),
     Bad(
         "  contents:",
         "  attachments: [{at: 150.0, mass: 10.0}]\n  contents:",
@@ -435,7 +462,6 @@ CONFLICTS = [
 ]
 
 NOT_YET = [
-    Bad("    EA:", "    damping: 0.1\n    EA:", 9, "line_types.pipe.damping", "0.1", "not supported yet"),
     Bad("kind: spring", "kind: hysteretic", 20, "seabed.kind", '"hysteretic"', "not supported yet"),
     Bad("soil:\n", "soil:\n  inertia: true\n", 22, "soil.inertia", "true", "not supported yet"),
     Bad("method: node", "method: surface", 26, "contact.method", '"surface"', "not supported yet"),

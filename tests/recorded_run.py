@@ -53,6 +53,7 @@ class Catenary:
         return RiserSnapshot(
             position=np.stack([x, zero, z], axis=1),
             effective_tension=tension,
+            wall_tension=tension + 1.0e3,
             bending_moment=EI * curvature,
             curvature=curvature,
             contact_force=np.where(arc < self.s0, WEIGHT, 0.0),

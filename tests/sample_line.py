@@ -18,6 +18,7 @@ from riser_soil.riser.loads import Load, PointLoads
 from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.sections import Elements, LineType, Segment, Surroundings, elements
 from riser_soil.riser.springs import EndSpring
+from riser_soil.riser.structural_damping import StructuralDamping
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
 from riser_soil.sea.pipe import Pipe
@@ -37,6 +38,7 @@ THICK = LineType(
     drag=(1.2, 0.1),
     added_mass=(1.0, 0.2),
     rotary_inertia=None,
+    damping=0.3,
 )
 THIN = LineType(
     EA=3.0e4,
@@ -48,6 +50,7 @@ THIN = LineType(
     drag=(0.9, 0.05),
     added_mass=(0.8, 0.0),
     rotary_inertia=1.7,
+    damping=0.5,
 )
 AROUND = Surroundings(gravity=9.81, contents=850.0, water=1025.0)
 RHO = 1025.0
@@ -73,6 +76,9 @@ class Sample:
 
     def rotary(self) -> RotaryInertia:
         return RotaryInertia(self.line, self.elements.rotary_inertia)
+
+    def damping(self) -> StructuralDamping:
+        return StructuralDamping(self.line, self.elements)
 
     def morison(self) -> Morison:
         e = self.elements

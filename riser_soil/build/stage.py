@@ -73,6 +73,10 @@ def dynamic_parts(line: Line, elements: Elements, attachments: Sequence[Attachme
         from riser_soil.riser.rotary_inertia import RotaryInertia
 
         parts.append(RotaryInertia(line, elements.rotary_inertia))
+    if elements.damping.any():
+        from riser_soil.riser.structural_damping import StructuralDamping
+
+        parts.append(StructuralDamping(line, elements))
     return parts
 
 

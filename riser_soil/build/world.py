@@ -9,6 +9,7 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.build.motions import set_motions
+from riser_soil.build.pressures import pressures_of
 from riser_soil.build.riser import attached_weight, attachments_of, elements_of, line_of, springs_of
 from riser_soil.build.sea_loads import sea_loads
 from riser_soil.build.stage import dynamic_parts, hold_spin, loads_of
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.riser.attachments import Attachment
+    from riser_soil.riser.wall_tension import Pressures
     from riser_soil.soil.soil import Soil
 
 FORCE_FLOOR = 1e-14  # of EA: a residual below this is round-off even where all forces vanish
@@ -35,6 +37,7 @@ class World:
 
     attachments: point masses and buoyancy modules on the line; their weight less buoyancy is among `riser_parts`.
     horizontal_tension [N]: of the initial catenary, None for other first shapes.
+    pressures: inside and outside the pipe; None where the tension in its wall is not told.
     contact_stiffness [N/m2]: force per length and penetration, by ground (soil, seabed).
     """
 
@@ -45,6 +48,7 @@ class World:
     riser_parts: list[Part]
     horizontal_tension: float | None
     attachments: tuple[Attachment, ...] = ()
+    pressures: Pressures | None = None
     soil: Soil | None = None
     soil_contact: SoilContact | None = None
     seabed: SeabedContact | None = None
@@ -93,7 +97,7 @@ def build(scene: Scene, comm: MPI.Intracomm) -> World:
     line, tension = line_of(scene, elements, active=comm.rank == 0)
     attachments = attachments_of(scene)
     parts = [Beam(line, elements), *springs_of(scene.riser, line), *attached_weight(line, attachments)]
-    world = World(scene, comm, line, elements, parts, tension, attachments)
+    world = World(scene, comm, line, elements, parts, tension, attachments, pressures_of(scene, line, elements))
     if scene.contact is not None:
         _add_ground(world)
     return world

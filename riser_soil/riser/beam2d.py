@@ -75,7 +75,8 @@ def _angle_from(axis: Vec2, direction: float) -> float:
 
 
 @njit
-def _corotate(chord: Array, direction1: float, direction2: float) -> Corotated:
+def corotate(chord: Array, direction1: float, direction2: float) -> Corotated:
+    """The element seen from its chord, with the directions of its ends' tangents."""
     length = math.sqrt(chord[0] * chord[0] + chord[1] * chord[1])
     axis = (chord[0] / length, chord[1] / length)
     return Corotated(axis, length, _angle_from(axis, direction1), _angle_from(axis, direction2))
@@ -87,13 +88,14 @@ def reference(chord0: Array, direction0_1: Array, direction0_2: Array, L: Array)
     ne = len(L)
     l0, theta1, theta2 = np.empty(ne), np.empty(ne), np.empty(ne)
     for e in range(ne):
-        at = _corotate(chord0[e], direction0_1[e], direction0_2[e])
+        at = corotate(chord0[e], direction0_1[e], direction0_2[e])
         l0[e], theta1[e], theta2[e] = at.length, at.theta1, at.theta2
     return Reference(L, l0, theta1, theta2)
 
 
 @njit
-def _element(ref: Reference, section: Section, e: int) -> Element:
+def element_at(ref: Reference, section: Section, e: int) -> Element:
+    """Stiffnesses and unstressed configuration of element e."""
     L = ref.L[e]
     return Element(L, section.EA[e], section.EI[e] / L, ref.l0[e], ref.theta1[e], ref.theta2[e])
 
@@ -114,10 +116,10 @@ def _stress(element: Element, at: Corotated) -> tuple[float, float, float]:
 
 
 @njit
-def _stress_variation(
+def stress_variation(
     element: Element, at: Corotated, N: float, stretch: float, dtheta1: float, dtheta2: float
 ) -> tuple[float, float, float]:
-    """Variation of `_stress`: the Hessian of U times a variation of the chord's length and of theta_i."""
+    """Variation of the stresses: the Hessian of U times a variation of the chord's length and of theta_i."""
     slope1, slope2 = bow_slopes(at.theta1, at.theta2)
     dN = element.EA * (stretch / element.L + slope1 * dtheta1 + slope2 * dtheta2)
     dm1, dm2 = end_moments(element.EI_per_L, dtheta1, dtheta2)
@@ -134,8 +136,8 @@ def strain_energy(
     """Strain energy U (ne,) in J; arguments as in `forces`."""
     U = np.empty(len(chord))
     for e in range(len(chord)):
-        element = _element(ref, section, e)
-        at = _corotate(chord[e], direction1[e], direction2[e])
+        element = element_at(ref, section, e)
+        at = corotate(chord[e], direction1[e], direction2[e])
         phi1, phi2 = at.theta1 - element.theta1, at.theta2 - element.theta2
         m1, m2 = end_moments(element.EI_per_L, phi1, phi2)
         U[e] = 0.5 * (element.EA * element.L * _strain(element, at) ** 2 + m1 * phi1 + m2 * phi2)
@@ -143,13 +145,13 @@ def strain_energy(
 
 
 @njit
-def _nodal_forces(at: Corotated, N: float, m1: float, m2: float) -> NodalForces:
+def nodal_forces(at: Corotated, N: float, m1: float, m2: float) -> NodalForces:
     """Nodal forces from the chord force N and the moments m_i conjugate to theta_i."""
     return NodalForces((N, -(m1 + m2) / at.length), m1, m2)
 
 
 @njit
-def _put_forces(axis: Vec2, forces: NodalForces, out: Array) -> None:
+def put_forces(axis: Vec2, forces: NodalForces, out: Array) -> None:
     """Write an element's forces, given along its frame, to `out` (6,) in the plane's axes."""
     along, across = forces.force
     p, z = axis[0] * along - axis[1] * across, axis[1] * along + axis[0] * across
@@ -162,9 +164,9 @@ def forces(chord: Array, direction1: Array, direction2: Array, ref: Reference, s
     """Internal forces f (ne, 6) for chords (ne, 2) and tangent directions (ne,) of both ends, rad."""
     f = np.empty((len(chord), 6))
     for e in range(len(chord)):
-        at = _corotate(chord[e], direction1[e], direction2[e])
-        N, m1, m2 = _stress(_element(ref, section, e), at)
-        _put_forces(at.axis, _nodal_forces(at, N, m1, m2), f[e])
+        at = corotate(chord[e], direction1[e], direction2[e])
+        N, m1, m2 = _stress(element_at(ref, section, e), at)
+        put_forces(at.axis, nodal_forces(at, N, m1, m2), f[e])
     return f
 
 
@@ -180,8 +182,8 @@ def _vary(
 ) -> NodalForces:
     """Variation of an element's forces when its nodes move by u = u2 - u1, in its axes, and turn by w_i."""
     stretch, spin = u[0], u[1] / at.length
-    dN, dm1, dm2 = _stress_variation(element, at, N, stretch, w1 - spin, w2 - spin)
-    change = _nodal_forces(at, dN, dm1, dm2)
+    dN, dm1, dm2 = stress_variation(element, at, N, stretch, w1 - spin, w2 - spin)
+    change = nodal_forces(at, dN, dm1, dm2)
     moved = configuration_variation(at, force, stretch, spin)
     total = (change.force[0] + moved[0], change.force[1] + moved[1])
     return NodalForces(total, change.moment1, change.moment2)
@@ -192,10 +194,10 @@ def _tangent(element: Element, at: Corotated, N: float, force: Vec2, K: Array) -
     """Write the element's tangent, column by column, to K (6, 6)."""
     c, s = at.axis
     still = (0.0, 0.0)
-    _put_forces(at.axis, _vary(element, at, N, force, (c, -s), 0.0, 0.0), K[:, 3])
-    _put_forces(at.axis, _vary(element, at, N, force, (s, c), 0.0, 0.0), K[:, 4])
-    _put_forces(at.axis, _vary(element, at, N, force, still, 1.0, 0.0), K[:, 2])
-    _put_forces(at.axis, _vary(element, at, N, force, still, 0.0, 1.0), K[:, 5])
+    put_forces(at.axis, _vary(element, at, N, force, (c, -s), 0.0, 0.0), K[:, 3])
+    put_forces(at.axis, _vary(element, at, N, force, (s, c), 0.0, 0.0), K[:, 4])
+    put_forces(at.axis, _vary(element, at, N, force, still, 1.0, 0.0), K[:, 2])
+    put_forces(at.axis, _vary(element, at, N, force, still, 0.0, 1.0), K[:, 5])
     for i in range(6):
         K[i, 0], K[i, 1] = -K[i, 3], -K[i, 4]
 
@@ -207,9 +209,9 @@ def forces_and_tangent(
     """Internal forces f (ne, 6) and their derivative K (ne, 6, 6) by displacements and angles."""
     f, K = np.empty((len(chord), 6)), np.empty((len(chord), 6, 6))
     for e in range(len(chord)):
-        element, at = _element(ref, section, e), _corotate(chord[e], direction1[e], direction2[e])
+        element, at = element_at(ref, section, e), corotate(chord[e], direction1[e], direction2[e])
         N, m1, m2 = _stress(element, at)
-        response = _nodal_forces(at, N, m1, m2)
-        _put_forces(at.axis, response, f[e])
+        response = nodal_forces(at, N, m1, m2)
+        put_forces(at.axis, response, f[e])
         _tangent(element, at, N, response.force, K[e])
     return f, K

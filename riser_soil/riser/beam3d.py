@@ -72,10 +72,21 @@ class Shape(NamedTuple):
     strain: Strain
 
 
+class Move(NamedTuple):
+    """A change of an element's configuration, or its rate, in the element's frame."""
+
+    stretch: float  # of the chord
+    spin: Vec  # of the frame
+    spin1: Vec  # of the ends, relative to the frame
+    spin2: Vec
+    da: Vec  # change of the ends' angles
+    db: Vec
+
+
 class Response(NamedTuple):
     """What the variation of an element's forces needs besides its shape, in the element's frame."""
 
-    elastic: Strain
+    elastic: Strain  # what the stress comes from
     stress: Stress
     mu1: Vec  # generalised moments of the ends
     mu2: Vec
@@ -83,7 +94,8 @@ class Response(NamedTuple):
 
 
 @njit
-def _shape(L: float, chord: Vec, T1: Mat, T2: Mat) -> Shape:
+def shape(L: float, chord: Vec, T1: Mat, T2: Mat) -> Shape:
+    """Configuration of an element of arc length L with section frames T1 and T2 at its ends."""
     frame = corotate(chord, T1, T2)
     end1, end2 = split(frame.A1), split(frame.A2)
     both = stations(L, end1.angles, end2.angles)
@@ -96,7 +108,7 @@ def reference(chord0: Array, T0_1: Array, T0_2: Array, L: Array) -> Reference:
     ne = len(L)
     axial, twist, curvature = np.empty(ne), np.empty(ne), np.empty((ne, 2, 2))
     for e in range(ne):
-        at = _shape(L[e], vector(chord0[e]), matrix(T0_1[e]), matrix(T0_2[e])).strain
+        at = shape(L[e], vector(chord0[e]), matrix(T0_1[e]), matrix(T0_2[e])).strain
         axial[e], twist[e] = at.axial, at.twist
         curvature[e, 0, 0], curvature[e, 0, 1] = at.first
         curvature[e, 1, 0], curvature[e, 1, 1] = at.second
@@ -110,7 +122,8 @@ def _unstressed(ref: Reference, e: int) -> Strain:
 
 
 @njit
-def _stiffness(ref: Reference, section: Section, e: int) -> Stiffness:
+def stiffness(ref: Reference, section: Section, e: int) -> Stiffness:
+    """Stiffnesses of element e."""
     return Stiffness(ref.L[e], section.EA[e], section.EIy[e], section.EIz[e], section.GJ[e])
 
 
@@ -119,22 +132,27 @@ def strain_energy(chord: Array, frame1: Array, frame2: Array, ref: Reference, se
     """Strain energy (ne,) in J; arguments as in `forces`."""
     U = np.empty(len(chord))
     for e in range(len(chord)):
-        at = _shape(ref.L[e], vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
-        U[e] = energy(_stiffness(ref, section, e), at.strain, difference(at.strain, _unstressed(ref, e)))
+        at = shape(ref.L[e], vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
+        U[e] = energy(stiffness(ref, section, e), at.strain, difference(at.strain, _unstressed(ref, e)))
     return U
+
+
+@njit
+def respond(L: float, at: Shape, elastic: Strain, s: Stress) -> Response:
+    """Forces of the stress s, which comes from the strains `elastic`."""
+    mu1, mu2 = conjugate(L, at.end1.angles, at.end2.angles, at.stations, s)
+    m1, m2 = moment(at.end1, mu1), moment(at.end2, mu2)
+    return Response(elastic, s, mu1, mu2, nodal_forces(at.frame.length, s.axial / L, m1, m2))
 
 
 @njit
 def _respond(D: Stiffness, unstressed: Strain, at: Shape) -> Response:
     elastic = difference(at.strain, unstressed)
-    s = stress(D, at.strain, elastic)
-    mu1, mu2 = conjugate(D.L, at.end1.angles, at.end2.angles, at.stations, s)
-    m1, m2 = moment(at.end1, mu1), moment(at.end2, mu2)
-    return Response(elastic, s, mu1, mu2, nodal_forces(at.frame.length, s.axial / D.L, m1, m2))
+    return respond(D.L, at, elastic, stress(D, at.strain, elastic))
 
 
 @njit
-def _put_forces(axes: Mat, forces: NodalForces, out: Array) -> None:
+def put_forces(axes: Mat, forces: NodalForces, out: Array) -> None:
     """Write an element's forces, given along its frame, to `out` (12,) in global axes."""
     force = vecmat(forces.force, axes)
     moment1 = vecmat(forces.moment1, axes)
@@ -151,28 +169,45 @@ def forces(chord: Array, frame1: Array, frame2: Array, ref: Reference, section: 
     """Internal forces f (ne, 12) for chords (ne, 3) and section frames (ne, 3, 3) of both ends."""
     f = np.empty((len(chord), 12))
     for e in range(len(chord)):
-        at = _shape(ref.L[e], vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
-        response = _respond(_stiffness(ref, section, e), _unstressed(ref, e), at)
-        _put_forces(at.frame.axes, response.forces, f[e])
+        at = shape(ref.L[e], vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
+        response = _respond(stiffness(ref, section, e), _unstressed(ref, e), at)
+        put_forces(at.frame.axes, response.forces, f[e])
     return f
+
+
+@njit
+def move(at: Shape, u: Vec, w1: Vec, w2: Vec) -> Move:
+    """What changes, to first order, when the nodes move by u = u2 - u1 and spin by w1, w2."""
+    spin = frame_spin(at.frame.length, u)
+    spin1, spin2 = sub(w1, spin), sub(w2, spin)
+    return Move(u[0], spin, spin1, spin2, rate(at.end1, spin1), rate(at.end2, spin2))
+
+
+@njit
+def strain_of(L: float, at: Shape, m: Move) -> Strain:
+    """Change of the strains in a move, or their rates."""
+    return strain_change(L, at.end1.angles, at.end2.angles, at.stations, m.stretch, m.da, m.db)
+
+
+@njit
+def forces_change(L: float, at: Shape, response: Response, m: Move, ds: Stress) -> NodalForces:
+    """Change of an element's forces when it moves and its stresses change by ds."""
+    elastic1, elastic2 = conjugate(L, at.end1.angles, at.end2.angles, at.stations, ds)
+    geometric1, geometric2 = conjugate_change(L, at.stations, response.stress, strain_of(L, at, m), m.da, m.db)
+    dm1 = add(moment(at.end1, add(elastic1, geometric1)), moment_variation(at.end1, response.mu1, m.spin1))
+    dm2 = add(moment(at.end2, add(elastic2, geometric2)), moment_variation(at.end2, response.mu2, m.spin2))
+    stressed = nodal_forces(at.frame.length, ds.axial / L, dm1, dm2)
+    moved = NodalForces(lengthen(at.frame.length, response.forces, m.stretch), STILL, STILL)
+    return plus(plus(stressed, moved), turn(response.forces, m.spin))
 
 
 @njit
 def _vary(D: Stiffness, at: Shape, response: Response, u: Vec, w1: Vec, w2: Vec) -> NodalForces:
     """Variation of an element's forces when its nodes move by u = u2 - u1 and spin by w1, w2."""
-    spin = frame_spin(at.frame.length, u)
-    spin1, spin2 = sub(w1, spin), sub(w2, spin)
-    da, db = rate(at.end1, spin1), rate(at.end2, spin2)
-    a, b = at.end1.angles, at.end2.angles
-    change = strain_change(D.L, a, b, at.stations, u[0], da, db)
-    ds = stress_change(D, at.strain, response.elastic, change)
-    elastic1, elastic2 = conjugate(D.L, a, b, at.stations, ds)
-    geometric1, geometric2 = conjugate_change(D.L, at.stations, response.stress, change, da, db)
-    dm1 = add(moment(at.end1, add(elastic1, geometric1)), moment_variation(at.end1, response.mu1, spin1))
-    dm2 = add(moment(at.end2, add(elastic2, geometric2)), moment_variation(at.end2, response.mu2, spin2))
-    stressed = nodal_forces(at.frame.length, ds.axial / D.L, dm1, dm2)
-    moved = NodalForces(lengthen(at.frame.length, response.forces, u[0]), STILL, STILL)
-    return plus(plus(stressed, moved), turn(response.forces, spin))
+    m = move(at, u, w1, w2)
+    return forces_change(
+        D.L, at, response, m, stress_change(D, at.strain, response.elastic, strain_of(D.L, at, m))
+    )
 
 
 @njit
@@ -181,9 +216,9 @@ def _tangent(D: Stiffness, at: Shape, response: Response, K: Array) -> None:
     axes = at.frame.axes
     for k in range(3):
         unit = (axes[0][k], axes[1][k], axes[2][k])
-        _put_forces(axes, _vary(D, at, response, STILL, unit, STILL), K[:, 3 + k])
-        _put_forces(axes, _vary(D, at, response, STILL, STILL, unit), K[:, 9 + k])
-        _put_forces(axes, _vary(D, at, response, unit, STILL, STILL), K[:, 6 + k])
+        put_forces(axes, _vary(D, at, response, STILL, unit, STILL), K[:, 3 + k])
+        put_forces(axes, _vary(D, at, response, STILL, STILL, unit), K[:, 9 + k])
+        put_forces(axes, _vary(D, at, response, unit, STILL, STILL), K[:, 6 + k])
         for i in range(12):
             K[i, k] = -K[i, 6 + k]
 
@@ -195,9 +230,9 @@ def forces_and_tangent(
     """Internal forces f (ne, 12) and their derivative K (ne, 12, 12) by displacements and spatial spins."""
     f, K = np.empty((len(chord), 12)), np.empty((len(chord), 12, 12))
     for e in range(len(chord)):
-        D = _stiffness(ref, section, e)
-        at = _shape(D.L, vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
+        D = stiffness(ref, section, e)
+        at = shape(D.L, vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
         response = _respond(D, _unstressed(ref, e), at)
-        _put_forces(at.frame.axes, response.forces, f[e])
+        put_forces(at.frame.axes, response.forces, f[e])
         _tangent(D, at, response, K[e])
     return f, K

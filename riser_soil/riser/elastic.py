@@ -22,21 +22,22 @@ class PlanarElements:
         self.reference = beam2d.reference(line.chord0, first, second, line.length)
         self.section = beam2d.Section(elements.EA, elements.EI_y)
 
-    def _configuration(self, trial: Trial) -> tuple[Array, Array, Array]:
+    def configuration(self, trial: Trial) -> tuple[Array, Array, Array]:
+        """Chords (ne, 2) and directions of the tangents at both ends (ne,)."""
         assert isinstance(trial.turn, PlanarTurn)
         angle = trial.turn.end_angle
         return trial.chord, np.ascontiguousarray(angle[:, 0]), np.ascontiguousarray(angle[:, 1])
 
     def energy(self, trial: Trial) -> float:
-        return float(np.sum(beam2d.strain_energy(*self._configuration(trial), self.reference, self.section)))
+        return float(np.sum(beam2d.strain_energy(*self.configuration(trial), self.reference, self.section)))
 
     def forces(self, trial: Trial) -> Array:
         """(ne, 6)."""
-        return np.asarray(beam2d.forces(*self._configuration(trial), self.reference, self.section))
+        return np.asarray(beam2d.forces(*self.configuration(trial), self.reference, self.section))
 
     def tangent(self, trial: Trial) -> Array:
         """(ne, 6, 6)."""
-        at = self._configuration(trial)
+        at = self.configuration(trial)
         return np.asarray(beam2d.forces_and_tangent(*at, self.reference, self.section)[1])
 
 
@@ -48,23 +49,24 @@ class SpatialElements:
         self.reference = beam3d.reference(line.chord0, first, second, line.length)
         self.section = beam3d.Section(elements.EA, elements.EI_y, elements.EI_z, elements.GJ)
 
-    def _configuration(self, trial: Trial) -> tuple[Array, Array, Array]:
+    def configuration(self, trial: Trial) -> tuple[Array, Array, Array]:
+        """Chords (ne, 3) and section frames at both ends (ne, 3, 3)."""
         turn = _spatial(trial)
         return trial.chord, turn.frame1, turn.frame2
 
     def energy(self, trial: Trial) -> float:
-        return float(np.sum(beam3d.strain_energy(*self._configuration(trial), self.reference, self.section)))
+        return float(np.sum(beam3d.strain_energy(*self.configuration(trial), self.reference, self.section)))
 
     def forces(self, trial: Trial) -> Array:
         """(ne, 12), conjugate to displacements and rotation increments."""
-        f = beam3d.forces(*self._configuration(trial), self.reference, self.section)
+        f = beam3d.forces(*self.configuration(trial), self.reference, self.section)
         increments.forces_to_increments(f, _spatial(trial).H)
         return np.asarray(f)
 
     def tangent(self, trial: Trial) -> Array:
         """(ne, 12, 12)."""
         turn = _spatial(trial)
-        f, K = beam3d.forces_and_tangent(*self._configuration(trial), self.reference, self.section)
+        f, K = beam3d.forces_and_tangent(*self.configuration(trial), self.reference, self.section)
         increments.to_increments(f, K, turn.H, turn.Rn, turn.Theta)
         return np.asarray(K)
 

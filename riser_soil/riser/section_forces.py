@@ -31,6 +31,15 @@ class HasElementForces(Protocol):
 
 
 @runtime_checkable
+class HasViscousForces(Protocol):
+    """A part whose forces within the line's elements follow from strain rates."""
+
+    def viscous_forces(self, state: State) -> Array:
+        """Element residuals (ne, 2 ndof)."""
+        ...
+
+
+@runtime_checkable
 class HasNodalForces(Protocol):
     """A part that acts on the line's nodes without holding them."""
 
@@ -72,23 +81,42 @@ def element_residual(line: Line, parts: Sequence[HasElementForces], state: State
     return total
 
 
-def section_forces(line: Line, elements: Elements, state: State, residual: Array) -> SectionForces:
-    """Section forces at the nodes, averaged over the two adjoining elements; residual from
-    `element_residual`.
+def viscous_residual(line: Line, parts: Sequence[HasViscousForces], state: State) -> Array:
+    """The share of `element_residual` (ne, 2 ndof) that follows from strain rates."""
+    return sum((part.viscous_forces(state) for part in parts), np.zeros((line.length.size, 2 * line.ndof)))
+
+
+def section_forces(
+    line: Line, elements: Elements, state: State, residual: Array, viscous: Array | None = None
+) -> SectionForces:
+    """Section forces at the nodes, averaged over the two adjoining elements.
+
+    residual: from `element_residual`; viscous: from `viscous_residual`, for the curvature follows from the rest of
+    the bending moment.
     """
     trial = line.trial(state)
-    force, moment = _end_forces(line, trial, residual)
-    force, moment = _nodal(-force[:, 0], force[:, 1]), _nodal(-moment[:, 0], moment[:, 1])
+    force, moment = _nodal_section(line, trial, residual)
     tangent = _nodal(trial.turn.tangent[:, 0], trial.turn.tangent[:, 1]) @ line.basis.T
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
-    bending = moment - np.sum(moment * tangent, axis=1, keepdims=True) * tangent
+    bending = _across(moment, tangent)
+    damping = 0.0 if viscous is None else _across(_nodal_section(line, trial, viscous)[1], tangent)
     return SectionForces(
         force=force,
         moment=moment,
         effective_tension=np.sum(force * tangent, axis=1),
         bending_moment=np.linalg.norm(bending, axis=1),
-        curvature=_curvature(trial, elements, bending),
+        curvature=_curvature(trial, elements, bending - damping),
     )
+
+
+def _nodal_section(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]:
+    """Force and moment (nn, 3) that the line after a node exerts on the line before it."""
+    force, moment = _end_forces(line, trial, residual)
+    return _nodal(-force[:, 0], force[:, 1]), _nodal(-moment[:, 0], moment[:, 1])
+
+
+def _across(moment: Array, tangent: Array) -> Array:
+    return np.asarray(moment - np.sum(moment * tangent, axis=1, keepdims=True) * tangent)
 
 
 def end_reactions(

@@ -22,6 +22,7 @@ class LineType:
     drag and added_mass: (normal, tangential) coefficients of Morison's formula, see
     `riser_soil.sea.morison_law`.
     rotary_inertia: kg m about an axis across the pipe; None computes it from masses and diameters.
+    damping: s, ratio of viscous to elastic stiffness.
     """
 
     EA: float
@@ -35,6 +36,7 @@ class LineType:
     drag: tuple[float, float] = (0.0, 0.0)
     added_mass: tuple[float, float] = (0.0, 0.0)
     rotary_inertia: float | None = 0.0
+    damping: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,7 @@ class Surroundings:
 @dataclass(frozen=True, eq=False)
 class Elements:
     """Properties per element (ne,); drag and added_mass (ne, 2). mass includes the contents, weight is
-    submerged. rotary_inertia: kg m about an axis across the pipe.
+    submerged. rotary_inertia: kg m about an axis across the pipe; damping: s, of viscous over elastic stiffness.
     """
 
     length: Array
@@ -71,11 +73,13 @@ class Elements:
     EI_z: Array
     GJ: Array
     outer_diameter: Array
+    inner_diameter: Array
     mass: Array
     weight: Array
     drag: Array
     added_mass: Array
     rotary_inertia: Array
+    damping: Array
 
     @property
     def arc(self) -> Array:
@@ -124,9 +128,11 @@ def elements(segments: Sequence[Segment], around: Surroundings) -> Elements:
         EI_z=spread([t.EI_z for t in types]),
         GJ=spread([t.GJ for t in types]),
         outer_diameter=spread([t.outer_diameter for t in types]),
+        inner_diameter=spread([t.inner_diameter for t in types]),
         mass=spread([mass_with_contents(t, around) for t in types]),
         weight=spread([submerged_weight(t, around) for t in types]),
         drag=spread([t.drag for t in types]),
         added_mass=spread([t.added_mass for t in types]),
         rotary_inertia=spread([rotary_inertia(t, around) for t in types]),
+        damping=spread([t.damping for t in types]),
     )

@@ -146,6 +146,23 @@ def strain_change(
 
 
 @njit
+def _curvature_change_variation(at: Station, side: float, L: float, da: Vec, db: Vec, ea: Vec, eb: Vec) -> Pair:
+    dtau, dy, dz = _at_station(side, L, da, db)
+    etau = _at_station(side, L, ea, eb)[0]
+    ky, kz = _curvature_change(at, side, L, ea, eb)
+    return etau * (dz * at.cosine - dy * at.sine) + dtau * kz, -etau * (dy * at.cosine + dz * at.sine) - dtau * ky
+
+
+@njit
+def strain_change_variation(L: float, at: tuple[Station, Station], da: Vec, db: Vec, ea: Vec, eb: Vec) -> Strain:
+    """Change of `strain_change` for da and db, kept fixed, when the angles change by ea and eb."""
+    axial1, axial2, twist1, twist2 = _gradients(ea, eb)
+    first = _curvature_change_variation(at[0], -1.0, L, da, db, ea, eb)
+    second = _curvature_change_variation(at[1], 1.0, L, da, db, ea, eb)
+    return Strain(dot(axial1, da) + dot(axial2, db), dot(twist1, da) + dot(twist2, db), first, second)
+
+
+@njit
 def conjugate(L: float, a: Vec, b: Vec, at: tuple[Station, Station], s: Stress) -> tuple[Vec, Vec]:
     """Generalised moments mu_1, mu_2 conjugate to the angles a and b, for the stresses s."""
     axial1, axial2, twist1, twist2 = _gradients(a, b)
@@ -168,6 +185,14 @@ def conjugate_change(
     end1 = add(scale(s.axial, axial1), scale(s.twist, twist1))
     end2 = add(scale(s.axial, axial2), scale(s.twist, twist2))
     return add(end1, add(first1, second1)), add(end2, add(first2, second2))
+
+
+@njit
+def total(a: Strain, b: Strain) -> Strain:
+    """a + b."""
+    first = (a.first[0] + b.first[0], a.first[1] + b.first[1])
+    second = (a.second[0] + b.second[0], a.second[1] + b.second[1])
+    return Strain(a.axial + b.axial, a.twist + b.twist, first, second)
 
 
 @njit

@@ -62,6 +62,20 @@ def rate(at: Swing, w: Vec) -> Vec:
 
 
 @njit
+def rate_variation(at: Swing, w: Vec, spin: Vec) -> Vec:
+    """Change of `rate` at fixed w when A spins by `spin`."""
+    t, dt, et, edt = at.t, cross(w, at.t), cross(spin, at.t), cross(w, cross(spin, at.t))
+    df, ef = at.df * dt[0], at.df * et[0]
+    edf = at.ddf * et[0] * dt[0] + at.df * edt[0]
+    dtau = (w[0] + dot(w, t)) / (1.0 + t[0])
+    return (
+        (dot(w, et) - dtau * et[0]) / (1.0 + t[0]),
+        -(ef * dt[2] + at.f * edt[2] + edf * t[2] + df * et[2]),
+        ef * dt[1] + at.f * edt[1] + edf * t[1] + df * et[1],
+    )
+
+
+@njit
 def _twist_direction(at: Swing) -> Vec:
     """(e1 + t)/(1 + t_x)."""
     per = 1.0 / (1.0 + at.t[0])

@@ -1,5 +1,6 @@
 """Line types: the properties of the pipe's cross-section."""
 
+import math
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
@@ -25,6 +26,22 @@ class AddedMass(BaseModel):
 
     normal: NonNegative = Field(description="added mass coefficient across the pipe [-]")
     tangential: NonNegative = Field(default=0.0, description="added mass coefficient along the pipe [-]")
+
+
+class Damping(BaseModel):
+    """Structural damping in proportion to the stiffness."""
+
+    model_config = FROZEN
+
+    ratio: NonNegative = Field(lt=1.0, description="ratio to critical damping at the frequency [-]")
+    frequency: Positive = Field(
+        description="frequency at which the ratio holds; it grows in proportion to the frequency [Hz]"
+    )
+
+    @property
+    def time(self) -> float:
+        """Viscous over elastic stiffness [s]: a mode of angular frequency w has the damping ratio w time / 2."""
+        return self.ratio / (math.pi * self.frequency)
 
 
 def _switch_or_number(value: Any) -> str:
@@ -67,6 +84,9 @@ class LineType(BaseModel):
     )
     drag: Drag | None = Field(default=None, description="drag coefficients; none by default")
     added_mass: AddedMass | None = Field(default=None, description="added mass coefficients; none by default")
+    damping: Damping | None = Field(
+        default=None, description="structural damping in motion, {ratio, frequency}; none by default"
+    )
     rotary_inertia: RotaryInertia = Field(
         default=False,
         description="inertia of the cross-section about an axis across the pipe [kg.m], twice that about the pipe's "

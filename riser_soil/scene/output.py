@@ -8,6 +8,7 @@ from riser_soil.scene.quantities import FROZEN, Positive, Text
 
 FieldName = Literal[
     "effective_tension",
+    "wall_tension",
     "bending_moment",
     "curvature",
     "contact_force",

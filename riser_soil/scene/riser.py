@@ -8,7 +8,7 @@ from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
 from riser_soil.scene.attachments import Attachment
 from riser_soil.scene.grading import graded_lengths
-from riser_soil.scene.quantities import FROZEN, Count, Positive, Text, Vector, word_or, wrong
+from riser_soil.scene.quantities import FROZEN, Count, Positive, Real, Text, Vector, word_or, wrong
 from riser_soil.scene.shapes import Initial, Unstressed
 
 
@@ -62,6 +62,10 @@ class Contents(BaseModel):
     model_config = FROZEN
 
     density: Positive = Field(description="density of the contents [kg/m3]")
+    pressure: Real = Field(default=0.0, description="gauge pressure of the contents at pressure_level [Pa]")
+    pressure_level: Real | None = Field(
+        default=None, description="height z at which the contents have that pressure [m]; the higher end by default"
+    )
 
 
 class RotationSpring(BaseModel):

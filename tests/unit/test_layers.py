@@ -18,7 +18,7 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("sea", "soil", "seabed", "motion"),
     ("contact",),
     ("build",),
-    ("numbering", "stepping"),
+    ("numbering", "stepping", "extrapolation"),
     ("matrix",),
     ("system",),
     ("direct_solver",),

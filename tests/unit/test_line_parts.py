@@ -12,17 +12,12 @@ import pytest
 from riser_soil.arrays import Array
 from riser_soil.part import Forces, Part, State, Weights
 from riser_soil.riser import hermite, loads, spinning, springs, stations
-from riser_soil.riser.attachments import Attachments
-from riser_soil.riser.beam import Beam
 from riser_soil.riser.directors import PlanarTurn, SpatialTurn
-from riser_soil.riser.inertia import Inertia
-from riser_soil.riser.loads import PointLoads
 from riser_soil.riser.rotary_inertia import RotaryInertia
-from riser_soil.riser.section_forces import HasNodalForces, element_residual
+from riser_soil.riser.section_forces import HasElementForces, HasNodalForces, element_residual
+from riser_soil.riser.structural_damping import StructuralDamping
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import wetting
-from riser_soil.sea.buoyancy import Buoyancy
-from riser_soil.sea.morison import Morison
 from riser_soil.sea.moving_water import Stream
 from riser_soil.sea.water import WaterMotion
 from tests import sample_water
@@ -34,6 +29,7 @@ MAKERS: dict[str, Callable[[Sample], Part]] = {
     "beam": Sample.beam,
     "inertia": Sample.inertia,
     "rotary": Sample.rotary,
+    "damping": Sample.damping,
     "morison": Sample.morison,
     "spring": Sample.spring,
     "attachments": Sample.attachments,
@@ -47,7 +43,10 @@ MAKERS: dict[str, Callable[[Sample], Part]] = {
     "buoyancy": sample_water.floating,
     "buoyancy in waves": sample_water.floating_in_waves,
 }
-WITHIN_ELEMENTS = ["beam", "inertia", "rotary", "morison", "forces", "attachments", "half out of waves", "buoyancy"]
+WITHIN_ELEMENTS = [
+    *("beam", "inertia", "rotary", "damping", "morison", "forces", "attachments"),
+    *("half out of waves", "buoyancy"),
+]
 every_part = pytest.mark.parametrize("name", list(MAKERS))
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 STENCIL = ((1, 3.0 / 4.0), (2, -3.0 / 20.0), (3, 1.0 / 60.0))
@@ -168,6 +167,20 @@ def without_wet_slope(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
     monkeypatch.setattr(wetting, "wet_slope", lambda h, b: 0.0 * h)
 
 
+def without_strain_rates(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
+    """Leaves only that the rates follow the increments."""
+    assert isinstance(part, StructuralDamping)
+    original = part._damping.tangent
+    monkeypatch.setattr(part._damping, "tangent", lambda trial, v, shift_v: original(trial, 0.0 * v, shift_v))
+
+
+def without_viscosity(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
+    """Leaves only that the forces follow the configuration."""
+    assert isinstance(part, StructuralDamping)
+    original = part._damping.tangent
+    monkeypatch.setattr(part._damping, "tangent", lambda trial, v, shift_v: original(trial, v, 0.0))
+
+
 @pytest.mark.parametrize(
     ("name", "dimension", "leave_out"),
     [
@@ -179,6 +192,7 @@ def without_wet_slope(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
         ("inertia", 3, without_director_rates),
         ("rotary", 2, without_rotary_inertia),
         ("rotary", 3, without_rotary_inertia),
+        *(("damping", d, leave_out) for d in (2, 3) for leave_out in (without_strain_rates, without_viscosity)),
         *(("rotary", 3, without(name, lambda x: 0.0 * x)) for name in ("Theta", "W", "A", "shift_v", "shift_a")),
         ("morison", 2, without_direction_changes),
         ("morison", 3, without_direction_changes),
@@ -306,7 +320,7 @@ def test_element_forces_add_up_to_the_residual(name: str, dimension: int) -> Non
     at = sample(dimension)
     part, state = MAKERS[name](at), at.state(6)
     total = np.zeros(at.line.size)
-    assert isinstance(part, Attachments | Beam | Inertia | RotaryInertia | Morison | PointLoads | Buoyancy)
+    assert isinstance(part, HasElementForces)
     at.line.scatter(element_residual(at.line, [part], state), total)
     nodal = part.nodal_forces(state).ravel() if isinstance(part, HasNodalForces) else 0.0
     assert total + nodal == pytest.approx(

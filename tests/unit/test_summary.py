@@ -21,6 +21,8 @@ WHOLE = {
     "max_bending_moment",
     "max_curvature",
     "min_effective_tension",
+    "min_wall_tension",
+    "max_wall_tension",
     "max_penetration",
     "contact_force",
 }
@@ -49,6 +51,14 @@ def test_final_state_of_a_catenary() -> None:
     assert final["min_effective_tension"] == {"value": pytest.approx(WEIGHT * 32.0), "arc": 0.0}
     assert final["contact_force"] == pytest.approx(WEIGHT * 30.0)
     assert final["touchdown_arc"] == 30.0
+
+
+def test_an_unknown_wall_tension_is_left_out() -> None:
+    riser = replace(LINE.riser(ARC), wall_tension=np.full(ARC.size, math.nan))
+    extremes = Extremes()
+    extremes.update(0.0, pack(riser, LINE.touch()))
+    for found in (final_state(ARC, riser, LINE.touch()), extremes.nested()):
+        assert set(found) == {"start", "end"} | WHOLE - {"min_wall_tension", "max_wall_tension"}
 
 
 @pytest.mark.parametrize(
@@ -106,11 +116,11 @@ def test_never_touching_is_null(tmp_path: Path) -> None:
 
 
 def test_packing_and_unpacking_agree() -> None:
-    vector = np.arange(28.0)
+    vector = np.arange(30.0)
     nested = unpack(vector)
     assert nested["start"]["position"] == [0.0, 1.0, 2.0]
     assert nested["end"]["angle_deg"] == 21.0
-    assert nested["contact_force"] == 27.0
+    assert nested["contact_force"] == 29.0
 
 
 def test_plain_json() -> None:

@@ -246,7 +246,7 @@ def gust(iterations: int) -> Mapping:
 
 def test_failed_step_is_cut_and_grows_again() -> None:
     """With few iterations allowed the steps under the gust fail."""
-    hard, easy = tell(gust(4))[-1], tell(gust(25))[-1]
+    hard, easy = tell(gust(6))[-1], tell(gust(25))[-1]
     assert sum(hard.cuts) > 0
     assert sum(easy.cuts) == 0
     smallest = int(np.argmin(hard.dt))

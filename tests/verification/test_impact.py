@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from riser_soil.arrays import Array
+from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.march import Accepted
 from riser_soil.newton import Newton, Solution, Step
 from riser_soil.part import Forces, State, Weights

@@ -1,0 +1,51 @@
+"""The pressures inside and outside the pipe."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from riser_soil.riser.line import Line
+from riser_soil.riser.sections import Elements
+from riser_soil.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from riser_soil.riser.wall_tension import Head, Pressures
+
+
+def no_wall_tension(scene: Scene) -> str:
+    """Why the tension in the pipe's wall is not told; empty where it is."""
+    if scene.water is None:
+        return "" if scene.riser.contents else "without water and contents it is the effective tension"
+    if scene.water.surface_level is None:
+        return "the pressure outside is unknown without water.surface_level"
+    if any(line.outer_diameter is None for line in scene.used_line_types.values()):
+        return "the pressure outside acts on outer_diameter, which a line type lacks"
+    return ""
+
+
+def pressures_of(scene: Scene, line: Line, elements: Elements) -> Pressures | None:
+    """Both pressures; None where the wall's tension is not told."""
+    if no_wall_tension(scene):
+        return None
+    from riser_soil.riser.wall_tension import Pressures
+
+    return Pressures(_inside(scene, line), _outside(scene), elements.inner_diameter, elements.outer_diameter)
+
+
+def _inside(scene: Scene, line: Line) -> Head | None:
+    given = scene.riser.contents
+    if given is None:
+        return None
+    from riser_soil.riser.wall_tension import Head
+
+    ends = line.to_global(line.x[[0, -1]])[:, 2]
+    level = float(ends.max()) if given.pressure_level is None else given.pressure_level
+    return Head(level, scene.gravity * given.density, given.pressure)
+
+
+def _outside(scene: Scene) -> Head | None:
+    if scene.water is None or scene.water.surface_level is None:
+        return None
+    from riser_soil.riser.wall_tension import Head
+
+    return Head(scene.water.surface_level, scene.gravity * scene.water.density)

@@ -1,0 +1,139 @@
+"""Viscous forces of the elements of `beam2d`: stresses in proportion to the strains' rates.
+
+The sections here are viscosities beta EA [N s] and beta EI [N m2 s]. With the rates of the chord and of the section
+angles as seen from the element's frame, the stresses are the Hessian of the elastic energy at no stress times the
+rates of the strains. A rigid motion has none, so it is never damped, however fast it turns.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.compiled import njit
+from riser_soil.riser.beam2d import (
+    Corotated,
+    Element,
+    NodalForces,
+    Reference,
+    Section,
+    Vec2,
+    configuration_variation,
+    corotate,
+    element_at,
+    nodal_forces,
+    put_forces,
+    stress_variation,
+)
+from riser_soil.riser.bending import bow_slopes
+
+STILL = (0.0, 0.0)
+
+
+class Move(NamedTuple):
+    """A change of an element's configuration, or its rate."""
+
+    stretch: float  # of the chord
+    spin: float  # of the chord
+    theta1: float  # of the tangents at the ends, from the chord
+    theta2: float
+
+
+@njit
+def _move(at: Corotated, u: Vec2, w1: float, w2: float) -> Move:
+    """What changes when the nodes move by u = u2 - u1, in the element's axes, and turn by w_i."""
+    spin = u[1] / at.length
+    return Move(u[0], spin, w1 - spin, w2 - spin)
+
+
+@njit
+def _rates_of(at: Corotated, chord_rate: Array, w1: float, w2: float) -> Move:
+    c, s = at.axis
+    return _move(at, (c * chord_rate[0] + s * chord_rate[1], c * chord_rate[1] - s * chord_rate[0]), w1, w2)
+
+
+@njit
+def _rates_change(at: Corotated, rates: Move, m: Move, shift_v: float) -> Move:
+    """Change of the rates in a move that they follow by shift_v; the axes in which they are seen turn, too."""
+    stretch = shift_v * m.stretch + m.spin * rates.spin * at.length
+    lag = (m.spin * rates.stretch + m.stretch * rates.spin) / at.length
+    return Move(stretch, shift_v * m.spin - lag, shift_v * m.theta1 + lag, shift_v * m.theta2 + lag)
+
+
+@njit
+def _stress_change(
+    element: Element, at: Corotated, N: float, rates: Move, m: Move, d: Move
+) -> tuple[float, float, float]:
+    """Change of the viscous stresses when the element moves by m and the rates change by d."""
+    slope1, slope2 = bow_slopes(m.theta1, m.theta2)
+    bowing = element.L * (slope1 * rates.theta1 + slope2 * rates.theta2)
+    dN, dm1, dm2 = stress_variation(element, at, 0.0, d.stretch + bowing, d.theta1, d.theta2)
+    return dN, dm1 + N * element.L * slope1, dm2 + N * element.L * slope2
+
+
+@njit
+def _vary(
+    element: Element, at: Corotated, N: float, force: Vec2, rates: Move, m: Move, shift_v: float
+) -> NodalForces:
+    dN, dm1, dm2 = _stress_change(element, at, N, rates, m, _rates_change(at, rates, m, shift_v))
+    change = nodal_forces(at, dN, dm1, dm2)
+    moved = configuration_variation(at, force, m.stretch, m.spin)
+    total = (change.force[0] + moved[0], change.force[1] + moved[1])
+    return NodalForces(total, change.moment1, change.moment2)
+
+
+@njit
+def forces(
+    chord: Array,
+    direction1: Array,
+    direction2: Array,
+    ref: Reference,
+    viscosity: Section,
+    chord_rate: Array,
+    turn_rate: Array,
+) -> Array:
+    """Viscous forces f (ne, 6) for rates of the chords (ne, 2), m/s, and of the nodes' angles (nn,), rad/s.
+
+    Chords and directions as in `beam2d.forces`.
+    """
+    f = np.empty((len(chord), 6))
+    for e in range(len(chord)):
+        at = corotate(chord[e], direction1[e], direction2[e])
+        rates = _rates_of(at, chord_rate[e], turn_rate[e], turn_rate[e + 1])
+        element = element_at(ref, viscosity, e)
+        N, m1, m2 = stress_variation(element, at, 0.0, rates.stretch, rates.theta1, rates.theta2)
+        put_forces(at.axis, nodal_forces(at, N, m1, m2), f[e])
+    return f
+
+
+@njit
+def tangent(
+    chord: Array,
+    direction1: Array,
+    direction2: Array,
+    ref: Reference,
+    viscosity: Section,
+    chord_rate: Array,
+    turn_rate: Array,
+    shift_v: float,
+) -> Array:
+    """Derivative K (ne, 6, 6) of `forces` by displacements and angles, which the rates follow by shift_v [1/s]."""
+    K = np.empty((len(chord), 6, 6))
+    for e in range(len(chord)):
+        at = corotate(chord[e], direction1[e], direction2[e])
+        rates = _rates_of(at, chord_rate[e], turn_rate[e], turn_rate[e + 1])
+        element = element_at(ref, viscosity, e)
+        N, m1, m2 = stress_variation(element, at, 0.0, rates.stretch, rates.theta1, rates.theta2)
+        force = nodal_forces(at, N, m1, m2).force
+        c, s = at.axis
+        moves = (
+            _move(at, STILL, 1.0, 0.0),
+            _move(at, (c, -s), 0.0, 0.0),
+            _move(at, (s, c), 0.0, 0.0),
+            _move(at, STILL, 0.0, 1.0),
+        )
+        for j in range(4):
+            put_forces(at.axis, _vary(element, at, N, force, rates, moves[j], shift_v), K[e, :, 2 + j])
+        for i in range(6):
+            K[e, i, 0], K[e, i, 1] = -K[e, i, 3], -K[e, i, 4]
+    return K

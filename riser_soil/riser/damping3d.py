@@ -1,0 +1,203 @@
+"""Viscous forces of the elements of `beam3d`: stresses in proportion to the strains' rates.
+
+The sections here are viscosities: beta EA [N s], beta EI and beta GJ [N m2 s]. Rates are those of the chord (m/s) and
+the spatial angular velocities of the nodes (rad/s). Strains do not change in a rigid motion, so it is never damped,
+however fast it turns.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.compiled import njit
+from riser_soil.riser.beam3d import (
+    STILL,
+    Move,
+    Reference,
+    Response,
+    Section,
+    Shape,
+    forces_change,
+    move,
+    put_forces,
+    respond,
+    shape,
+    stiffness,
+    strain_of,
+)
+from riser_soil.riser.corotation import NodalForces
+from riser_soil.riser.rotations import right_tangent_derivative
+from riser_soil.riser.strain3d import Stiffness, strain_change_variation, total
+from riser_soil.riser.stress3d import linear_stress
+from riser_soil.riser.swing_twist import rate, rate_variation
+from riser_soil.riser.vectors import (
+    Mat,
+    Vec,
+    add,
+    cross,
+    matrix,
+    matvec,
+    scale,
+    sub,
+    transpose,
+    vecmat,
+    vector,
+)
+
+
+class Flow(NamedTuple):
+    """Velocities of an element in its frame, and what they do to it."""
+
+    chord: Vec  # rate of the chord
+    spin1: Vec  # angular velocities of the nodes
+    spin2: Vec
+    rates: Move
+
+
+class Nodes(NamedTuple):
+    """Orientation of the nodes, each (nn, 3, 3) or (nn, 3): see `increments`; R is the present frame."""
+
+    R: Array
+    H: Array
+    Rn: Array
+    Theta: Array
+
+
+@njit
+def _flow(at: Shape, chord_rate: Vec, spin1: Vec, spin2: Vec) -> Flow:
+    axes = at.frame.axes
+    c, o1, o2 = matvec(axes, chord_rate), matvec(axes, spin1), matvec(axes, spin2)
+    return Flow(c, o1, o2, move(at, c, o1, o2))
+
+
+@njit
+def _respond(D: Stiffness, at: Shape, flow: Flow) -> Response:
+    strain_rates = strain_of(D.L, at, flow.rates)
+    return respond(D.L, at, strain_rates, linear_stress(D, strain_rates))
+
+
+@njit
+def _rates_change(at: Shape, flow: Flow, m: Move, dc: Vec, do1: Vec, do2: Vec) -> Move:
+    """Change of the rates when the element moves by m and its velocities change by dc, do1 and do2.
+
+    The axes in which they are seen turn, and so do the ends within them.
+    """
+    change = move(
+        at,
+        sub(dc, cross(m.spin, flow.chord)),
+        sub(do1, cross(m.spin, flow.spin1)),
+        sub(do2, cross(m.spin, flow.spin2)),
+    )
+    lag = scale(m.stretch / at.frame.length, flow.rates.spin)
+    spin1, spin2 = add(change.spin1, lag), add(change.spin2, lag)
+    da = add(rate(at.end1, spin1), rate_variation(at.end1, flow.rates.spin1, m.spin1))
+    db = add(rate(at.end2, spin2), rate_variation(at.end2, flow.rates.spin2, m.spin2))
+    return Move(change.stretch, sub(change.spin, lag), spin1, spin2, da, db)
+
+
+@njit
+def _vary(D: Stiffness, at: Shape, flow: Flow, response: Response, m: Move, d: Move) -> NodalForces:
+    """Change of an element's forces when it moves by m and its rates change by d."""
+    bending = strain_change_variation(D.L, at.stations, flow.rates.da, flow.rates.db, m.da, m.db)
+    ds = linear_stress(D, total(strain_of(D.L, at, d), bending))
+    return forces_change(D.L, at, response, m, ds)
+
+
+@njit
+def _element(
+    D: Stiffness, chord: Array, frame1: Array, frame2: Array, chord_rate: Array, spin1: Array, spin2: Array
+) -> tuple[Shape, Flow, Response]:
+    at = shape(D.L, vector(chord), matrix(frame1), matrix(frame2))
+    flow = _flow(at, vector(chord_rate), vector(spin1), vector(spin2))
+    return at, flow, _respond(D, at, flow)
+
+
+@njit
+def forces(
+    chord: Array, frame1: Array, frame2: Array, ref: Reference, viscosity: Section, chord_rate: Array, spin: Array
+) -> Array:
+    """Viscous forces f (ne, 12), conjugate to displacements and spatial spins.
+
+    chord_rate: (ne, 3); spin: (nn, 3) spatial angular velocities; the rest as in `beam3d.forces`.
+    """
+    f = np.empty((len(chord), 12))
+    for e in range(len(chord)):
+        D = stiffness(ref, viscosity, e)
+        at, _, response = _element(D, chord[e], frame1[e], frame2[e], chord_rate[e], spin[e], spin[e + 1])
+        put_forces(at.frame.axes, response.forces, f[e])
+    return f
+
+
+@njit
+def _turn_column(
+    D: Stiffness, at: Shape, flow: Flow, response: Response, w: Vec, faster: Vec, end: int
+) -> NodalForces:
+    """Change of the forces when one end spins by w and its angular velocity grows by `faster`, both in global axes."""
+    axes = at.frame.axes
+    turned, spinning = matvec(axes, w), matvec(axes, faster)
+    if end == 0:
+        m = move(at, STILL, turned, STILL)
+        d = _rates_change(at, flow, m, STILL, add(cross(turned, flow.spin1), spinning), STILL)
+    else:
+        m = move(at, STILL, STILL, turned)
+        d = _rates_change(at, flow, m, STILL, STILL, add(cross(turned, flow.spin2), spinning))
+    return _vary(D, at, flow, response, m, d)
+
+
+@njit
+def _shift_columns(D: Stiffness, at: Shape, flow: Flow, response: Response, shift_v: float, K: Array) -> None:
+    """Write the columns of both nodes' displacements to K (12, 12)."""
+    axes = at.frame.axes
+    for k in range(3):
+        unit = (axes[0][k], axes[1][k], axes[2][k])
+        m = move(at, unit, STILL, STILL)
+        d = _rates_change(at, flow, m, scale(shift_v, unit), STILL, STILL)
+        put_forces(axes, _vary(D, at, flow, response, m, d), K[:, 6 + k])
+        for i in range(12):
+            K[i, k] = -K[i, 6 + k]
+
+
+@njit
+def _to_increments(K: Array, at: int, moment: Vec, H: Mat, Rn: Mat, Theta: Vec) -> None:
+    """Turn the moments' rows at..at+2 of K (12, 12) into those conjugate to the rotation vector."""
+    for j in range(12):
+        K[at, j], K[at + 1, j], K[at + 2, j] = vecmat((K[at, j], K[at + 1, j], K[at + 2, j]), H)
+    geometric = right_tangent_derivative(Theta, vecmat(moment, Rn))
+    for i in range(3):
+        for j in range(3):
+            K[at + i, at + j] += geometric[i][j]
+
+
+@njit
+def tangent(
+    chord: Array,
+    frame1: Array,
+    frame2: Array,
+    ref: Reference,
+    viscosity: Section,
+    chord_rate: Array,
+    spin: Array,
+    nodes: Nodes,
+    shift_v: float,
+) -> Array:
+    """Derivative K (ne, 12, 12), by displacements and rotation vectors, of the forces conjugate to them.
+
+    Velocities and body-axes angular velocities follow by shift_v [1/s].
+    """
+    K = np.empty((len(chord), 12, 12))
+    for e in range(len(chord)):
+        D = stiffness(ref, viscosity, e)
+        at, flow, response = _element(D, chord[e], frame1[e], frame2[e], chord_rate[e], spin[e], spin[e + 1])
+        _shift_columns(D, at, flow, response, shift_v, K[e])
+        for end in range(2):
+            n, first = e + end, 3 + 6 * end
+            H, R = matrix(nodes.H[n]), matrix(nodes.R[n])
+            for k in range(3):
+                w, faster = transpose(H)[k], scale(shift_v, transpose(R)[k])
+                put_forces(at.frame.axes, _turn_column(D, at, flow, response, w, faster, end), K[e, :, first + k])
+        for end in range(2):
+            n, moment = e + end, response.forces.moment2 if end else response.forces.moment1
+            spatial = vecmat(moment, at.frame.axes)
+            _to_increments(K[e], 3 + 6 * end, spatial, matrix(nodes.H[n]), matrix(nodes.Rn[n]), vector(nodes.Theta[n]))
+    return K

@@ -1,0 +1,126 @@
+"""Damping within the pipe, in proportion to its stiffness: the part "structural damping" of dynamic stages."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.riser import beam2d, beam3d, damping2d, damping3d, increments
+from riser_soil.riser.directors import SpatialTurn
+from riser_soil.riser.elastic import PlanarElements, SpatialElements, elastic_elements
+from riser_soil.riser.line import Line
+from riser_soil.riser.sections import Elements
+from riser_soil.riser.trial import Trial
+
+
+class PlanarDamping:
+    """Viscous elements of a planar line; beta [s] of each element."""
+
+    def __init__(self, elements: PlanarElements, beta: Array) -> None:
+        self._elements = elements
+        self._viscosity = beam2d.Section(*(beta * stiffness for stiffness in elements.section))
+
+    def forces(self, trial: Trial, v: Array) -> Array:
+        """(ne, 6) from the rates of the dofs (nn, 3)."""
+        return np.asarray(damping2d.forces(*self._at(trial, v)))
+
+    def tangent(self, trial: Trial, v: Array, shift_v: float) -> Array:
+        """(ne, 6, 6)."""
+        return np.asarray(damping2d.tangent(*self._at(trial, v), shift_v))
+
+    def _at(self, trial: Trial, v: Array) -> tuple:
+        elements = self._elements
+        rates = np.diff(v[:, :2], axis=0), np.ascontiguousarray(v[:, 2])
+        return *elements.configuration(trial), elements.reference, self._viscosity, *rates
+
+
+class SpatialDamping:
+    """Viscous elements of a line in space; beta [s] of each element."""
+
+    def __init__(self, elements: SpatialElements, beta: Array) -> None:
+        self._elements = elements
+        self._viscosity = beam3d.Section(*(beta * stiffness for stiffness in elements.section))
+
+    def forces(self, trial: Trial, v: Array) -> Array:
+        """(ne, 12), conjugate to displacements and rotation increments, from the rates of the dofs (nn, 6)."""
+        f = damping3d.forces(*self._at(trial, v))
+        increments.forces_to_increments(f, _spatial(trial).H)
+        return np.asarray(f)
+
+    def tangent(self, trial: Trial, v: Array, shift_v: float) -> Array:
+        """(ne, 12, 12)."""
+        turn = _spatial(trial)
+        nodes = damping3d.Nodes(turn.R, turn.H, turn.Rn, turn.Theta)
+        return np.asarray(damping3d.tangent(*self._at(trial, v), nodes, shift_v))
+
+    def _at(self, trial: Trial, v: Array) -> tuple:
+        elements, turn = self._elements, _spatial(trial)
+        spin = np.einsum("nij,nj->ni", turn.R, v[:, 3:])
+        rates = np.diff(v[:, :3], axis=0), spin
+        return *elements.configuration(trial), elements.reference, self._viscosity, *rates
+
+
+class StructuralDamping:
+    """Stiffness-proportional damping (group F): stresses beta D times the strains' rates, D the elastic stiffnesses.
+
+    line: the riser's field. elements.damping: beta [s] per element. A mode of angular frequency w has the damping
+    ratio beta w / 2; rigid motions have none.
+    """
+
+    name, symmetric = "structural damping", False
+
+    def __init__(self, line: Line, elements: Elements) -> None:
+        self.line = line
+        self._damping = _damping(elastic_elements(line, elements), elements.damping)
+
+    def blocks(self) -> dict[str, Block]:
+        return {"riser": self.line.element_block()} if self.line.active else {}
+
+    def viscous_forces(self, state: State) -> Array:
+        """Element residuals (ne, 2 ndof)."""
+        trial = self.line.trial(state)
+        return np.asarray(trial.once((self, "forces"), self._forces))
+
+    def _forces(self, trial: Trial) -> Array:
+        return self._damping.forces(trial, self.line.nodal(trial.state.v))
+
+    def element_forces(self, state: State) -> tuple[None, Array]:
+        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
+        return None, self.viscous_forces(state)
+
+    def residual(self, state: State, forces: Forces) -> None:
+        if self.line.active:
+            self.line.scatter(self.viscous_forces(state), forces.force)
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        if self.line.active:
+            trial, v = self.line.trial(state), self.line.nodal(state.v)
+            values["riser"] += weights.force * self._damping.tangent(trial, v, float(weights.shift_v))
+
+    def energy(self, state: State) -> Energy:
+        return Energy()
+
+    def work(self, before: State, after: State) -> Work:
+        """Energy that the mean forces take out over the step."""
+        if not self.line.active:
+            return Work()
+        forces = Forces.zeros(after.u.size)
+        for state in (before, after):
+            self.residual(state, forces)
+        part = self.line.part
+        return Work(dissipated=0.5 * float(forces.force[part] @ (after.u - before.u)[part]))
+
+    def commit(self, state: State) -> None:
+        pass
+
+
+def _damping(elements: PlanarElements | SpatialElements, beta: Array) -> PlanarDamping | SpatialDamping:
+    if isinstance(elements, PlanarElements):
+        return PlanarDamping(elements, beta)
+    return SpatialDamping(elements, beta)
+
+
+def _spatial(trial: Trial) -> SpatialTurn:
+    assert isinstance(trial.turn, SpatialTurn)
+    return trial.turn

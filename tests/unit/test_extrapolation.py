@@ -1,0 +1,30 @@
+"""The first guess of a step, continued from the steps before it."""
+
+import numpy as np
+import pytest
+
+from riser_soil.extrapolation import Extrapolation
+
+TIMES = np.array([0.0, 0.3, 0.5, 0.9])  # unequal steps
+
+
+def guess(path: np.ndarray, smooth: bool) -> float:
+    """Increment of the last step, guessed from the positions before it."""
+    past = Extrapolation(1, smooth)
+    for increment, dt in zip(np.diff(path)[:-1], np.diff(TIMES)[:-1], strict=True):
+        past.accept(np.array([increment]), dt)
+    return float(past.increments(TIMES[-1] - TIMES[-2])[0])
+
+
+def test_nothing_moves_at_first() -> None:
+    assert not np.any(Extrapolation(3, smooth=True).increments(0.1))
+
+
+def test_smooth_motion_continues_its_parabola() -> None:
+    path = 2.0 - 3.0 * TIMES + 4.0 * TIMES**2
+    assert guess(path, smooth=True) == pytest.approx(path[-1] - path[-2], rel=1e-12)
+
+
+def test_with_contact_the_last_rate_goes_on() -> None:
+    path = TIMES**2
+    assert guess(path, smooth=False) == pytest.approx((path[2] - path[1]) / 0.2 * 0.4, rel=1e-12)

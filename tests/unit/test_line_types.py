@@ -1,0 +1,37 @@
+"""Line types of a scene as the elements get them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from riser_soil.build.riser import elements_of
+from riser_soil.inventory import built, left_out
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.scene import Scene
+from tests.riser_scenes import dynamic, held, riser_scene, static
+
+PIPE = {"EA": 1.0e8, "EI": 1.0e4, "GJ": 1.0e4, "mass": 50.0, "outer_diameter": 0.4, "inner_diameter": 0.2}
+
+
+def scene(**pipe: object) -> Scene:
+    ends = held(0.0, 0.0, 0.0), held(9.0, 0.0, 0.0)
+    stages = static(), dynamic(1.0, 0.1)
+    return scene_from_mapping(
+        riser_scene(*stages, pipe=PIPE | pipe, length=9.0, elements=3, start=ends[0], end=ends[1])
+    )
+
+
+@pytest.mark.parametrize(("given", "expected"), [(False, 0.0), (True, 50.0 * 0.2 / 16.0), (3, 3.0), (0, 0.0)])
+def test_rotary_inertia(given: bool | float, expected: float) -> None:
+    made = scene(rotary_inertia=given)
+    assert elements_of(made).rotary_inertia == pytest.approx(np.full(3, expected))
+    assert ("rotary inertia" in built(made)) == (expected > 0.0)
+
+
+def test_damping() -> None:
+    """Stiffness-proportional: beta w / 2 is the ratio at w = 2 pi frequency."""
+    made = scene(damping={"ratio": 0.02, "frequency": 0.5})
+    assert 0.5 * elements_of(made).damping * (2.0 * np.pi * 0.5) == pytest.approx(np.full(3, 0.02))
+    assert "structural damping" in built(made)
+    assert left_out(scene(damping={"ratio": 0.0, "frequency": 0.5}))["structural damping"]

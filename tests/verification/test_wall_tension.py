@@ -1,0 +1,106 @@
+"""The tension in the wall of vertical pipes, full and empty, in air and in water, against force balances by hand."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from riser_soil.results import Run
+from riser_soil.run import run
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.snapshot import RiserSnapshot
+from tests.coupled_scenes import Mapping
+from tests.riser_scenes import held, riser_scene, static, tell
+
+G, RHO, OIL, L = 9.81, 1025.0, 850.0, 40.0
+OUTER, INNER, MASS = 0.3, 0.2, 120.0
+A_OUT, A_IN = 0.25 * np.pi * OUTER**2, 0.25 * np.pi * INNER**2
+PIPE = {"EA": 1.0e9, "EI": 1.0e5, "GJ": 1.0e5, "mass": MASS, "outer_diameter": OUTER, "inner_diameter": INNER}
+
+
+def hanging(top: float, contents: Mapping | None = None, **more: Any) -> Mapping:
+    """A closed pipe that hangs from its start down to its free end."""
+    riser: Mapping = {"unstressed": {"points": [[0.0, 0.0, top], [0.0, 0.0, top - L]]}}
+    riser |= {"contents": contents} if contents else {}
+    sizes: dict[str, Any] = {"pipe": PIPE, "length": L, "elements": 8, "start": held(0.0, 0.0, top), "end": "free"}
+    return riser_scene(static(), riser=riser, gravity=G, **(sizes | more))
+
+
+def settled(scene: Mapping) -> RiserSnapshot:
+    (stage,) = tell(scene)
+    return stage.end
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_full_pipe_in_air_carries_its_contents_by_its_lower_end(dimension: int) -> None:
+    """Its end cap feels p + rho g L on the bore; the steel above adds its own weight alone."""
+    p = 2.0e6
+    wall = settled(hanging(0.0, {"density": OIL, "pressure": p}, dimension=dimension)).wall_tension
+    below = L - np.linspace(0.0, L, 9)
+    stretched = pytest.approx((p + OIL * G * L) * A_IN + MASS * G * below, rel=1e-5)
+    assert wall == stretched
+    assert wall[0] == pytest.approx(p * A_IN + (MASS + OIL * A_IN) * G * L, rel=1e-9)
+
+
+def test_the_foot_of_a_submerged_pipe_is_pressed_by_the_water() -> None:
+    """T_w = -p_o A_o at a closed free end, whatever is above it; at the top the dry weight less that force."""
+    told = settled(hanging(-10.0, water={"density": RHO, "surface_level": 0.0}))
+    foot = RHO * G * -told.position[-1, 2] * A_OUT
+    assert told.effective_tension[-1] == pytest.approx(0.0, abs=1e-6 * foot)
+    assert told.wall_tension[-1] == pytest.approx(-foot, rel=1e-9)
+    assert told.wall_tension[0] == pytest.approx(MASS * G * L - RHO * G * (10.0 + L) * A_OUT, rel=1e-9)
+
+
+def test_the_level_of_the_contents_can_be_given() -> None:
+    default, given = (
+        settled(hanging(5.0, {"density": OIL} | more)).wall_tension for more in ({}, {"pressure_level": 8.0})
+    )
+    assert given - default == pytest.approx(np.full(9, OIL * G * 3.0 * A_IN), rel=1e-9)
+
+
+def test_above_the_water_nothing_presses_from_outside() -> None:
+    told = settled(hanging(30.0, water={"density": RHO, "surface_level": 0.0}))
+    z = told.position[:, 2]
+    assert np.array_equal(told.wall_tension[z > 0.0], told.effective_tension[z > 0.0])
+    pressed = told.effective_tension - told.wall_tension
+    assert pressed[z < 0.0] == pytest.approx(-RHO * G * z[z < 0.0] * A_OUT, rel=1e-9)
+
+
+def test_at_a_joint_the_areas_are_the_means_of_both_sides() -> None:
+    scene = hanging(0.0, {"density": OIL, "pressure": 1.0e6})
+    scene["line_types"]["thin"] = PIPE | {"inner_diameter": 0.1}
+    half = {"length": 0.5 * L, "elements": 4}
+    scene["riser"]["segments"] = [{"line_type": "pipe"} | half, {"line_type": "thin"} | half]
+    told = settled(scene)
+    areas = np.r_[np.full(4, A_IN), 0.5 * (A_IN + 0.25 * A_IN), np.full(4, 0.25 * A_IN)]
+    pressure = 1.0e6 - OIL * G * told.position[:, 2]
+    assert told.wall_tension - told.effective_tension == pytest.approx(pressure * areas, rel=1e-9)
+
+
+def finished(scene: Mapping, folder: Path) -> Run:
+    run(scene_from_mapping(scene), folder)
+    return Run(folder)
+
+
+def test_it_is_written_with_unit_and_extremes(tmp_path: Path) -> None:
+    done = finished(hanging(-10.0, {"density": OIL}, water={"density": RHO, "surface_level": 0.0}), tmp_path / "out")
+    (stage,) = done.summary["stages"]
+    wall = done["wall_tension"][-1]
+    for name, node in (("max_wall_tension", wall.argmax()), ("min_wall_tension", wall.argmin())):
+        assert stage["final"][name] == {"value": wall[node], "arc": done.arc[node]}
+        assert stage["extremes"][name]["max"] >= wall[node] >= stage["extremes"][name]["min"]
+    assert "wall tension" not in done.summary["parts"]["left_out"]
+    assert "wall_tension" in (tmp_path / "out" / "riser.xdmf").read_text()
+
+
+def test_where_the_pressure_outside_is_unknown_it_is_left_out(tmp_path: Path) -> None:
+    done = finished(hanging(-10.0, {"density": OIL}, water={"density": RHO}), tmp_path / "out")
+    (stage,) = done.summary["stages"]
+    assert "max_wall_tension" not in stage["final"]
+    assert "surface_level" in done.summary["parts"]["left_out"]["wall tension"]
+    with pytest.raises(Exception, match="has no wall_tension"):
+        done["wall_tension"]
+    assert "wall_tension" not in (tmp_path / "out" / "riser.xdmf").read_text()
