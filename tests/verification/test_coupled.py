@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from copy import deepcopy
 from functools import cache
 
@@ -33,14 +32,12 @@ class Laid:
         def keep(system: System, step: Accepted) -> None:
             self.step, self.system = step, system
             self.forces = total(step.solution.forces)
-            self.on_riser = self.contact(lambda c: c.force_on_riser(step.solution.state))
-            self.on_soil = self.contact(lambda c: c.force_on_soil(step.solution.state))
+            state = step.solution.state
+            self.on_riser = np.sum([c.force_on_riser(state) for c in self.world.contacts], axis=0)
+            assert self.world.soil_contact is not None
+            self.on_soil = self.world.soil_contact.force_on_soil(state)
 
         take(self.world, self.world.scene.stages[0], watch=keep)
-
-    def contact(self, ask: Callable[..., Array]) -> Array:
-        assert self.world.soil_contact is not None
-        return ask(self.world.soil_contact)
 
     @property
     def weight(self) -> float:
