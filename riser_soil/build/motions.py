@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -93,4 +94,5 @@ def _table(given: Table) -> Six:
 def _carry(end: End, origin: Array, six: Six) -> None:
     from riser_soil.motion.carried import Displaced, Turned
 
-    end.motion, end.turning = Displaced(origin, six), Turned(six)
+    once = lru_cache(maxsize=2)(six)  # a step asks again and again for its beginning and its end
+    end.motion, end.turning = Displaced(origin, once), Turned(once)
