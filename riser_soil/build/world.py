@@ -82,7 +82,7 @@ class World:
         parts = [*self.riser_parts, *loads_of(self.line, stage)]
         if isinstance(stage, DynamicStage):
             parts += dynamic_parts(self.line, self.elements, self.attachments)
-        parts += sea_loads(self.scene, self.line, self.elements, stage)
+        parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
         parts += [p for p in (self.soil, self.contact) if p is not None]
         return Model(self.fields, parts)
 
