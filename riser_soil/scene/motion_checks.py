@@ -7,6 +7,7 @@ from riser_soil.scene.motions import EndMotion, Table, Vessel
 from riser_soil.scene.problem import Path, Problem
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.vectors import cross, minus
 
 # What round-off may leave of a displacement [m] or an angle [rad] where the motion is to begin at its middle.
 _AT_ZERO = 1e-9
@@ -25,7 +26,7 @@ def motion_conflicts(scene: Scene, path: Path, motion: EndMotion, duration: floa
     if motion.rotation and isinstance(end, Support) and end.rotation == "free":
         allowed = f"riser.{path[-1]}.rotation is free, so that nothing turns with the support"
         yield Problem((*path, "rotation"), allowed, "set it to fixed or a stiffness, or leave this out")
-    if motion.arc and isinstance(end, Support) and end.position == motion.arc.hub:
+    if motion.arc and isinstance(end, Support) and not any(cross(motion.arc.axis, minus(end.position, motion.arc.hub))):
         yield Problem((*path, "arc", "hub"), f"the {path[-1]} lies at its hub and can't turn about it", "move the hub")
 
 

@@ -96,8 +96,8 @@ class Table(BaseModel):
     model_config = FROZEN
 
     file: NamedFile = Field(
-        description="CSV file with a header such as t [s], x [m], y [m], z [m], rx [deg], ry [deg], rz [deg]; a "
-        "relative name is sought beside the scene file"
+        description="CSV file with a header such as t [s], x [m], y [m], z [m], rx [deg], ry [deg], rz [deg] (or "
+        "min, ms; mm, cm, ft; rad); a relative name is sought beside the scene file"
     )
     ramp: NonNegative = Field(default=0.0, description=_RAMP)
 
