@@ -204,13 +204,17 @@ def test_periods_degrees_and_a_full_circle(tmp_path: Path) -> None:
     assert displaced(known, 17.3) == pytest.approx(displaced(other, 17.3), rel=1e-9)
 
 
-def test_waves_beyond_the_table(tmp_path: Path) -> None:
-    """Short waves that by the table's last row matter little don't move the vessel; they are told."""
+@pytest.mark.parametrize(("decay", "warnings"), [(8.0, 1), (20.0, 0)])
+def test_waves_beyond_the_table(decay: float, warnings: int, tmp_path: Path) -> None:
+    """Short waves that by the table's last row matter little don't move the vessel; they are told, once, unless they
+    matter nothing at all.
+    """
 
     def rao(w: float, direction: float) -> tuple[float, float]:
-        return np.exp(-8.0 * max(0.0, w - 0.8)), 0.0
+        return np.exp(-decay * max(0.0, w - 0.8)), 0.0
 
-    floating = scene(tmp_path, table(np.linspace(0.3, 1.1, 27), [180.0], heave=rao), waves=JONSWAP)
+    text = table(np.linspace(0.3, 1.1, 27), [180.0], heave=rao)
+    floating = scene(tmp_path, text, aboard(), aboard(name="sail on"), waves=JONSWAP)
     world = begun(floating)
     assert world.vessels is not None
     response = world.vessels.motion(floating.stages[0], "end", np.array(END)).response
@@ -218,9 +222,10 @@ def test_waves_beyond_the_table(tmp_path: Path) -> None:
     assert np.count_nonzero(above) == 5  # of 40 waves of equal energy
     assert not np.any(response.amplitude[above])
     assert np.all(response.amplitude[~above, 2])
-    told = [doubt for doubt in physical_warnings(world) if doubt.startswith("stages.0.motion.end.vessel.rao")]
-    assert len(told) == 1
-    assert "12.5 % above its last, 1.1 rad/s" in told[0]
+    told = [doubt for doubt in physical_warnings(world) if "vessel" in doubt]
+    assert len(told) == warnings
+    assert all(doubt.startswith("stages.0.motion.end.vessel.rao: 0 % of the waves' energy") for doubt in told)
+    assert all("12.5 % above its last, 1.1 rad/s" in doubt for doubt in told)
 
 
 def test_a_table_that_misses_waves_that_matter_is_refused(tmp_path: Path) -> None:
