@@ -25,6 +25,7 @@ def physical_warnings(world: World) -> Iterator[str]:
     yield from _penalty_against_soil(world)
     yield from _corner_against_weight(world)
     yield from _nothing_below(world)
+    yield from _beyond_the_rao(world)
     if world.scene.water is not None and world.scene.water.waves is not None:
         from riser_soil.wave_doubts import wave_doubts
 
@@ -85,6 +86,17 @@ def _nothing_below(world: World) -> Iterator[str]:
         yield (
             f"{beyond.size} nodes of the riser, from arc {beyond[0]:.4g} to {beyond[-1]:.4g} m, lie beyond the soil, "
             "where nothing bears them: add seabed, which acts beside the soil, or enlarge the soil"
+        )
+
+
+def _beyond_the_rao(world: World) -> Iterator[str]:
+    """Waves outside the frequencies of a vessel's table."""
+    for path, beyond in (world.vessels.beyond if world.vessels is not None else {}).items():
+        yield (
+            f"{path}: {100.0 * beyond.below:.3g} % of the waves' energy lies below the table's first frequency, "
+            f"{beyond.first:.4g} rad/s, where the vessel moves as there, and {100.0 * beyond.above:.3g} % above its "
+            f"last, {beyond.last:.4g} rad/s, where it doesn't move: by the table's ends that is little; longer tables "
+            "would tell"
         )
 
 

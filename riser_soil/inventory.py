@@ -66,10 +66,11 @@ def _no_morison(scene: Scene) -> str:
         return "the scene has no water"
     if not has_dynamics(scene) and scene.water.current is None:
         return "all stages are static, and still water does not load a riser at rest"
-    types = scene.used_line_types.values()
-    if any(t.drag or t.added_mass for t in types) or (scene.water.waves and has_dynamics(scene)):
+    types, attachments = scene.used_line_types.values(), scene.riser.attachments
+    resist = any(t.drag or t.added_mass for t in types) or any(a.drag_area or a.added_mass for a in attachments)
+    if resist or (scene.water.waves and has_dynamics(scene)):
         return ""
-    return "no line type has drag or added mass"
+    return "no line type has drag or added mass, nor any attachment"
 
 
 def _no_buoyancy(scene: Scene) -> str:

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from riser_soil.arrays import Array
+from riser_soil.riser.attachments import Attachment
 from riser_soil.sea.buoyancy import Buoyancy
+from riser_soil.sea.modules import StillWaterOnModules, diameters, pipe_at
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
 from riser_soil.sea.moving_water import AcceleratedWater, RelativeDrag, Stream
@@ -85,6 +87,40 @@ def half_out_in_waves(at: Sample) -> Morison:
     loads = still(at)
     stream = Stream(loads.pipe, water)
     return Morison(loads.pipe, PartlyWet(driven(loads, stream, at), Wetting(loads.pipe, stream)))
+
+
+MODULES = [
+    Attachment(2.7, volume=0.1, drag_area=0.4, added_mass=0.5),
+    Attachment(4.0, volume=0.3, drag_area=0.2),
+    Attachment(5.4, volume=0.3, drag_area=0.7, added_mass=0.8),
+]
+
+
+def on_modules(at: Sample) -> tuple[StillWaterOnModules, Array]:
+    """Three modules, two of them in one element; what they displace."""
+    volume, drag_area, Ca = np.array([[m.volume, m.drag_area, m.added_mass] for m in MODULES]).T
+    loads = StillWaterOnModules(pipe_at(at.line, MODULES), 0.5 * RHO * drag_area, Ca * RHO * volume)
+    return loads, RHO * volume
+
+
+def modules(at: Sample) -> Morison:
+    loads, _ = on_modules(at)
+    return Morison(loads.pipe, loads)
+
+
+def modules_half_out_in_waves(at: Sample) -> Morison:
+    loads, displaced = on_modules(at)
+    stream, added = Stream(loads.pipe, water), np.array([m.added_mass for m in MODULES])
+    mass = (added * displaced)[:, None] * np.ones(2)
+    driven = AcceleratedWater(RelativeDrag(loads, stream), stream, mass, displaced)
+    return Morison(loads.pipe, PartlyWet(driven, Wetting(loads.pipe, stream, diameters(MODULES)[:, None])))
+
+
+def modules_floating(at: Sample) -> Buoyancy:
+    pipe = pipe_at(at.line, MODULES)
+    surface = FlatSurface(pipe, at.line.x[2, -1])
+    displaced = 9.81 * RHO * np.array([m.volume for m in MODULES])
+    return Buoyancy(pipe, Wetting(pipe, surface, diameters(MODULES)[:, None]), displaced, flat=True)
 
 
 def floating(at: Sample) -> Buoyancy:

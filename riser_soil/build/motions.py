@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,17 +13,36 @@ from riser_soil.riser.ends import End, Motion, Turning
 from riser_soil.riser.line import Line
 from riser_soil.scene.motions import Arc, EndMotion, Harmonic, Rotation, Table
 from riser_soil.scene.quantities import Vector
-from riser_soil.scene.stages import Stage, StaticStage
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
+
+if TYPE_CHECKING:
+    from riser_soil.build.vessels import Vessels
+    from riser_soil.motion.carried import Six
 
 
-def set_motions(line: Line, stage: Stage) -> None:
+def vessels_of(scene: Scene) -> Vessels | None:
+    """The vessels that carry ends; None where there are none."""
+    stages = [stage for stage in scene.stages if isinstance(stage, DynamicStage) and stage.motion is not None]
+    if not any(motion.vessel for stage in stages if stage.motion for motion in stage.motion.by_end.values()):
+        return None
+    from riser_soil.build.vessels import Vessels
+
+    return Vessels(scene)
+
+
+def set_motions(line: Line, stage: Stage, vessels: Vessels | None) -> None:
     """Give the held ends their motions in this stage, from where they are now; without one they stay there."""
     for end, node, name in ((line.start, 0, "start"), (line.end, -1, "end")):
         end.motion = end.turning = None
+        origin = line.to_global(line.x[node])
         if isinstance(stage, StaticStage):
-            _move(end, line.to_global(line.x[node]), getattr(stage.move, name, None))
+            _move(end, origin, getattr(stage.move, name, None))
         elif stage.motion is not None and name in stage.motion.by_end:
-            _set(end, line.to_global(line.x[node]), stage.motion.by_end[name])
+            given = stage.motion.by_end[name]
+            _set(end, origin, given)
+            if given.vessel is not None and vessels is not None:
+                _carry(end, origin, vessels.motion(stage, name, origin))
     line.begin_stage()
 
 
@@ -40,7 +61,7 @@ def _set(end: End, origin: Array, given: EndMotion) -> None:
     if given.rotation is not None:
         end.turning = _rocking(given.rotation)
     if given.table is not None:
-        end.motion, end.turning = _table(origin, given.table)
+        _carry(end, origin, _table(given.table))
 
 
 def _harmonic(origin: Array, given: Harmonic) -> Motion:
@@ -63,11 +84,15 @@ def _rocking(given: Rotation) -> Callable[[float], Turning]:
     return Rocking(np.array(given.axis) / np.linalg.norm(given.axis), swing)
 
 
-def _table(origin: Array, given: Table) -> tuple[Motion, Callable[[float], Turning]]:
-    from riser_soil.motion.carried import Displaced, Turned
+def _table(given: Table) -> Six:
     from riser_soil.motion.table import Table
 
-    rows = Table(
-        np.array(given.columns.values["t"]), np.hstack([given.displacements, given.rotations]), given.ramp
-    )
-    return Displaced(origin, rows), Turned(rows)
+    values = np.hstack([given.displacements, given.rotations])
+    return Table(np.array(given.columns.values["t"]), values, given.ramp)
+
+
+def _carry(end: End, origin: Array, six: Six) -> None:
+    from riser_soil.motion.carried import Displaced, Turned
+
+    once = lru_cache(maxsize=2)(six)  # a step asks again and again for its beginning and its end
+    end.motion, end.turning = Displaced(origin, once), Turned(once)

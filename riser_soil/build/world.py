@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil.build.motions import set_motions
+from riser_soil.build.motions import set_motions, vessels_of
 from riser_soil.build.pressures import pressures_of
 from riser_soil.build.riser import attached_weight, attachments_of, elements_of, line_of, springs_of
 from riser_soil.build.sea_loads import sea_loads
@@ -21,6 +21,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage
 
 if TYPE_CHECKING:
+    from riser_soil.build.vessels import Vessels
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.riser.attachments import Attachment
@@ -39,6 +40,7 @@ class World:
     horizontal_tension [N]: of the initial catenary, None for other first shapes.
     pressures: inside and outside the pipe; None where the tension in its wall is not told.
     contact_stiffness [N/m2]: force per length and penetration, by ground (soil, seabed).
+    vessels: those that carry ends, None where there are none.
     """
 
     scene: Scene
@@ -53,6 +55,7 @@ class World:
     soil_contact: SoilContact | None = None
     seabed: SeabedContact | None = None
     contact_stiffness: dict[str, float] = field(default_factory=dict)
+    vessels: Vessels | None = None
 
     @property
     def fields(self) -> list[Field]:
@@ -81,12 +84,12 @@ class World:
 
     def begin(self, stage: Stage) -> Model:
         """Set the ends in motion and name the parts of a stage."""
-        set_motions(self.line, stage)
+        set_motions(self.line, stage, self.vessels)
         hold_spin(self.scene, self.line, stage, self.elements)
         parts = [*self.riser_parts, *loads_of(self.line, stage)]
         if isinstance(stage, DynamicStage):
             parts += dynamic_parts(self.line, self.elements, self.attachments)
-        parts += sea_loads(self.scene, self.line, self.elements, stage)
+        parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
         soil = [self.soil] if self.soil is not None else []
         return Model(self.fields, [*parts, *soil, *self.contacts])
 
@@ -97,7 +100,8 @@ def build(scene: Scene, comm: MPI.Intracomm) -> World:
     line, tension = line_of(scene, elements, active=comm.rank == 0)
     attachments = attachments_of(scene)
     parts = [Beam(line, elements), *springs_of(scene.riser, line), *attached_weight(line, attachments)]
-    world = World(scene, comm, line, elements, parts, tension, attachments, pressures_of(scene, line, elements))
+    pressures, vessels = pressures_of(scene, line, elements), vessels_of(scene)
+    world = World(scene, comm, line, elements, parts, tension, attachments, pressures, vessels=vessels)
     if scene.contact is not None:
         _add_ground(world)
     return world

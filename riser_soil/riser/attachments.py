@@ -37,11 +37,16 @@ class Attachment:
     added_mass: float = 0.0
 
 
-def shares(line: Line, attachments: Sequence[Attachment]) -> tuple[IntArray, Array]:
+def places(line: Line, attachments: Sequence[Attachment]) -> tuple[IntArray, Array]:
+    """Elements (m,) of the attachments, and where they sit in them, xi (m,)."""
+    found = [line.place(attachment.arc) for attachment in attachments]
+    return np.array([e for e, _ in found], dtype=np.int64), np.array([xi for _, xi in found])
+
+
+def _shares(line: Line, attachments: Sequence[Attachment]) -> tuple[IntArray, Array]:
     """Elements (m,) of the attachments, and N1..N4 (m, 4) where they sit."""
-    places = [line.place(attachment.arc) for attachment in attachments]
-    element = np.array([e for e, _ in places], dtype=np.int64)
-    return element, hermite.shapes(np.array([xi for _, xi in places]), line.length[element])
+    element, xi = places(line, attachments)
+    return element, hermite.shapes(xi, line.length[element])
 
 
 def split(line: Line, attachments: Sequence[Attachment]) -> tuple[list[Attachment], list[Attachment]]:
@@ -67,7 +72,7 @@ def masses(line: Line, attachments: Sequence[Attachment]) -> Masses:
 
 def _mass_matrices(line: Line, attachments: Sequence[Attachment]) -> Array:
     M = np.zeros((line.length.size, 4, 4))
-    element, N = shares(line, attachments)
+    element, N = _shares(line, attachments)
     mass = np.array([attachment.mass for attachment in attachments])
     np.add.at(M, element, mass[:, None, None] * N[:, :, None] * N[:, None, :])
     return M
@@ -76,7 +81,7 @@ def _mass_matrices(line: Line, attachments: Sequence[Attachment]) -> Array:
 def _residual(line: Line, attachments: Sequence[Attachment]) -> Array:
     """Residual of weight less buoyancy, conjugate to q (ne, 4, d)."""
     F = np.zeros((line.length.size, 4, line.dimension))
-    element, N = shares(line, attachments)
+    element, N = _shares(line, attachments)
     weight = np.array([attachment.net_weight for attachment in attachments])
     np.add.at(F, element, (weight[:, None] * N)[:, :, None] * (UP @ line.basis))
     return F

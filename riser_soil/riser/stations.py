@@ -56,6 +56,12 @@ def stations(L: Array, rule: Rule = THREE_POINTS) -> Stations:
     return Stations(N, dN, rule.weights[:, None] * L[:, None, None] * N)
 
 
+def points(L: Array, xi: Array) -> Stations:
+    """One station each, of weight 1, at xi (m,) of elements of lengths L (m,): what acts there is a force."""
+    N = shapes(xi, L)[:, None, :]
+    return Stations(N, slopes(xi, L)[:, None, :], N)
+
+
 def interpolate(at: Stations, q: Array) -> Array:
     """Values (ne, ng, d) of q, q' or q''."""
     values: Array = _interpolate(at.N, q, fixed(q.shape[2]))

@@ -25,9 +25,10 @@ _Line = tuple[int, list[str]]
 
 @dataclass(frozen=True)
 class Columns:
-    """A file's columns by name, in SI units, and the line of each row in the file."""
+    """A file's columns by name, in SI units, and the lines of its header and of each row in the file."""
 
     file: Path
+    header: int
     values: Mapping[str, tuple[float, ...]]
     lines: tuple[int, ...]
 
@@ -53,7 +54,7 @@ def read_columns(file: Path, known: Known, required: tuple[str, ...]) -> Columns
         raise wrong_file(f"{file}:{lines[0][0]}: {text}")
     rows = [_row(file, line, names) for line in lines[1:]]
     values = {name: tuple(row[i] * units[i] for row in rows) for i, name in enumerate(names)}
-    return Columns(file, values, tuple(number for number, _ in lines[1:]))
+    return Columns(file, lines[0][0], values, tuple(number for number, _ in lines[1:]))
 
 
 def _lines(file: Path) -> Iterator[_Line]:

@@ -3,9 +3,11 @@
 import math
 from collections.abc import Iterator
 
-from riser_soil.scene.motions import EndMotion, Table
+from riser_soil.scene.motions import EndMotion, Table, Vessel
 from riser_soil.scene.problem import Path, Problem
-from riser_soil.scene.riser import End, Support
+from riser_soil.scene.riser import Support
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.vectors import cross, minus
 
 # What round-off may leave of a displacement [m] or an angle [rad] where the motion is to begin at its middle.
 _AT_ZERO = 1e-9
@@ -13,16 +15,35 @@ _AT_ZERO = 1e-9
 _LATE = 1e-9
 
 
-def motion_conflicts(path: Path, motion: EndMotion, end: End, duration: float) -> Iterator[Problem]:
-    """Conflicts of the motion at a path with its end and its stage's duration [s]."""
+def motion_conflicts(scene: Scene, path: Path, motion: EndMotion, duration: float) -> Iterator[Problem]:
+    """Conflicts of the motion at a path with the scene and with its stage's duration [s]."""
     yield from _jumps(path, motion)
     if motion.table:
         yield from _table((*path, "table"), motion.table, duration)
+    if motion.vessel:
+        yield from _vessel(scene, (*path, "vessel"), motion.vessel)
+    end = scene.riser.start if path[-1] == "start" else scene.riser.end
     if motion.rotation and isinstance(end, Support) and end.rotation == "free":
         allowed = f"riser.{path[-1]}.rotation is free, so that nothing turns with the support"
         yield Problem((*path, "rotation"), allowed, "set it to fixed or a stiffness, or leave this out")
-    if motion.arc and isinstance(end, Support) and end.position == motion.arc.hub:
+    if motion.arc and isinstance(end, Support) and not any(cross(motion.arc.axis, minus(end.position, motion.arc.hub))):
         yield Problem((*path, "arc", "hub"), f"the {path[-1]} lies at its hub and can't turn about it", "move the hub")
+
+
+def _vessel(scene: Scene, path: Path, vessel: Vessel) -> Iterator[Problem]:
+    waves = scene.water.waves if scene.water else None
+    if waves is None:
+        yield Problem(path, "a vessel moves in waves, and the scene has none", "add water.waves, or leave this out")
+        return
+    if waves.ramp == 0.0 and vessel.ramp is None:
+        allowed = f"without a ramp, as the waves have none, the {path[3]} would jump as the stage begins"
+        yield Problem((*path, "ramp"), allowed, "give a ramp [s]")
+    relative = waves.direction_deg - vessel.heading_deg
+    if gap := vessel.table.gap(math.radians(relative)):
+        first, last = (f"{math.degrees(direction):.6g}" for direction in gap)
+        angle = f"{relative % 360.0:.6g} deg to the heading"
+        allowed = f"waves run at {angle}, but the table's nearest directions are {first} and {last} deg"
+        yield Problem((*path, "rao"), allowed, "add rows for directions at most 45 deg apart")
 
 
 def _jumps(path: Path, motion: EndMotion) -> Iterator[Problem]:

@@ -10,6 +10,7 @@ from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 from riser_soil.scene.columns import ANGLE, LENGTH, TIME, Columns, read_columns
 from riser_soil.scene.files import NamedFile, wrong_file
 from riser_soil.scene.quantities import FROZEN, NonNegative, Positive, Real, Vector, wrong
+from riser_soil.scene.rao import MODES, Rao, read_rao
 
 PLANES: dict[str, Vector] = {"xz": (0.0, -1.0, 0.0), "yz": (1.0, 0.0, 0.0), "xy": (0.0, 0.0, 1.0)}
 """Axes about which an end turns from a plane's first axis towards its second."""
@@ -95,8 +96,8 @@ class Table(BaseModel):
     model_config = FROZEN
 
     file: NamedFile = Field(
-        description="CSV file with a header such as t [s], x [m], y [m], z [m], rx [deg], ry [deg], rz [deg]; a "
-        "relative name is sought beside the scene file"
+        description="CSV file with a header such as t [s], x [m], y [m], z [m], rx [deg], ry [deg], rz [deg] (or "
+        "min, ms; mm, cm, ft; rad); a relative name is sought beside the scene file"
     )
     ramp: NonNegative = Field(default=0.0, description=_RAMP)
 
@@ -132,8 +133,46 @@ class Table(BaseModel):
         return list(zip(*(self.columns.get(name) for name in ("rx", "ry", "rz")), strict=True))
 
 
+class Vessel(BaseModel):
+    """The end is part of a vessel that answers the scene's waves linearly, by its table of RAOs.
+
+    Vessel axes: x forward along the heading, y to port, z up; rotations are right-handed (roll lowers starboard, pitch
+    the bow; yaw turns the bow to port). Wave directions count from the heading towards port and tell where waves run
+    to: 0 from astern, 90 from starboard, 180 from ahead. Phases are lags behind the crest at the reference point.
+    """
+
+    model_config = FROZEN
+
+    rao: NamedFile = Field(
+        description="CSV file with columns frequency [rad/s or Hz] or period [s], direction [deg or rad], and of each "
+        "mode that responds its amplitude and phase: surge [m/m], surge phase [deg], ..., yaw [deg/m or rad/m], yaw "
+        "phase [deg]; a relative name is sought beside the scene file"
+    )
+    reference: Vector = Field(description="point that the RAOs belong to, the vessel at rest, [x, y, z] [m]")
+    heading_deg: Real = Field(default=0.0, description="direction of the vessel's bow, from x towards y [deg]")
+    ramp: Positive | None = Field(default=None, description=f"{_RAMP}; by default that of the waves")
+
+    @model_validator(mode="after")
+    def _can_be_read(self) -> Self:
+        assert self.table.frequency
+        return self
+
+    @cached_property
+    def table(self) -> Rao:
+        """What the file holds."""
+        return read_rao(self.rao)
+
+    def axes(self, mode: str) -> Vector:
+        """Global direction of a mode's displacement, or axis of its rotation."""
+        heading = math.radians(self.heading_deg)
+        forward, across = math.cos(heading), math.sin(heading)
+        return ((forward, across, 0.0), (-across, forward, 0.0), (0.0, 0.0, 1.0))[MODES.index(mode) % 3]
+
+
 class EndMotion(BaseModel):
-    """The prescribed motion of one end: one of harmonic, arc and table; rotation beside it or alone."""
+    """The prescribed motion of one end: one of harmonic, arc, table and vessel; rotation beside the first three or
+    alone.
+    """
 
     model_config = FROZEN
 
@@ -146,19 +185,24 @@ class EndMotion(BaseModel):
     table: Table | None = Field(
         default=None, description="motion from a CSV file: its name, or {file, ramp}"
     )
+    vessel: Vessel | None = Field(
+        default=None, description="motion with a vessel in the scene's waves: rao, reference, heading_deg, ramp"
+    )
     rotation: Rotation | None = Field(
         default=None, description="rotation of the support: axis, amplitude_deg, period, ramp, phase_deg"
     )
 
     @model_validator(mode="after")
     def _moves_in_one_way(self) -> Self:
-        given = [key for key in ("harmonic", "arc", "table") if getattr(self, key) is not None]
+        given = [key for key in ("harmonic", "arc", "table", "vessel") if getattr(self, key) is not None]
         if len(given) > 1:
             raise wrong(given[1], f"the end moves by {given[0]} already", "leave one of the two out")
         if not given and self.rotation is None:
-            raise wrong("harmonic", "there is no motion", "give harmonic, arc, table or rotation, or leave the end out")
+            raise wrong("harmonic", "there is no motion", "give harmonic, arc, table, vessel or rotation")
         if self.rotation and self.table and any(map(any, self.table.rotations)):
             raise wrong("rotation", "the table has rotations already", "leave one of the two out")
+        if self.rotation and self.vessel:
+            raise wrong("rotation", "the vessel turns the end already", "leave one of the two out")
         return self
 
 
@@ -167,8 +211,8 @@ class Motion(BaseModel):
 
     model_config = FROZEN
 
-    start: EndMotion | None = Field(default=None, description="motion of the start, {harmonic, arc or table}")
-    end: EndMotion | None = Field(default=None, description="motion of the end, {harmonic, arc or table}")
+    start: EndMotion | None = Field(default=None, description="motion of the start, {harmonic, arc, table or vessel}")
+    end: EndMotion | None = Field(default=None, description="motion of the end, {harmonic, arc, table or vessel}")
 
     @property
     def by_end(self) -> dict[str, EndMotion]:

@@ -11,7 +11,7 @@ from riser_soil.scene.quantities import Vector
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.shapes import ArcShape, PointsShape
-from riser_soil.scene.stages import DynamicStage, StaticStage
+from riser_soil.scene.stages import StaticStage
 from riser_soil.scene.vectors import cross, dot, minus, plus
 
 # Relative distance from the plane that round-off may leave.
@@ -115,9 +115,7 @@ def _vectors(scene: Scene) -> Iterator[tuple[Path, Vector]]:
         for m, load in enumerate(stage.loads):
             given = {"force": load.force, "distributed": load.distributed}
             yield from ((("stages", n, "loads", m, key), v) for key, v in given.items() if v is not None)
-        if isinstance(stage, DynamicStage) and stage.motion:
-            for key, motion in stage.motion.by_end.items():
-                yield from displacements(("stages", n, "motion", key), motion)
+    yield from displacements(scene)
 
 
 def _flows(scene: Scene) -> Iterator[tuple[Path, Vector]]:
@@ -139,8 +137,6 @@ def _axes(scene: Scene) -> Iterator[tuple[Path, Vector]]:
         for m, load in enumerate(stage.loads):
             if load.moment is not None:
                 yield ("stages", n, "loads", m, "moment"), load.moment
-        if isinstance(stage, DynamicStage) and stage.motion:
-            for key, motion in stage.motion.by_end.items():
-                yield from rotation_axes(("stages", n, "motion", key), motion)
+    yield from rotation_axes(scene)
     if isinstance(scene.riser.unstressed, ArcShape):
         yield ("riser", "unstressed", "arc", "axis"), scene.riser.unstressed.arc.axis

@@ -81,7 +81,7 @@ def _dynamic(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
         ends = {"start": scene.riser.start, "end": scene.riser.end}
         yield from _held(ends, {("stages", n, "motion", key): key for key in stage.motion.by_end})
         for key, motion in stage.motion.by_end.items():
-            yield from motion_conflicts(("stages", n, "motion", key), motion, ends[key], stage.duration)
+            yield from motion_conflicts(scene, ("stages", n, "motion", key), motion, stage.duration)
     if scene.solver.min_time_step > stage.time_step:
         allowed = f"must not be smaller than solver.min_time_step ({scene.solver.min_time_step:g} s)"
         yield Problem(

@@ -101,6 +101,11 @@ class Waves(BaseModel):
         return self.airy.period if self.airy else self._sea.Tp
 
     @property
+    def direction_deg(self) -> float:
+        """Direction towards which they travel, from x towards y [deg]."""
+        return self.airy.direction_deg if self.airy else self._sea.direction_deg
+
+    @property
     def height_key(self) -> tuple[str, str]:
         """Where the height is given."""
         return ("airy", "height") if self.airy else ("jonswap", "Hs")

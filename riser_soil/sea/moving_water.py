@@ -25,7 +25,7 @@ from riser_soil.riser.stations import Derivatives
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import morison_law as law
 from riser_soil.sea.pipe import Flow, Pipe
-from riser_soil.sea.still_water import StationLoads, StillWater
+from riser_soil.sea.still_water import Resistance, StationLoads
 from riser_soil.sea.water import Water, WaterMotion
 
 
@@ -59,7 +59,7 @@ class RelativeDrag:
 
     dissipative = False
 
-    def __init__(self, still: StillWater, stream: Stream) -> None:
+    def __init__(self, still: Resistance, stream: Stream) -> None:
         self._still, self._stream = still, stream
 
     def forces(self, trial: Trial) -> tuple[Array, Array]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.arrays import Array, IntArray
 from riser_soil.part import State, Weights
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
@@ -23,20 +23,46 @@ class Flow(NamedTuple):
     stretch: Array
 
 
-class Pipe:
-    """Gauss stations of a line, and the pipe's motion at them; in the line's axes."""
+class Points(NamedTuple):
+    """Single points of a line: their elements (m,), which may repeat, and `stations.points` there."""
 
-    def __init__(self, line: Line) -> None:
-        self.line, self.at = line, stations.stations(line.length)
+    element: IntArray
+    at: stations.Stations
+
+
+class Pipe:
+    """Gauss stations of a line, and the pipe's motion at them; in the line's axes.
+
+    points: seen at these m points instead, each as if it were an element with one station; forces per length are then
+    forces, and the arc length that a point stands for is 1.
+    """
+
+    def __init__(self, line: Line, points: Points | None = None) -> None:
+        self.line, self._points = line, points
+        self.at = stations.stations(line.length) if points is None else points.at
 
     @property
     def share(self) -> Array:
         """Arc length that each station stands for (ne, ng) [m]."""
+        if self._points is not None:
+            return np.ones(self.at.N.shape[:2])
         return self.line.length[:, None] * stations.GAUSS
+
+    def _own(self, values: Array) -> Array:
+        """Of the elements' values, those where the stations are."""
+        return values if self._points is None else values[self._points.element]
+
+    def _gather(self, values: Array) -> Array:
+        """Sums over the stations' elements, for all elements."""
+        if self._points is None:
+            return values
+        total = np.zeros((self.line.length.size, *values.shape[1:]))
+        np.add.at(total, self._points.element, values)
+        return total
 
     def position(self, trial: Trial) -> Array:
         """(ne, ng, d) [m]; the height is the last coordinate."""
-        found: Array = trial.once((self, "position"), lambda trial: stations.interpolate(self.at, trial.q))
+        found: Array = trial.once((self, "position"), lambda trial: stations.interpolate(self.at, self._own(trial.q)))
         return found
 
     def flow(self, trial: Trial) -> Flow:
@@ -45,12 +71,12 @@ class Pipe:
         return flow
 
     def _see(self, trial: Trial) -> Flow:
-        v, a = (stations.interpolate(self.at, q) for q in (trial.q_rate, trial.q_acceleration))
-        return Flow(v, a, *stations.unit_tangents(self.at, trial.chord, trial.turn.tangent))
+        v, a = (stations.interpolate(self.at, self._own(q)) for q in (trial.q_rate, trial.q_acceleration))
+        return Flow(v, a, *stations.unit_tangents(self.at, self._own(trial.chord), self._own(trial.turn.tangent)))
 
     def integrate(self, density: Array) -> Array:
         """Residual conjugate to q (ne, 4, d) of a force per length (ne, ng, d)."""
-        return stations.integrate(self.at, density)
+        return self._gather(stations.integrate(self.at, density))
 
     def total(self, density: Array) -> float:
         """Integral over the line of a density (ne, ng, d), its components summed."""
@@ -59,8 +85,11 @@ class Pipe:
     def add_tangent(self, K: Array, trial: Trial, weights: Weights, by: stations.Derivatives) -> None:
         """Add to K (ne, n, n) what a force per length with these derivatives has as tangent, directors held."""
         q, rate, acceleration = trial.columns(weights)
-        columns = stations.Columns(q.tangent, rate.tangent, acceleration.tangent, rate.shift, acceleration.shift)
-        stations.add_tangent(K, self.at, by, columns)
+        own = K if self._points is None else np.zeros((len(self.at.N), *K.shape[1:]))
+        first, second, third = (self._own(c.tangent) for c in (q, rate, acceleration))
+        stations.add_tangent(own, self.at, by, stations.Columns(first, second, third, rate.shift, acceleration.shift))
+        if self._points is not None:
+            np.add.at(K, self._points.element, own)
 
     def taken(self, force: Callable[[State], Array], before: State, after: State) -> float:
         """Work [J] against the mean of element residuals (ne, 2 ndof) at the ends of a step."""

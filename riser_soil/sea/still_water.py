@@ -36,6 +36,20 @@ class StationLoads(Protocol):
         ...
 
 
+class Resistance(StationLoads, Protocol):
+    """Loads of still water, by which any motion through the water is resisted."""
+
+    pipe: Pipe
+
+    def resist(self, flow: Flow) -> tuple[Array, Array]:
+        """Groups I and F, each (ne, ng, d), of a motion through the water."""
+        ...
+
+    def yielding(self, flow: Flow, weights: Weights) -> Derivatives:
+        """Derivatives of `resist` by that motion, weighed and summed."""
+        ...
+
+
 class StillWater:
     """Drag (group F) and added mass (group I).
 

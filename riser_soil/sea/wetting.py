@@ -72,11 +72,14 @@ class Wet(NamedTuple):
 
 
 class Wetting:
-    """The wet share of the pipe's stations under a surface."""
+    """The wet share of the pipe's stations under a surface.
 
-    def __init__(self, pipe: Pipe, surface: Surface) -> None:
+    span: b of the stations (ne, 1) [m]; by default the pipe's.
+    """
+
+    def __init__(self, pipe: Pipe, surface: Surface, span: Array | None = None) -> None:
         self._surface = surface
-        self._span = np.maximum(pipe.line.outer_diameter[:, None], pipe.share)
+        self._span = np.maximum(pipe.line.outer_diameter[:, None], pipe.share) if span is None else span
 
     def at(self, trial: Trial) -> Wet:
         wet: Wet = trial.once((self, "wet"), self._see)

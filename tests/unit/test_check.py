@@ -73,7 +73,7 @@ def test_a_dry_riser_has_no_hydrodynamics() -> None:
 def test_a_smooth_riser_has_no_hydrodynamics() -> None:
     smooth = without_soil(heave(1.0))
     del smooth["line_types"]["flexible"]["drag"], smooth["line_types"]["flexible"]["added_mass"]
-    assert "left out: morison: no line type has drag or added mass" in report(smooth).splitlines()
+    assert "left out: morison: no line type has drag or added mass, nor any attachment" in report(smooth).splitlines()
 
 
 def test_springs_and_loads_are_built_when_asked_for() -> None:

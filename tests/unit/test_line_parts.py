@@ -40,12 +40,15 @@ MAKERS: dict[str, Callable[[Sample], Part]] = {
     "waves": sample_water.waves,
     "half out of still water": sample_water.half_out,
     "half out of waves": sample_water.half_out_in_waves,
+    "modules": sample_water.modules,
+    "modules half out of waves": sample_water.modules_half_out_in_waves,
+    "modules' buoyancy": sample_water.modules_floating,
     "buoyancy": sample_water.floating,
     "buoyancy in waves": sample_water.floating_in_waves,
 }
 WITHIN_ELEMENTS = [
     *("beam", "inertia", "rotary", "damping", "morison", "forces", "attachments"),
-    *("half out of waves", "buoyancy"),
+    *("half out of waves", "buoyancy", "modules", "modules half out of waves", "modules' buoyancy"),
 ]
 every_part = pytest.mark.parametrize("name", list(MAKERS))
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
@@ -212,6 +215,12 @@ def without_viscosity(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
                 ("half out of waves", without_water("acceleration_gradient")),
                 ("half out of waves", without_water("immersion_gradient")),
                 ("half out of waves", without_wet_slope),
+                ("modules", without_geometric),
+                ("modules half out of waves", without_water("velocity_gradient")),
+                ("modules half out of waves", without_water("acceleration_gradient")),
+                ("modules half out of waves", without_water("immersion_gradient")),
+                ("modules half out of waves", without_wet_slope),
+                ("modules' buoyancy", without_wet_slope),
                 ("buoyancy", without_wet_slope),
                 ("buoyancy", without_geometric),
                 ("buoyancy in waves", without_water("immersion_gradient")),
@@ -236,7 +245,7 @@ def test_each_term_of_the_tangent_matters(
 
 
 @both_dimensions
-@pytest.mark.parametrize("name", ["beam", "spring", "attachments", "buoyancy"])
+@pytest.mark.parametrize("name", ["beam", "spring", "attachments", "buoyancy", "modules' buoyancy"])
 def test_conservative_forces_are_the_gradient_of_the_energy(name: str, dimension: int) -> None:
     at = sample(dimension)
     part, state = MAKERS[name](at), at.state(2)

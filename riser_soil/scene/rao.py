@@ -1,0 +1,141 @@
+"""Tables of a vessel's response amplitude operators (RAO)."""
+
+import cmath
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from riser_soil.scene.columns import ANGLE, Columns, Known, read_columns
+from riser_soil.scene.files import wrong_file
+
+TURN = 2.0 * math.pi
+TRANSLATIONS, ROTATIONS = ("surge", "sway", "heave"), ("roll", "pitch", "yaw")
+MODES = TRANSLATIONS + ROTATIONS
+
+_KNOWN: Known = {
+    "frequency": {"rad/s": 1.0, "Hz": TURN},
+    "period": {"s": 1.0},
+    "direction": ANGLE,
+    **{name: {"m/m": 1.0} for name in TRANSLATIONS},
+    **{name: {"deg/m": math.pi / 180.0, "rad/m": 1.0} for name in ROTATIONS},
+    **{f"{name} phase": ANGLE for name in MODES},
+}
+# Difference of two rows for the same wave (directions of 0 and 360 deg) that is taken for round-off.
+_SAME = 1e-6
+# Responses [m/m] and [rad/m] that are none.
+_NEGLIGIBLE = 1e-9
+# Widest step of directions [rad] over which RAOs are interpolated, but for round-off.
+_WIDEST = math.radians(45.0) + 1e-6
+# Directions [rad] nearer than this are the same one.
+_SAME_DIRECTION = 1e-9
+
+
+@dataclass(frozen=True)
+class Rao:
+    """Responses to a unit wave by mode, direction (rows) and frequency (columns): complex, amplitude times
+    exp(-i lag), [m/m] and [rad/m].
+
+    frequency: increasing [rad/s]. direction: increasing, from 0 to below 2 pi [rad].
+    """
+
+    frequency: tuple[float, ...]
+    direction: tuple[float, ...]
+    response: Mapping[str, tuple[tuple[complex, ...], ...]]
+
+    def around(self, direction: float) -> list[int]:
+        """Numbers of the directions between which a direction [rad] lies, periodically; one where it hits it."""
+        hit = [n for n, known in enumerate(self.direction) if abs(_wrapped(direction - known)) < _SAME_DIRECTION]
+        above = sum(known <= direction % TURN for known in self.direction)
+        return hit or [(above - 1) % len(self.direction), above % len(self.direction)]
+
+    def moving(self, direction: float) -> list[str]:
+        """Modes that respond to waves of a direction [rad]."""
+        rows = self.around(direction)
+        return [
+            mode
+            for mode, table in self.response.items()
+            if any(abs(value) > _NEGLIGIBLE for row in rows for value in table[row])
+        ]
+
+    def gap(self, direction: float) -> tuple[float, float] | None:
+        """The known directions around a direction that lies too far between them [rad]; None when it doesn't."""
+        first, last = (self.direction[n] for n in (self.around(direction) * 2)[:2])
+        hit = abs(_wrapped(direction - first)) < _SAME_DIRECTION
+        wide = (last - first) % TURN > _WIDEST or first == last
+        return None if hit or not wide else (first, last)
+
+
+def read_rao(file: Path) -> Rao:
+    """Read a table of RAOs; PydanticCustomError, with the file and its line, for what is wrong."""
+    columns = read_columns(file, _KNOWN, required=("direction",))
+    modes = _modes(columns)
+    found: dict[tuple[float, float], tuple[int, list[complex]]] = {}
+    responses = [_responses(columns, mode) for mode in modes]
+    for row, wave in enumerate(zip(_frequencies(columns), _directions(columns), strict=True)):
+        line, values = columns.lines[row], [response[row] for response in responses]
+        known = found.setdefault(wave, (line, values))
+        if any(abs(a - b) > _SAME for a, b in zip(values, known[1], strict=True)):
+            text = f"{_named(wave)} was given differently in line {known[0]}; remove one of the two rows"
+            raise wrong_file(f"{file}:{line}: {text}")
+    return _on_a_grid(columns, modes, {wave: values for wave, (_, values) in found.items()})
+
+
+def _modes(columns: Columns) -> list[str]:
+    """The modes that have columns, each with its phase."""
+    place = f"{columns.file}:{columns.header}"
+    modes = [mode for mode in MODES if mode in columns.values or f"{mode} phase" in columns.values]
+    if not modes:
+        raise wrong_file(f"{place}: no column tells a response; give surge [m/m], surge phase [deg] and so on")
+    for mode in modes:
+        for name in (mode, f"{mode} phase"):
+            if name not in columns.values:
+                raise wrong_file(f"{place}: there is no column {name} [{next(iter(_KNOWN[name]))}]; add it")
+    if ("frequency" in columns.values) == ("period" in columns.values):
+        raise wrong_file(f"{place}: waves are told by their frequency or their period; give one of these columns")
+    if not columns.rows:
+        raise wrong_file(f"{place}: the table has no rows; give one for each wave")
+    return modes
+
+
+def _frequencies(columns: Columns) -> list[float]:
+    """Of each row [rad/s]."""
+    name = "frequency" if "frequency" in columns.values else "period"
+    for line, value in zip(columns.lines, columns.values[name], strict=True):
+        if value <= 0.0:
+            raise wrong_file(f"{columns.file}:{line}: {name} must be greater than 0; correct it")
+    given = columns.values[name]
+    return list(given) if name == "frequency" else [TURN / period for period in given]
+
+
+def _directions(columns: Columns) -> list[float]:
+    """Of each row, from 0 to below 2 pi [rad]; to 12 digits, so that 360 deg are 0."""
+    return [round(value % TURN, 12) % round(TURN, 12) for value in columns.values["direction"]]
+
+
+def _responses(columns: Columns, mode: str) -> list[complex]:
+    pairs = zip(columns.values[mode], columns.values[f"{mode} phase"], strict=True)
+    return [amplitude * cmath.exp(-1j * lag) for amplitude, lag in pairs]
+
+
+def _on_a_grid(columns: Columns, modes: list[str], found: dict[tuple[float, float], list[complex]]) -> Rao:
+    frequency = tuple(sorted({w for w, _ in found}))
+    direction = tuple(sorted({angle for _, angle in found}))
+    missing = [(w, angle) for angle in direction for w in frequency if (w, angle) not in found]
+    if missing:
+        text = f"there is no row for {_named(missing[0])}; give each frequency for each direction"
+        raise wrong_file(f"{columns.file}: {text}")
+    tables = {
+        mode: tuple(tuple(found[w, angle][n] for w in frequency) for angle in direction)
+        for n, mode in enumerate(modes)
+    }
+    return Rao(frequency, direction, tables)
+
+
+def _named(wave: tuple[float, float]) -> str:
+    return f"the wave of {wave[0]:.6g} rad/s ({TURN / wave[0]:.6g} s) and {math.degrees(wave[1]):.6g} deg"
+
+
+def _wrapped(angle: float) -> float:
+    """An angle from -pi to pi [rad]."""
+    return math.remainder(angle, TURN)

@@ -1,0 +1,67 @@
+"""Buoyancy modules and clump weights in the water: drag and added mass that are the same in all directions.
+
+At velocity v and acceleration a, a module of drag area Cd A and volume V with added mass coefficient Ca resists with
+
+    1/2 rho Cd A |v| v + Ca rho V a,
+
+and in accelerating water it feels rho V (1 + Ca) u', as a pipe does (`moving_water`): its loads are those of a pipe,
+told per module instead of per length, at one station each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.part import Weights
+from riser_soil.riser import stations
+from riser_soil.riser.attachments import Attachment, places
+from riser_soil.riser.line import Line
+from riser_soil.riser.stations import Derivatives
+from riser_soil.riser.trial import Trial
+from riser_soil.sea.pipe import Flow, Pipe, Points
+
+
+def pipe_at(line: Line, modules: Sequence[Attachment]) -> Pipe:
+    """The pipe seen at the modules (m,) alone: ne = m, ng = 1, forces in N instead of N/m."""
+    element, xi = places(line, modules)
+    return Pipe(line, Points(element, stations.points(line.length[element], xi)))
+
+
+def diameters(modules: Sequence[Attachment]) -> Array:
+    """Diameters (m,) [m] of spheres of the same volume, or of discs of the drag area where those are larger."""
+    volume, area = (np.array([getattr(module, name) for module in modules]) for name in ("volume", "drag_area"))
+    return np.asarray(np.maximum(np.cbrt(6.0 * volume / np.pi), np.sqrt(4.0 * area / np.pi)))
+
+
+class StillWaterOnModules:
+    """Drag (group F) and added mass (group I). drag: rho Cd A/2 [kg/m], mass: Ca rho V [kg], each (m,)."""
+
+    dissipative = True
+
+    def __init__(self, pipe: Pipe, drag: Array, mass: Array) -> None:
+        self.pipe = pipe
+        self._drag, self._mass = drag[:, None, None], mass[:, None, None]
+
+    def forces(self, trial: Trial) -> tuple[Array, Array]:
+        return self.resist(self.pipe.flow(trial))
+
+    def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
+        return self.yielding(self.pipe.flow(trial), weights)
+
+    def momentum(self, trial: Trial, v: Array) -> Array:
+        return np.asarray(self._mass * v)
+
+    def resist(self, flow: Flow) -> tuple[Array, Array]:
+        """Resistance to a motion through the water."""
+        return self._mass * flow.a, self._drag * np.linalg.norm(flow.v, axis=-1, keepdims=True) * flow.v
+
+    def yielding(self, flow: Flow, weights: Weights) -> Derivatives:
+        """Derivatives of `resist` by the motion through the water, weighed and summed."""
+        speed, one = np.linalg.norm(flow.v, axis=-1)[..., None, None], np.eye(flow.v.shape[-1])
+        dyad = flow.v[..., :, None] * flow.v[..., None, :] / np.where(speed > 0.0, speed, 1.0)
+        by_v = weights.force * self._drag[..., None] * (speed * one + dyad)
+        by_a = np.ones_like(speed) * weights.inertia * self._mass[..., None] * one
+        return Derivatives(np.zeros_like(by_v), np.zeros_like(by_v), by_v, by_a)

@@ -1,0 +1,329 @@
+"""Ends on vessels: closed forms of their response to waves, and the scenes and tables that are refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from riser_soil.arrays import Array
+from riser_soil.build import World, build
+from riser_soil.build.sea import components_of, water_of
+from riser_soil.doubts import physical_warnings
+from riser_soil.errors import SceneError
+from riser_soil.motion.rao import RaoTable
+from riser_soil.part import State
+from riser_soil.riser import rotations
+from riser_soil.riser.ends import Turning
+from riser_soil.scene.dump import dump_scene
+from riser_soil.scene.plane import resolved_dimension
+from riser_soil.scene.reader import read_scene, scene_from_mapping
+from riser_soil.scene.scene import Scene
+from tests.coupled_scenes import Mapping
+from tests.riser_scenes import distance, dynamic, held, riser_scene, static, tell
+
+PIPE = {"EA": 1.0e7, "EI": 1.0e5, "GJ": 1.0e5, "mass": 50.0, "submerged_weight": 200.0, "outer_diameter": 0.2}
+END, REFERENCE = [40.0, 0.0, 3.0], [55.0, 4.0, -2.0]
+AIRY = {"airy": {"height": 3.0, "period": 9.0, "direction_deg": 35.0, "phase_deg": 70.0}}
+JONSWAP = {"jonswap": {"Hs": 3.0, "Tp": 9.0, "components": 40, "direction_deg": 180.0}}
+W = 2.0 * np.pi / 9.0
+MODES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+
+
+def table(frequencies: Any, directions: Any, **modes: Any) -> str:
+    """A file of given responses, (amplitude, lag in degrees) or a function of frequency and direction in degrees."""
+    lines = ["frequency [rad/s], direction [deg]"]
+    units = {mode: "m/m" if n < 3 else "rad/m" for n, mode in enumerate(MODES)}
+    lines[0] += "".join(f", {mode} [{units[mode]}], {mode} phase [deg]" for mode in modes)
+    for w in frequencies:
+        for direction in directions:
+            pairs = [given(w, direction) if callable(given) else given for given in modes.values()]
+            row = [w, direction, *(value for pair in pairs for value in pair)]
+            lines.append(", ".join(repr(float(value)) for value in row))
+    return "\n".join(lines) + "\n"
+
+
+EVERYWHERE = ([0.2, 0.5, 1.0, 2.0, 4.0], range(0, 360, 45))
+
+
+def mapping(*stages: Mapping, rotation: Any = "free", waves: Mapping = AIRY, **more: Any) -> Mapping:
+    """A hanging pipe under the sea's surface; its end moves in the stages as they say."""
+    return riser_scene(
+        *stages,
+        pipe=PIPE,
+        length=60.0,
+        elements=6,
+        start=held(0.0, 0.0, -30.0),
+        end=held(*END, rotation=rotation),
+        gravity=9.81,
+        water={"surface_level": 10.0, "waves": waves},
+        **more,
+    )
+
+
+def aboard(duration: float = 20.0, name: str = "sail", **vessel: Any) -> Mapping:
+    vessel = {"rao": "rao.csv", "reference": REFERENCE} | vessel
+    return dynamic(duration, 0.2, name, motion={"end": {"vessel": vessel}})
+
+
+def scene(folder: Path, text: str, *stages: Mapping, **more: Any) -> Scene:
+    (folder / "rao.csv").write_text(text, encoding="utf-8")
+    return scene_from_mapping(mapping(*(stages or (aboard(),)), **more), folder)
+
+
+def begun(scene: Scene, stage: int = 0) -> World:
+    world = build(scene, MPI.COMM_SELF)
+    world.begin(scene.stages[stage])
+    return world
+
+
+def displaced(world: World, t: float) -> Array:
+    assert world.line.end.motion is not None
+    return world.line.end.motion(t)[0] - END
+
+
+def turned(world: World, t: float) -> Turning:
+    assert world.line.end.turning is not None
+    return world.line.end.turning(t)
+
+
+def surface(scene: Scene, t: float) -> float:
+    """Rise of the surface at the reference."""
+    water = water_of(scene, scene.stages[0])
+    assert water is not None
+    return float(water(t, np.array([[*REFERENCE[:2], 10.0]])).immersion[0])
+
+
+@pytest.mark.parametrize("waves", [AIRY, JONSWAP])
+def test_a_buoy_follows_the_surface_at_its_reference(waves: Mapping, tmp_path: Path) -> None:
+    """From the first moment on, as it grows with the waves unless told otherwise."""
+    floating = scene(tmp_path, table(*EVERYWHERE, heave=(1.0, 0.0)), waves=waves)
+    world = begun(floating)
+    for t in (0.3, 4.0, 9.1, 17.3):
+        assert displaced(world, t) == pytest.approx([0.0, 0.0, surface(floating, t)], abs=1e-12)
+    assert abs(surface(floating, 17.3)) > 0.1
+
+
+def test_a_phase_is_a_lag(tmp_path: Path) -> None:
+    """A heave that lags by 90 degrees is where the surface was a quarter of a period before."""
+    late = begun(floating := scene(tmp_path, table(*EVERYWHERE, heave=(0.5, 90.0))))
+    assert displaced(late, 17.3)[2] == pytest.approx(0.5 * surface(floating, 17.3 - 9.0 / 4.0))
+
+
+@pytest.mark.parametrize(
+    ("mode", "axis", "sign"),
+    [("roll", 0, 1.0), ("pitch", 1, 1.0), ("yaw", 2, 1.0), ("surge", 0, 0.0), ("sway", 1, 0.0)],
+)
+def test_modes_move_along_and_about_the_vessels_axes(mode: str, axis: int, sign: float, tmp_path: Path) -> None:
+    """x along the heading, y to port, z up; the end moves with its arm, its direction turns along."""
+    text = table(*EVERYWHERE, **{mode: (0.02, 0.0)})
+    world = begun(floating := scene(tmp_path, text, aboard(heading_deg=30.0), rotation="fixed"))
+    heading = np.array(rotations.exp((0.0, 0.0, np.radians(30.0))))
+    t, along = 17.3, heading[:, axis] * 0.02
+    size = surface(floating, t)
+    expected = np.cross(along, np.array(END) - REFERENCE) if sign else along
+    assert displaced(world, t) == pytest.approx(size * expected, abs=1e-13)
+    assert turned(world, t).rotation == pytest.approx(sign * size * along, abs=1e-14)
+    state = State.at_rest(t, world.line.size)
+    world.line.prescribe(t, state.u, state.v, state.a)
+    spin = world.line.frames.R[-1] @ world.line.nodal(state.u)[-1, 3:]  # type: ignore[union-attr]
+    assert spin == pytest.approx(sign * size * along, abs=1e-13)
+
+
+def test_response_to_a_sea_is_the_rao_times_its_components(tmp_path: Path) -> None:
+    """The response's energy by components is that of the waves times |RAO|^2, linear between the table's rows."""
+
+    def rao(w: float, direction: float) -> tuple[float, float]:
+        return 2.0 / (1.0 + w**2), 40.0 * w
+
+    w = np.linspace(0.3, 4.0, 100)
+    floating = scene(tmp_path, table(w, [180.0], surge=rao), waves=JONSWAP)
+    vessels, waves = begun(floating).vessels, components_of(floating)
+    assert vessels is not None
+    assert waves is not None
+    response = vessels.motion(floating.stages[0], "end", np.array(END)).response
+    found = np.abs(response.amplitude[:, 0]) ** 2
+    assert found == pytest.approx((2.0 / (1.0 + waves.frequency**2)) ** 2 * waves.amplitude**2, rel=2e-3)
+    lag = waves.wave_number * -REFERENCE[0] + waves.phase + np.radians(40.0 * waves.frequency)
+    assert np.exp(-1j * lag) == pytest.approx(response.amplitude[:, 0] / np.sqrt(found), abs=1e-3)
+    assert not np.any(response.amplitude[:, 1:])
+
+
+def test_rates_are_derivatives_and_it_starts_at_rest(tmp_path: Path) -> None:
+    modes = {mode: (0.3 if n < 3 else 0.02, 50.0 * n) for n, mode in enumerate(MODES)}
+    world = begun(scene(tmp_path, table(*EVERYWHERE, **modes), waves=JONSWAP, rotation="fixed"))
+    motion, turning, h = world.line.end.motion, world.line.end.turning, 1e-3
+    assert motion is not None
+    assert turning is not None
+    for values, first in zip(motion(0.0), (END, [0.0] * 3, [0.0] * 3), strict=True):
+        assert values == pytest.approx(first, abs=1e-12)
+    for t in (0.5, 5.0, 8.99, 9.01, 31.0):
+        for k in (0, 1):
+            slope = (motion(t + h)[k] - motion(t - h)[k]) / (2.0 * h)
+            assert slope == pytest.approx(motion(t)[k + 1], abs=2e-6)
+        slope = (turning(t + h).angular_velocity - turning(t - h).angular_velocity) / (2.0 * h)
+        assert slope == pytest.approx(turning(t).angular_acceleration, abs=2e-7)
+        frames = [np.array(rotations.exp(tuple(turning(s).rotation))) for s in (t - h, t, t + h)]
+        spin = (frames[2] - frames[0]) / (2.0 * h) @ frames[1].T
+        assert spin == pytest.approx(np.cross(np.eye(3), turning(t).angular_velocity), abs=2e-7)
+
+
+def test_a_vessel_sails_on_through_stages(tmp_path: Path) -> None:
+    """Two stages are one, in positions, rates and directions of the end."""
+    modes = {mode: (0.3 if n < 3 else 0.02, 50.0 * n) for n, mode in enumerate(MODES)}
+    text, more = table(*EVERYWHERE, **modes), {"waves": JONSWAP, "rotation": {"stiffness": 1e5}}
+    long = tell(scene(tmp_path, text, static(), aboard(8.0), **more))[-1]
+    _, first, second = tell(scene(tmp_path, text, static(), aboard(5.0), aboard(3.0, "sail on"), **more))
+    whole = np.array(long.position)
+    assert distance(np.array([*first.position, *second.position])[:, -1], whole[:, -1]) < 1e-10
+    assert distance(second.position[-1], whole[-1]) < 2e-3 * np.abs(whole[-1] - whole[0]).max()
+    assert second.end.end_moment == pytest.approx(long.end.end_moment, rel=2e-2, abs=1.0)
+
+
+def test_interpolation_is_linear_and_periodic_in_direction() -> None:
+    response: Array = np.arange(6.0).reshape(3, 2, 1).astype(complex)
+    grid = RaoTable(np.array([1.0, 2.0]), np.radians([0.0, 90.0, 300.0]), response)
+    w = np.array([1.5, 1.0, 1.0, 1.0, 3.0, 0.5, 1.25, 1.0])
+    direction = np.radians([0.0, 30.0, 330.0, -30.0, 300.0, 90.0, 195.0, 360.0])
+    expected = [0.5, 2.0 / 3.0, 2.0, 2.0, 5.0, 2.0, 3.25, 0.0]
+    assert grid.at(w, direction)[:, 0] == pytest.approx(np.array(expected, dtype=complex))
+    below, above = grid.beyond(w)
+    assert np.flatnonzero(below).tolist() == [5]
+    assert np.flatnonzero(above).tolist() == [4]
+
+
+def test_periods_degrees_and_a_full_circle(tmp_path: Path) -> None:
+    """Directions of 0 and 360 degrees are one."""
+    head = "period [s]; direction [deg]; pitch [deg/m]; pitch phase [rad]\n"
+    rows = "".join(f"{T}; {direction}; 2.0; 0.3\n" for T in (5.0, 9.0, 20.0) for direction in range(0, 361, 45))
+    known = begun(scene(tmp_path, head + rows, rotation="fixed"))
+    other = begun(scene(tmp_path, table(*EVERYWHERE, pitch=(np.radians(2.0), np.degrees(0.3))), rotation="fixed"))
+    assert displaced(known, 17.3) == pytest.approx(displaced(other, 17.3), rel=1e-9)
+
+
+@pytest.mark.parametrize(("decay", "warnings"), [(8.0, 1), (20.0, 0)])
+def test_waves_beyond_the_table(decay: float, warnings: int, tmp_path: Path) -> None:
+    """Short waves that by the table's last row matter little don't move the vessel; they are told, once, unless they
+    matter nothing at all.
+    """
+
+    def rao(w: float, direction: float) -> tuple[float, float]:
+        return np.exp(-decay * max(0.0, w - 0.8)), 0.0
+
+    text = table(np.linspace(0.3, 1.1, 27), [180.0], heave=rao)
+    floating = scene(tmp_path, text, aboard(), aboard(name="sail on"), waves=JONSWAP)
+    world = begun(floating)
+    assert world.vessels is not None
+    response = world.vessels.motion(floating.stages[0], "end", np.array(END)).response
+    above = response.frequency > 1.1
+    assert np.count_nonzero(above) == 5  # of 40 waves of equal energy
+    assert not np.any(response.amplitude[above])
+    assert np.all(response.amplitude[~above, 2])
+    told = [doubt for doubt in physical_warnings(world) if "vessel" in doubt]
+    assert len(told) == warnings
+    assert all(doubt.startswith("stages.0.motion.end.vessel.rao: 0 % of the waves' energy") for doubt in told)
+    assert all("12.5 % above its last, 1.1 rad/s" in doubt for doubt in told)
+
+
+def test_a_table_that_misses_waves_that_matter_is_refused(tmp_path: Path) -> None:
+    floating = scene(tmp_path, table(np.linspace(0.3, 1.1, 27), [180.0], surge=(1.0, 0.0)), waves=JONSWAP)
+    says = r"^stages\.0\.motion\.end\.vessel\.rao: .*covers 0\.3 to 1\.1 rad/s.* 12\.5 % of the energy of surge; add"
+    with pytest.raises(SceneError, match=says):
+        build(floating, MPI.COMM_SELF)
+    with pytest.raises(SceneError, match="100 % of the energy of heave"):
+        build(scene(tmp_path, table([0.2, 0.5], range(0, 360, 45), heave=(1.0, 0.0))), MPI.COMM_SELF)
+
+
+@pytest.mark.parametrize(
+    ("modes", "vessel", "dimension"),
+    [
+        ({"heave": (1.0, 0.0), "surge": (0.5, 90.0), "pitch": (0.01, 0.0)}, {}, 2),
+        ({"heave": (1.0, 0.0), "surge": (0.5, 90.0)}, {"heading_deg": 180.0}, 2),
+        ({"heave": (1.0, 0.0), "sway": (0.5, 90.0), "roll": (0.01, 0.0)}, {"heading_deg": 90.0}, 2),
+        ({"sway": (0.5, 90.0)}, {}, 3),
+        ({"roll": (0.5, 90.0)}, {}, 3),
+        ({"yaw": (0.5, 90.0)}, {}, 3),
+        ({"sway": (0.0, 90.0), "heave": (1.0, 0.0)}, {}, 2),
+        ({"heave": (1.0, 0.0)}, {"heading_deg": 30.0}, 2),
+        ({"surge": (1.0, 0.0)}, {"heading_deg": 30.0}, 3),
+        ({"sway": lambda w, direction: (abs(np.sin(np.radians(direction))) > 1e-9, 0.0), "surge": (1.0, 0.0)}, {}, 2),
+    ],
+)
+def test_only_modes_that_leave_the_plane_make_three_dimensions(
+    modes: Mapping, vessel: Mapping, dimension: int, tmp_path: Path
+) -> None:
+    """In waves along the riser's plane; sway in waves from the side is none in waves from ahead."""
+    w, directions = EVERYWHERE
+    floating = scene(tmp_path, table(w, [*directions, 150.0], **modes), aboard(**vessel), waves=JONSWAP)
+    assert resolved_dimension(floating) == dimension
+
+
+def test_echo_finds_the_table_from_elsewhere(tmp_path: Path) -> None:
+    floating = scene(tmp_path, table(*EVERYWHERE, heave=(1.0, 0.0)))
+    (tmp_path / "results").mkdir()
+    echo = tmp_path / "results/scene.yaml"
+    echo.write_text(dump_scene(floating), encoding="utf-8")
+    assert read_scene(echo) == floating
+
+
+HEAD = "frequency [rad/s], direction [deg], heave [m/m], heave phase [deg]\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "rao.csv: the file is empty"),
+        ("frequency [rad/s], heave [m/m], heave phase [deg]\n", "rao.csv:1: there is no column direction"),
+        ("frequency [rad/s], direction [deg]\n1, 0\n", "rao.csv:1: no column tells a response; give surge [m/m]"),
+        ("direction [deg], heave [m/m], heave phase [deg]\n", "rao.csv:1: waves are told by their frequency or their"),
+        ("period [s], " + HEAD + "1, 2, 0, 1, 0\n", "rao.csv:1: waves are told by their frequency or their period"),
+        ("frequency [rad/s], direction [deg], heave [m/m]\n1, 0, 1\n", "there is no column heave phase [deg]"),
+        (HEAD.replace("m/m", "deg/m"), "rao.csv:1: heave can't be in [deg/m], accepted are m/m"),
+        (HEAD.replace("rad/s", "1/s"), "rao.csv:1: frequency can't be in [1/s], accepted are rad/s, Hz"),
+        (HEAD, "rao.csv:1: the table has no rows"),
+        (HEAD + "0, 0, 1, 0\n", "rao.csv:2: frequency must be greater than 0"),
+        (HEAD + "1, 0, 1, x\n", 'rao.csv:2: heave phase: "x" is not a finite number'),
+        (HEAD + "1, 0, 1, 0\n1, 360, 2, 0\n", "rao.csv:3: the wave of 1 rad/s (6.28319 s) and 0 deg was given"),
+        (HEAD + "1, 0, 1, 0\n2, 45, 2, 0\n", "rao.csv: there is no row for the wave of 2 rad/s (3.14159 s) and 0 deg"),
+        (table([0.5, 1.0], [0, 90], heave=(1.0, 0.0)), "run at 35 deg to the heading, but the table"),
+        (table([0.5, 1.0], [0], heave=(1.0, 0.0)), "nearest directions are 0 and 0 deg; add rows"),
+    ],
+)
+def test_refused_tables(text: str, says: str, tmp_path: Path) -> None:
+    with pytest.raises(SceneError) as caught:
+        scene(tmp_path, text)
+    assert len(str(caught.value).splitlines()) == 1
+    assert str(caught.value).startswith("scene: stages.0.motion.end.vessel")
+    assert says in str(caught.value)
+    assert "; " in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"waves": None}, "stages.0.motion.end.vessel: value"),
+        ({"waves": AIRY | {"ramp": 0.0}}, "stages.0.motion.end.vessel.ramp: missing: without a ramp"),
+    ],
+)
+def test_refused_scenes(change: Mapping, says: str, tmp_path: Path) -> None:
+    with pytest.raises(SceneError) as caught:
+        scene(tmp_path, table(*EVERYWHERE, heave=(1.0, 0.0)), **change)
+    assert len(str(caught.value).splitlines()) == 1
+    assert says in str(caught.value)
+
+
+def test_the_command_names_the_file_and_line_of_a_table_that_is_too_short(tmp_path: Path) -> None:
+    from typer.testing import CliRunner
+
+    from riser_soil.__main__ import app
+
+    floating = scene(tmp_path, table([0.2, 0.5], range(0, 360, 45), heave=(1.0, 0.0)))
+    file = tmp_path / "scene.yaml"
+    file.write_text(dump_scene(floating), encoding="utf-8")
+    result = CliRunner().invoke(app, ["check", str(file)])
+    assert result.exit_code == 2
+    line = next(n for n, row in enumerate(file.read_text().splitlines(), start=1) if "rao:" in row)
+    assert result.stderr.startswith(f"{file}:{line}: stages.0.motion.end.vessel.rao: ")
