@@ -462,6 +462,10 @@ CONFLICTS = [
 ]
 
 NOT_YET = [
+    Bad("level: 0.0", "slope_deg: 60.0", 20, "seabed.slope_deg", "60.0", "must be"),
+    Bad("level: 0.0", "profile: [[0, 0]]", 20, "seabed.profile", "[[0, 0]]", "at least two points"),
+    Bad("level: 0.0", "profile: [[0, 0], [0, 1]]", 20, "seabed.profile", "[[0, 0], [0, 1]]", "must increase"),
+    Bad("level: 0.0", "slope_deg: 1.0", 20, "seabed.slope_deg", "1.0", "the soil's top is level"),
     Bad("kind: spring", "kind: hysteretic", 20, "seabed.kind", '"hysteretic"', "not supported yet"),
     Bad("soil:\n", "soil:\n  inertia: true\n", 22, "soil.inertia", "true", "not supported yet"),
     Bad("method: node", "method: surface", 26, "contact.method", '"surface"', "not supported yet"),

@@ -15,12 +15,14 @@ Stiffness = Annotated[
 
 
 class Contact(BaseModel):
-    """Penalty contact at the riser's nodes."""
+    """Penalty contact."""
 
     model_config = FROZEN
 
-    method: Literal["node"] = Field(
-        default="node", description="where contact is evaluated: at the riser's nodes"
+    method: Literal["line", "node"] = Field(
+        default="line",
+        description="where contact with the seabed is evaluated: line (along the elements, five Gauss points each) or "
+        "node (at the riser's nodes); contact with soil is evaluated at nodes",
     )
     stiffness: Stiffness = Field(
         default="auto",

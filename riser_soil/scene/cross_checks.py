@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterator
 
+from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
@@ -141,6 +142,17 @@ def _contact_with_something(scene: Scene) -> Iterator[Problem]:
         yield Problem(("contact",), "there is nothing to touch", "add seabed or soil, or leave out contact")
 
 
+def _seabed_has_one_shape(scene: Scene) -> Iterator[Problem]:
+    seabed = scene.seabed
+    if seabed is None:
+        return
+    if seabed.profile is not None and (seabed.level or seabed.slope_deg):
+        yield Problem(("seabed", "profile"), "is given beside level or slope_deg", "give either")
+    if scene.soil is not None and (seabed.profile is not None or seabed.slope_deg):
+        key = "slope_deg" if seabed.slope_deg else "profile"
+        yield Problem(("seabed", key), "the soil's top is level, and so must be the seabed beside it", "leave it out")
+
+
 def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
     if not scene.contact:
         return
@@ -149,14 +161,15 @@ def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
     for (key, end), line in zip(ends.items(), types, strict=True):
         if not isinstance(end, Support):
             continue
-        sunk = scene.seabed_level - end.position[2]
+        ground = ground_height(scene, end.position)
+        sunk = ground - end.position[2]
         radius = 0.5 * (line.outer_diameter or 0.0) if scene.contact_at == "outer" else 0.0
         if sunk > 0.0:
-            allowed = f"must not lie below the seabed (z = {scene.seabed_level:g} m)"
-            yield Problem(("riser", key, "position"), allowed, "raise the position or lower seabed.level")
+            allowed = f"must not lie below the seabed (z = {ground:g} m)"
+            yield Problem(("riser", key, "position"), allowed, "raise the position or lower the seabed")
         elif isinstance(scene.seabed, RigidSeabed) and scene.soil is None and sunk + radius > _SUNK * radius:
             allowed = f"would press the pipe {sunk + radius:.3g} m into the rigid seabed"
-            yield Problem(("riser", key, "position"), allowed, f"raise it to z = {scene.seabed_level + radius:g} m")
+            yield Problem(("riser", key, "position"), allowed, f"raise it to z = {ground + radius:g} m")
 
 
 def _initial_shape_possible(scene: Scene) -> Iterator[Problem]:
@@ -259,6 +272,7 @@ _CHECKS: tuple[_Check, ...] = (
     _contents_fit,
     _stays_in_plane,
     _contact_with_something,
+    _seabed_has_one_shape,
     _ends_above_seabed,
     _initial_shape_possible,
     _straight_without_slack,

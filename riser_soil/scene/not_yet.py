@@ -11,8 +11,6 @@ from riser_soil.scene.problem import Path, Problem
 
 # key -> values that mean "off"; the key itself is not part of the models. `*` stands for any name or number.
 KEYS: dict[tuple[str, ...], tuple[Any, ...]] = {
-    ("seabed", "slope"): (None, 0, 0.0),
-    ("seabed", "slope_deg"): (None, 0, 0.0),
     ("contact", "friction"): (None, 0, 0.0, False),
     ("contact", "suction"): (None, 0, 0.0, False),
     ("stages", "*", "initial_velocity"): (None,),

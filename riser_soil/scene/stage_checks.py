@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 
+from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.motion_checks import motion_conflicts
 from riser_soil.scene.problem import Path, Problem
 from riser_soil.scene.quantities import Vector
@@ -66,8 +67,8 @@ def _static(scene: Scene, n: int, stage: StaticStage) -> Iterator[Problem]:
         targets = {"start": stage.move.start, "end": stage.move.end}
         yield from _held(ends, {("stages", n, "move", k): k for k, v in targets.items() if v is not None})
         for key, target in targets.items():
-            if scene.contact and target is not None and target[2] < scene.seabed_level:
-                allowed = f"must not lie below the seabed (z = {scene.seabed_level:g} m)"
+            if scene.contact and target is not None and target[2] < (ground := ground_height(scene, target)):
+                allowed = f"must not lie below the seabed (z = {ground:g} m)"
                 yield Problem(("stages", n, "move", key), allowed, "move the end to a higher place")
 
 

@@ -1,0 +1,27 @@
+"""How high the ground is below a point, as far as a scene is checked; see `riser_soil.seabed.grounds` for its shape."""
+
+import math
+from itertools import pairwise
+
+from riser_soil.scene.plane import vertical_plane
+from riser_soil.scene.quantities import Vector
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.vectors import dot, minus
+
+
+def ground_height(scene: Scene, point: Vector) -> float:
+    """Height z [m] of the ground below a point; straight between the points of a profile."""
+    if scene.seabed is None:
+        return scene.seabed_level
+    s = distance_along(scene, point)
+    if scene.seabed.profile is None:
+        return scene.seabed.level + math.tan(math.radians(scene.seabed.slope_deg)) * s
+    pairs = list(pairwise(scene.seabed.profile))
+    (s0, z0), (s1, z1) = next((pair for pair in pairs if s <= pair[1][0]), pairs[-1])
+    return z0 + (z1 - z0) * (s - s0) / (s1 - s0)
+
+
+def distance_along(scene: Scene, point: Vector) -> float:
+    """Horizontal distance [m] of a point from the riser's start, towards its end."""
+    plane = vertical_plane(scene)
+    return dot(minus(point, plane.origin), plane.direction)

@@ -1,0 +1,100 @@
+"""Risers at rest on seabeds without a continuum: level, sloping, by a profile; at nodes and along the elements."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from riser_soil.snapshot import RiserSnapshot
+from tests.coupled_scenes import Mapping
+from tests.riser_scenes import distance, held, riser_scene, static, tell
+
+W, SLOPE = 700.0, 2.0  # N/m, deg; steeper, the riser would be pushed at its start, and lie down beside its plane
+PIPE = {"EA": 3e8, "EI": 2e4, "GJ": 1e4, "outer_diameter": 0.3, "submerged_weight": W}
+RISE = float(np.tan(np.radians(SLOPE)))
+
+
+def lying(seabed: Mapping, method: str = "line", elements: int = 150, **more: Any) -> RiserSnapshot:
+    """A riser of 150 m from the ground at its start, where its axis rests, to 60 m above and 110 m away."""
+    scene = riser_scene(
+        static(),
+        pipe=PIPE,
+        length=150.0,
+        elements=elements,
+        start=held(0.0, 0.0, 0.0),
+        end=held(88.0, 66.0, 60.0),
+        gravity=9.81,
+        seabed={"kind": "spring", "stiffness": 1e5, "contact_at": "axis"} | seabed,
+        contact={"method": method},
+        solver={"tolerance": 1e-10},
+        **more,
+    )
+    return tell(scene)[0].end
+
+
+def resting(found: RiserSnapshot) -> slice:
+    """Nodes well within the stretch that lies on the ground."""
+    touching = np.flatnonzero(found.contact_force > 0.0)
+    return slice(int(touching[0]) + 12, int(touching[-1]) - 12)
+
+
+@pytest.mark.parametrize("method", ["line", "node"])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_riser_on_a_slope(method: str, dimension: int) -> None:
+    """Where it lies straight the ground bears w cos(slope), and the tension grows uphill by w sin(slope)."""
+    found = lying({"slope_deg": SLOPE}, method, dimension=dimension)
+    at = resting(found)
+    assert len(found.contact_force[at]) > 10
+    cosine, sine = np.cos(np.radians(SLOPE)), np.sin(np.radians(SLOPE))
+    assert found.contact_force[at] == pytest.approx(W * cosine, rel=1e-4)
+    assert np.diff(found.effective_tension[at]) == pytest.approx(np.full(at.stop - at.start - 1, W * sine), rel=1e-3)
+    total = found.start_force + found.end_force
+    assert total[2] == pytest.approx(150.0 * W - np.sum(_tributary(found) * found.contact_force) * cosine, rel=1e-6)
+
+
+def _tributary(found: RiserSnapshot) -> np.ndarray:
+    share = np.full(len(found.contact_force), 1.0)
+    share[[0, -1]] = 0.5
+    return share
+
+
+def test_profile_of_the_slope_is_the_slope() -> None:
+    slope = lying({"slope_deg": SLOPE})
+    profile = lying({"profile": [[-50.0, -50.0 * RISE], [40.0, 40.0 * RISE], [200.0, 200.0 * RISE]]})
+    assert distance(slope.position, profile.position) < 1e-8
+    assert profile.contact_force == pytest.approx(slope.contact_force, abs=1e-4)
+
+
+@pytest.mark.parametrize("method", ["line", "node"])
+def test_riser_over_a_trench(method: str) -> None:
+    """Sunk in or spanning it, the riser is borne by supports and ground together; it follows gentle ground."""
+    profile = [[-10.0, 0.0], [0.0, 0.0], [20.0, -0.4], [40.0, 0.0], [60.0, 0.0], [150.0, 0.0]]
+    found = lying({"profile": profile}, method)
+    along = found.position @ np.array([0.8, 0.6, 0.0])
+    lowest = found.position[np.argmin(found.position[:, 2])]
+    assert -0.45 < lowest[2] < -0.2
+    assert 15.0 < along[np.argmin(found.position[:, 2])] < 25.0
+    touched = found.contact_force > 0.0
+    assert touched[(along > 5.0) & (along < 15.0)].any()
+    vertical = found.start_force[2] + found.end_force[2] + np.sum(_tributary(found) * found.contact_force)
+    assert vertical == pytest.approx(150.0 * W, rel=2e-3)  # the ground's push leans by its slope, 1/25 at most
+
+
+def test_line_contact_converges_faster_than_contact_at_nodes() -> None:
+    """Errors of the horizontal tension against 1,200 elements, on springs; see the demo of the tank for more."""
+    exact = lying({}, elements=1200).end_force[0]
+    line, node = (
+        [abs(lying({}, method, elements=n).end_force[0] / exact - 1.0) for n in (75, 150, 300)]
+        for method in ("line", "node")
+    )
+    assert line[0] < 0.2 * node[0]
+    assert line[-1] < 4e-6
+    assert np.all(np.array(line) < np.array(node))
+
+
+def test_methods_agree_on_fine_meshes() -> None:
+    line, node = (lying({}, method, elements=600) for method in ("line", "node"))
+    assert line.end_force == pytest.approx(node.end_force, rel=2e-5)
+    assert line.bending_moment.max() == pytest.approx(node.bending_moment.max(), rel=1e-4)
