@@ -144,6 +144,27 @@ def test_a_lying_pipe_heaves_like_a_rigid_section(lift: float, drag: bool) -> No
     assert extrapolated == pytest.approx(exact, abs=2e-5 * lift)
 
 
+def test_an_upright_pipe_heaves_about_its_draught() -> None:
+    """Of 60 % of the water's density, it floats 60 % immersed; its period is 2 pi sqrt(0.6 L/g)."""
+    length, lift = 6.0, 0.4
+    scene = riser_scene(
+        dynamic(8.0, 0.02, scheme=AVERAGE),
+        pipe={"EA": 1.0e9, "EI": 1.0e6, "outer_diameter": D, "mass": 0.6 * DISPLACED},
+        length=length,
+        elements=4,
+        start="free",
+        end="free",
+        riser={"unstressed": {"points": [[0.0, 0.0, lift - 0.6 * length], [0.0, 0.0, lift + 0.4 * length]]}},
+        water={"density": RHO, "surface_level": 0.0},
+        gravity=9.81,
+        solver={"tolerance": 1e-10},
+    )
+    told = tell(scene)[0]
+    middle = np.array([x[:, 2].mean() for x in told.position]) + 0.1 * length
+    exact = lift * np.cos(np.sqrt(9.81 / (0.6 * length)) * np.array(told.t))
+    assert middle == pytest.approx(exact, abs=2e-3 * lift)
+
+
 def balance(told: Told) -> float:
     """Largest error of the energy balance since the first step [J]."""
     energy, work = np.array(told.energy), np.cumsum(told.work)
