@@ -107,6 +107,19 @@ def test_long_elements_at_a_clamped_end_are_told() -> None:
     assert [w for w in warnings(clamped) if "elements at the end are 1.5 m long" in w]
 
 
+def test_elements_of_very_different_lengths_are_told_where_waves_meet_them() -> None:
+    segments: list[Mapping] = [{"line_type": "flexible", "length": 15.0, "elements": n} for n in (50, 10)]
+    uneven = with_value(without_soil(heave(1.0)), "riser", "segments", value=segments)
+    (found,) = [w for w in warnings(uneven) if "meet at arc 15 m" in w]
+    assert "elements of 0.3 m and 1.5 m" in found
+    assert "shorter than about 9 m" in found
+    still = with_value(without_soil(), "riser", "segments", value=segments)
+    assert not [w for w in warnings(still) if "meet at arc" in w]
+    segments[1] = {"line_type": "flexible", "length": 15.0, "element_length": [0.3, 1.5]}
+    graded = with_value(without_soil(heave(1.0)), "riser", "segments", value=segments)
+    assert not [w for w in warnings(graded) if "meet at arc" in w]
+
+
 def test_a_floating_pipe_is_told_with_its_weight() -> None:
     floating = without_soil()
     floating["line_types"]["flexible"]["submerged_weight"] = -30.0
