@@ -76,6 +76,18 @@ def test_a_smooth_riser_has_no_hydrodynamics() -> None:
     assert "left out: morison: no line type has drag or added mass, nor any attachment" in report(smooth).splitlines()
 
 
+@pytest.mark.parametrize(
+    ("water", "told"),
+    [
+        ({}, "left out: buoyancy: the water has no surface: all is submerged"),
+        ({"surface_level": 50.0}, "built: riser, buoyancy, seabed, contact"),
+        ({"current": {"profile": [[0.0, 1.0, 0.0]]}}, "built: riser, morison, seabed, contact"),
+    ],
+)
+def test_statics_have_what_their_water_does(water: Mapping, told: str) -> None:
+    assert told in report(with_value(without_soil(), "water", value=water)).splitlines()
+
+
 def test_springs_and_loads_are_built_when_asked_for() -> None:
     lift = {"name": "lift", "kind": "static", "loads": [{"at": 10.0, "force": [0.0, 0.0, 1.0e3]}]}
     sprung = with_value(without_soil(lift), "riser", "end", "rotation", value={"stiffness": 1.0e4})
