@@ -69,8 +69,8 @@ class DryPipe:
         by_height, by_surface = waterline.slopes(*self._sections(trial))
         by_q = np.zeros((*by_height.shape, self._pipe.line.dimension))
         by_q[..., -1] = by_height
-        slope = self._surface.immersion(trial)[1].copy()
+        at = np.flatnonzero(by_surface.any(axis=(1, 2)))  # where the pipe comes out
+        slope = self._surface.immersion(trial)[1][at]
         slope[..., -1] += 1.0
-        if np.any(slope):
-            by_q += np.einsum("eag,egc,egj->eacj", by_surface, self._pipe.at.N, slope)
+        by_q[at] += np.einsum("eag,egc,egj->eacj", by_surface[at], self._pipe.at.N[at], slope)
         return by_q

@@ -12,7 +12,9 @@ from riser_soil.riser import shapes
 from riser_soil.riser.line import End, Line
 from riser_soil.sea.buoyancy import Buoyancy
 from riser_soil.sea.dry_pipe import DryPipe
+from riser_soil.sea.moving_water import Stream
 from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope
 from riser_soil.sea.wetting import FlatSurface
 from tests.dense_chain import residual
@@ -73,6 +75,23 @@ def test_an_upright_pipe_floats_by_archimedes(dimension: int) -> None:
     assert dry.mean() == pytest.approx(out.mean(), rel=1e-12)
     assert np.abs(dry - out).max() < 3e-4 * L / elements
     assert np.diff(dry) == pytest.approx(np.diff(out), rel=0.05)
+
+
+def rippled(t: float, x: Array) -> WaterMotion:
+    """A surface of 12 m long waves, of which an element holds a tenth."""
+    n, k = len(x), 2.0 * np.pi / 12.0
+    slope = np.stack([-0.2 * k * np.sin(k * x[:, 0]), np.zeros(n), -np.ones(n)], axis=-1)
+    nothing, none = np.zeros((n, 3)), np.zeros((n, 3, 3))
+    return WaterMotion(nothing, nothing, none, none, LEVEL + 0.2 * np.cos(k * x[:, 0]) - x[:, 2], slope)
+
+
+def test_a_wavy_surface_is_followed_between_the_stations() -> None:
+    at = pipe(np.array([0.0, 0.0, LEVEL + 0.1]), np.array([1.0, 0.0, 0.0]), 5, 2)
+    dry = DryPipe(at, Stream(at, rippled), np.ones(5))
+    found = dry.residual(at.line.trial(State.at_rest(0.0, at.line.size)))[:, [0, 2], 1].sum()
+    k = 2.0 * np.pi / 12.0
+    expected = quad(lambda x: 1.0 - wet_share(0.2 * np.cos(k * x) - 0.1, D), 0.0, L, epsabs=1e-10, limit=200)[0]
+    assert found == pytest.approx(expected, rel=1e-4)
 
 
 def test_lifting_a_pipe_out_of_the_water_takes_its_lost_weight() -> None:
