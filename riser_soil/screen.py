@@ -54,6 +54,7 @@ def _stage_rows(stage: dict[str, Any]) -> list[Row]:
             _span(final["end"]["effective_tension"], extremes["end"]["effective_tension"], "kN", 1e-3),
         ),
         ("least effective tension", _at("min_effective_tension", stage, "kN", 1e-3)),
+        *_wall_rows(stage),
         ("largest bending moment", _at("max_bending_moment", stage, "kN.m", 1e-3)),
         ("largest curvature", _at("max_curvature", stage, "1/m")),
         ("touchdown arc length", _span(final["touchdown_arc"], extremes["touchdown_arc"], "m")),
@@ -63,6 +64,12 @@ def _stage_rows(stage: dict[str, Any]) -> list[Row]:
         ("Newton iterations per step", _newton(stage)),
         ("energy residual", _residual(stage["energy"])),
     ]
+
+
+def _wall_rows(stage: dict[str, Any]) -> list[Row]:
+    if "max_wall_tension" not in stage["final"]:
+        return []
+    return [("greatest wall tension", _at("max_wall_tension", stage, "kN", 1e-3))]
 
 
 def _run_rows(summary: dict[str, Any], settlement: float | None) -> Iterator[Row]:

@@ -94,6 +94,13 @@ def test_springs_and_loads_are_built_when_asked_for() -> None:
     assert "built: riser, springs, loads, seabed, contact" in report(sprung).splitlines()
 
 
+def test_attachments_are_counted_and_weighed() -> None:
+    attached = [{"at": [5.0, 6.0], "mass": 100.0, "volume": 0.2}, {"at": 9.0, "mass": 50.0}]
+    laden = with_value(without_soil(), "riser", "attachments", value=attached)
+    net = 9.81 * (250.0 - 0.4 * 1025.0)
+    assert f"3 attachments: weight less buoyancy {net:.4g} N in all" in report(laden).splitlines()
+
+
 def test_memory_grows_with_the_soil() -> None:
     fine = {"kind": "hex", "size_at_riser": 0.2, "size_far": 0.5}
     scenes = without_soil(), touchdown(), with_value(touchdown(), "soil", "mesh", value=fine)
