@@ -48,9 +48,9 @@ def _light_pipes(world: World) -> Iterator[str]:
 
 def _coarse_elements(world: World) -> Iterator[str]:
     """Elements beside a touchdown point or a held rotation against the boundary layer there."""
-    H, line = world.horizontal_tension, world.line
-    if H is None:
+    if world.catenary is None:
         return
+    H, line = world.catenary.H, world.line
     layer = np.sqrt(np.maximum(world.elements.EI_y, world.elements.EI_z) / H)
     for place, e in _boundary_layers(world):
         if line.length[e] > LONGEST_ELEMENT * layer[e]:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from riser_soil.build.vessels import Vessels
     from riser_soil.contact.contact import Contact
     from riser_soil.riser.attachments import Attachment
+    from riser_soil.riser.catenary import Catenary
     from riser_soil.riser.wall_tension import Pressures
     from riser_soil.soil.soil import Soil
 
@@ -35,8 +36,8 @@ LEAST_WEIGHT = 1e-6  # of EA/L: stands for the weight of a line that has none
 class World:
     """A scene's fields and lasting parts; soil and contact are None where the scene has none.
 
+    catenary: the first shape, None for other ones.
     attachments: point masses and buoyancy modules on the line; their weight less buoyancy is among `riser_parts`.
-    horizontal_tension [N]: of the initial catenary, None for other first shapes.
     pressures: inside and outside the pipe; None where the tension in its wall is not told.
     contact_stiffness [N/m2]: force per length and penetration, by ground (soil, plane).
     vessels: those that carry ends, None where there are none.
@@ -47,7 +48,7 @@ class World:
     line: Line
     elements: Elements
     riser_parts: list[Part]
-    horizontal_tension: float | None
+    catenary: Catenary | None
     attachments: tuple[Attachment, ...] = ()
     pressures: Pressures | None = None
     soil: Soil | None = None
@@ -90,11 +91,11 @@ class World:
 def build(scene: Scene, comm: MPI.Intracomm) -> World:
     """Build the parts of a scene; collective. Raises SceneError or MeshError."""
     elements = elements_of(scene)
-    line, tension = line_of(scene, elements, active=comm.rank == 0)
     attachments = attachments_of(scene)
+    line, catenary = line_of(scene, elements, attachments, active=comm.rank == 0)
     parts = [Beam(line, elements), *springs_of(scene.riser, line), *attached_weight(line, attachments)]
     pressures, vessels = pressures_of(scene, line, elements), vessels_of(scene)
-    world = World(scene, comm, line, elements, parts, tension, attachments, pressures, vessels=vessels)
+    world = World(scene, comm, line, elements, parts, catenary, attachments, pressures, vessels=vessels)
     if scene.contact is not None:
         _add_ground(world)
     return world
