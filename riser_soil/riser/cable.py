@@ -23,7 +23,8 @@ from riser_soil.arrays import Array
 from riser_soil.errors import SceneError
 
 BALANCED = 1e-11  # misfit, see `_misfit`
-ROUND_OFF = 1e-8  # the misfit under which it may stall
+ROUND_OFF = 1e-9  # the misfit under which it may stall
+ROUNDED = 1e-4  # of the tension: what counts beside the load
 MOST_ITERATIONS = 50
 NEAR = 0.01  # between logarithms of H or mu: where a balance must be found at once
 SHORTEST_STEP = 1e-3  # of Newton's
@@ -185,7 +186,7 @@ def _newton(trial: Balance, goal: Goal | None) -> Balance | None:
     size = _misfit(trial, goal)
     for _ in range(MOST_ITERATIONS):
         before, (trial, size) = size, _improved(trial, size, goal)
-        if size < BALANCED or 0.5 * before < size < ROUND_OFF or _is_slack(trial, goal):
+        if size < BALANCED or 0.8 * before < size < ROUND_OFF or _is_slack(trial, goal):
             return trial
     return None
 
@@ -225,11 +226,15 @@ def _misfits(trial: Balance) -> tuple[Array, Array]:
 
 
 def _misfit(trial: Balance, goal: Goal | None) -> float:
-    """Misfit of spans, reach and heights over pushes to the length, plus that of forces to the load."""
+    """Misfits of spans, reach and heights over the length, plus that of forces over the load.
+
+    Where tensions exceed the load by far, their round-off counts less.
+    """
     chain, (spans, forces) = trial.chain, _misfits(trial)
     beyond = 0.0 if goal is None else abs(trial.reach - goal.h)
     resting = np.abs(trial.q * trial.z[1:-1] - trial.mu).sum() if trial.mu > 0.0 else 0.0
-    return float((np.abs(spans).sum() + beyond + resting / chain.load) / chain.L + np.abs(forces).sum() / chain.load)
+    scale = chain.load + ROUNDED * (trial.H + float(np.abs(trial.V).max()))
+    return float((np.abs(spans).sum() + beyond + resting / scale) / chain.L + np.abs(forces).sum() / scale)
 
 
 def _newton_step(trial: Balance, goal: Goal | None) -> Balance:
