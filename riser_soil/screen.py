@@ -62,6 +62,7 @@ def _stage_rows(stage: dict[str, Any]) -> list[Row]:
         ("deepest penetration", _span(final["max_penetration"], extremes["max_penetration"], "mm", 1e3)),
         ("steps, cut", f"{stage['steps']}, {stage['step_cuts']}"),
         ("Newton iterations per step", _newton(stage)),
+        *([("found by", stage["method"])] if stage["method"] not in (None, "newton") else []),
         ("energy residual", _residual(stage["energy"])),
     ]
 

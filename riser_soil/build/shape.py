@@ -85,6 +85,12 @@ def _resting_level(scene: Scene, elements: sections.Elements) -> float:
     return scene.seabed_level + float(contact_radius(scene, elements).max())
 
 
+def least_bend(elements: sections.Elements) -> float:
+    """The shortest length (EI/w)^(1/3) [m] over which the line bends under its own weight; inf where nothing weighs."""
+    w, EI = np.abs(elements.weight), np.maximum(elements.EI_y, elements.EI_z)
+    return float(np.cbrt(EI[w > 0.0] / w[w > 0.0]).min(initial=np.inf))
+
+
 def _least_tension(elements: sections.Elements) -> float:
     """H [N] of a catenary that the elements can follow."""
     w, EI = np.abs(elements.weight), np.maximum(elements.EI_y, elements.EI_z)

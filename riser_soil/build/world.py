@@ -12,13 +12,15 @@ from riser_soil.build.motions import set_motions, vessels_of
 from riser_soil.build.pressures import pressures_of
 from riser_soil.build.riser import attached_weight, attachments_of, elements_of, line_of, springs_of
 from riser_soil.build.sea_loads import sea_loads
+from riser_soil.build.shape import least_bend
 from riser_soil.build.stage import dynamic_parts, hold_spin, loads_of
 from riser_soil.part import Field, Model, Part
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
+from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, Stage
+from riser_soil.scene.stages import DynamicStage, Move, Stage, StaticStage
 
 if TYPE_CHECKING:
     from riser_soil.build.vessels import Vessels
@@ -75,6 +77,34 @@ class World:
         """Typical force per length [N/m]."""
         least = LEAST_WEIGHT * float(self.elements.EA.max() / self.line.arc[-1])
         return max(float(np.abs(self.elements.weight).max()), least)
+
+    @property
+    def slack(self) -> float:
+        """How far the end of the first shape lies beyond its place [m]."""
+        return self.catenary.slack if self.catenary is not None else 0.0
+
+    @property
+    def too_slack(self) -> str:
+        """What to tell where a slack riser finds no equilibrium."""
+        bend = least_bend(self.elements)
+        return (
+            f"the riser is slack: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
+            "its place, and no way back there was found; take shorter segments, move the ends apart, or take "
+            f"elements well below (EI/w)^(1/3) = {bend:.3g} m, the length over which it bends under its own weight"
+        )
+
+    @property
+    def laying(self) -> StaticStage | None:
+        """What brings the end of a slack riser to its place before the scene's stages."""
+        end = self.scene.riser.end
+        if self.slack == 0.0 or not isinstance(end, Support):
+            return None
+        return StaticStage(name="laying", kind="static", move=Move(end=end.position))
+
+    def begin_laying(self, stage: StaticStage) -> Model:
+        """Set the end in motion and name the parts: in still water."""
+        model = self.begin(stage)
+        return Model(model.fields, [part for part in model.parts if part.name != "morison"])
 
     def begin(self, stage: Stage) -> Model:
         """Set the ends in motion and name the parts of a stage."""
