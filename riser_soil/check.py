@@ -47,6 +47,9 @@ def _unknowns(world: World) -> Iterator[str]:
         f"riser: {line.length.size} elements of {line.length.min():.4g} to {line.length.max():.4g} m, "
         f"{unknowns(world.comm, line)} unknowns"
     )
+    if world.attachments:
+        net = sum(attachment.net_weight for attachment in world.attachments)
+        yield f"{_counted(len(world.attachments), 'attachment')}: weight less buoyancy {net:.4g} N in all"
     if world.soil is not None:
         cells = world.comm.allreduce(world.soil.blocks()["soil"].shape[0])
         yield f"soil: {cells} cells, {unknowns(world.comm, world.soil.field)} unknowns"

@@ -12,6 +12,9 @@ from riser_soil.build.ground import surface_modulus
 
 # Elements longer than this share of the boundary layer sqrt(EI/H) blur the bending at touchdown and fixed ends.
 LONGEST_ELEMENT = 0.5
+# Ratio of neighbouring elements' lengths from which the joint may reflect waves. Static errors don't mind: with ratios
+# up to 16 they are those of the longer elements alone. A wave needs some elements.
+UNEVEN, WAVE_IN_ELEMENTS = 4.0, 6.0
 # Bounds of the penalty stiffness over the soil's Young's modulus: below it hides the soil, above it costs iterations.
 SOFT, STIFF = 1.0, 1e4
 # Force of the rounded corner at gap zero over the riser's weight, from which the corner is more than a corner.
@@ -22,6 +25,7 @@ def physical_warnings(world: World) -> Iterator[str]:
     """What a riser engineer would question, each with its numbers; collective."""
     yield from _light_pipes(world)
     yield from _coarse_elements(world)
+    yield from _uneven_neighbours(world)
     yield from _penalty_against_soil(world)
     yield from _corner_against_weight(world)
     yield from _nothing_below(world)
@@ -44,9 +48,9 @@ def _light_pipes(world: World) -> Iterator[str]:
 
 def _coarse_elements(world: World) -> Iterator[str]:
     """Elements beside a touchdown point or a held rotation against the boundary layer there."""
-    H, line = world.horizontal_tension, world.line
-    if H is None:
+    if world.catenary is None:
         return
+    H, line = world.catenary.H, world.line
     layer = np.sqrt(np.maximum(world.elements.EI_y, world.elements.EI_z) / H)
     for place, e in _boundary_layers(world):
         if line.length[e] > LONGEST_ELEMENT * layer[e]:
@@ -54,6 +58,20 @@ def _coarse_elements(world: World) -> Iterator[str]:
                 f"elements {place} are {line.length[e]:.4g} m long, but bending varies there over sqrt(EI/H) = "
                 f"{layer[e]:.4g} m (H = {H:.4g} N): take at most {LONGEST_ELEMENT * layer[e]:.3g} m"
             )
+
+
+def _uneven_neighbours(world: World) -> Iterator[str]:
+    length, arc = world.line.length, world.line.arc
+    ratio = np.maximum(length[1:] / length[:-1], length[:-1] / length[1:])
+    moves = any(stage.kind == "dynamic" for stage in world.scene.stages)
+    if moves and ratio.size and ratio.max() > UNEVEN * (1.0 + 1e-9):
+        e = int(ratio.argmax())
+        shortest = WAVE_IN_ELEMENTS * max(length[e : e + 2])
+        yield (
+            f"elements of {length[e]:.4g} m and {length[e + 1]:.4g} m meet at arc {arc[e + 1]:.4g} m: waves shorter "
+            f"than about {shortest:.3g} m, too short for the longer ones, are thrown back there; let the lengths grow, "
+            "element_length: [first, last]"
+        )
 
 
 def _boundary_layers(world: World) -> Iterator[tuple[str, int]]:

@@ -90,15 +90,23 @@ class March:
         self.before = State(before.t, rest.u, rest.v, np.where(fixed, rest.a, bulk))
         self._forces = self.system.forces(State(before.t, rest.u, rest.v, np.where(fixed, rest.a, whole)))
 
-    def advance(self, control: StepControl) -> Accepted:
-        """Take one step, cut as often as it needs; SolveError when it can't be cut any more."""
+    def depends_on(self, control: StepControl) -> bool:
+        """Whether loads or supports change until the stage's end; in statics shorter steps are easier only then."""
+        end = State(control.end, self.before.u.copy(), self.before.v.copy(), self.before.a.copy())
+        change = total(self.system.forces(end)) - total(self.system.forces(self.before))
+        self.system.prescribe(end)
+        changed = bool(np.any(change != 0.0) or np.any(end.u != 0.0))
+        return bool(self.system.comm.allreduce(changed, MPI.LOR))
+
+    def advance(self, control: StepControl, most_cuts: int | None = None) -> Accepted:
+        """Take one step, cut as often as it needs; SolveError when it can't be cut any more, or may not."""
         cuts = 0
         while True:
             try:
                 return self._account(self._solve(control.target, control.dt), control, cuts)
             except NotConvergedError as failure:
                 cuts += 1
-                if not control.cut():
+                if cuts - 1 == most_cuts or not control.cut():
                     raise SolveError(
                         f"no convergence at t = {control.target:.6g} with the smallest step {control.dt:.3g}: {failure}"
                     ) from failure

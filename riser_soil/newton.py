@@ -27,6 +27,10 @@ class NotConvergedError(Exception):
     """A step that Newton could not solve; its text says why and where the residual sits."""
 
 
+class UnstableError(NotConvergedError):
+    """A balance of forces from which the riser would buckle or swing away."""
+
+
 @runtime_checkable
 class Judging(Protocol):
     """A field that knows states in balance that are none of the thing modelled."""
@@ -34,6 +38,13 @@ class Judging(Protocol):
     def fault(self, state: State) -> str:
         """What is wrong with a state, the same on all ranks; empty for a good one."""
         ...
+
+
+@runtime_checkable
+class Following(Protocol):
+    """A part whose forces follow the line, but hardly stiffen or soften it, such as the drag of a current."""
+
+    follows: bool
 
 
 @dataclass(frozen=True)
@@ -115,17 +126,18 @@ class Newton:
         return Solution(state, self._forces, self._norms)
 
     def require_stable(self, step: Step, solution: Solution) -> None:
-        """Raise NotConvergedError where a static solution is an unstable equilibrium, such as an unbuckled strut.
+        """Raise UnstableError where a static solution is an unstable equilibrium, such as an unbuckled strut.
 
-        Stable means that the tangent there has no negative pivot; a system without symmetry can't be judged so.
-        Collective.
+        Stable means that the tangent there has no negative pivot. Parts that follow the line are left out of it; where
+        others lack symmetry too, such as moments in space, nothing is judged. Collective.
         """
-        if not self.system.symmetric:
+        judged = [part for part in self.system.model.parts if not isinstance(part, Following)]
+        if not all(part.symmetric for part in judged):
             return
-        self.system.assemble(solution.state, step.scheme.weights(step.dt))
+        self.system.assemble(solution.state, step.scheme.weights(step.dt), judged)
         negative = negative_pivots(self.system)
         if negative > 0:
-            raise NotConvergedError(
+            raise UnstableError(
                 f"the equilibrium found is unstable (its tangent has {negative} negative pivot(s)): the riser would "
                 "buckle or swing away from it; start from a shape nearer to the one that it takes"
             )

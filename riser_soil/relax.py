@@ -9,7 +9,7 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.errors import SolveError
-from riser_soil.newton import Newton, NewtonSettings, NotConvergedError, Solution, Step
+from riser_soil.newton import Newton, NewtonSettings, NotConvergedError, Solution, Step, UnstableError
 from riser_soil.part import Model, State
 from riser_soil.riser.line import Line
 from riser_soil.riser.relaxation import Relaxation
@@ -17,7 +17,9 @@ from riser_soil.system import Clock, System
 from riser_soil.time_scheme import Static
 
 FREE_FALL = 0.1  # the first step lets the riser fall by about this many element lengths
+STIFFEST = 1e8  # drag over the first
 MOST_STEPS = 2000
+NUDGE = 1e-4  # element lengths
 MOST_ATTEMPTS = 50  # at an equilibrium without drag
 QUICK = 6  # Newton iterations up to which the drag is lowered
 NEARLY_THERE = 1e-2  # largest increment, in element lengths, from which equilibrium without drag is tried
@@ -41,7 +43,7 @@ def relax(
 
 
 def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: float) -> int:
-    stiffest, iterations, failures, moved = part.drag * 1e8, 0, 0, np.inf
+    stiffest, iterations, failures, moved = part.drag * STIFFEST, 0, 0, np.inf
     for _ in range(MOST_STEPS):
         if moved < NEARLY_THERE * line.length.min():
             try:
@@ -50,6 +52,8 @@ def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: fl
                 failures += 1
                 if failures == MOST_ATTEMPTS:
                     raise SolveError(f"dynamic relaxation ends in no stable equilibrium: {failure}") from failure
+                if isinstance(failure, UnstableError):
+                    _nudge(system, line, t)
         try:
             solution = _step(system, newton, part, t, part.drag)
         except NotConvergedError as failure:
@@ -64,18 +68,30 @@ def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: fl
 
 
 def _step(system: System, newton: Newton, part: Relaxation, t: float, drag: float) -> Solution:
-    """A pseudo-time step with the given drag, committed; without drag it must end in a stable equilibrium."""
+    """A pseudo-time step with the given drag, committed.
+
+    It must end in an equilibrium that is stable, with the drag where there is one: a longer step would not follow a
+    riser that falls away from an unstable one, but return to it.
+    """
     usual, part.drag = part.drag, drag
     size = system.numbering.size
     step = Step(Static(), State.at_rest(t, size), t, 0.0, None, np.zeros(size))
     try:
         solution = newton.solve(step)
-        if drag == 0.0:
-            newton.require_stable(step, solution)
+        newton.require_stable(step, solution)
     finally:
         part.drag = usual
     system.commit(solution.state)
     return solution
+
+
+def _nudge(system: System, line: Line, t: float) -> None:
+    """Move the free nodes off a symmetric shape, by little and always in the same way, and commit."""
+    state = State.at_rest(t, system.numbering.size)
+    moves = np.random.default_rng(1).uniform(-NUDGE, NUDGE, (line.nodes, line.dimension)) * line.length.min()
+    line.nodal(state.u)[:, : line.dimension] = moves
+    state.u[system.held] = 0.0
+    system.commit(state)
 
 
 def _largest_increment(system: System, line: Line, solution: Solution) -> float:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Protocol
 
 from mpi4py import MPI
 
@@ -13,15 +14,17 @@ from riser_soil.build.stage import scheme_of
 from riser_soil.doubts import physical_warnings
 from riser_soil.errors import SolveError
 from riser_soil.folder import refuse_finished
-from riser_soil.march import March
+from riser_soil.march import Accepted, March
 from riser_soil.newton import Newton, NewtonSettings
 from riser_soil.observe import Observer
-from riser_soil.part import State
+from riser_soil.part import Energy, Model, State
 from riser_soil.relax import relax
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.stepping import StepControl
 from riser_soil.system import Clock, System
+
+MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
 
 
 def run(scene: Scene, folder: Path, force: bool = False) -> None:
@@ -38,15 +41,59 @@ def run(scene: Scene, folder: Path, force: bool = False) -> None:
         if comm.rank == 0:
             print(f"warning: {doubt}")
     with Observer.open(world, clock, folder, force) as observer:
-        before = State.at_rest(0.0, world.size)
+        before = lay(world, observer, clock)
         for stage in scene.stages:
             before = run_stage(world, stage, before, observer, clock)
         observer.finish()
 
 
-def run_stage(world: World, stage: Stage, before: State, observer: Observer, clock: Clock) -> State:
+def lay(world: World, observer: Observer, clock: Clock) -> State:
+    """Before all stages: where a slack riser's first shape ends beyond its place, bring its end there."""
+    rest, stage = State.at_rest(0.0, world.size), world.laying
+    if stage is None:
+        return rest
+    follower = Laying()
+    try:
+        laid = _take(world, world.begin_laying(stage), stage, rest, follower, clock)
+    except SolveError as err:
+        raise SolveError(f"{world.too_slack}: {err}") from err
+    observer.laid(world.slack, follower.steps, follower.relaxations)
+    return laid
+
+
+class Follower(Protocol):
+    """Who is told how a stage goes on."""
+
+    def begin_stage(self, stage: Stage, energy: Energy) -> None: ...
+
+    def record(self, march: March, step: Accepted, last: bool) -> None: ...
+
+    def relaxed(self, iterations: int) -> None: ...
+
+
+@dataclass
+class Laying:
+    """Counts the load steps and relaxations of a stage that the scene does not have."""
+
+    steps: int = 0
+    relaxations: int = 0
+
+    def begin_stage(self, stage: Stage, energy: Energy) -> None:
+        pass
+
+    def record(self, march: March, step: Accepted, last: bool) -> None:
+        self.steps += 1
+
+    def relaxed(self, iterations: int) -> None:
+        self.relaxations += 1
+
+
+def run_stage(world: World, stage: Stage, before: State, observer: Follower, clock: Clock) -> State:
     """Take one stage to its end; the state that it leaves, increments zero."""
-    model = world.begin(stage)
+    return _take(world, world.begin(stage), stage, before, observer, clock)
+
+
+def _take(world: World, model: Model, stage: Stage, before: State, observer: Follower, clock: Clock) -> State:
     system = System(world.comm, model, clock)
     newton = Newton(system, _settings(world))
     try:
@@ -58,28 +105,37 @@ def run_stage(world: World, stage: Stage, before: State, observer: Observer, clo
         system.destroy()
 
 
-def _walk(world: World, stage: Stage, march: March, observer: Observer) -> State:
-    control, relaxed = _control(world, stage), False
+def _walk(world: World, stage: Stage, march: March, observer: Follower) -> State:
+    control = _control(world, stage)
     while not control.finished:
-        try:
-            step = march.advance(control)
-        except SolveError:
-            if relaxed or not isinstance(stage, StaticStage):
-                raise
-            _relax(world, march, control.target, observer)
-            relaxed = True
-            control.widen()
-            continue
+        static = isinstance(stage, StaticStage)
+        step = _static_step(world, march, control, observer) if static else march.advance(control)
         march.commit(step, control)
         observer.record(march, step, last=control.finished)
-        relaxed = False
     return march.before
 
 
-def _relax(world: World, march: March, t: float, observer: Observer) -> None:
-    """Where Newton's method can't go on in a static stage: to an equilibrium at the load factor t that it missed."""
-    system = march.system
-    iterations = relax(world.comm, system.model, world.line, world.weight, _settings(world), system.clock, t)
+def _static_step(world: World, march: March, control: StepControl, observer: Follower) -> Accepted:
+    """By Newton's method, in load steps that are halved a few times, else by dynamic relaxation.
+
+    Where relaxation does not get to the load factor that was missed, it all begins again with half the step.
+    """
+    while True:
+        try:
+            return march.advance(control, MOST_CUTS if march.depends_on(control) else 0)
+        except SolveError:
+            _relax(world, march, control, observer)
+
+
+def _relax(world: World, march: March, control: StepControl, observer: Follower) -> None:
+    """To an equilibrium at the load factor that Newton's method missed, or to half the step."""
+    system, settings = march.system, _settings(world)
+    try:
+        iterations = relax(world.comm, system.model, world.line, world.weight, settings, system.clock, control.target)
+    except SolveError:
+        if not march.depends_on(control) or not control.cut():
+            raise
+        return
     observer.relaxed(iterations)
     march.restart()
 

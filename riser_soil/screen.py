@@ -54,6 +54,7 @@ def _stage_rows(stage: dict[str, Any]) -> list[Row]:
             _span(final["end"]["effective_tension"], extremes["end"]["effective_tension"], "kN", 1e-3),
         ),
         ("least effective tension", _at("min_effective_tension", stage, "kN", 1e-3)),
+        *_wall_rows(stage),
         ("largest bending moment", _at("max_bending_moment", stage, "kN.m", 1e-3)),
         ("largest curvature", _at("max_curvature", stage, "1/m")),
         ("touchdown arc length", _span(final["touchdown_arc"], extremes["touchdown_arc"], "m")),
@@ -61,8 +62,15 @@ def _stage_rows(stage: dict[str, Any]) -> list[Row]:
         ("deepest penetration", _span(final["max_penetration"], extremes["max_penetration"], "mm", 1e3)),
         ("steps, cut", f"{stage['steps']}, {stage['step_cuts']}"),
         ("Newton iterations per step", _newton(stage)),
+        *([("found by", stage["method"])] if stage["method"] not in (None, "newton") else []),
         ("energy residual", _residual(stage["energy"])),
     ]
+
+
+def _wall_rows(stage: dict[str, Any]) -> list[Row]:
+    if "max_wall_tension" not in stage["final"]:
+        return []
+    return [("greatest wall tension", _at("max_wall_tension", stage, "kN", 1e-3))]
 
 
 def _run_rows(summary: dict[str, Any], settlement: float | None) -> Iterator[Row]:

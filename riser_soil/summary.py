@@ -114,6 +114,7 @@ class StageTally:
     newton_iterations: int = 0
     most_newton_iterations: int = 0
     step_cuts: int = 0
+    relaxations: int = 0
     final: dict[str, Any] | None = None
     extremes: Extremes = field(default_factory=Extremes)
     energy: Ledger = field(default_factory=Ledger)
@@ -124,10 +125,19 @@ class StageTally:
         self.most_newton_iterations = max(self.most_newton_iterations, health.newton_iterations)
         self.step_cuts += health.step_cuts
 
+    @property
+    def method(self) -> str | None:
+        """What it took to find the equilibria of a static stage."""
+        if self.kind != "static":
+            return None
+        if self.relaxations:
+            return "relaxation"
+        return "load steps" if self.step_cuts else "newton"
+
     def as_dict(self) -> dict[str, Any]:
         plain = {k: v for k, v in vars(self).items() if k not in ("extremes", "energy")}
         extremes = self.extremes.nested() if self.steps else None
-        return plain | {"extremes": extremes, "energy": asdict(self.energy)}
+        return plain | {"method": self.method, "extremes": extremes, "energy": asdict(self.energy)}
 
 
 class Summary:
@@ -135,6 +145,7 @@ class Summary:
 
     def __init__(self, facts: RunFacts) -> None:
         self.finished = False
+        self.laying: dict[str, float] | None = None  # how a slack riser was laid before the stages
         self.stages: list[StageTally] = []
         self.seconds: Counter[str] = Counter()
         self._facts = facts
@@ -151,6 +162,7 @@ class Summary:
             "dofs": {"riser": facts.riser_dofs, "soil": facts.soil_dofs},
             "stages": [stage.as_dict() for stage in self.stages],
             "seconds": dict(self.seconds),
+            **({"laying": self.laying} if self.laying is not None else {}),
         }
 
     def write(self, path: Path) -> None:

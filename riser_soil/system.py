@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,10 +78,10 @@ class System:
             self.clock.add(part.name, since)
         return forces
 
-    def assemble(self, state: State, weights: Weights) -> None:
-        """Put dR/du at the state into the matrix."""
+    def assemble(self, state: State, weights: Weights, parts: Sequence[Part] | None = None) -> None:
+        """Put dR/du at the state into the matrix; by default that of all parts."""
         self.matrix.clear()
-        for part in self.model.parts:
+        for part in self.model.parts if parts is None else parts:
             since = time.perf_counter()
             part.tangent(state, weights, self.matrix.values)
             self.clock.add(part.name, since)

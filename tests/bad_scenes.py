@@ -288,7 +288,7 @@ CONFLICTS = [
         '{"density"',
         "no line type of the riser has room",
     ),
-    Bad("length: 148.0", "length: 120.0", 18, "riser.end.position", "[80.0, 0.0, 100.0]", "only 120 m long"),
+    Bad("length: 148.0", "length: 115.0", 18, "riser.end.position", "[80.0, 0.0, 100.0]", "only 115 m long"),
     Bad(
         "[0.0, 0.0, 0.15]",
         "[0.0, 0.0, -1.0]",

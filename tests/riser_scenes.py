@@ -48,6 +48,29 @@ def dynamic(duration: float, time_step: float, name: str = "dynamic", **more: An
     return {"name": name, "kind": "dynamic", "duration": duration, "time_step": time_step, **more}
 
 
+IN_WAVES: Mapping = {"EA": 1.0e6, "EI": 2.0e3, "outer_diameter": 0.3, "mass": 120.0}
+IN_WAVES |= {"drag": {"normal": 1.1, "tangential": 0.05}, "added_mass": {"normal": 1.0, "tangential": 0.2}}
+
+
+def in_waves(time_step: float, top: float, rho_inf: float = 0.8) -> Mapping:
+    """A hanging riser in waves and a sheared current, its top at a height below or above the surface at 20 m."""
+    water: Mapping = {"surface_level": 20.0, "depth": 60.0}
+    water |= {"current": {"profile": [[0.0, 0.1, 0.0], [20.0, 0.8, 0.0]]}}
+    water |= {"waves": {"airy": {"height": 2.0, "period": 5.0}, "ramp": 2.0}}
+    return riser_scene(
+        static("hang"),
+        dynamic(4.0, time_step, scheme={"generalized_alpha": {"rho_inf": rho_inf}}),
+        pipe=IN_WAVES,
+        length=26.0,
+        elements=8,
+        start=held(0.0, 0.0, 3.0),
+        end=held(14.0, 0.0, top),
+        water=water,
+        gravity=9.81,
+        solver={"tolerance": 1e-10},
+    )
+
+
 @dataclass
 class Told:
     """A stage, step by step: end times, steps [s], energies [J], node positions (nn, 3), the riser at the last step."""

@@ -8,7 +8,8 @@ import numpy as np
 
 from riser_soil.arrays import Array
 from riser_soil.riser.attachments import Attachment
-from riser_soil.sea.buoyancy import Buoyancy
+from riser_soil.sea.buoyancy import Buoyancy, DryStations
+from riser_soil.sea.dry_pipe import DryPipe
 from riser_soil.sea.modules import StillWaterOnModules, diameters, pipe_at
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
@@ -120,14 +121,15 @@ def modules_floating(at: Sample) -> Buoyancy:
     pipe = pipe_at(at.line, MODULES)
     surface = FlatSurface(pipe, at.line.x[2, -1])
     displaced = 9.81 * RHO * np.array([m.volume for m in MODULES])
-    return Buoyancy(pipe, Wetting(pipe, surface, diameters(MODULES)[:, None]), displaced, flat=True)
+    wetting = Wetting(pipe, surface, diameters(MODULES)[:, None])
+    return Buoyancy(pipe, DryStations(pipe, wetting, displaced), flat=True)
 
 
 def floating(at: Sample) -> Buoyancy:
     pipe = Pipe(at.line)
-    return Buoyancy(pipe, Wetting(pipe, FlatSurface(pipe, LEVEL)), 9.81 * displaced(at), flat=True)
+    return Buoyancy(pipe, DryPipe(pipe, FlatSurface(pipe, LEVEL), 9.81 * displaced(at)), flat=True)
 
 
 def floating_in_waves(at: Sample) -> Buoyancy:
     pipe = Pipe(at.line)
-    return Buoyancy(pipe, Wetting(pipe, Stream(pipe, water)), 9.81 * displaced(at), flat=False)
+    return Buoyancy(pipe, DryPipe(pipe, Stream(pipe, water), 9.81 * displaced(at)), flat=False)

@@ -15,8 +15,10 @@ from riser_soil.riser.sections import Elements
 
 if TYPE_CHECKING:
     from riser_soil.riser.attachments import Attachment
+    from riser_soil.sea.buoyancy import Dry
     from riser_soil.sea.pipe import Pipe
     from riser_soil.sea.still_water import Resistance
+    from riser_soil.sea.wetting import Surface, Wetting
 
 
 class Body(Protocol):
@@ -52,9 +54,12 @@ class Body(Protocol):
         """Mass of the water in its place (ne,)."""
         ...
 
-    @property
-    def span(self) -> Array | None:
-        """Height over which it gets wet (ne, 1) [m]; None: the pipe's."""
+    def wetting(self, surface: Surface) -> Wetting:
+        """How wet its stations are."""
+        ...
+
+    def dry(self, surface: Surface, gravity: float) -> Dry:
+        """What of it is dry."""
         ...
 
 
@@ -98,9 +103,15 @@ class PipeInWater:
     def displaced(self) -> Array:
         return np.asarray(self.rho * 0.25 * np.pi * self.elements.outer_diameter**2)
 
-    @property
-    def span(self) -> None:
-        return None
+    def wetting(self, surface: Surface) -> Wetting:
+        from riser_soil.sea.wetting import Wetting
+
+        return Wetting(self.pipe, surface)
+
+    def dry(self, surface: Surface, gravity: float) -> Dry:
+        from riser_soil.sea.dry_pipe import DryPipe
+
+        return DryPipe(self.pipe, surface, gravity * self.displaced)
 
 
 @dataclass(frozen=True)
@@ -139,11 +150,16 @@ class ModulesInWater:
     def displaced(self) -> Array:
         return self.rho * self._of("volume")
 
-    @property
-    def span(self) -> Array:
+    def wetting(self, surface: Surface) -> Wetting:
         from riser_soil.sea.modules import diameters
+        from riser_soil.sea.wetting import Wetting
 
-        return diameters(self.modules)[:, None]
+        return Wetting(self.pipe, surface, diameters(self.modules)[:, None])
+
+    def dry(self, surface: Surface, gravity: float) -> Dry:
+        from riser_soil.sea.buoyancy import DryStations
+
+        return DryStations(self.pipe, self.wetting(surface), gravity * self.displaced)
 
     def _of(self, name: str) -> Array:
         return np.array([getattr(module, name) for module in self.modules], dtype=float)

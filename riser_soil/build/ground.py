@@ -9,7 +9,6 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.arrays import Array
-from riser_soil.build.riser import contact_radius
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.contact import Contact as ContactScene
@@ -119,6 +118,11 @@ def _ground(scene: Scene, seabed: Seabed) -> Ground:
         return Plane.level(seabed.level)
     towards = float(np.arctan2(direction[1], direction[0]))
     return Plane.sloping(np.array([*origin[:2], seabed.level]), np.radians(seabed.slope_deg), towards)
+
+
+def contact_radius(scene: Scene, elements: Elements) -> Array:
+    """Distance (ne,) from the axis to the line of the pipe that touches [m]."""
+    return 0.5 * elements.outer_diameter * (scene.contact_at == "outer")
 
 
 def _at_nodes(values: Array) -> Array:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.build.shape import initial_shape, unstressed_shape
 from riser_soil.part import Part
 from riser_soil.riser import sections, shapes
 from riser_soil.riser.ends import End
@@ -17,10 +17,10 @@ from riser_soil.scene.line_types import LineType
 from riser_soil.scene.plane import resolved_dimension, vertical_plane
 from riser_soil.scene.riser import Riser, RotationSpring, Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.shapes import ArcShape, PointsShape
 
 if TYPE_CHECKING:
     from riser_soil.riser.attachments import Attachment
+    from riser_soil.riser.catenary import Catenary
 
 
 def elements_of(scene: Scene) -> sections.Elements:
@@ -83,10 +83,12 @@ def attached_weight(line: Line, attachments: Sequence[Attachment]) -> list[Part]
     return [Attachments(line, attachments)]
 
 
-def line_of(scene: Scene, elements: sections.Elements, active: bool) -> tuple[Line, float | None]:
-    """The line in its initial shape, and the horizontal tension [N] where that is a catenary."""
-    unstressed = _unstressed(scene.riser, elements.arc)
-    initial, tension = _initial(scene, elements, unstressed)
+def line_of(
+    scene: Scene, elements: sections.Elements, attachments: Sequence[Attachment], active: bool
+) -> tuple[Line, Catenary | None]:
+    """The line in its initial shape, and the catenary where it is one."""
+    unstressed = unstressed_shape(scene.riser, elements.arc)
+    catenary, initial = initial_shape(scene, elements, attachments, unstressed)
     layout = shapes.layout(elements.arc, elements.outer_diameter, unstressed, initial)
     start, end = _end(scene.riser.start), _end(scene.riser.end)
     line = Line(
@@ -97,7 +99,7 @@ def line_of(scene: Scene, elements: sections.Elements, active: bool) -> tuple[Li
         direction=np.asarray(vertical_plane(scene).direction),
         active=active,
     )
-    return line, tension
+    return line, catenary
 
 
 def _end(given: str | Support) -> End:
@@ -117,56 +119,3 @@ def springs_of(riser: Riser, line: Line) -> list[Part]:
         for node, end in ends
         if isinstance(end, Support) and isinstance(end.rotation, RotationSpring)
     ]
-
-
-def _ends(riser: Riser) -> tuple[Array | None, Array | None]:
-    start, end = (np.asarray(e.position) if isinstance(e, Support) else None for e in (riser.start, riser.end))
-    return start, end
-
-
-def _unstressed(riser: Riser, arc: Array) -> shapes.Curve:
-    if isinstance(riser.unstressed, ArcShape):
-        given = riser.unstressed.arc
-        return shapes.circle(arc, given.centre, given.from_point, np.radians(given.angle_deg), given.axis)
-    if isinstance(riser.unstressed, PointsShape):
-        return shapes.through(arc, riser.unstressed.points)
-    start, end = _ends(riser)
-    if start is None or end is None or np.array_equal(start, end):
-        return shapes.straight(arc, np.zeros(3) if start is None else start)
-    return shapes.straight(arc, start, end - start)
-
-
-def _initial(
-    scene: Scene, elements: sections.Elements, unstressed: shapes.Curve
-) -> tuple[shapes.Curve, float | None]:
-    given = scene.riser.initial
-    start, end = _ends(scene.riser)
-    if given == "catenary":
-        return _catenary(scene, elements, start, end)
-    if isinstance(given, PointsShape):
-        return shapes.through(elements.arc, given.points), None
-    if given == "straight" and start is not None and end is not None:
-        return shapes.between(elements.arc, start, end), None
-    if given == "straight":
-        return shapes.straight(elements.arc, np.zeros(3) if start is None else start), None
-    return unstressed, None
-
-
-def _catenary(
-    scene: Scene, elements: sections.Elements, start: Array | None, end: Array | None
-) -> tuple[shapes.Curve, float]:
-    from riser_soil.riser.catenary import catenary
-
-    assert start is not None, "the scene's checks let no catenary start without two held ends"
-    assert end is not None
-    weight = float(np.average(elements.weight, weights=elements.length))
-    EA = elements.arc[-1] / float(np.sum(elements.length / elements.EA))
-    has_ground = scene.seabed is not None or scene.soil is not None
-    level = scene.seabed_level + contact_radius(scene, elements).max() if has_ground else -np.inf
-    shape = catenary(elements.arc, start, end, weight, EA, level)
-    return shape.curve, shape.H
-
-
-def contact_radius(scene: Scene, elements: sections.Elements) -> Array:
-    """Distance (ne,) from the axis to the line of the pipe that touches [m]."""
-    return 0.5 * elements.outer_diameter * (scene.contact_at == "outer")

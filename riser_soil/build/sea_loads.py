@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from riser_soil.sea.morison import Morison
     from riser_soil.sea.moving_water import Stream
     from riser_soil.sea.still_water import StationLoads
-    from riser_soil.sea.wetting import Wetting
+    from riser_soil.sea.wetting import Surface
 
 
 def sea_loads(
@@ -50,7 +50,7 @@ class _Loads:
     def parts(self) -> Iterator[Part]:
         if self.act:
             yield self.morison
-        if self.wetting is not None:
+        if self.surface is not None:
             yield self.buoyancy
 
     @property
@@ -76,15 +76,13 @@ class _Loads:
         return Stream(self.body.pipe, water)
 
     @cached_property
-    def wetting(self) -> Wetting | None:
-        """Where the water has a surface; it is level without waves."""
+    def surface(self) -> Surface | None:
+        """Where the water has one; it is level without waves."""
         if self.water.surface_level is None:
             return None
-        from riser_soil.sea.wetting import FlatSurface, Wetting
+        from riser_soil.sea.wetting import FlatSurface
 
-        surface = self.stream if self.waves else None
-        level = FlatSurface(self.body.pipe, self.water.surface_level)
-        return Wetting(self.body.pipe, surface or level, self.body.span)
+        return self.stream if self.waves else FlatSurface(self.body.pipe, self.water.surface_level)
 
     @property
     def morison(self) -> Morison:
@@ -95,11 +93,11 @@ class _Loads:
     def _at_stations(self) -> StationLoads:
         """Each thing that the water has adds to what is there without it."""
         loads = self._in_motion(self.stream) if self.stream is not None else self.body.still
-        if self.wetting is None:
+        if self.surface is None:
             return loads
         from riser_soil.sea.wetting import PartlyWet
 
-        return PartlyWet(loads, self.wetting)
+        return PartlyWet(loads, self.body.wetting(self.surface))
 
     def _in_motion(self, stream: Stream) -> StationLoads:
         from riser_soil.sea.moving_water import AcceleratedWater, RelativeDrag
@@ -111,6 +109,5 @@ class _Loads:
     def buoyancy(self) -> Buoyancy:
         from riser_soil.sea.buoyancy import Buoyancy
 
-        assert self.wetting is not None
-        weight = self.scene.gravity * self.body.displaced
-        return Buoyancy(self.body.pipe, self.wetting, weight, flat=not self.waves)
+        assert self.surface is not None
+        return Buoyancy(self.body.pipe, self.body.dry(self.surface, self.scene.gravity), flat=not self.waves)

@@ -12,19 +12,22 @@ from riser_soil.build.motions import set_motions, vessels_of
 from riser_soil.build.pressures import pressures_of
 from riser_soil.build.riser import attached_weight, attachments_of, elements_of, line_of, springs_of
 from riser_soil.build.sea_loads import sea_loads
+from riser_soil.build.shape import least_bend
 from riser_soil.build.stage import dynamic_parts, hold_spin, loads_of
 from riser_soil.part import Field, Model, Part
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
+from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, Stage
+from riser_soil.scene.stages import DynamicStage, Move, Stage, StaticStage
 
 if TYPE_CHECKING:
     from riser_soil.build.vessels import Vessels
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.riser.attachments import Attachment
+    from riser_soil.riser.catenary import Catenary
     from riser_soil.riser.wall_tension import Pressures
     from riser_soil.soil.soil import Soil
 
@@ -36,8 +39,8 @@ LEAST_WEIGHT = 1e-6  # of EA/L: stands for the weight of a line that has none
 class World:
     """A scene's fields and lasting parts; what the scene lacks is None.
 
+    catenary: the first shape, None for other ones.
     attachments: point masses and buoyancy modules on the line; their weight less buoyancy is among `riser_parts`.
-    horizontal_tension [N]: of the initial catenary, None for other first shapes.
     pressures: inside and outside the pipe; None where the tension in its wall is not told.
     contact_stiffness [N/m2]: force per length and penetration, by ground (soil, seabed).
     vessels: those that carry ends, None where there are none.
@@ -48,7 +51,7 @@ class World:
     line: Line
     elements: Elements
     riser_parts: list[Part]
-    horizontal_tension: float | None
+    catenary: Catenary | None
     attachments: tuple[Attachment, ...] = ()
     pressures: Pressures | None = None
     soil: Soil | None = None
@@ -82,6 +85,34 @@ class World:
         least = LEAST_WEIGHT * float(self.elements.EA.max() / self.line.arc[-1])
         return max(float(np.abs(self.elements.weight).max()), least)
 
+    @property
+    def slack(self) -> float:
+        """How far the end of the first shape lies beyond its place [m]."""
+        return self.catenary.slack if self.catenary is not None else 0.0
+
+    @property
+    def too_slack(self) -> str:
+        """What to tell where a slack riser finds no equilibrium."""
+        bend = least_bend(self.elements)
+        return (
+            f"the riser is slack: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
+            "its place, and no way back there was found; take shorter segments, move the ends apart, or take "
+            f"elements well below (EI/w)^(1/3) = {bend:.3g} m, the length over which it bends under its own weight"
+        )
+
+    @property
+    def laying(self) -> StaticStage | None:
+        """What brings the end of a slack riser to its place before the scene's stages."""
+        end = self.scene.riser.end
+        if self.slack == 0.0 or not isinstance(end, Support):
+            return None
+        return StaticStage(name="laying", kind="static", move=Move(end=end.position))
+
+    def begin_laying(self, stage: StaticStage) -> Model:
+        """Set the end in motion and name the parts: in still water."""
+        model = self.begin(stage)
+        return Model(model.fields, [part for part in model.parts if part.name != "morison"])
+
     def begin(self, stage: Stage) -> Model:
         """Set the ends in motion and name the parts of a stage."""
         set_motions(self.line, stage, self.vessels)
@@ -97,11 +128,11 @@ class World:
 def build(scene: Scene, comm: MPI.Intracomm) -> World:
     """Build the parts of a scene; collective. Raises SceneError or MeshError."""
     elements = elements_of(scene)
-    line, tension = line_of(scene, elements, active=comm.rank == 0)
     attachments = attachments_of(scene)
+    line, catenary = line_of(scene, elements, attachments, active=comm.rank == 0)
     parts = [Beam(line, elements), *springs_of(scene.riser, line), *attached_weight(line, attachments)]
     pressures, vessels = pressures_of(scene, line, elements), vessels_of(scene)
-    world = World(scene, comm, line, elements, parts, tension, attachments, pressures, vessels=vessels)
+    world = World(scene, comm, line, elements, parts, catenary, attachments, pressures, vessels=vessels)
     if scene.contact is not None:
         _add_ground(world)
     return world

@@ -19,6 +19,7 @@ Four = tuple[float, float, float, float]
 Size = tuple[int, ...]  # of `fixed`: D for the dimension d, R for the r rotation dofs
 
 
+@njit
 def shape(xi: float, L: float) -> Four:
     """N1..N4 (1, m, 1, m) at xi."""
     square, cube = xi * xi, xi * xi * xi

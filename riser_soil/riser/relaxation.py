@@ -10,7 +10,8 @@ from riser_soil.riser.line import Line
 
 
 class Relaxation:
-    """Part "relaxation": resists a pseudo-time step by `drag` times tributary length times translation.
+    """Part "relaxation": resists a pseudo-time step by `drag` times tributary length times translation, and turning as
+    a rod of that length would be resisted that turns about its middle.
 
     drag: N/m2, force per length and displacement in one step; large values allow small steps only. It may be changed
     between steps. The forces vanish with the increment, so that what it converges to is an equilibrium without it.
@@ -27,16 +28,22 @@ class Relaxation:
     def residual(self, state: State, forces: Forces) -> None:
         line = self._line
         if line.active:
-            resistance = self.drag * line.tributary_length[:, None]
-            line.nodal(forces.force)[:, : line.dimension] += resistance * line.nodal(state.u)[:, : line.dimension]
+            line.nodal(forces.force)[...] += self.drag * self._shares(line.tributary_length) * line.nodal(state.u)
+
+    def _shares(self, length: Array) -> Array:
+        """Of the drag, by node or element and dof of a node [m, m3]."""
+        shares = np.repeat(length[:, None], self._line.ndof, axis=1)
+        shares[:, self._line.dimension :] *= length[:, None] ** 2 / 12.0
+        return shares
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         line = self._line
         if line.active:
-            half = weights.force * 0.5 * self.drag * line.length[:, None]
-            for end in (0, line.ndof):
-                dofs = np.arange(end, end + line.dimension)
-                values["riser"][:, dofs, dofs] += half
+            for end, nodes in ((0, slice(None, -1)), (line.ndof, slice(1, None))):
+                dofs = np.arange(end, end + line.ndof)
+                share = (0.5 * line.length / line.tributary_length[nodes])[:, None]
+                whole = self.drag * self._shares(line.tributary_length)[nodes]
+                values["riser"][:, dofs, dofs] += weights.force * share * whole
 
     def energy(self, state: State) -> Energy:
         return Energy()

@@ -203,16 +203,9 @@ def _long_enough(scene: Scene) -> Iterator[Problem]:
     if not isinstance(start, Support) or not isinstance(end, Support):
         return
     distance = math.dist(start.position, end.position)
-    if scene.riser.initial == "catenary" and distance >= length:
-        remedy = "lengthen the segments, bring the ends together, or set initial: straight"
-        yield Problem(("riser", "end", "position"), _too_short(distance, length), remedy)
-    elif distance > (1.0 + _GREATEST_STRAIN) * length:
-        remedy = "lengthen the segments or bring the ends together"
-        yield Problem(("riser", "end", "position"), _too_short(distance, length), remedy)
-
-
-def _too_short(distance: float, length: float) -> str:
-    return f"the ends are {distance:.6g} m apart, but the riser is only {length:.6g} m long"
+    if distance > (1.0 + _GREATEST_STRAIN) * length:
+        apart = f"the ends are {distance:.6g} m apart, but the riser is only {length:.6g} m long"
+        yield Problem(("riser", "end", "position"), apart, "lengthen the segments or bring the ends together")
 
 
 def _unstressed_shape_fits(scene: Scene) -> Iterator[Problem]:

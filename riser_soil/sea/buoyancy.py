@@ -1,6 +1,8 @@
-"""Buoyancy that the pipe loses where it comes out of the water: the part "buoyancy"."""
+"""Buoyancy that the riser loses where it comes out of the water: the part "buoyancy"."""
 
 from __future__ import annotations
+
+from typing import Protocol
 
 import numpy as np
 
@@ -12,32 +14,66 @@ from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.wetting import Wetting
 
 
-class Buoyancy:
-    """The weight, beyond the submerged one, of what is not wet (group F): (1 - S) rho g pi D^2/4 per length, downwards.
+class Dry(Protocol):
+    """Weight, beyond the submerged one, of what is not wet: that of the water displaced, times the dry share 1 - S."""
 
-    displaced: weight of the water in the pipe's place [N/m] (ne,). flat: whether the surface is level and at rest; the
-    force then has a potential, zero when the whole pipe is submerged. Waves do work on it instead.
+    def residual(self, trial: Trial) -> Array:
+        """Conjugate to q (ne, 4, d)."""
+        ...
+
+    def add_tangent(self, K: Array, trial: Trial, weights: Weights) -> None:
+        """Add its tangent to K (ne, n, n), directors held."""
+        ...
+
+    def potential(self, trial: Trial) -> float:
+        """Potential [J] under a level surface, zero when all is submerged."""
+        ...
+
+
+class DryStations:
+    """What is dry as it is at the stations of a pipe. displaced: weight of the water in its place [N/m] (ne,)."""
+
+    def __init__(self, pipe: Pipe, wetting: Wetting, displaced: Array) -> None:
+        self._pipe, self._wetting, self._displaced = pipe, wetting, displaced[:, None]
+
+    def residual(self, trial: Trial) -> Array:
+        dry = 1.0 - self._wetting.at(trial).share
+        resistance = np.zeros((*dry.shape, self._pipe.line.dimension))
+        resistance[..., -1] = dry * self._displaced
+        return self._pipe.integrate(resistance)
+
+    def add_tangent(self, K: Array, trial: Trial, weights: Weights) -> None:
+        gradient = self._wetting.at(trial).gradient
+        by_position = np.zeros((*gradient.shape, self._pipe.line.dimension))
+        by_position[..., -1, :] = -weights.force * self._displaced[..., None] * gradient
+        nothing = np.zeros_like(by_position)
+        self._pipe.add_tangent(K, trial, weights, Derivatives(by_position, nothing, nothing, nothing))
+
+    def potential(self, trial: Trial) -> float:
+        return float(np.sum(self._pipe.share * self._displaced * self._wetting.dry_height(trial)))
+
+
+class Buoyancy:
+    """The weight of what is dry (group F), downwards.
+
+    flat: whether the surface is level and at rest; the force then has a potential. Waves do work on it instead.
     """
 
     name = "buoyancy"
 
-    def __init__(self, pipe: Pipe, wetting: Wetting, displaced: Array, flat: bool) -> None:
-        self.line, self._pipe, self._wetting = pipe.line, pipe, wetting
-        self._displaced, self._flat = displaced, flat
+    def __init__(self, pipe: Pipe, dry: Dry, flat: bool) -> None:
+        self.line, self._pipe, self._dry, self._flat = pipe.line, pipe, dry, flat
         self.symmetric = flat
 
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}
 
     def _F(self, trial: Trial) -> Array:
-        """Residual conjugate to q (ne, 4, d)."""
-        dry = 1.0 - self._wetting.at(trial).share
-        resistance = np.zeros((*dry.shape, self.line.dimension))
-        resistance[..., -1] = dry * self._displaced[:, None]
-        return self._pipe.integrate(resistance)
+        found: Array = trial.once((self, "F"), self._dry.residual)
+        return found
 
     def _element_forces(self, trial: Trial) -> Array:
-        return trial.pull_back(trial.once((self, "F"), self._F))
+        return trial.pull_back(self._F(trial))
 
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
@@ -51,22 +87,14 @@ class Buoyancy:
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:
             trial, K = self.line.trial(state), values["riser"]
-            self._pipe.add_tangent(K, trial, weights, self._derivatives(trial, weights))
-            trial.add_turning(K, weights.force, trial.once((self, "F"), self._F))
-
-    def _derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
-        gradient = self._wetting.at(trial).gradient
-        by_position = np.zeros((*gradient.shape, self.line.dimension))
-        by_position[..., -1, :] = -weights.force * self._displaced[:, None, None] * gradient
-        nothing = np.zeros_like(by_position)
-        return Derivatives(by_position, nothing, nothing, nothing)
+            self._dry.add_tangent(K, trial, weights)
+            trial.add_turning(K, weights.force, self._F(trial))
 
     def energy(self, state: State) -> Energy:
         """Potential under a flat surface."""
         if not (self.line.active and self._flat):
             return Energy()
-        lifted = self._pipe.share * self._displaced[:, None] * self._wetting.dry_height(self.line.trial(state))
-        return Energy(potential=float(lifted.sum()))
+        return Energy(potential=self._dry.potential(self.line.trial(state)))
 
     def work(self, before: State, after: State) -> Work:
         """Work that waves put in."""

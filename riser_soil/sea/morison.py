@@ -13,7 +13,7 @@ class Morison:
     """Loads of the water at the pipe's stations, brought to the line: group I is the added mass, F all the rest."""
 
     name = "morison"
-    symmetric = False
+    symmetric, follows = False, True
 
     def __init__(self, pipe: Pipe, loads: StationLoads) -> None:
         self.line, self._pipe, self._loads = pipe.line, pipe, loads

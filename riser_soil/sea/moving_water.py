@@ -48,10 +48,16 @@ class Stream:
     def _see(self, trial: Trial) -> WaterMotion:
         x, basis = self.pipe.position(trial), self.pipe.line.basis
         found = self._water(trial.state.t, self.pipe.line.to_global(x).reshape(-1, 3))
-        vectors = [values @ basis for values in (found.velocity, found.acceleration)]
-        gradients = [basis.T @ values @ basis for values in (found.velocity_gradient, found.acceleration_gradient)]
-        seen = (*vectors, *gradients, found.immersion, found.immersion_gradient @ basis)
-        return WaterMotion(*(np.ascontiguousarray(s.reshape(*x.shape[:2], *s.shape[1:])) for s in seen))
+        both = np.kron(basis, basis)  # basis^T G basis for all points in one product
+        at, d = x.shape[:2], x.shape[2]
+        return WaterMotion(
+            velocity=(found.velocity @ basis).reshape(*at, d),
+            acceleration=(found.acceleration @ basis).reshape(*at, d),
+            velocity_gradient=(found.velocity_gradient.reshape(-1, 9) @ both).reshape(*at, d, d),
+            acceleration_gradient=(found.acceleration_gradient.reshape(-1, 9) @ both).reshape(*at, d, d),
+            immersion=found.immersion.reshape(at),
+            immersion_gradient=(found.immersion_gradient @ basis).reshape(*at, d),
+        )
 
 
 class RelativeDrag:

@@ -1,13 +1,4 @@
-"""How much of the pipe is under water, where the water has a surface.
-
-At immersion h, the height of the surface above the pipe's axis, the wet share of a station is that of a lying circular
-pipe of diameter b cut by a level surface,
-
-    S(h) = 1/2 + (eta sqrt(1 - eta^2) + asin(eta))/pi,    eta = 2 h/b within -1..1,
-
-0 above and 1 below. It is exact for a lying pipe when b is its diameter. An upright pipe gets wet along its length, so
-b is at least the arc length that the station stands for: the wetted length then grows evenly with the water.
-"""
+"""Where the water has a surface: the wet share of the stations, and loads on it alone."""
 
 from __future__ import annotations
 
@@ -19,28 +10,9 @@ from riser_soil.arrays import Array
 from riser_soil.part import Weights
 from riser_soil.riser.stations import Derivatives
 from riser_soil.riser.trial import Trial
+from riser_soil.sea import wet_section
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.still_water import StationLoads
-
-
-def wet_share(h: Array, b: Array) -> Array:
-    """S, from 0 to 1."""
-    eta = np.clip(2.0 * h / b, -1.0, 1.0)
-    return np.asarray(0.5 + (eta * np.sqrt(1.0 - eta * eta) + np.arcsin(eta)) / np.pi)
-
-
-def wet_slope(h: Array, b: Array) -> Array:
-    """dS/dh [1/m]."""
-    eta = np.clip(2.0 * h / b, -1.0, 1.0)
-    return np.asarray(4.0 / np.pi * np.sqrt(1.0 - eta * eta) / b)
-
-
-def dry_height(h: Array, b: Array) -> Array:
-    """Integral of 1 - S from h up to full immersion [m]; -h above the water."""
-    eta = np.clip(2.0 * h / b, -1.0, 1.0)
-    across = np.sqrt(1.0 - eta * eta)
-    within = 0.5 * b * ((eta * np.arcsin(eta) + across - across**3 / 3.0) / np.pi - 0.5 * eta)
-    return np.asarray(within + np.maximum(-h - 0.5 * b, 0.0))
 
 
 class Surface(Protocol):
@@ -72,14 +44,16 @@ class Wet(NamedTuple):
 
 
 class Wetting:
-    """The wet share of the pipe's stations under a surface.
+    """The wet share of the pipe's stations under a surface, each like a lying section (`wet_section`).
 
-    span: b of the stations (ne, 1) [m]; by default the pipe's.
+    span: the section's width b (ne, 1) [m]; by default the pipe's diameter, but no less than the arc length that the
+    station stands for, along which an upright pipe gets wet.
     """
 
     def __init__(self, pipe: Pipe, surface: Surface, span: Array | None = None) -> None:
         self._surface = surface
-        self._span = np.maximum(pipe.line.outer_diameter[:, None], pipe.share) if span is None else span
+        given = np.maximum(pipe.line.outer_diameter[:, None], pipe.share) if span is None else span
+        self._span = np.ascontiguousarray(np.broadcast_to(given, pipe.share.shape))
 
     def at(self, trial: Trial) -> Wet:
         wet: Wet = trial.once((self, "wet"), self._see)
@@ -87,11 +61,13 @@ class Wetting:
 
     def _see(self, trial: Trial) -> Wet:
         h, gradient = self._surface.immersion(trial)
-        return Wet(wet_share(h, self._span), wet_slope(h, self._span)[..., None] * gradient)
+        share, slope = wet_section.wet_shares(h, self._span)
+        return Wet(share, slope[..., None] * gradient)
 
     def dry_height(self, trial: Trial) -> Array:
-        """`dry_height` of the stations (ne, ng) [m]."""
-        return dry_height(self._surface.immersion(trial)[0], self._span)
+        """`wet_section.dry_height` of the stations (ne, ng) [m]."""
+        heights: Array = wet_section.dry_heights(self._surface.immersion(trial)[0], self._span)
+        return heights
 
 
 class PartlyWet:

@@ -19,6 +19,11 @@ GIVEN_WEIGHT = ("    GJ", "    submerged_weight: 500.0\n    GJ")
 NO_SEABED = ("seabed: {kind: spring, level: 0.0, stiffness: 1.0e5}\n", "")
 NO_SOIL = (GOOD[GOOD.index("soil:") : GOOD.index("contact:")], "")
 STATIC_ALONE = (GOOD[GOOD.index("  - name: heave") : GOOD.index("solver:")], "")
+NO_WATER = ("water: {density: 1025.0}\n", "")
+
+
+def attached(values: str) -> tuple[str, str]:
+    return "  contents:", f"  attachments: [{{at: 20.0, {values}}}]\n  contents:"
 
 
 def waves(more: str, **water: float) -> tuple[str, str]:
@@ -49,6 +54,16 @@ CASES: list[tuple[Changes, str, str]] = [
         (GIVEN_WEIGHT, ("gravity: 9.81", "gravity: 0"), ("initial: catenary", POINTS)),
         "line_types.pipe.submerged_weight: value 500",
         "nothing weighs where gravity is 0",
+    ),
+    (
+        (NO_WATER, NO_DRAG, attached("mass: 90.0, volume: 0.1")),
+        "riser.attachments.0.volume: value 0.1",
+        "the scene has no water",
+    ),
+    (
+        (NO_WATER, NO_DRAG, attached("mass: 90.0, drag_area: 0.3")),
+        "riser.attachments.0.drag_area: value 0.3",
+        "the scene has no water",
     ),
     ((NO_SEABED, NO_SOIL), "contact: value {", "there is nothing to touch"),
     (

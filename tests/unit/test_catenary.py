@@ -1,34 +1,61 @@
-"""The catenary guess against its closed forms and against balance."""
+"""The catenary against closed forms, piecewise catenaries found by shooting, and balance."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.optimize import brentq, fsolve
 
+from riser_soil.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.riser.catenary import Catenary, catenary
+from riser_soil.riser.shapes import X
 
 ARC = np.linspace(0.0, 350.0, 3501)
 W, STIFF = 346.1, 1.0e15
 ORIGIN = np.zeros(3)
+COUNTS = (250, 500, 1000)
+
+
+def vertical(found: Catenary) -> Array:
+    """Vertical force at the nodes (nn,) N."""
+    return np.asarray(found.tension * np.append(found.curve.tangent[:, 0, 2], found.curve.tangent[-1, 1, 2]))
 
 
 def balance(found: Catenary, weight: float) -> float:
     """Largest error of dT/ds = w z: the change of the vertical force between nodes, over the weight between
     them.
     """
-    vertical = found.tension * np.append(found.curve.tangent[:, 0, 2], found.curve.tangent[-1, 1, 2])
-    return float(np.abs(np.diff(vertical) - weight * np.diff(ARC)).max() / (weight * ARC[1]))
+    return float(np.abs(np.diff(vertical(found)) - weight * np.diff(ARC)).max() / (weight * ARC[1]))
 
 
-def test_hanging_line_fulfils_the_closed_form() -> None:
+def require_second_order(error: Callable[[int], float], finest: float) -> None:
+    """error: of the number of bars. finest: what the error may be with the last of COUNTS."""
+    errors = np.array([error(count) for count in COUNTS])
+    orders = np.log2(errors[:-1] / errors[1:])
+    assert np.all(orders > 1.8), f"errors {errors}, orders {orders}"
+    assert errors[-1] < finest
+
+
+# Closed forms
+
+
+def test_hanging_line_tends_to_the_closed_form() -> None:
+    a = brentq(lambda a: 2.0 * a * np.sinh(75.0 / a) - np.sqrt(350.0**2 - 150.0**2), 10.0, 100.0, xtol=1e-13)
+    nodes, end = np.linspace(0.0, 350.0, 26), np.array([150.0, 0.0, 150.0])
+    require_second_order(lambda n: abs(catenary(nodes, ORIGIN, end, W, STIFF, bars=n).H / (W * a) - 1.0), 3e-7)
+    assert abs(catenary(nodes, ORIGIN, end, W, STIFF).H / (W * a) - 1.0) < 1e-7
+
+
+def test_hanging_line_is_balanced() -> None:
     found = catenary(ARC, ORIGIN, np.array([150.0, 0.0, 150.0]), W, STIFF)
-    a = found.H / W
-    assert np.sqrt(350.0**2 - 150.0**2) == pytest.approx(2.0 * a * np.sinh(150.0 / (2.0 * a)), rel=1e-9)
     assert found.curve.position[-1] == pytest.approx([150.0, 0.0, 150.0], abs=1e-9)
     assert balance(found, W) < 1e-9
+    assert found.slack == 0.0
 
 
 def test_ends_at_one_level_are_symmetric() -> None:
@@ -36,20 +63,6 @@ def test_ends_at_one_level_are_symmetric() -> None:
     assert found.curve.position[1750, 1] == pytest.approx(100.0)
     assert found.tension[0] == pytest.approx(found.tension[-1])
     assert found.tension[0] == pytest.approx(np.hypot(found.H, 0.5 * W * 350.0))
-
-
-@given(
-    st.floats(1.0, 340.0),
-    st.floats(-200.0, 200.0),
-    st.floats(0.0, 6.0),
-    st.floats(3.0, 9.0),
-)
-def test_any_hanging_line_ends_where_it_should(h: float, v: float, heading: float, log_EA: float) -> None:
-    if np.hypot(h, v) > 345.0:
-        return
-    end = np.array([h * np.cos(heading), h * np.sin(heading), v])
-    found = catenary(ARC, ORIGIN, end, W, W * 350.0 * 10.0**log_EA)
-    assert found.curve.position[-1] == pytest.approx(end, abs=1e-8)
 
 
 def test_elastic_line_is_longer_by_its_tension() -> None:
@@ -61,53 +74,165 @@ def test_elastic_line_is_longer_by_its_tension() -> None:
     assert balance(found, W) < 1e-9
 
 
-def test_resting_line_fulfils_the_closed_form() -> None:
-    arc = np.linspace(0.0, 40.0, 401)
-    found = catenary(arc, ORIGIN, np.array([28.0, 0.0, 15.0]), 147.1, STIFF, level=0.0)
-    a = found.H / 147.1
-    suspended = np.sqrt(15.0**2 + 2.0 * a * 15.0)
-    assert a * np.arccosh(1.0 + 15.0 / a) + 40.0 - suspended == pytest.approx(28.0, rel=1e-10)
-    assert found.curve.position[-1] == pytest.approx([28.0, 0.0, 15.0], abs=1e-9)
-    resting = arc < 40.0 - suspended
-    assert np.all(found.curve.position[resting, 2] == 0.0)
-    assert found.tension[resting] == pytest.approx(found.H)
-    assert found.tension[-1] == pytest.approx(147.1 * (15.0 + a))
+def test_resting_line_tends_to_the_closed_form() -> None:
+    """Length 40 m, its end 28 m away and 15 m up: a arccosh(1 + 15/a) + 40 - sqrt(15^2 + 30 a) = 28."""
+    a = brentq(lambda a: a * np.arccosh(1.0 + 15.0 / a) + 12.0 - np.sqrt(225.0 + 30.0 * a), 1.0, 30.0, xtol=1e-13)
+    arc, end, counts = np.linspace(0.0, 40.0, 41), np.array([28.0, 0.0, 15.0]), np.array([200, 400, 800, 1600, 3200])
+    errors = [abs(catenary(arc, ORIGIN, end, 147.1, STIFF, 0.0, bars=n).H / (147.1 * a) - 1.0) for n in counts]
+    assert np.all(errors < (40.0 / counts / a) ** 2), f"second order, with the touchdown anywhere in its bar: {errors}"
 
 
-def test_resting_elastic_line_ends_where_it_should() -> None:
-    arc = np.linspace(0.0, 40.0, 401)
-    end = np.array([30.0, 2.0, 15.15])
+def test_resting_line_lies_on_the_seabed() -> None:
+    arc, end = np.linspace(0.0, 40.0, 401), np.array([30.0, 2.0, 15.15])
     found = catenary(arc, np.array([1.0, 2.0, 0.15]), end, 147.1, 1.0e5, level=0.15)
     assert found.curve.position[-1] == pytest.approx(end, abs=1e-9)
-    assert found.curve.position[:, 2].min() == pytest.approx(0.15, abs=1e-12)
-    ground = np.linalg.norm(found.curve.chord[0]) / 0.1 - 1.0
-    assert ground == pytest.approx(found.H / 1.0e5, rel=1e-9)
-
-
-def test_both_ends_may_hang_above_the_ground() -> None:
-    arc = np.linspace(0.0, 148.0, 149)
-    start, end = np.array([0.0, 0.0, 20.0]), np.array([60.0, 0.0, 80.0])
-    found = catenary(arc, start, end, 600.0, 3.0e8, level=2.0)
-    assert found.curve.position[0] == pytest.approx(start)
-    assert found.curve.position[-1] == pytest.approx(end, abs=1e-8)
-    assert found.curve.position[:, 2].min() == pytest.approx(2.0)
-    assert np.sum(found.curve.position[:, 2] < 2.0 + 1e-9) > 3
+    resting = (arc > 0.0) & (arc < 10.0)
+    assert found.curve.position[resting, 2] == pytest.approx(0.15, abs=1e-5)
+    assert found.tension[resting] == pytest.approx(found.H, rel=1e-6)
+    assert np.linalg.norm(found.curve.chord[0]) / 0.1 - 1.0 == pytest.approx(found.H / 1.0e5, rel=1e-6)
 
 
 def test_a_line_that_clears_the_seabed_hangs() -> None:
-    free = catenary(ARC, ORIGIN, np.array([150.0, 0.0, 150.0]), W, STIFF)
-    above = catenary(ARC, ORIGIN, np.array([150.0, 0.0, 150.0]), W, STIFF, level=-200.0)
-    assert np.array_equal(free.curve.position, above.curve.position)
+    free, above = (
+        catenary(ARC, ORIGIN, np.array([150.0, 0.0, 150.0]), W, STIFF, level=level) for level in (-np.inf, -200.0)
+    )
+    assert above.curve.position == pytest.approx(free.curve.position, abs=1e-4)
+
+
+def test_stretched_vertical_line() -> None:
+    """Pulled up by 1 %: z(s) = s + (T0 s + w s^2/2)/EA."""
+    EA, arc = 1.0e7, np.linspace(0.0, 100.0, 21)
+    found = catenary(arc, ORIGIN, np.array([0.0, 0.0, 101.0]), W, EA)
+    T0 = 1.0 / 100.0 * EA - 0.5 * W * 100.0
+    assert found.curve.position[:, 2] == pytest.approx(arc + (T0 * arc + 0.5 * W * arc**2) / EA, abs=1e-5)
+    assert found.tension[[0, -1]] == pytest.approx([T0, T0 + 100.0 * W], rel=1e-5)
+
+
+@pytest.mark.parametrize("end", [[99.999, 0.0, 0.0], [100.0, 0.0, 0.0], [100.5, 0.0, 0.0], [60.0, 0.0, 80.4]])
+def test_nearly_straight_and_stretched_lines(end: list[float]) -> None:
+    EA, arc = 1.0e9, np.linspace(0.0, 100.0, 51)
+    found = catenary(arc, ORIGIN, np.array(end), W, EA)
+    assert found.curve.position[-1] == pytest.approx(end, abs=1e-9)
+    assert np.linalg.norm(found.curve.chord, axis=1).sum() / 100.0 - 1.0 == pytest.approx(
+        found.tension.mean() / EA, abs=2e-7
+    )
+
+
+# Lines of several kinds, against catenaries joined by shooting
+
+
+def joined(lengths: Array, weights: Array, EA: Array, loads: Array, end: Array, guess: Array) -> Array:
+    """H and the vertical force at the start of inextensible or elastic pieces, each an exact catenary; loads (n,) N
+    hang at the pieces' ends.
+    """
+
+    def misfit(log_H_and_V: Array) -> Array:
+        H, V, place = np.exp(log_H_and_V[0]), log_H_and_V[1], np.zeros(2)
+        for L, w, stiff, load in zip(lengths, weights, EA, loads, strict=True):
+            end_V = V + w * L
+            a, T = H / w, (np.hypot(H, V), np.hypot(H, end_V))
+            place += [a * (np.arcsinh(end_V / H) - np.arcsinh(V / H)) + H * L / stiff, 0.0]
+            place += [0.0, (T[1] - T[0]) / w + 0.5 * (V + end_V) * L / stiff]
+            V = end_V + load
+        return np.asarray(place - end)
+
+    found, _, status, message = fsolve(misfit, [np.log(guess[0]), guess[1]], xtol=1e-13, full_output=True)
+    assert status == 1, message
+    return np.array([np.exp(found[0]), found[1]])
+
+
+SEVERAL = {
+    "two segments": ([60.0, 90.0], [200.0, 900.0], [1e7, 4e7], [0.0, 0.0]),
+    "point weight": ([50.0, 100.0], [300.0, 300.0], [1e8, 1e8], [2e4, 0.0]),
+    "buoy": ([60.0, 90.0], [300.0, 300.0], [1e9, 1e9], [-1.8e4, 0.0]),
+    "lazy wave": ([50.0, 40.0, 60.0], [300.0, -400.0, 300.0], [1e8, 1e8, 1e8], [0.0, 0.0, 0.0]),
+}
+
+
+@pytest.mark.parametrize("kind", SEVERAL)
+def test_joined_pieces(kind: str) -> None:
+    lengths, weights, EA, loads = (np.array(values) for values in SEVERAL[kind])
+    end, arc, count = np.array([100.0, 0.0, 50.0]), np.linspace(0.0, 150.0, 31), np.rint(lengths / 5.0).astype(int)
+    points = np.stack([np.cumsum(lengths), loads], axis=1)[:-1]
+
+    def found(bars: int) -> Array:
+        line = catenary(arc, ORIGIN, end, np.repeat(weights, count), np.repeat(EA, count), points=points, bars=bars)
+        return np.array([line.H, vertical(line)[0]])
+
+    exact = joined(lengths, weights, EA, loads, end[[0, 2]], found(2000))
+    require_second_order(lambda n: float(np.abs(found(n) - exact).max()) / np.abs(exact).max(), 2e-5)
+
+
+def test_buoyant_stretch_lifts_off_the_seabed_between_two_that_touch() -> None:
+    """What the seabed bears and what the ends carry make up the weight."""
+    arc, w = np.linspace(0.0, 400.0, 101), np.full(100, 300.0)
+    w[40:50] = -400.0
+    found = catenary(arc, ORIGIN, np.array([300.0, 0.0, 90.0]), w, 1e9, level=0.0)
+    z = found.curve.position[:, 2]
+    touching = z < 1e-3
+    starts = np.flatnonzero(np.diff(touching.astype(int)) == 1)
+    assert touching[0]
+    assert starts.size == 1, "two stretches touch"
+    assert z[40:50].max() > 5.0
+    assert z.min() > -1e-3
+    last = np.flatnonzero(touching)[-1]
+    assert vertical(found)[-1] - vertical(found)[last + 1] == pytest.approx((400.0 - arc[last + 1]) * 300.0, rel=1e-3)
+
+
+# Any line
+
+
+@given(st.floats(0.1, 340.0), st.floats(-200.0, 200.0), st.floats(0.0, 6.0), st.floats(3.0, 9.0))
+def test_any_hanging_line_ends_where_it_should(h: float, v: float, heading: float, log_EA: float) -> None:
+    if np.hypot(h, v) > 345.0:
+        return
+    end = np.array([h * np.cos(heading), h * np.sin(heading), v])
+    found = catenary(ARC[::50], ORIGIN, end, W, W * 350.0 * 10.0**log_EA)
+    away = np.array([np.cos(heading), np.sin(heading), 0.0])
+    assert found.curve.position[-1] == pytest.approx(end + found.slack * away, abs=1e-8)
+    assert found.slack == 0.0 or h < 5.0
+
+
+@given(
+    st.sampled_from([1.02, 0.9999, 0.9, 0.5, 0.0]),
+    st.sampled_from([0.0, 0.5, 1.5, 0.5 * np.pi]),
+    st.lists(st.sampled_from([-300.0, 0.0, 100.0, 1000.0]), min_size=1, max_size=5),
+    st.sampled_from([-np.inf, -20.0, 0.0]),
+    st.floats(4.0, 10.0),
+)
+def test_any_line_finds_its_balance(
+    distance: float, slope: float, weights: list[float], level: float, log_EA: float
+) -> None:
+    if not any(weights):
+        return
+    w, end = np.repeat(weights, 60 // len(weights)), 100.0 * distance * np.array([np.cos(slope), 0.0, np.sin(slope)])
+    arc = np.linspace(0.0, 100.0, w.size + 1)
+    found = catenary(arc, ORIGIN, end, w, 10.0**log_EA, level, bars=500)
+    assert found.curve.position[-1] == pytest.approx(end + found.slack * X, abs=1e-7), "to 1e-9 of its length"
+    assert found.curve.position[:, 2].min() > level - 1e-3
+    assert np.linalg.norm(found.curve.tangent, axis=2) == pytest.approx(1.0)
+    scale = np.abs(w).mean() * 100.0 + found.tension.max()
+    borne = np.dot(w, np.diff(arc)) - np.diff(vertical(found)[[0, -1]])[0]
+    assert borne > -1e-6 * scale, "the seabed pushes, it never pulls"
+    assert level > -np.inf or borne < 1e-6 * scale
+
+
+@pytest.mark.parametrize("end", [[0.0, 0.0, 0.0], [0.0, 0.0, 100.0], [3.0, 4.0, 20.0]])
+@pytest.mark.parametrize("level", [-np.inf, 0.0])
+def test_slack_line_is_laid_with_the_least_tension(end: list[float], level: float) -> None:
+    found = catenary(ARC[::50], ORIGIN, np.array(end), W, 1e9, level, least_H=10.0 * W)
+    assert pytest.approx(10.0 * W) == found.H
+    away = np.array([0.6, 0.8, 0.0]) if end[0] else np.array([1.0, 0.0, 0.0])
+    assert found.slack > 1.0
+    assert found.curve.position[-1] == pytest.approx(end + found.slack * away, abs=1e-8)
+    assert np.linalg.norm(found.curve.chord, axis=1).sum() == pytest.approx(350.0, rel=2e-2)
 
 
 @pytest.mark.parametrize(
     ("end", "weight", "level", "message"),
     [
-        ([300.0, 0.0, 200.0], W, -np.inf, r"too short for a catenary: its length of 350 m .* 360\.555 m"),
-        ([0.0, 0.0, 100.0], W, -np.inf, "give initial points"),
-        ([100.0, 0.0, 100.0], -5.0, -np.inf, r"positive submerged weight, not -5 N/m"),
         ([100.0, 0.0, -3.0], W, -1.0, r"z = -3 m lies below the level -1 m"),
-        ([100.0, 0.0, 50.0], W, 0.0, r"too long: with 300 m left to rest .* 100 m away"),
+        ([100.0, 0.0, 50.0], 0.0, -np.inf, r"needs a submerged weight"),
     ],
 )
 def test_impossible_catenaries_are_refused(

@@ -76,10 +76,29 @@ def test_a_smooth_riser_has_no_hydrodynamics() -> None:
     assert "left out: morison: no line type has drag or added mass, nor any attachment" in report(smooth).splitlines()
 
 
+@pytest.mark.parametrize(
+    ("water", "told"),
+    [
+        ({}, "left out: buoyancy: the water has no surface: all is submerged"),
+        ({"surface_level": 50.0}, "built: riser, buoyancy, seabed, contact"),
+        ({"current": {"profile": [[0.0, 1.0, 0.0]]}}, "built: riser, morison, seabed, contact"),
+    ],
+)
+def test_statics_have_what_their_water_does(water: Mapping, told: str) -> None:
+    assert told in report(with_value(without_soil(), "water", value=water)).splitlines()
+
+
 def test_springs_and_loads_are_built_when_asked_for() -> None:
     lift = {"name": "lift", "kind": "static", "loads": [{"at": 10.0, "force": [0.0, 0.0, 1.0e3]}]}
     sprung = with_value(without_soil(lift), "riser", "end", "rotation", value={"stiffness": 1.0e4})
     assert "built: riser, springs, loads, seabed, contact" in report(sprung).splitlines()
+
+
+def test_attachments_are_counted_and_weighed() -> None:
+    attached = [{"at": [5.0, 6.0], "mass": 100.0, "volume": 0.2}, {"at": 9.0, "mass": 50.0}]
+    laden = with_value(without_soil(), "riser", "attachments", value=attached)
+    net = 9.81 * (250.0 - 0.4 * 1025.0)
+    assert f"3 attachments: weight less buoyancy {net:.4g} N in all" in report(laden).splitlines()
 
 
 def test_memory_grows_with_the_soil() -> None:
@@ -105,6 +124,19 @@ def test_long_elements_at_a_clamped_end_are_told() -> None:
     clamped = with_value(without_soil(), "riser", "end", "rotation", value="fixed")
     clamped["line_types"]["flexible"]["EI"] = 500.0
     assert [w for w in warnings(clamped) if "elements at the end are 1.5 m long" in w]
+
+
+def test_elements_of_very_different_lengths_are_told_where_waves_meet_them() -> None:
+    segments: list[Mapping] = [{"line_type": "flexible", "length": 15.0, "elements": n} for n in (50, 10)]
+    uneven = with_value(without_soil(heave(1.0)), "riser", "segments", value=segments)
+    (found,) = [w for w in warnings(uneven) if "meet at arc 15 m" in w]
+    assert "elements of 0.3 m and 1.5 m" in found
+    assert "shorter than about 9 m" in found
+    still = with_value(without_soil(), "riser", "segments", value=segments)
+    assert not [w for w in warnings(still) if "meet at arc" in w]
+    segments[1] = {"line_type": "flexible", "length": 15.0, "element_length": [0.3, 1.5]}
+    graded = with_value(without_soil(heave(1.0)), "riser", "segments", value=segments)
+    assert not [w for w in warnings(graded) if "meet at arc" in w]
 
 
 def test_a_floating_pipe_is_told_with_its_weight() -> None:

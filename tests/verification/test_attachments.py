@@ -193,3 +193,20 @@ def test_a_pendulum_of_a_rod_and_masses_keeps_time_and_energy(dimension: int) ->
     times = [told.t[i] + told.dt[i] * x[i] / (x[i] - x[i + 1]) for i in crossings]
     assert np.diff(times) == pytest.approx([0.5 * period], rel=2e-4)
     assert np.ptp(told.energy) < 1e-3 * G * S * (1.0 - np.cos(tilt))
+
+
+@both_dimensions
+def test_the_support_moves_what_sits_at_its_end(dimension: int) -> None:
+    """A mass at a moving held end adds m (g + a) to the reaction there, and nothing to the line's tension."""
+    amplitude, period, t, mass = 0.2, 4.0, 5.3, 70.0
+    motion = {"end": {"harmonic": {"amplitude": [0.0, 0.0, amplitude], "period": period, "ramp": 1.0}}}
+    ends = {"start": held(0.0, 0.0, 0.0), "end": held(10.0, 0.0, 12.0)}
+    soft = PIPE | {"EA": 1.0e6}
+    bare, laden = (
+        tell(scene(dynamic(t, 0.1, motion=motion), attachments=attached, dimension=dimension, pipe=soft, **ends))[0].end
+        for attached in ([], [{"at": 20.0, "mass": mass}])
+    )
+    omega = 2.0 * np.pi / period
+    a = -amplitude * omega**2 * np.sin(omega * t)
+    assert laden.end_force - bare.end_force == pytest.approx([0.0, 0.0, mass * (G + a)], abs=1e-3)
+    assert laden.effective_tension == pytest.approx(bare.effective_tension, rel=1e-6)

@@ -123,6 +123,17 @@ def test_static_stages_build_nothing_of_dynamics() -> None:
     assert names(world, 1) == ["riser", "inertia", "morison", "soil", "contact", "seabed"]
 
 
+def test_water_is_built_as_far_as_it_goes() -> None:
+    """A current loads static stages, waves dynamic ones, and a surface both."""
+    sea = {"surface_level": 60.0, "waves": {"airy": {"height": 1.0, "period": 6.0}}}
+    current = {"current": {"profile": [[0.0, 1.0, 0.0]]}}
+    built_of = {"sea": ["riser", "buoyancy"], "current": ["riser", "morison"]}
+    for name, water in (("sea", sea), ("current", current)):
+        world = built(hanging(LAY, heave(0.2)) | {"water": water})
+        assert names(world, 0) == built_of[name]
+        assert names(world, 1) == ["riser", "inertia", "morison", *(["buoyancy"] if name == "sea" else [])]
+
+
 def test_without_water_nothing_of_the_sea() -> None:
     scene = hanging(LAY, heave(0.2))
     line = scene["line_types"]["flexible"]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.sea.wetting import wet_share
+from riser_soil.sea.wet_section import wet_share
 from tests.coupled_scenes import Mapping
 from tests.riser_scenes import Told, dynamic, held, riser_scene, static, tell
 
@@ -66,7 +66,7 @@ def test_a_buoy_floats_at_the_draught_that_carries_its_rod(dimension: int) -> No
     share = (0.5 * 300.0 * 2.0 + 40.0 * G) / (RHO * G * 0.2)
     assert 0.1 < share < 0.9
     span = np.cbrt(6.0 * 0.2 / np.pi)
-    assert wet_share(0.1 - told.position[-1, 2], np.array(span)) == pytest.approx(share, rel=1e-7)
+    assert wet_share(0.1 - told.position[-1, 2], span) == pytest.approx(share, rel=1e-7)
     assert told.start_force[2] == pytest.approx(0.5 * 300.0 * 2.0, rel=1e-7)
 
 

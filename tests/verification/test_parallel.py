@@ -17,6 +17,7 @@ from riser_soil.arrays import Array
 from riser_soil.results import Run
 from tests.coupled_scenes import DEMO, LAY, Mapping, heave, touchdown
 from tests.on_ranks import mpirun
+from tests.riser_scenes import in_waves
 
 CATENARY = Path(__file__).parents[1] / "scenes" / "catenary.yaml"
 # What a run counts or clocks may differ: a residual just above the tolerance on one rank is just below it on two.
@@ -27,6 +28,8 @@ def scene(name: str) -> Mapping:
     """Scenes short enough to compute three times, solved to 1e-10 of their forces."""
     if name in ("hex", "tet"):
         return touchdown(LAY, heave(1.0), kind=name, su=1000.0, dimension=3, tolerance=1e-10)
+    if name == "sea":
+        return in_waves(0.1, 21.0) | {"output": {"interval": 0.1}}
     given: Mapping = YAML(typ="safe").load(DEMO if name == "demo" else CATENARY)
     given["stages"][1]["duration"] = {"demo": 0.5, "riser": 10.0}[name]
     return given | {"solver": {"tolerance": 1e-10}, "output": {"interval": 0.1}}
@@ -112,6 +115,10 @@ def assert_same_summary(other: Any, one: Any, place: str = "summary") -> None:
 @pytest.mark.parametrize("name", ["hex", "tet", "riser"])
 def test_small_scenes_agree_on_several_ranks(name: str, ranks: int) -> None:
     assert_same(name, ranks)
+
+
+def test_a_riser_at_sea_agrees_on_two_ranks() -> None:
+    assert_same("sea", 2)
 
 
 @pytest.mark.parametrize("ranks", [2, pytest.param(4, marks=pytest.mark.verify)])

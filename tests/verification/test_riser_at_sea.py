@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from riser_soil.arrays import Array
 from tests.coupled_scenes import Mapping
-from tests.riser_scenes import AVERAGE, Told, distance, dynamic, held, riser_scene, static, tell
+from tests.riser_scenes import AVERAGE, Told, distance, dynamic, held, in_waves, riser_scene, static, tell
 
 RHO, D, CD, CA, MASS = 1025.0, 0.3, 1.1, 1.0, 120.0
 PIPE: Mapping = {"EA": 1.0e6, "EI": 2.0e3, "GJ": 2.0e3, "outer_diameter": D, "mass": MASS}
@@ -144,6 +143,27 @@ def test_a_lying_pipe_heaves_like_a_rigid_section(lift: float, drag: bool) -> No
     assert extrapolated == pytest.approx(exact, abs=2e-5 * lift)
 
 
+def test_an_upright_pipe_heaves_about_its_draught() -> None:
+    """Of 60 % of the water's density, it floats 60 % immersed; its period is 2 pi sqrt(0.6 L/g)."""
+    length, lift = 6.0, 0.4
+    scene = riser_scene(
+        dynamic(8.0, 0.02, scheme=AVERAGE),
+        pipe={"EA": 1.0e9, "EI": 1.0e6, "outer_diameter": D, "mass": 0.6 * DISPLACED},
+        length=length,
+        elements=4,
+        start="free",
+        end="free",
+        riser={"unstressed": {"points": [[0.0, 0.0, lift - 0.6 * length], [0.0, 0.0, lift + 0.4 * length]]}},
+        water={"density": RHO, "surface_level": 0.0},
+        gravity=9.81,
+        solver={"tolerance": 1e-10},
+    )
+    told = tell(scene)[0]
+    middle = np.array([x[:, 2].mean() for x in told.position]) + 0.1 * length
+    exact = lift * np.cos(np.sqrt(9.81 / (0.6 * length)) * np.array(told.t))
+    assert middle == pytest.approx(exact, abs=2e-3 * lift)
+
+
 def balance(told: Told) -> float:
     """Largest error of the energy balance since the first step [J]."""
     energy, work = np.array(told.energy), np.cumsum(told.work)
@@ -160,30 +180,14 @@ def test_heave_keeps_its_energy_to_second_order() -> None:
 
 
 @cache
-def in_waves(time_step: float, top: float, rho_inf: float = 0.8) -> Told:
-    """A hanging riser in waves and a sheared current, its top at a height below or above the surface at 20 m."""
-    water: dict[str, Any] = {"density": RHO, "surface_level": 20.0, "depth": 60.0}
-    water |= {"current": {"profile": [[0.0, 0.1, 0.0], [20.0, 0.8, 0.0]]}}
-    water |= {"waves": {"airy": {"height": 2.0, "period": 5.0}, "ramp": 2.0}}
-    scene = riser_scene(
-        static("hang"),
-        dynamic(4.0, time_step, scheme={"generalized_alpha": {"rho_inf": rho_inf}}),
-        pipe=PIPE,
-        length=26.0,
-        elements=8,
-        start=held(0.0, 0.0, 3.0),
-        end=held(14.0, 0.0, top),
-        water=water,
-        gravity=9.81,
-        solver={"tolerance": 1e-10},
-    )
-    return tell(scene)[-1]
+def moved_by_waves(time_step: float, top: float, rho_inf: float = 0.8) -> Told:
+    return tell(in_waves(time_step, top, rho_inf))[-1]
 
 
 @pytest.mark.parametrize(("top", "rho_inf"), [(18.0, 0.8), (18.0, 0.2), (21.0, 0.8)])
 def test_motion_in_waves_is_of_second_order_in_time(top: float, rho_inf: float) -> None:
     """The water's acceleration enters as an external force; taken as inertia, generalised-alpha would lose an order."""
-    ends = [in_waves(dt, top, rho_inf).position[-1] for dt in (0.1, 0.05, 0.025, 0.00625)]
+    ends = [moved_by_waves(dt, top, rho_inf).position[-1] for dt in (0.1, 0.05, 0.025, 0.00625)]
     errors = [distance(end, ends[-1]) for end in ends[:-1]]
     assert np.all(orders(errors) > 1.8)
 
@@ -191,7 +195,7 @@ def test_motion_in_waves_is_of_second_order_in_time(top: float, rho_inf: float) 
 @pytest.mark.parametrize(("top", "order"), [(18.0, 1.95), (21.0, 1.5)])
 def test_energy_in_waves_balances(top: float, order: float) -> None:
     """To second order; at the surface the added mass changes with the position (see `heaving`)."""
-    told = [in_waves(dt, top) for dt in (0.1, 0.05, 0.025)]
+    told = [moved_by_waves(dt, top) for dt in (0.1, 0.05, 0.025)]
     found = [balance(one) for one in told]
     assert np.all(orders(found) > order)
     assert found[-1] < 1e-4 * np.ptp(told[-1].energy)

@@ -66,6 +66,15 @@ def test_first_three_frequencies_in_space_come_in_pairs() -> None:
     assert frequencies(3, 16)[:6] == pytest.approx(exact(MASS, n), rel=1e-4)
 
 
+def test_added_mass_lowers_the_frequency_as_mass_does() -> None:
+    """The closed form on the stretched length, with the mass that is left per stretched length."""
+    whole, stretch = MASS + RHO * 0.25 * np.pi * DIAMETER**2, 1.0 + TENSION / EA
+    k = np.pi / (LENGTH * stretch)
+    wet = frequencies(2, 24, added=1.0)[0]
+    assert wet == pytest.approx(np.sqrt((k**4 * EI + k**2 * TENSION) * stretch / whole), rel=5e-7)
+    assert wet / frequencies(2, 24)[0] == pytest.approx(np.sqrt(MASS / whole), rel=1e-9)
+
+
 def test_tension_and_added_mass_count() -> None:
     bare, slack, wet = frequencies(2, 16)[0], frequencies(2, 16, 0.0)[0], frequencies(2, 16, added=1.0)[0]
     extra = RHO * 0.25 * np.pi * DIAMETER**2

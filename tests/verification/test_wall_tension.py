@@ -85,7 +85,7 @@ def finished(scene: Mapping, folder: Path) -> Run:
     return Run(folder)
 
 
-def test_it_is_written_with_unit_and_extremes(tmp_path: Path) -> None:
+def test_it_is_written_with_unit_and_extremes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     done = finished(hanging(-10.0, {"density": OIL}, water={"density": RHO, "surface_level": 0.0}), tmp_path / "out")
     (stage,) = done.summary["stages"]
     wall = done["wall_tension"][-1]
@@ -93,6 +93,7 @@ def test_it_is_written_with_unit_and_extremes(tmp_path: Path) -> None:
         assert stage["final"][name] == {"value": wall[node], "arc": done.arc[node]}
         assert stage["extremes"][name]["max"] >= wall[node] >= stage["extremes"][name]["min"]
     assert "wall tension" not in done.summary["parts"]["left_out"]
+    assert "greatest wall tension" in capsys.readouterr().out
     assert "wall_tension" in (tmp_path / "out" / "riser.xdmf").read_text()
 
 

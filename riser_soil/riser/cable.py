@@ -1,0 +1,260 @@
+"""Balance of a line without bending stiffness in a vertical plane, hanging or resting on a level seabed.
+
+The line is a chain of bars with the weight lumped at their joints. A bar of unstressed length l0 that carries the
+horizontal tension H and the vertical force V, with T = sqrt(H^2 + V^2), spans
+
+    dx = l0 H (1/T + 1/EA),    dz = l0 V (1/T + 1/EA)
+
+(Irvine, Cable Structures, 1981, chapter 1). The seabed bears no horizontal force, so H is the same everywhere. It
+pushes a joint at the height z > 0 by q with q z = mu, and mu goes to zero: the interior-point method for the convex
+problem that the chain poses (Wright, Primal-Dual Interior-Point Methods, 1997). Newton's method takes heights, bar
+forces and pushes as unknowns side by side, so that a high EA costs no iterations, as it would with heights alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import solveh_banded
+
+from riser_soil.arrays import Array
+from riser_soil.errors import SceneError
+
+BALANCED = 1e-11  # misfit, see `_misfit`
+ROUND_OFF = 1e-9  # the misfit under which it may stall
+ROUNDED = 1e-4  # of the tension: what counts beside the load
+MOST_ITERATIONS = 50
+NEAR = 0.01  # between logarithms of H or mu: where a balance must be found at once
+SHORTEST_STEP = 1e-3  # of Newton's
+STRIDE = 4.0  # factor between the values of H that are tried
+CLOSE = 1.05  # the same where H is then let free
+SLACK = 0.01  # of the least H: below it the search for H ends
+WIDEST = 1e15  # largest H over the load
+FARTHEST = 0.01  # over the length and the load: mu at first
+HARDER = 0.2  # factor on mu
+TO_THE_EDGE = 0.9  # of the way to where a height, a push or H would vanish, in one step
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """Unstressed length l0 [m] and EA [N] of the bars (nb,), weight W [N] of the joints (nb + 1,).
+
+    z0 and z1 [m]: heights of the ends. hover [m]: at about this height above a seabed at z = 0 the line rests; None
+    where there is no seabed.
+    """
+
+    l0: Array
+    EA: Array
+    W: Array
+    z0: float
+    z1: float
+    hover: float | None = None
+
+    @property
+    def L(self) -> float:
+        return float(self.l0.sum())
+
+    @property
+    def load(self) -> float:
+        """Sum of weights and lifts [N]."""
+        return float(np.abs(self.W).sum())
+
+    @property
+    def hardest(self) -> float:
+        """mu [N m] that lets the line rest where it should."""
+        return 0.0 if self.hover is None else self.hover * float(np.abs(self.W).max())
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """Horizontal tension H [N], heights z (nb + 1,) m of the joints, vertical forces V (nb,) N in the bars, pushes
+    q (nb - 1,) N of the seabed on the inner joints, which times the heights make mu [N m].
+
+    Also the change of these in a Newton step.
+    """
+
+    chain: Chain
+    H: float
+    z: Array
+    V: Array
+    q: Array
+    mu: float
+
+    @property
+    def x(self) -> Array:
+        """Horizontal distance of the joints from the start (nb + 1,) m."""
+        chain = self.chain
+        dx = chain.l0 * self.H * (1.0 / np.hypot(self.H, self.V) + 1.0 / chain.EA)
+        return np.append(0.0, np.cumsum(dx))
+
+    @property
+    def reach(self) -> float:
+        return float(self.x[-1])
+
+    @property
+    def V_at_joints(self) -> Array:
+        """(nb + 1,) N: amid what jumps there."""
+        W, V = self.chain.W, self.V
+        return np.concatenate([[V[0] - W[0]], 0.5 * (V[1:] + V[:-1]), [V[-1] + W[-1]]])
+
+
+@dataclass(frozen=True)
+class Goal:
+    """Ends h [m] apart, unless that takes less than least_H [N]."""
+
+    h: float
+    least_H: float
+
+
+def fit(chain: Chain, h: float, least_H: float) -> Balance:
+    """The chain in balance with its ends h apart; with least_H [N] and its ends farther apart where it would need less.
+
+    Raises SceneError when no balance is found.
+    """
+    goal, straight = Goal(h, least_H), _straight(chain)
+    taut = _solved(straight, straight)
+    far = _nearly(taut, goal)
+    if far.reach <= h:
+        found = _hardened(_solved(far, far, goal), goal)
+        if least_H < found.H:
+            return found
+    slack = _hardened(_nearly(taut, Goal(-np.inf, least_H)))
+    if slack.reach >= h:
+        return slack
+    near = _nearly(slack, goal)
+    return _solved(near, near, goal)
+
+
+def _nearly(start: Balance, goal: Goal) -> Balance:
+    """With nearly the H that reaches the goal, or with its least H where that reaches it too; mu is left as it is."""
+    low, high, h, least_H, chain = start, start, goal.h, goal.least_H, start.chain
+    while high.reach < h:
+        if high.H / chain.load > WIDEST:
+            raise SceneError("riser: nothing holds its ends as far apart as they are; lengthen the segments")
+        low, high = high, _solved(high, replace(high, H=high.H * STRIDE))
+    while low.reach > h and least_H < low.H:
+        low, high = _solved(low, replace(low, H=max(low.H / STRIDE, least_H))), low
+    while low.reach <= h and high.H > CLOSE * low.H:
+        middle = _solved(low, replace(low, H=float(np.sqrt(low.H * high.H))))
+        low, high = (middle, high) if middle.reach <= h else (low, middle)
+    return low
+
+
+def _straight(chain: Chain) -> Balance:
+    """A straight line over the seabed under a high tension; not in balance."""
+    slope = (chain.z1 - chain.z0) / chain.L
+    arc = np.append(0.0, np.cumsum(chain.l0))
+    z, V = chain.z0 + slope * arc, np.full(chain.l0.size, slope * chain.load)
+    if chain.hover is None:
+        return Balance(chain, chain.load, z, V, np.zeros(z.size - 2), 0.0)
+    mu = max(FARTHEST * chain.L * chain.load / z.size, chain.hardest)
+    z[1:-1] += FARTHEST * chain.L
+    return Balance(chain, chain.load, z, V, mu / z[1:-1], mu)
+
+
+def _hardened(found: Balance, goal: Goal | None = None) -> Balance:
+    """The same with the mu that is wanted in the end; as it is where H falls far below the goal's least."""
+    while found.mu > found.chain.hardest and not _is_slack(found, goal):
+        found = _solved(found, replace(found, mu=max(HARDER * found.mu, found.chain.hardest)), goal)
+    return found
+
+
+def _is_slack(found: Balance, goal: Goal | None) -> bool:
+    return goal is not None and goal.least_H > found.H
+
+
+def _solved(known: Balance, trial: Balance, goal: Goal | None = None) -> Balance:
+    """The trial's chain in balance at its mu, and at its H or at the one that meets the goal.
+
+    Found by way of values of H and mu nearer to those of a known balance where theirs are far from it. Gives up where
+    H falls far below the goal's least.
+    """
+    found = _newton(trial, goal)
+    if found is not None:
+        return found
+    H, mu = float(np.sqrt(known.H * trial.H)), float(np.sqrt(known.mu * trial.mu))
+    if abs(np.log(H / trial.H)) < NEAR and (mu == 0.0 or abs(np.log(mu / trial.mu)) < NEAR):
+        raise SceneError("riser.initial: catenary: found none between the ends; give initial points")
+    halfway = _solved(known, replace(known, H=H, mu=mu), goal)
+    return _solved(halfway, replace(halfway, H=trial.H, mu=trial.mu), goal)
+
+
+def _newton(trial: Balance, goal: Goal | None) -> Balance | None:
+    """Newton's method; None where it does not converge."""
+    size = _misfit(trial, goal)
+    for _ in range(MOST_ITERATIONS):
+        before, (trial, size) = size, _improved(trial, size, goal)
+        if size < BALANCED or 0.8 * before < size < ROUND_OFF or _is_slack(trial, goal):
+            return trial
+    return None
+
+
+def _improved(trial: Balance, size: float, goal: Goal | None) -> tuple[Balance, float]:
+    """After a Newton step, shortened to stay inside and until the misfit falls; and its misfit."""
+    step = _newton_step(trial, goal)
+    fraction = min(1.0, *_ways_inside(trial, step))
+    while True:
+        further = replace(
+            trial,
+            H=trial.H + fraction * step.H,
+            z=trial.z + fraction * step.z,
+            V=trial.V + fraction * step.V,
+            q=trial.q + fraction * step.q,
+        )
+        left = _misfit(further, goal)
+        if left < (1.0 - 0.1 * fraction) * size or fraction < SHORTEST_STEP:
+            return further, left
+        fraction *= 0.5
+
+
+def _ways_inside(trial: Balance, step: Balance) -> Iterator[float]:
+    """Fractions of the step that leave H positive, and heights and pushes too where there is a seabed."""
+    pairs = [(np.array([trial.H]), np.array([step.H]))]
+    if trial.chain.hover is not None:
+        pairs += [(trial.z[1:-1], step.z[1:-1]), (trial.q, step.q)]
+    for value, change in pairs:
+        yield TO_THE_EDGE / max(1e-300, float(np.max(-change / value)))
+
+
+def _misfits(trial: Balance) -> tuple[Array, Array]:
+    """Spans beyond what the forces make of the bars (nb,) m; net upward force on the inner joints (nb - 1,) N."""
+    chain, z, V = trial.chain, trial.z, trial.V
+    spans = np.diff(z) - chain.l0 * V * (1.0 / np.hypot(trial.H, V) + 1.0 / chain.EA)
+    return spans, np.diff(V) - chain.W[1:-1] + trial.q
+
+
+def _misfit(trial: Balance, goal: Goal | None) -> float:
+    """Misfits of spans, reach and heights over the length, plus that of forces over the load.
+
+    Where tensions exceed the load by far, their round-off counts less.
+    """
+    chain, (spans, forces) = trial.chain, _misfits(trial)
+    beyond = 0.0 if goal is None else abs(trial.reach - goal.h)
+    resting = np.abs(trial.q * trial.z[1:-1] - trial.mu).sum() if trial.mu > 0.0 else 0.0
+    scale = chain.load + ROUNDED * (trial.H + float(np.abs(trial.V).max()))
+    return float((np.abs(spans).sum() + beyond + resting / scale) / chain.L + np.abs(forces).sum() / scale)
+
+
+def _newton_step(trial: Balance, goal: Goal | None) -> Balance:
+    """Changes of H, heights, bar forces and pushes. Of a bar, k is dV/d(dz) at constant H, and c is d(dz)/dH = d(dx)/dV
+    at constant V.
+    """
+    chain, H, V, (spans, forces) = trial.chain, trial.H, trial.V, _misfits(trial)
+    T = np.hypot(H, V)
+    k = 1.0 / (chain.l0 * (H**2 / T**3 + 1.0 / chain.EA))
+    c = -chain.l0 * H * V / T**3
+    resting = trial.q / trial.z[1:-1] if trial.mu > 0.0 else 0.0
+    wanted = trial.mu / trial.z[1:-1] - trial.q if trial.mu > 0.0 else np.zeros_like(trial.q)
+    banded = np.zeros((2, k.size - 1))
+    banded[0, 1:] = -k[1:-1]
+    banded[1] = k[:-1] + k[1:] + resting
+    z = np.zeros((k.size + 1, 2))  # at constant H, and for a unit of H
+    z[1:-1] = solveh_banded(banded, np.stack([forces + wanted + np.diff(k * spans), -np.diff(k * c)], axis=1))
+    dV = k[:, None] * (np.stack([spans, -c], axis=1) + np.diff(z, axis=0))
+    dH = 0.0
+    if goal is not None:
+        dH = (goal.h - trial.reach - c @ dV[:, 0]) / (c @ dV[:, 1] + np.sum(chain.l0 * (V**2 / T**3 + 1.0 / chain.EA)))
+    dz = z[:, 0] + dH * z[:, 1]
+    return replace(trial, H=float(dH), z=dz, V=dV[:, 0] + dH * dV[:, 1], q=wanted - resting * dz[1:-1])

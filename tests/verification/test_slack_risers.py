@@ -1,0 +1,77 @@
+"""Risers too long to hang in a bend that pipe and elements can follow: laid too far out, and brought to their place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from riser_soil.errors import SolveError
+from riser_soil.results import Run
+from riser_soil.run import run
+from riser_soil.scene.reader import scene_from_mapping
+from tests.coupled_scenes import Mapping
+from tests.riser_scenes import dynamic, held, riser_scene, static
+
+W, PIPE = 500.0, {"EA": 1e8, "EI": 1e4, "GJ": 1e4, "submerged_weight": 500.0, "outer_diameter": 0.2, "mass": 60.0}
+
+
+def slack_scene(*end: float, length: float = 60.0, elements: int = 60, **more: Any) -> Mapping:
+    stages = more.pop("stages", (static(),))
+    start = held(0.0, 0.0, 0.0)
+    options: Mapping = {"pipe": PIPE, "length": length, "elements": elements, "start": start, "end": held(*end)}
+    return riser_scene(*stages, **options, gravity=9.81, solver={"tolerance": 1e-11}, **more)
+
+
+def done(scene: Mapping, folder: Path) -> Run:
+    run(scene_from_mapping(scene), folder)
+    return Run(folder)
+
+
+def test_hairpin_under_coinciding_ends(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Symmetric about the vertical; each end bears half the weight, and the loop's two legs push each other apart."""
+    found = done(slack_scene(0.0, 0.0, 0.0), tmp_path)
+    start, end = found["start_force"][-1], found["end_force"][-1]
+    assert np.abs(start + end - [0.0, 0.0, 60.0 * W]).max() < 1e-8 * 60.0 * W
+    assert start[2] == pytest.approx(30.0 * W, rel=1e-8)
+    assert end[0] < 0.0
+    position = found["position"][-1]
+    assert position[:, 0] == pytest.approx(-position[::-1, 0], abs=1e-7)
+    assert position[30, 2] == pytest.approx(-29.0, abs=0.5)
+    assert np.linalg.norm(np.diff(position, axis=0), axis=1).sum() == pytest.approx(60.0, rel=5e-3)
+    laying = found.summary["laying"]
+    assert laying["slack"] > 1.0
+    assert f"laid {laying['slack']:.4g} m too far" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_top_above_the_bottom(dimension: int, tmp_path: Path) -> None:
+    found = done(slack_scene(0.0, 0.0, 40.0, dimension=dimension), tmp_path)
+    total = found["start_force"][-1] + found["end_force"][-1]
+    assert np.abs(total - [0.0, 0.0, 60.0 * W]).max() < 1e-8 * 60.0 * W
+    assert found["position"][-1, -1] == pytest.approx([0.0, 0.0, 40.0], abs=1e-12)
+    assert found.summary["stages"][0]["method"] == "newton"
+
+
+def test_some_slack_on_the_seabed_is_borne_in_compression(tmp_path: Path) -> None:
+    """What the seabed bears and the ends carry is the weight."""
+    seabed = {"kind": "rigid", "level": 0.0, "contact_at": "axis"}
+    found = done(slack_scene(40.0, 0.0, 15.0, length=58.0, elements=116, seabed=seabed), tmp_path)
+    total = found["start_force"][-1] + found["end_force"][-1] + found["contact_force_sum"][-1]
+    assert np.abs(total - [0.0, 0.0, 58.0 * W]).max() < 1e-8 * 58.0 * W
+    assert found["end_force"][-1, 0] < 0.0
+
+
+def test_dynamics_may_come_first(tmp_path: Path) -> None:
+    """The laid riser is at rest, and stays so."""
+    found = done(slack_scene(0.0, 0.0, 40.0, stages=(dynamic(1.0, 0.1),)), tmp_path)
+    assert np.ptp(found["end_force"], axis=0).max() < 1e-4 * 60.0 * W
+
+
+def test_a_loop_too_tight_for_its_elements_is_told(tmp_path: Path) -> None:
+    seabed = {"kind": "rigid", "level": 0.0, "contact_at": "axis"}
+    message = r"the riser is slack: .* take elements well below \(EI/w\)\^\(1/3\) = 2.71 m"
+    with pytest.raises(SolveError, match=message):
+        done(slack_scene(40.0, 0.0, 15.0, length=200.0, elements=20, seabed=seabed), tmp_path)
