@@ -77,7 +77,7 @@ class Step:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """A converged step: its state, its forces by group, and the residual norm [N] of every iteration."""
+    """A converged step: the state at its end, the forces in balance by group, the residual norms [N]."""
 
     state: State
     forces: Forces
@@ -171,6 +171,7 @@ class Newton:
         u[self.system.held] = self._held[0]
         if self._state is None or not np.array_equal(u, self._state.u):
             self._state = self._follow(u)
+            self._balanced = self._step.scheme.balanced_at(self._step.before, self._state, self._step.dt)
         return self._state
 
     def _follow(self, u: Array) -> State:
@@ -181,15 +182,16 @@ class Newton:
         return State(self._step.t, u, v, a)
 
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
-        state = self._trial(x)
-        self._forces = self.system.forces(state)
+        self._trial(x)
+        self._forces = self.system.forces(self._balanced)
         residual = self._step.scheme.combine(self._forces, self._step.start)
         self.system.numbering.add_to_global(residual, f)
 
     def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, jacobian: PETSc.Mat, p: PETSc.Mat) -> None:
         """A matrix left as it is keeps its factors."""
         if not self._reusable():
-            self.system.assemble(self._trial(x), self._weights)
+            self._trial(x)
+            self.system.assemble(self._balanced, self._weights)
 
     def _reusable(self) -> bool:
         """Whether the tangent of the iteration before will do."""

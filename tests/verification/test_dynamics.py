@@ -98,7 +98,7 @@ def surging(time_step: float, **more: Any) -> Mapping:
     )
 
 
-@pytest.mark.parametrize("scheme", [AVERAGE, {"generalized_alpha": {"rho_inf": 0.8}}])
+@pytest.mark.parametrize("scheme", [AVERAGE, {"generalized_alpha": {"rho_inf": 0.8}}, {"midpoint": {}}])
 def test_second_order_in_the_time_step(scheme: Mapping) -> None:
     shapes = [tell(surging(dt, scheme=scheme))[-1].end.position for dt in (0.2, 0.1, 0.05)]
     first, second = distance(shapes[0], shapes[1]), distance(shapes[1], shapes[2])
