@@ -216,9 +216,9 @@ class March:
     def _in_balance(self, state: State) -> State:
         """An accepted state with the accelerations that its forces cause, as the scheme's own balance is elsewhere."""
         assert self._mass is not None
-        still = State(state.t, state.u, state.v, np.zeros_like(state.a))
-        a = self._mass.accelerations(state.t, -total(self.system.forces(still)))
-        return State(state.t, state.u, state.v, np.where(self.system.prescribed, state.a, a))
+        held = np.where(self.system.prescribed, state.a, 0.0)
+        forces = self.system.forces(State(state.t, state.u, state.v, held))
+        return State(state.t, state.u, state.v, held + self._mass.accelerations(state.t, -total(forces)))
 
     def _energy_after(self, step: Accepted) -> Energy:
         """Stored energy of the accepted state: the step's, but kinetic as the riser moves."""

@@ -106,6 +106,13 @@ def test_second_order_in_the_time_step(scheme: Mapping) -> None:
     assert second < 1e-2
 
 
+@pytest.mark.parametrize("scheme", [AVERAGE, {"midpoint": {}}])
+def test_a_moving_hinge_carries_no_moment(scheme: Mapping) -> None:
+    """Its recorded moment is what the inertia beside it leaves of the balance."""
+    last = tell(surging(0.1, scheme=scheme, duration=3.0))[-1].end
+    assert np.linalg.norm(last.end_moment) < 1e-6 * last.bending_moment.max()
+
+
 def test_generalised_alpha_that_keeps_all_is_average_acceleration() -> None:
     one = tell(surging(0.1, scheme=AVERAGE))[-1]
     other = tell(surging(0.1, scheme={"generalized_alpha": {"rho_inf": 1.0}}))[-1]

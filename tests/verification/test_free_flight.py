@@ -131,38 +131,51 @@ def test_long_flight(dimension: int) -> None:
 LENGTH, EA, EI, MASS, SPEED = 10.0, 2.8e7, 1.4e4, 1.2, 6.0
 
 
-def spin_up(folder: Path, dt: float) -> Mapping:
+W = 2.0 * np.pi / 15.0
+
+
+def hub_angle(t: Array) -> Array:
+    """psi(t) [rad]."""
+    return np.where(t < 15.0, 0.4 * (0.5 * t**2 + (np.cos(W * t) - 1.0) / W**2), SPEED * t - 45.0)
+
+
+def spin_up(folder: Path, axis: Array, along: Array, dimension: int) -> tuple[Array, Array]:
+    """Times, and the tip along the hub's direction, across it and along the axis (n, 3), seen from the turning hub."""
     t = np.linspace(0.0, 20.0, 2001)
-    w = 2.0 * np.pi / 15.0
-    psi = np.where(t < 15.0, 0.4 * (0.5 * t**2 + (np.cos(w * t) - 1.0) / w**2), SPEED * t - 45.0)
-    rows = "\n".join(f"{a:.10g}, 0, 0, 0, {-np.degrees(b):.12g}" for a, b in zip(t, psi, strict=True))
-    (folder / "hub.csv").write_text("t [s], x [m], y [m], z [m], ry [deg]\n" + rows + "\n")
-    return riser_scene(
-        dynamic(20.0, dt, motion={"start": {"table": str(folder / "hub.csv")}}),
-        pipe={"EA": EA, "EI": EI, "mass": MASS},
+    rows = np.column_stack([t, np.zeros((t.size, 3)), np.degrees(hub_angle(t))[:, None] * axis])
+    header = "t [s], x [m], y [m], z [m], rx [deg], ry [deg], rz [deg]"
+    np.savetxt(folder / "hub.csv", rows, "%.14g", ", ", header=header, comments="")
+    scene = riser_scene(
+        dynamic(20.0, 0.02, motion={"start": {"table": str(folder / "hub.csv")}}),
+        pipe={"EA": EA, "EI": EI, "GJ": EI, "mass": MASS},
         length=LENGTH,
         elements=6,
         start=held(0.0, 0.0, 0.0, rotation="fixed"),
         end="free",
-        dimension=2,
+        dimension=dimension,
         solver={"tolerance": 1e-9},
-        riser={"initial": {"points": [[0.0, 0.0, 0.0], [LENGTH, 0.0, 0.0]]}},
+        riser={"initial": {"points": [[0.0, 0.0, 0.0], list(LENGTH * along)]}},
     )
+    told = tell(scene)[-1]
+    tip, time, across = np.array(told.position)[:, -1], np.array(told.t), np.cross(axis, along)
+    c, s = np.cos(hub_angle(time)), np.sin(hub_angle(time))
+    x, y = tip @ along, tip @ across
+    return time, np.stack([c * x + s * y, c * y - s * x, tip @ axis], axis=1)
 
 
 def test_spin_up(tmp_path: Path) -> None:
-    """The tip lags while the hub accelerates; then the beam is straight and longer by rho A w^2 L^3 / (3 EA)."""
-    told = tell(spin_up(tmp_path, 0.02))[-1]
-    tip, t = np.array(told.position)[:, -1], np.array(told.t)
-    w = 2.0 * np.pi / 15.0
-    psi = np.where(t < 15.0, 0.4 * (0.5 * t**2 + (np.cos(w * t) - 1.0) / w**2), SPEED * t - 45.0)
-    lag = tip[:, 2] * np.cos(psi) - tip[:, 0] * np.sin(psi)
-    out = tip[:, 0] * np.cos(psi) + tip[:, 2] * np.sin(psi) - LENGTH
+    """The tip lags while the hub accelerates; then the beam is straight and longer by rho A w^2 L^3 / (3 EA).
+
+    The hub turns by twelve turns, in the plane and about an axis oblique to all coordinates.
+    """
+    t, tip = spin_up(tmp_path, np.array([0.0, -1.0, 0.0]), np.array([1.0, 0.0, 0.0]), 2)
     steady = t > 16.0
     assert pytest.approx(5.14e-4, rel=1e-3) == MASS * SPEED**2 * LENGTH**3 / (3.0 * EA)
-    assert out[steady].mean() == pytest.approx(5.14e-4, rel=5e-3)
-    assert np.abs(lag[steady]).max() < 1e-2
-    assert lag.min() == pytest.approx(-0.574, abs=2e-3)
+    assert tip[steady, 0].mean() - LENGTH == pytest.approx(5.14e-4, rel=5e-3)
+    assert np.abs(tip[steady, 1]).max() < 1e-2
+    assert tip[:, 1].min() == pytest.approx(-0.574, abs=2e-3)
+    _, oblique = spin_up(tmp_path, np.array([0.48, 0.64, 0.6]), np.array([0.8, -0.6, 0.0]), 3)
+    assert np.abs(oblique - tip).max() < 1e-6
 
 
 # Rotations of many turns
