@@ -51,6 +51,15 @@ class Carrying(Protocol):
         ...
 
 
+@runtime_checkable
+class Turning(Protocol):
+    """A field whose dofs refer to axes that turn with it."""
+
+    def in_new_axes(self, conjugate: Array, increments: Array) -> Array:
+        """Forces (field's slice) conjugate to the increments, as those of the step after these increments have them."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class Accepted:
     """A solved step and its energy balance [J]; cuts: failed attempts before it."""
@@ -84,7 +93,7 @@ class March:
             self._start_rates(before)
         self._carrying = [part for part in system.model.parts if isinstance(part, Carrying)]
         self._begin_step()
-        self._history = self._forces_at_start()
+        self._history = self.system.forces(self.before) if self._needs_history else None
         self.energy = system.energy(self.before)
 
     def restart(self) -> None:
@@ -182,7 +191,7 @@ class March:
         self.system.commit(state)
         self.before, self.now = self._rates_after(step)
         self._begin_step()
-        self._forces, self._history = forces, self._forces_at_start()
+        self._forces, self._history = forces, self._forces_after(step) if self._needs_history else None
         self.energy = self._energy_after(step)
         self._past.accept(state.u, step.dt)
         control.accept(easy=step.solution.iterations <= EASY)
@@ -227,7 +236,21 @@ class March:
             return step.energy
         return replace(step.energy, kinetic=self._mass.kinetic_energy(self.now))
 
-    def _forces_at_start(self) -> Forces | None:
-        """Bulk forces at the accepted state, in its own axes, where the scheme weighs them."""
-        needed = isinstance(self.scheme, GeneralizedAlpha) and self.scheme.needs_history
-        return self.system.forces(self.before) if needed else None
+    @property
+    def _needs_history(self) -> bool:
+        return isinstance(self.scheme, GeneralizedAlpha) and self.scheme.needs_history
+
+    def _forces_after(self, step: Accepted) -> Forces:
+        """Bulk forces at the state just accepted, in its own axes: the step's, unless contact has changed the rates."""
+        if not self.system.riser_alone:
+            return self.system.forces(self.before)
+        forces, u = step.solution.forces, step.solution.state.u
+        return Forces(*(self._in_new_axes(f, u) for f in (forces.inertia, forces.force, forces.end)))
+
+    def _in_new_axes(self, conjugate: Array, increments: Array) -> Array:
+        out = conjugate.copy()
+        for field in self.system.model.fields:
+            if isinstance(field, Turning):
+                at = slice(field.offset, field.offset + field.size)
+                out[at] = field.in_new_axes(conjugate[at], increments[at])
+        return out

@@ -169,7 +169,7 @@ class Newton:
         u = np.zeros(self.system.numbering.size)
         self.system.numbering.to_local(x, u)
         u[self.system.held] = self._held[0]
-        if self._state is None or not np.array_equal(u, self._state.u):
+        if self._state is None or (u != self._state.u).any():
             self._state = self._follow(u)
             self._balanced = self._step.scheme.balanced_at(self._step.before, self._state, self._step.dt)
         return self._state

@@ -56,7 +56,9 @@ class Beam:
 
     def residual(self, state: State, forces: Forces) -> None:
         if self.line.active:
-            self.line.scatter(self.element_forces(state)[1], forces.force)
+            trial = self.line.trial(state)
+            self.line.scatter(self._elastic.forces(trial), forces.force)
+            self.line.collect(trial, trial.once((self, "load"), self._load_forces), forces.force)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:

@@ -28,9 +28,10 @@ class Morison:
 
     def residual(self, state: State, forces: Forces) -> None:
         if self.line.active:
-            inertia, force = self.element_forces(state)
-            self.line.scatter(inertia, forces.inertia)
-            self.line.scatter(force, forces.force)
+            trial = self.line.trial(state)
+            inertia, force = self._q_forces(trial)
+            self.line.collect(trial, inertia, forces.inertia)
+            self.line.collect(trial, force, forces.force)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if not self.line.active:
