@@ -186,8 +186,7 @@ class SpatialFrames:
 
     def commit(self, increment: Array) -> None:
         """Keep R, brought back to a rotation to second order (round-off would pile up over many steps)."""
-        R, _ = node_frames(self.R, np.ascontiguousarray(increment))
-        self.R = 1.5 * R - 0.5 * R @ np.swapaxes(R, 1, 2) @ R
+        self.R = _turned(self.R, increment)
 
 
 Frames = PlanarFrames | SpatialFrames
@@ -246,6 +245,17 @@ def _orient(Rn: Array, Theta: Array, T0: Array) -> tuple[Array, Array, Array, Ar
     R, H = node_frames(Rn, Theta)
     first, second, tangent = end_frames(R, T0)
     return R, H, first, second, tangent, _spatial_P(tangent, H)
+
+
+@njit
+def _turned(Rn: Array, Theta: Array) -> Array:
+    """R = Rn exp(Theta) (nn, 3, 3), rounded to 3 R/2 - R R' R/2."""
+    out = np.empty_like(Rn)
+    for i in range(Rn.shape[0]):
+        R = matmul(matrix(Rn[i]), rotations.exp(vector(Theta[i])))
+        square = matmul(R, transpose(R))
+        store(matadd(matscale(1.5, R), matscale(-0.5, matmul(square, R))), out[i])
+    return out
 
 
 @njit

@@ -83,6 +83,7 @@ class Line:
         self._supports = self._bases = {node: unturned.at(node).copy() for node in (0, self.arc.size - 1)}
         self.offset = 0
         self._first: Trial | None = None
+        self._left: Trial | None = None
         self._trials: deque[Trial] = deque(maxlen=2)
         self._number()
         self.hold_spin(hold_spin)
@@ -185,9 +186,18 @@ class Line:
             self._trials.appendleft(trial)
         return trial
 
+    def left_at(self, before: State) -> Trial:
+        """The line where a step begins, for all but the rotation dofs: the trial in which the last step has left it, so
+        that parts need not look at it anew, unless its rates have been changed since.
+        """
+        left = self._left
+        if left is not None and before.v is left.state.v and before.a is left.state.a and before.t == left.state.t:
+            return left
+        return self.trial(before)
+
     def forget(self) -> None:
         """Drop the trials that are kept."""
-        self._first = None
+        self._first = self._left = None
         self._trials.clear()
 
     def _make_trial(self, state: State) -> Trial:
@@ -212,6 +222,7 @@ class Line:
         self.frames.commit(self.nodal(state.u)[:, self.dimension :])
         self._supports = {node: self.support(node, state.t) for node in self._supports}
         self.forget()
+        self._left = trial
 
     def begin_stage(self) -> None:
         """Supports turn from where they are now."""

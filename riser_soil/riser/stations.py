@@ -144,18 +144,6 @@ def add_tangent(out: Array, at: Stations, by: Derivatives, columns: Columns) -> 
 
 
 @njit
-def _spread(P: Array, shift: float, e: int, out: Array, D: Size, R: Size) -> None:
-    """Write the columns of both ends' position and tangent to out (d, n)."""
-    d, r = len(D), len(R)
-    for i in range(d):
-        for side in range(2):
-            for k in range(d):
-                out[i, side * (d + r) + k] = shift if i == k else 0.0
-            for k in range(r):
-                out[i, side * (d + r) + d + k] = P[e, side, i, k]
-
-
-@njit
 def _add_tangent(
     out: Array,
     N: Array,
@@ -173,25 +161,31 @@ def _add_tangent(
     D: Size,
     R: Size,
 ) -> None:
-    d, half = len(D), len(D) + len(R)
-    n = 2 * half
-    q, q1, q2 = np.empty((d, n)), np.empty((d, n)), np.empty((d, n))
-    rows = np.empty((4, d, n))
+    d, r = len(D), len(R)
+    n = d + r
+    moving, S = np.empty((d, d)), np.empty((4, d, 2 * n))
     for e in range(by_slope.shape[0]):
-        _spread(P, 1.0, e, q, D, R)
-        _spread(rate, shift_v, e, q1, D, R)
-        _spread(acceleration, shift_a, e, q2, D, R)
-        rows[:] = 0.0
+        S[:] = 0.0
         for g in range(by_slope.shape[1]):
             for i in range(d):
-                for c in range(n):
-                    b = 2 * (c // half) + (1 if c % half >= d else 0)
-                    turning, moving = 0.0, 0.0
+                for j in range(d):
+                    rates = shift_v * by_rate[e, g, i, j] + shift_a * by_acceleration[e, g, i, j]
+                    moving[i, j] = by_position[e, g, i, j] + rates
+            for side in range(2):
+                at = side * n
+                for i in range(d):
                     for j in range(d):
-                        turning += by_slope[e, g, i, j] * q[j, c]
-                        moving += by_position[e, g, i, j] * q[j, c]
-                        moving += by_rate[e, g, i, j] * q1[j, c] + by_acceleration[e, g, i, j] * q2[j, c]
-                    change = dN[e, g, b] * turning + N[e, g, b] * moving
-                    for a in range(4):
-                        rows[a, i, c] += weighted[e, g, a] * change
-        add_rows(out[e], P[e], rows, D, R)
+                        change = dN[e, g, 2 * side] * by_slope[e, g, i, j] + N[e, g, 2 * side] * moving[i, j]
+                        for a in range(4):
+                            S[a, i, at + j] += weighted[e, g, a] * change
+                    for k in range(r):
+                        sloping, turning = 0.0, 0.0
+                        for j in range(d):
+                            sloping += by_slope[e, g, i, j] * P[e, side, j, k]
+                            turning += by_position[e, g, i, j] * P[e, side, j, k]
+                            turning += by_rate[e, g, i, j] * rate[e, side, j, k]
+                            turning += by_acceleration[e, g, i, j] * acceleration[e, side, j, k]
+                        change = dN[e, g, 2 * side + 1] * sloping + N[e, g, 2 * side + 1] * turning
+                        for a in range(4):
+                            S[a, i, at + d + k] += weighted[e, g, a] * change
+        add_rows(out[e], P[e], S, D, R)
