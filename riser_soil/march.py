@@ -55,6 +55,9 @@ class Carrying(Protocol):
 class Turning(Protocol):
     """A field whose dofs refer to axes that turn with it."""
 
+    offset: int
+    size: int
+
     def in_new_axes(self, conjugate: Array, increments: Array) -> Array:
         """Forces (field's slice) conjugate to the increments, as those of the step after these increments have them."""
         ...
@@ -85,6 +88,7 @@ class March:
         self._mass: RiserMass | None = None
         owners = (*system.model.fields, *system.model.parts)
         self._foreseeing = [owner for owner in owners if isinstance(owner, Foreseeing)]
+        self._turning = [field for field in system.model.fields if isinstance(field, Turning)]
         self._adaptive = [part for part in system.model.parts if isinstance(part, Adaptive)]
         self.before = self.now = before
         self.restart()
@@ -133,8 +137,15 @@ class March:
                         f"no convergence at t = {control.target:.6g} with the smallest step {control.dt:.3g}: {failure}"
                     ) from failure
 
+    def next_step(self, control: StepControl) -> Step:
+        """The step to be solved next."""
+        return self._step(control.target, control.dt)
+
+    def _step(self, t: float, dt: float) -> Step:
+        return Step(self.scheme, self.before, t, dt, self._history, self._guess(t, dt))
+
     def _solve(self, t: float, dt: float) -> Solution:
-        step = Step(self.scheme, self.before, t, dt, self._history, self._guess(t, dt))
+        step = self._step(t, dt)
         try:
             solution = self.newton.solve(step)
         except NotConvergedError:
@@ -249,8 +260,7 @@ class March:
 
     def _in_new_axes(self, conjugate: Array, increments: Array) -> Array:
         out = conjugate.copy()
-        for field in self.system.model.fields:
-            if isinstance(field, Turning):
-                at = slice(field.offset, field.offset + field.size)
-                out[at] = field.in_new_axes(conjugate[at], increments[at])
+        for field in self._turning:
+            at = slice(field.offset, field.offset + field.size)
+            out[at] = field.in_new_axes(conjugate[at], increments[at])
         return out

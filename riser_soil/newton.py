@@ -95,6 +95,7 @@ class Newton:
         self.system, self.settings = system, settings
         self._x = system.numbering.vector.duplicate()
         self._f = system.numbering.vector.duplicate()
+        self._judging = [owner for owner in system.model.fields if isinstance(owner, Judging)]
         self._snes = self._create()
 
     def _create(self) -> PETSc.SNES:
@@ -120,10 +121,14 @@ class Newton:
         if self._snes.getConvergedReason() <= 0:
             raise NotConvergedError(self._reason())
         state = self._trial(self._x)
-        for owner in self.system.model.fields:
-            if isinstance(owner, Judging) and (fault := owner.fault(state)):
-                raise NotConvergedError(fault)
+        self.judge(state)
         return Solution(state, self._forces, self._norms)
+
+    def judge(self, state: State) -> None:
+        """Raise NotConvergedError where a field finds fault with a state in balance."""
+        for owner in self._judging:
+            if fault := owner.fault(state):
+                raise NotConvergedError(fault)
 
     def require_stable(self, step: Step, solution: Solution) -> None:
         """Raise UnstableError where a static solution is an unstable equilibrium, such as an unbuckled strut.

@@ -159,14 +159,14 @@ def _add_mass(out: Array, scale: float, P: Array, columns: Array, shift: float, 
 @njit
 def add_rows(out: Array, P: Array, S: Array, D: Size, R: Size) -> None:
     """Add P^T S of one element to out (n, n); S: (4, d, n), rows conjugate to q, columns by the dofs."""
-    d, r = len(D), len(R)
+    d, r, columns = len(D), len(R), out.shape[1]
     n = d + r
     for side in range(2):
         for i in range(d):
-            for c in range(2 * n):
+            for c in range(columns):
                 out[side * n + i, c] += S[2 * side, i, c]
         for m in range(r):
-            for c in range(2 * n):
+            for c in range(columns):
                 total = 0.0
                 for i in range(d):
                     total += P[side, i, m] * S[2 * side + 1, i, c]

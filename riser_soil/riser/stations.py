@@ -16,6 +16,7 @@ from riser_soil.riser.hermite import Size, add_rows, shapes, slopes
 
 POINTS = 0.5 + np.sqrt(0.6) * np.array([-0.5, 0.0, 0.5])
 GAUSS = np.array([5.0, 8.0, 5.0]) / 18.0
+STATIONS = fixed(3)
 
 
 class Stations(NamedTuple):
@@ -161,23 +162,19 @@ def _add_tangent(
     D: Size,
     R: Size,
 ) -> None:
-    d, r = len(D), len(R)
+    d, r, columns = len(D), len(R), out.shape[1]
     n = d + r
-    moving, S = np.empty((d, d)), np.empty((4, d, 2 * n))
+    change, S = np.empty((len(STATIONS), d, columns)), np.empty((4, d, columns))
     for e in range(by_slope.shape[0]):
-        S[:] = 0.0
-        for g in range(by_slope.shape[1]):
-            for i in range(d):
-                for j in range(d):
-                    rates = shift_v * by_rate[e, g, i, j] + shift_a * by_acceleration[e, g, i, j]
-                    moving[i, j] = by_position[e, g, i, j] + rates
+        for g in range(len(STATIONS)):
             for side in range(2):
-                at = side * n
+                at, by_chord, by_end = side * n, dN[e, g, 2 * side], dN[e, g, 2 * side + 1]
+                position, tangent = N[e, g, 2 * side], N[e, g, 2 * side + 1]
                 for i in range(d):
                     for j in range(d):
-                        change = dN[e, g, 2 * side] * by_slope[e, g, i, j] + N[e, g, 2 * side] * moving[i, j]
-                        for a in range(4):
-                            S[a, i, at + j] += weighted[e, g, a] * change
+                        moving = by_position[e, g, i, j] + shift_v * by_rate[e, g, i, j]
+                        moving += shift_a * by_acceleration[e, g, i, j]
+                        change[g, i, at + j] = by_chord * by_slope[e, g, i, j] + position * moving
                     for k in range(r):
                         sloping, turning = 0.0, 0.0
                         for j in range(d):
@@ -185,7 +182,12 @@ def _add_tangent(
                             turning += by_position[e, g, i, j] * P[e, side, j, k]
                             turning += by_rate[e, g, i, j] * rate[e, side, j, k]
                             turning += by_acceleration[e, g, i, j] * acceleration[e, side, j, k]
-                        change = dN[e, g, 2 * side + 1] * sloping + N[e, g, 2 * side + 1] * turning
-                        for a in range(4):
-                            S[a, i, at + d + k] += weighted[e, g, a] * change
+                        change[g, i, at + d + k] = by_end * sloping + tangent * turning
+        for a in range(4):
+            for i in range(d):
+                for c in range(columns):  # as many as vector registers like: not unrolled
+                    total = 0.0
+                    for g in range(len(STATIONS)):
+                        total += weighted[e, g, a] * change[g, i, c]
+                    S[a, i, c] = total
         add_rows(out[e], P[e], S, D, R)
