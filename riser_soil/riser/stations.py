@@ -16,7 +16,6 @@ from riser_soil.riser.hermite import Size, add_rows, shapes, slopes
 
 POINTS = 0.5 + np.sqrt(0.6) * np.array([-0.5, 0.0, 0.5])
 GAUSS = np.array([5.0, 8.0, 5.0]) / 18.0
-STATIONS = fixed(3)
 
 
 class Stations(NamedTuple):
@@ -162,11 +161,11 @@ def _add_tangent(
     D: Size,
     R: Size,
 ) -> None:
-    d, r, columns = len(D), len(R), out.shape[1]
+    d, r, ng, columns = len(D), len(R), by_slope.shape[1], out.shape[1]
     n = d + r
-    change, S = np.empty((len(STATIONS), d, columns)), np.empty((4, d, columns))
+    change, S = np.empty((ng, d, columns)), np.empty((4, d, columns))
     for e in range(by_slope.shape[0]):
-        for g in range(len(STATIONS)):
+        for g in range(ng):
             for side in range(2):
                 at, by_chord, by_end = side * n, dN[e, g, 2 * side], dN[e, g, 2 * side + 1]
                 position, tangent = N[e, g, 2 * side], N[e, g, 2 * side + 1]
@@ -183,11 +182,10 @@ def _add_tangent(
                             turning += by_rate[e, g, i, j] * rate[e, side, j, k]
                             turning += by_acceleration[e, g, i, j] * acceleration[e, side, j, k]
                         change[g, i, at + d + k] = by_end * sloping + tangent * turning
-        for a in range(4):
-            for i in range(d):
-                for c in range(columns):  # as many as vector registers like: not unrolled
-                    total = 0.0
-                    for g in range(len(STATIONS)):
-                        total += weighted[e, g, a] * change[g, i, c]
-                    S[a, i, c] = total
+        S[:] = 0.0
+        for g in range(ng):
+            for a in range(4):
+                for i in range(d):
+                    for c in range(columns):  # a number unknown to the compiler is left to vector registers
+                        S[a, i, c] += weighted[e, g, a] * change[g, i, c]
         add_rows(out[e], P[e], S, D, R)
