@@ -1,72 +1,140 @@
-"""A riser alone: its Newton iteration against bare force, tangent and LU; simulated seconds per second."""
+"""A riser alone in full surge, 0.1 s a step: its Newton iterations against the bare work in them, and whole steps.
+
+Everything is measured in turn, step by step, so that a machine whose speed drifts changes all figures alike.
+"""
 
 from __future__ import annotations
 
+import tempfile
+import time
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from statistics import median
 
 import numpy as np
 from petsc4py import PETSc
 
-from benchmarks.stage import TimedStage, last_stage, random_right_hand_side, typical_seconds
+from benchmarks.stage import TimedStage, last_stage, random_right_hand_side
+from riser_soil.direct_solver import factorise_directly
+from riser_soil.newton import Newton, Step
+from riser_soil.observe import Observer
 from riser_soil.part import Forces, State
 from riser_soil.system import Clock
 
 SCENE = Path(__file__).parent.parent / "tests" / "scenes" / "catenary.yaml"
 SIZES = ((2, 35), (2, 100), (3, 100), (3, 400))
+RAMP, STEPS = 150, 140  # steps until the surge has grown; steps of one period
 
 
 def report() -> None:
-    for dimension, elements in SIZES:
-        overrides = (
-            f"dimension={dimension}",
-            f"riser.segments.0.elements={elements}",
-            "line_types.flexible.GJ=2.0e4",
-            "stages.1.duration=28.0",
-        )
-        stage = last_stage(SCENE, overrides, Clock.new())
-        stage.walk(20)
-        stage.iterations, stage.seconds = 0, 0.0
-        steps = 100
-        stage.walk(steps)
-        iteration, bare = stage.seconds / stage.iterations, bare_seconds(stage)
-        simulated = steps * 0.1 / stage.seconds
+    found = {size: measure(*size) for size in SIZES}
+    for (dimension, elements), us in found.items():
         print(
-            f"{dimension}D, {elements} elements: Newton iteration {iteration * 1e6:.0f} us, bare force + tangent + LU "
-            f"{bare * 1e6:.0f} us, ratio {iteration / bare:.2f}; {stage.iterations / steps:.2f} iterations a step, "
-            f"{simulated:.0f} times faster than real time"
+            f"{dimension}D, {elements} elements: Newton iteration {us['iteration']:.0f} us, "
+            f"bare force + tangent + LU {us['bare']:.0f} us, ratio {us['iteration'] / us['bare']:.2f}; "
+            f"SNES / plain loop {us['snes'] / us['plain']:.2f}"
         )
-        stage.destroy()
+        print(
+            f"  a step: {us['step']:.0f} us, {1e5 / us['step']:.0f} times faster than real time; recorded "
+            f"{us['recorded']:.0f} us, {1e5 / us['recorded']:.0f} times; {us['iterations']:.2f} iterations"
+        )
+    print(f"3D / 2D, 100 elements: {found[3, 100]['step'] / found[2, 100]['step']:.2f}")
 
 
-def bare_seconds(stage: TimedStage, repeats: int = 200) -> float:
-    """Force, tangent, and factorisation with one solve, without Newton, SNES or time scheme around them."""
-    system, march = stage.system, stage.march
-    weights = march.scheme.weights(0.1)
-    base = march.before
-    tiny = 1e-9 * random_right_hand_side(len(base.u))
-    matrix = system.matrix
-    pc = PETSc.PC().create(PETSc.COMM_SELF)
-    pc.setOperators(matrix.mat)
-    pc.setType("lu")
-    pc.setFactorOrdering("natural")
-    b = matrix.mat.createVecLeft()
-    b.array_w[:] = random_right_hand_side(b.size)
-    x = b.duplicate()
+def measure(dimension: int, elements: int) -> dict[str, float]:
+    """Medians in us: iteration, bare, snes, plain; mean us of a whole step, bare and recorded; mean iterations."""
+    stage = surging(dimension, elements)
+    bench = Bench(stage)
+    taken = defaultdict[str, list[float]](list)
+    with tempfile.TemporaryDirectory() as folder, Observer.open(stage.world, Clock.new(), Path(folder), True) as seen:
+        seen.begin_stage(stage.stage, stage.march.energy)
+        for _ in range(STEPS):
+            for name, action in bench.actions().items():
+                taken[name].append(1e6 * timed(action))
+            taken["iteration"].append(taken["full"][-1] / bench.full_iterations)
+            stage.iterations = 0
+            taken["step"].append(1e6 * timed(lambda: stage.walk(1)))
+            taken["iterations"].append(stage.iterations)
+            taken["recorded"].append(taken["step"][-1] + 1e6 * timed(lambda: stage.tell(seen)))
+    bench.destroy()
+    stage.destroy()
+    typical = {name: median(values) for name, values in taken.items()}
+    return typical | {name: float(np.mean(taken[name])) for name in ("step", "recorded", "iterations")}
 
-    def once() -> None:
-        state = State(0.0, tiny.copy(), base.v, base.a)
-        forces = Forces.zeros(len(tiny))
+
+def surging(dimension: int, elements: int) -> TimedStage:
+    """The surge of the published catenary, grown to its full amplitude."""
+    segment = f"riser.segments.0.elements={elements}"
+    stage = last_stage(SCENE, (f"dimension={dimension}", segment, "line_types.flexible.GJ=2.0e4"), Clock.new())
+    stage.walk(RAMP)
+    return stage
+
+
+def timed(action: Callable[[], object]) -> float:
+    """Seconds of an action."""
+    began = time.perf_counter()
+    action()
+    return time.perf_counter() - began
+
+
+class Bench:
+    """The next step of a stage, solved in several ways without being taken."""
+
+    def __init__(self, stage: TimedStage) -> None:
+        self.stage, self.system = stage, stage.system
+        self._full = Newton(self.system, replace(stage.newton.settings, reuse=0.0))
+        self._pc = PETSc.PC().create(PETSc.COMM_SELF)
+        factorise_directly(self._pc, self.system)
+        self._x, self._f, self._dx = (self.system.numbering.vector.duplicate() for _ in range(3))
+        self._tiny = 1e-9 * random_right_hand_side(self.system.numbering.size)
+        self.full_iterations = 1
+
+    def actions(self) -> dict[str, Callable[[], object]]:
+        """bare: force, tangent, and factorisation with one solve. full: Newton's method with a new tangent in each
+        iteration. snes: as a run solves it. plain: the same in a plain loop.
+        """
+        step = self.stage.march.next_step(self.stage.control)
+        return {
+            "bare": self._bare,
+            "full": lambda: self._solve_fully(step),
+            "snes": lambda: self.stage.newton.solve(step),
+            "plain": lambda: self._plain(step),
+        }
+
+    def _bare(self) -> None:
+        system, march = self.system, self.stage.march
+        state, weights = State(0.0, self._tiny.copy(), march.before.v, march.before.a), march.scheme.weights(0.1)
+        forces = Forces.zeros(len(self._tiny))
         for part in system.model.parts:
             part.residual(state, forces)
-        matrix.clear()
+        system.matrix.clear()
         for part in system.model.parts:
-            part.tangent(state, weights, matrix.values)
-        matrix.assemble()
-        pc.setUp()
-        pc.apply(b, x)
+            part.tangent(state, weights, system.matrix.values)
+        system.matrix.assemble()
+        self._pc.setUp()
+        self._pc.apply(self._f, self._dx)
 
-    seconds = typical_seconds(once, repeats)
-    assert np.isfinite(x.norm())
-    for thing in (pc, b, x):
-        thing.destroy()
-    return seconds
+    def _solve_fully(self, step: Step) -> None:
+        self.full_iterations = self._full.solve(step).iterations
+
+    def _plain(self, step: Step) -> None:
+        """What `Newton.solve` does, by Newton's own functions, with this loop in the place of SNES."""
+        newton, x, f, dx = self.stage.newton, self._x, self._f, self._dx
+        newton._begin(step)
+        newton._x.copy(x)
+        newton._function(None, x, f)
+        iteration = 0
+        while not newton._test(None, iteration, (0.0, 0.0, f.norm())):
+            newton._jacobian(None, x, None, None)
+            self._pc.setUp()
+            self._pc.apply(f, dx)
+            x.axpy(-1.0, dx)
+            newton._function(None, x, f)
+            iteration += 1
+        newton.judge(newton._trial(x))
+
+    def destroy(self) -> None:
+        for thing in (self._full, self._pc, self._x, self._f, self._dx):
+            thing.destroy()

@@ -15,6 +15,7 @@ from riser_soil.build import World, build
 from riser_soil.build.stage import scheme_of
 from riser_soil.march import March
 from riser_soil.newton import Newton, NewtonSettings
+from riser_soil.observe import Observer
 from riser_soil.part import State
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import DynamicStage, Stage
@@ -26,6 +27,7 @@ class TimedStage:
     """One stage's system and march; `iterations` and `seconds` of all its Newton solves."""
 
     def __init__(self, world: World, stage: Stage, before: State, clock: Clock) -> None:
+        self.world, self.stage = world, stage
         solver = world.scene.solver
         self.system = System(world.comm, world.begin(stage), clock)
         settings = NewtonSettings(solver.tolerance, solver.max_iterations, world.force_floor)
@@ -44,8 +46,13 @@ class TimedStage:
             self.seconds += time.perf_counter() - began
             self.iterations += step.solution.iterations
             self.march.commit(step, self.control)
+            self._taken = step
             steps = None if steps is None else steps - 1
         return self.march.before
+
+    def tell(self, observer: Observer) -> None:
+        """Record the step just taken."""
+        observer.record(self.march, self._taken, last=False)
 
     def destroy(self) -> None:
         self.newton.destroy()

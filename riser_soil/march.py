@@ -16,7 +16,7 @@ from riser_soil.newton import Newton, NotConvergedError, Solution, Step
 from riser_soil.part import Energy, Forces, State
 from riser_soil.stepping import StepControl
 from riser_soil.system import System, total
-from riser_soil.time_scheme import GeneralizedAlpha, Scheme, Static
+from riser_soil.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
 
 WRONG_ROOT = 0.2  # of the energy in motion: what a step may make out of nothing
 ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away
@@ -38,6 +38,29 @@ class Foreseeing(Protocol):
     """A part or field that knows a better first guess of a step than the last increment."""
 
     def improve(self, guess: State) -> Array: ...
+
+
+@runtime_checkable
+class Carrying(Protocol):
+    """A part whose rates at the end of a step are more than the state's; it starts each step from the state's."""
+
+    def begin(self, state: State) -> None: ...
+
+    def add_excess(self, state: State, out: Array) -> None:
+        """Add the momentum beyond that of the state's rates."""
+        ...
+
+
+@runtime_checkable
+class Turning(Protocol):
+    """A field whose dofs refer to axes that turn with it."""
+
+    offset: int
+    size: int
+
+    def in_new_axes(self, conjugate: Array, increments: Array) -> Array:
+        """Forces (field's slice) conjugate to the increments, as those of the step after these increments have them."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,13 +88,16 @@ class March:
         self._mass: RiserMass | None = None
         owners = (*system.model.fields, *system.model.parts)
         self._foreseeing = [owner for owner in owners if isinstance(owner, Foreseeing)]
+        self._turning = [field for field in system.model.fields if isinstance(field, Turning)]
         self._adaptive = [part for part in system.model.parts if isinstance(part, Adaptive)]
         self.before = self.now = before
         self.restart()
-        if isinstance(scheme, GeneralizedAlpha):
+        if not isinstance(scheme, Static):
             self._mass = RiserMass(system)
             self._start_rates(before)
-        self._history = self._forces_at_start()
+        self._carrying = [part for part in system.model.parts if isinstance(part, Carrying)]
+        self._begin_step()
+        self._history = self.system.forces(self.before) if self._needs_history else None
         self.energy = system.energy(self.before)
 
     def restart(self) -> None:
@@ -111,8 +137,15 @@ class March:
                         f"no convergence at t = {control.target:.6g} with the smallest step {control.dt:.3g}: {failure}"
                     ) from failure
 
+    def next_step(self, control: StepControl) -> Step:
+        """The step to be solved next."""
+        return self._step(control.target, control.dt)
+
+    def _step(self, t: float, dt: float) -> Step:
+        return Step(self.scheme, self.before, t, dt, self._history, self._guess(t, dt))
+
     def _solve(self, t: float, dt: float) -> Solution:
-        step = Step(self.scheme, self.before, t, dt, self._history, self._guess(t, dt))
+        step = self._step(t, dt)
         try:
             solution = self.newton.solve(step)
         except NotConvergedError:
@@ -143,7 +176,7 @@ class March:
     def _account(self, solution: Solution, control: StepControl, cuts: int) -> Accepted:
         state = solution.state
         turned = self.system.work(self.before, state)
-        supports = self.system.work_of_supports(self._forces, solution.forces, state.u)
+        supports = self.system.work_of_supports(self.scheme.mean(self._forces, solution.forces), state.u)
         work, energy = turned.external + supports, self.system.energy(state)
         self._refuse_wrong_root(energy, turned.dissipated, work)
         return Accepted(control.target, control.dt, solution, cuts, energy, turned.dissipated, work)
@@ -168,7 +201,8 @@ class March:
         state, forces = step.solution.state, step.solution.forces
         self.system.commit(state)
         self.before, self.now = self._rates_after(step)
-        self._forces, self._history = forces, self._forces_at_start()
+        self._begin_step()
+        self._forces, self._history = forces, self._forces_after(step) if self._needs_history else None
         self.energy = self._energy_after(step)
         self._past.accept(state.u, step.dt)
         control.accept(easy=step.solution.iterations <= EASY)
@@ -178,19 +212,55 @@ class March:
         """The state just committed, increments zero: with the bulk's rates alone, and as the riser moves."""
         solved, forces = step.solution.state, step.solution.forces
         state = State(solved.t, np.zeros_like(solved.u), solved.v, solved.a)
+        if isinstance(self.scheme, Midpoint):
+            now = self._in_balance(self._with_momentum(state))
+            return now, now
         if self.system.riser_alone or self._mass is None or not isinstance(self.scheme, GeneralizedAlpha):
             return state, state
         contact = self._mass.accelerations(state.t, -forces.end)
         bulk = self.scheme.split_contact(state, contact, step.dt)
         return bulk, State(bulk.t, bulk.u, bulk.v, bulk.a + contact)
 
+    def _begin_step(self) -> None:
+        for part in self._carrying:
+            part.begin(self.before)
+
+    def _with_momentum(self, state: State) -> State:
+        """An accepted state with the rates that have the momentum of the step's end."""
+        assert self._mass is not None
+        excess = np.zeros_like(state.v)
+        for part in self._carrying:
+            part.add_excess(state, excess)
+        return State(state.t, state.u, state.v + self._mass.accelerations(state.t, excess), state.a)
+
+    def _in_balance(self, state: State) -> State:
+        """An accepted state with the accelerations that its forces cause, as the scheme's own balance is elsewhere."""
+        assert self._mass is not None
+        held = np.where(self.system.prescribed, state.a, 0.0)
+        forces = self.system.forces(State(state.t, state.u, state.v, held))
+        return State(state.t, state.u, state.v, held + self._mass.accelerations(state.t, -total(forces)))
+
     def _energy_after(self, step: Accepted) -> Energy:
         """Stored energy of the accepted state: the step's, but kinetic as the riser moves."""
-        if self.system.riser_alone or self._mass is None:
+        as_solved = self.system.riser_alone and not isinstance(self.scheme, Midpoint)
+        if as_solved or self._mass is None:
             return step.energy
         return replace(step.energy, kinetic=self._mass.kinetic_energy(self.now))
 
-    def _forces_at_start(self) -> Forces | None:
-        """Bulk forces at the accepted state, in its own axes, where the scheme weighs them."""
-        needed = isinstance(self.scheme, GeneralizedAlpha) and self.scheme.needs_history
-        return self.system.forces(self.before) if needed else None
+    @property
+    def _needs_history(self) -> bool:
+        return isinstance(self.scheme, GeneralizedAlpha) and self.scheme.needs_history
+
+    def _forces_after(self, step: Accepted) -> Forces:
+        """Bulk forces at the state just accepted, in its own axes: the step's, unless contact has changed the rates."""
+        if not self.system.riser_alone:
+            return self.system.forces(self.before)
+        forces, u = step.solution.forces, step.solution.state.u
+        return Forces(*(self._in_new_axes(f, u) for f in (forces.inertia, forces.force, forces.end)))
+
+    def _in_new_axes(self, conjugate: Array, increments: Array) -> Array:
+        out = conjugate.copy()
+        for field in self._turning:
+            at = slice(field.offset, field.offset + field.size)
+            out[at] = field.in_new_axes(conjugate[at], increments[at])
+        return out

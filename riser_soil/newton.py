@@ -77,7 +77,7 @@ class Step:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """A converged step: its state, its forces by group, and the residual norm [N] of every iteration."""
+    """A converged step: the state at its end, the forces in balance by group, the residual norms [N]."""
 
     state: State
     forces: Forces
@@ -95,6 +95,7 @@ class Newton:
         self.system, self.settings = system, settings
         self._x = system.numbering.vector.duplicate()
         self._f = system.numbering.vector.duplicate()
+        self._judging = [owner for owner in system.model.fields if isinstance(owner, Judging)]
         self._snes = self._create()
 
     def _create(self) -> PETSc.SNES:
@@ -120,10 +121,14 @@ class Newton:
         if self._snes.getConvergedReason() <= 0:
             raise NotConvergedError(self._reason())
         state = self._trial(self._x)
-        for owner in self.system.model.fields:
-            if isinstance(owner, Judging) and (fault := owner.fault(state)):
-                raise NotConvergedError(fault)
+        self.judge(state)
         return Solution(state, self._forces, self._norms)
+
+    def judge(self, state: State) -> None:
+        """Raise NotConvergedError where a field finds fault with a state in balance."""
+        for owner in self._judging:
+            if fault := owner.fault(state):
+                raise NotConvergedError(fault)
 
     def require_stable(self, step: Step, solution: Solution) -> None:
         """Raise UnstableError where a static solution is an unstable equilibrium, such as an unbuckled strut.
@@ -169,8 +174,9 @@ class Newton:
         u = np.zeros(self.system.numbering.size)
         self.system.numbering.to_local(x, u)
         u[self.system.held] = self._held[0]
-        if self._state is None or not np.array_equal(u, self._state.u):
+        if self._state is None or (u != self._state.u).any():
             self._state = self._follow(u)
+            self._balanced = self._step.scheme.balanced_at(self._step.before, self._state, self._step.dt)
         return self._state
 
     def _follow(self, u: Array) -> State:
@@ -181,15 +187,16 @@ class Newton:
         return State(self._step.t, u, v, a)
 
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
-        state = self._trial(x)
-        self._forces = self.system.forces(state)
+        self._trial(x)
+        self._forces = self.system.forces(self._balanced)
         residual = self._step.scheme.combine(self._forces, self._step.start)
         self.system.numbering.add_to_global(residual, f)
 
     def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, jacobian: PETSc.Mat, p: PETSc.Mat) -> None:
         """A matrix left as it is keeps its factors."""
         if not self._reusable():
-            self.system.assemble(self._trial(x), self._weights)
+            self._trial(x)
+            self.system.assemble(self._balanced, self._weights)
 
     def _reusable(self) -> bool:
         """Whether the tangent of the iteration before will do."""

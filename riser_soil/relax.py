@@ -5,6 +5,8 @@ Used when Newton's method finds no equilibrium from the shape that a static stag
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from mpi4py import MPI
 
@@ -42,18 +44,31 @@ def relax(
         system.destroy()
 
 
+@dataclass
+class Attempts:
+    """At an equilibrium without drag. After n failures for want of stability the next comes n steps later."""
+
+    failures: int = 0
+    wait: int = 0
+
+    def due(self) -> bool:
+        self.wait -= 1
+        return self.wait <= 0
+
+    def count(self, failure: NotConvergedError) -> None:
+        self.failures += 1
+        self.wait = self.failures if isinstance(failure, UnstableError) else 0
+        if self.failures == MOST_ATTEMPTS:
+            raise SolveError(f"dynamic relaxation ends in no stable equilibrium: {failure}") from failure
+
+
 def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: float) -> int:
-    stiffest, iterations, failures, moved = part.drag * STIFFEST, 0, 0, np.inf
+    stiffest, iterations, moved, attempts = part.drag * STIFFEST, 0, np.inf, Attempts()
     for _ in range(MOST_STEPS):
-        if moved < NEARLY_THERE * line.length.min():
-            try:
-                return iterations + _step(system, newton, part, t, drag=0.0).iterations
-            except NotConvergedError as failure:
-                failures += 1
-                if failures == MOST_ATTEMPTS:
-                    raise SolveError(f"dynamic relaxation ends in no stable equilibrium: {failure}") from failure
-                if isinstance(failure, UnstableError):
-                    _nudge(system, line, t)
+        if moved < NEARLY_THERE * line.length.min() and attempts.due():
+            found = _without_drag(system, newton, part, line, t, attempts)
+            if found is not None:
+                return iterations + found.iterations
         try:
             solution = _step(system, newton, part, t, part.drag)
         except NotConvergedError as failure:
@@ -65,6 +80,19 @@ def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: fl
         moved = _largest_increment(system, line, solution)
         part.drag *= 0.4 if solution.iterations <= QUICK else 1.0
     raise SolveError(f"dynamic relaxation finds no equilibrium in {MOST_STEPS} pseudo-time steps")
+
+
+def _without_drag(
+    system: System, newton: Newton, part: Relaxation, line: Line, t: float, attempts: Attempts
+) -> Solution | None:
+    """An equilibrium where there is a stable one; nudged off where it is not."""
+    try:
+        return _step(system, newton, part, t, drag=0.0)
+    except NotConvergedError as failure:
+        attempts.count(failure)
+        if isinstance(failure, UnstableError):
+            _nudge(system, line, t)
+    return None
 
 
 def _step(system: System, newton: Newton, part: Relaxation, t: float, drag: float) -> Solution:

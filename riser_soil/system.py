@@ -98,10 +98,9 @@ class System:
         mine = sum((p.work(before, after) for p in self.model.parts), Work())
         return Work(*self.sum([mine.dissipated, mine.external]))
 
-    def work_of_supports(self, start: Forces, end: Forces, u: Array) -> float:
-        """Work [J] that prescribed motions put in over a step: mean reaction times increment."""
-        mean = 0.5 * (self.reactions(start) + self.reactions(end))
-        return self.sum([float(mean @ u[self.held])])[0]
+    def work_of_supports(self, mean: Forces, u: Array) -> float:
+        """Work [J] that prescribed motions put in over a step: reaction to the mean forces times increment."""
+        return self.sum([float(self.reactions(mean) @ u[self.held])])[0]
 
     def reactions(self, forces: Forces) -> Array:
         """What the supports of this rank's prescribed dofs exert [N, N.m]."""

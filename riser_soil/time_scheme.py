@@ -1,7 +1,7 @@
 """From increments to rates, and from the groups of forces to one residual.
 
-One code path for statics, Newmark and generalised-alpha. With bulk forces I + F and end-of-step forces E (contact,
-quasi-static soil), the residual of a step from n to n + 1 is
+One code path for statics, Newmark, generalised-alpha and the midpoint rule. With bulk forces I + F and end-of-step
+forces E (contact, quasi-static soil), the residual of a step from n to n + 1 is, but for the midpoint rule,
 
     R = W [(1 - am) I(n+1) + am I(n) + (1 - af) F(n+1) + af F(n)] + E(n+1),    W = 2 beta / (1 - am).
 
@@ -37,9 +37,24 @@ class Scheme(Protocol):
         """State at the end of the step for the increment u, taken as bulk motion alone."""
         ...
 
-    def combine(self, forces: Forces, start: Forces | None) -> Array:
-        """Local residual from the forces at the end and, where needed, the start of the step."""
+    def balanced_at(self, before: State, end: State, dt: float) -> State:
+        """Where in the step forces are asked for: at its end, or at another state that follows from the end."""
         ...
+
+    def combine(self, forces: Forces, start: Forces | None) -> Array:
+        """Local residual from the forces there and, where needed, at the start of the step."""
+        ...
+
+    def mean(self, start: Forces, balanced: Forces) -> Forces:
+        """Mean forces over the step, of second order."""
+        ...
+
+
+def mean_of(start: Forces, end: Forces) -> Forces:
+    """Mean of two sets of forces."""
+    return Forces(
+        0.5 * (start.inertia + end.inertia), 0.5 * (start.force + end.force), 0.5 * (start.end + end.end)
+    )
 
 
 @dataclass(frozen=True)
@@ -54,6 +69,12 @@ class Static:
     def trial(self, before: State, t: float, dt: float, u: Array) -> State:
         nothing = np.zeros_like(u)
         return State(t, u, nothing, nothing.copy())
+
+    def balanced_at(self, before: State, end: State, dt: float) -> State:
+        return end
+
+    def mean(self, start: Forces, balanced: Forces) -> Forces:
+        return mean_of(start, balanced)
 
     def combine(self, forces: Forces, start: Forces | None) -> Array:
         return forces.force + forces.end
@@ -101,6 +122,12 @@ class GeneralizedAlpha:
         v = before.v + dt * ((1.0 - self.gamma) * before.a + self.gamma * a)
         return State(t, u, v, a)
 
+    def balanced_at(self, before: State, end: State, dt: float) -> State:
+        return end
+
+    def mean(self, start: Forces, balanced: Forces) -> Forces:
+        return mean_of(start, balanced)
+
     def combine(self, forces: Forces, start: Forces | None) -> Array:
         bulk = (1.0 - self.alpha_m) * forces.inertia + (1.0 - self.alpha_f) * forces.force
         if start is not None:
@@ -112,3 +139,31 @@ class GeneralizedAlpha:
         a = state.a - contact / (2.0 * self.beta)
         v = state.v + dt * (1.0 - self.gamma / (2.0 * self.beta)) * contact
         return State(state.t, state.u, v, a)
+
+
+@dataclass(frozen=True)
+class Midpoint:
+    """The implicit midpoint rule: all forces in balance at the configuration half-way of the increments.
+
+    Rates at the end follow from u = dt (v(n) + v(n+1))/2. With inertia as in `riser.midpoint_inertia` linear and
+    angular momentum are kept to round-off. Not for contact or quasi-static soil, whose forces belong to the end.
+    """
+
+    needs_history = False
+
+    def weights(self, dt: float) -> Weights:
+        return Weights(inertia=1.0, force=1.0, shift_v=2.0 / dt, shift_a=4.0 / dt**2)
+
+    def trial(self, before: State, t: float, dt: float, u: Array) -> State:
+        v = 2.0 / dt * u - before.v
+        return State(t, u, v, 2.0 / dt * (v - before.v) - before.a)
+
+    def balanced_at(self, before: State, end: State, dt: float) -> State:
+        return State(end.t - 0.5 * dt, 0.5 * end.u, end.u / dt, (end.v - before.v) / dt)
+
+    def combine(self, forces: Forces, start: Forces | None) -> Array:
+        """Twice the balance, as the parts differentiate by half the increment."""
+        return 2.0 * (forces.inertia + forces.force + forces.end)
+
+    def mean(self, start: Forces, balanced: Forces) -> Forces:
+        return balanced

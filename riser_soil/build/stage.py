@@ -12,9 +12,9 @@ from riser_soil.part import Part
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, NewmarkScheme, Stage, StaticStage
+from riser_soil.scene.stages import DynamicStage, MidpointScheme, NewmarkScheme, Stage, StaticStage
 from riser_soil.scene.stages import Load as LoadScene
-from riser_soil.time_scheme import GeneralizedAlpha, Scheme, Static
+from riser_soil.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
 
 if TYPE_CHECKING:
     from riser_soil.riser.attachments import Attachment, Masses
@@ -25,6 +25,8 @@ def scheme_of(stage: Stage) -> Scheme:
     """How the stage goes from one step to the next."""
     if isinstance(stage, StaticStage):
         return Static()
+    if isinstance(stage.scheme, MidpointScheme):
+        return Midpoint()
     if isinstance(stage.scheme, NewmarkScheme):
         return GeneralizedAlpha.newmark(stage.scheme.newmark.beta, stage.scheme.newmark.gamma)
     return GeneralizedAlpha.from_rho_inf(stage.scheme.generalized_alpha.rho_inf)
@@ -64,8 +66,23 @@ def _factor(given: LoadScene, static: bool) -> Callable[[float], float]:
     return lambda t: float(np.interp(t, times, factors))
 
 
-def dynamic_parts(line: Line, elements: Elements, attachments: Sequence[Attachment] = ()) -> list[Part]:
+def dynamic_parts(
+    stage: DynamicStage, line: Line, elements: Elements, attachments: Sequence[Attachment] = ()
+) -> list[Part]:
     """What a riser has only in motion."""
+    parts = _inertia(line, elements, attachments)
+    if isinstance(stage.scheme, MidpointScheme):
+        from riser_soil.riser.midpoint_inertia import over_steps
+
+        parts = [over_steps(part) for part in parts]
+    if elements.damping.any():
+        from riser_soil.riser.structural_damping import StructuralDamping
+
+        parts.append(StructuralDamping(line, elements))
+    return parts
+
+
+def _inertia(line: Line, elements: Elements, attachments: Sequence[Attachment]) -> list[Part]:
     from riser_soil.riser.inertia import Inertia
 
     parts: list[Part] = [Inertia(line, elements.mass, _attached_mass(line, attachments))]
@@ -73,10 +90,6 @@ def dynamic_parts(line: Line, elements: Elements, attachments: Sequence[Attachme
         from riser_soil.riser.rotary_inertia import RotaryInertia
 
         parts.append(RotaryInertia(line, elements.rotary_inertia))
-    if elements.damping.any():
-        from riser_soil.riser.structural_damping import StructuralDamping
-
-        parts.append(StructuralDamping(line, elements))
     return parts
 
 

@@ -119,7 +119,7 @@ class World:
         hold_spin(self.scene, self.line, stage, self.elements)
         parts = [*self.riser_parts, *loads_of(self.line, stage)]
         if isinstance(stage, DynamicStage):
-            parts += dynamic_parts(self.line, self.elements, self.attachments)
+            parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
         soil = [self.soil] if self.soil is not None else []
         return Model(self.fields, [*parts, *soil, *self.contacts])

@@ -114,7 +114,7 @@ class Attachments:
 
     def residual(self, state: State, forces: Forces) -> None:
         if self.line.active:
-            self.line.scatter(self.line.trial(state).pull_back(self._F), forces.force)
+            self.line.collect(self.line.trial(state), self._F, forces.force)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:

@@ -56,12 +56,14 @@ class Beam:
 
     def residual(self, state: State, forces: Forces) -> None:
         if self.line.active:
-            self.line.scatter(self.element_forces(state)[1], forces.force)
+            trial = self.line.trial(state)
+            self.line.scatter(self._elastic.forces(trial), forces.force)
+            self.line.collect(trial, trial.once((self, "load"), self._load_forces), forces.force)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:
             trial, K, at = self.line.trial(state), values["riser"], self._loaded(self.line.trial(state))
-            K += weights.force * self._elastic.tangent(trial)
+            self._elastic.add_tangent(K, weights.force, trial)
             trial.add_turning(K, weights.force, trial.once((self, "load"), self._load_forces))
             uniform_load.add_tangent(K, weights.force, trial.turn.P, *at)
 

@@ -190,10 +190,10 @@ def strain_of(L: float, at: Shape, m: Move) -> Strain:
 
 
 @njit
-def forces_change(L: float, at: Shape, response: Response, m: Move, ds: Stress) -> NodalForces:
-    """Change of an element's forces when it moves and its stresses change by ds."""
+def forces_change(L: float, at: Shape, response: Response, m: Move, change: Strain, ds: Stress) -> NodalForces:
+    """Change of an element's forces when it moves, its strains change and its stresses change by ds."""
     elastic1, elastic2 = conjugate(L, at.end1.angles, at.end2.angles, at.stations, ds)
-    geometric1, geometric2 = conjugate_change(L, at.stations, response.stress, strain_of(L, at, m), m.da, m.db)
+    geometric1, geometric2 = conjugate_change(L, at.stations, response.stress, change, m.da, m.db)
     dm1 = add(moment(at.end1, add(elastic1, geometric1)), moment_variation(at.end1, response.mu1, m.spin1))
     dm2 = add(moment(at.end2, add(elastic2, geometric2)), moment_variation(at.end2, response.mu2, m.spin2))
     stressed = nodal_forces(at.frame.length, ds.axial / L, dm1, dm2)
@@ -205,9 +205,8 @@ def forces_change(L: float, at: Shape, response: Response, m: Move, ds: Stress) 
 def _vary(D: Stiffness, at: Shape, response: Response, u: Vec, w1: Vec, w2: Vec) -> NodalForces:
     """Variation of an element's forces when its nodes move by u = u2 - u1 and spin by w1, w2."""
     m = move(at, u, w1, w2)
-    return forces_change(
-        D.L, at, response, m, stress_change(D, at.strain, response.elastic, strain_of(D.L, at, m))
-    )
+    change = strain_of(D.L, at, m)
+    return forces_change(D.L, at, response, m, change, stress_change(D, at.strain, response.elastic, change))
 
 
 @njit
@@ -230,9 +229,17 @@ def forces_and_tangent(
     """Internal forces f (ne, 12) and their derivative K (ne, 12, 12) by displacements and spatial spins."""
     f, K = np.empty((len(chord), 12)), np.empty((len(chord), 12, 12))
     for e in range(len(chord)):
-        D = stiffness(ref, section, e)
-        at = shape(D.L, vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
-        response = _respond(D, _unstressed(ref, e), at)
-        put_forces(at.frame.axes, response.forces, f[e])
-        _tangent(D, at, response, K[e])
+        put_element(e, chord, frame1, frame2, ref, section, f[e], K[e])
     return f, K
+
+
+@njit
+def put_element(
+    e: int, chord: Array, frame1: Array, frame2: Array, ref: Reference, section: Section, f: Array, K: Array
+) -> None:
+    """Write forces f (12,) and tangent K (12, 12) of element e; all else as in `forces_and_tangent`."""
+    D = stiffness(ref, section, e)
+    at = shape(D.L, vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
+    response = _respond(D, _unstressed(ref, e), at)
+    put_forces(at.frame.axes, response.forces, f)
+    _tangent(D, at, response, K)

@@ -101,7 +101,7 @@ def _vary(D: Stiffness, at: Shape, flow: Flow, response: Response, m: Move, d: M
     """Change of an element's forces when it moves by m and its rates change by d."""
     bending = strain_change_variation(D.L, at.stations, flow.rates.da, flow.rates.db, m.da, m.db)
     ds = linear_stress(D, total(strain_of(D.L, at, d), bending))
-    return forces_change(D.L, at, response, m, ds)
+    return forces_change(D.L, at, response, m, strain_of(D.L, at, m), ds)
 
 
 @njit

@@ -5,7 +5,7 @@ for a rotation increment as a turn with the same members:
 
     tangent   unit tangents t at both ends of each element (ne, 2, d)
     P         dt/dTheta (ne, 2, d, r)
-    rates     t' and t'' from the rates and accelerations of the rotation dofs
+    motion    q' and q'' from the rates and accelerations of the dofs; see `hermite`
     maps      P and the derivatives of t', t'' with respect to Theta, rates following by the shifts
     geometric derivative of P^T F with respect to Theta at fixed F
 
@@ -14,13 +14,13 @@ t = R t0, t' = R (W x t0), t'' = R (A x t0 + W x (W x t0)).
 """
 
 import math
-from functools import cached_property
 
 import numpy as np
 
 from riser_soil.arrays import Array, BoolArray
-from riser_soil.compiled import njit
+from riser_soil.compiled import fixed, njit
 from riser_soil.riser import rotations
+from riser_soil.riser.hermite import interleave
 from riser_soil.riser.vectors import (
     Mat,
     Vec,
@@ -36,12 +36,14 @@ from riser_soil.riser.vectors import (
     scale,
     skew,
     store,
+    sub,
     transpose,
     vector,
 )
 from riser_soil.riser.vectors import add as plus
 
 Maps = tuple[Array, Array, Array]
+SPACE = fixed(3)
 
 
 class PlanarTurn:
@@ -64,13 +66,13 @@ class PlanarTurn:
         """Elements (ne,) whose ends differ by more than half a turn."""
         return np.asarray(np.abs(self.end_angle[:, 1] - self.end_angle[:, 0]) > np.pi)
 
-    def rates(self, v: Array, a: Array) -> tuple[Array, Array]:
-        """t' and t'' (ne, 2, 2) from angular velocity and acceleration (nn, 1)."""
-        first, second = _planar_combinations(self.tangent, self.normal, v, a, 0.0, 0.0)[:2]
-        return first, second
+    def motion(self, v: Array, a: Array) -> tuple[Array, Array]:
+        """q' and q'' (ne, 4, 2) from rates and accelerations of the dofs (nn, 3)."""
+        rate, acceleration = _planar_motion(self.tangent, self.normal, v, a)
+        return rate, acceleration
 
     def maps(self, v: Array, a: Array, shift_v: float, shift_a: float) -> Maps:
-        first, second = _planar_combinations(self.tangent, self.normal, v, a, shift_v, shift_a)[2:]
+        first, second = _planar_maps(self.tangent, self.normal, v, a, shift_v, shift_a)
         return self.P, first, second
 
     def geometric(self, F: Array) -> Array:
@@ -109,6 +111,10 @@ class PlanarFrames:
     def turn(self, increment: Array) -> PlanarTurn:
         return PlanarTurn(self.angle + increment[:, 0], self.alpha0)
 
+    def in_new_axes(self, moment: Array, increment: Array) -> Array:
+        """Moments (nn, 1) conjugate to the increment, as the next one has them."""
+        return moment
+
     def commit(self, increment: Array) -> None:
         self.angle = self.angle + increment[:, 0]
 
@@ -118,25 +124,21 @@ class SpatialTurn:
 
     def __init__(self, Rn: Array, Theta: Array, T0: Array) -> None:
         self.Rn, self.Theta, self.T0 = Rn, Theta, T0
-        self.R, self.H = node_frames(Rn, Theta)
-        self.frame1, self.frame2, self.tangent = end_frames(self.R, T0)
+        self.R, self.H, self.frame1, self.frame2, self.tangent, self.P = _orient(Rn, Theta, T0)
 
     def at(self, node: int) -> Array:
         """Orientation of a node: its frame (3, 3)."""
         return self.R[node]
 
-    @cached_property
-    def P(self) -> Array:
-        return _spatial_P(self.tangent, self.H)
-
     @property
     def wound(self) -> BoolArray:
         """Elements (ne,) whose ends turn by increments that differ by more than half a turn."""
-        return np.asarray(np.linalg.norm(np.diff(self.Theta, axis=0), axis=1) > np.pi)
+        return _wound(self.Theta)
 
-    def rates(self, v: Array, a: Array) -> tuple[Array, Array]:
-        """t' and t'' (ne, 2, 3) from body-axes angular velocity and acceleration (nn, 3)."""
-        return _spatial_rates(self.R, self.T0, v, a)
+    def motion(self, v: Array, a: Array) -> tuple[Array, Array]:
+        """q' and q'' (ne, 4, 3) from rates and accelerations of the dofs (nn, 6), angular ones in body axes."""
+        rate, acceleration = _spatial_motion(self.R, self.T0, v, a)
+        return rate, acceleration
 
     def maps(self, v: Array, a: Array, shift_v: float, shift_a: float) -> Maps:
         first, second = _spatial_maps(self.R, self.H, self.T0, v, a, shift_v, shift_a)
@@ -178,10 +180,13 @@ class SpatialFrames:
     def turn(self, increment: Array) -> SpatialTurn:
         return SpatialTurn(self.R, np.ascontiguousarray(increment), self.T0)
 
+    def in_new_axes(self, moment: Array, increment: Array) -> Array:
+        """Moments (nn, 3) conjugate to the increment, as the next one has them: those in the turned body's axes."""
+        return _to_body_axes(moment, increment)
+
     def commit(self, increment: Array) -> None:
         """Keep R, brought back to a rotation to second order (round-off would pile up over many steps)."""
-        R, _ = node_frames(self.R, np.ascontiguousarray(increment))
-        self.R = 1.5 * R - 0.5 * R @ np.swapaxes(R, 1, 2) @ R
+        self.R = _turned(self.R, increment)
 
 
 Frames = PlanarFrames | SpatialFrames
@@ -203,23 +208,73 @@ def _planar_ends(angle: Array, alpha0: Array) -> tuple[Array, Array, Array]:
 
 
 @njit
-def _planar_combinations(
-    tangent: Array, normal: Array, v: Array, a: Array, shift_v: float, shift_a: float
-) -> tuple[Array, Array, Array, Array]:
-    """t', t'' (ne, 2, 2) and their derivatives by the angle (ne, 2, 2, 1), from nodal rates v and a (nn, 1)."""
+def _planar_motion(tangent: Array, normal: Array, v: Array, a: Array) -> tuple[Array, Array]:
     ne = tangent.shape[0]
-    first, second = np.empty((ne, 2, 2)), np.empty((ne, 2, 2))
-    by_first, by_second = np.empty((ne, 2, 2, 1)), np.empty((ne, 2, 2, 1))
+    rate, acceleration = np.empty((ne, 4, 2)), np.empty((ne, 4, 2))
+    for e in range(ne):
+        for side in range(2):
+            w, alpha = v[e + side, 2], a[e + side, 2]
+            for i in range(2):
+                t, n = tangent[e, side, i], normal[e, side, i]
+                rate[e, 2 * side, i], acceleration[e, 2 * side, i] = v[e + side, i], a[e + side, i]
+                rate[e, 2 * side + 1, i] = w * n
+                acceleration[e, 2 * side + 1, i] = alpha * n - w**2 * t
+    return rate, acceleration
+
+
+@njit
+def _planar_maps(
+    tangent: Array, normal: Array, v: Array, a: Array, shift_v: float, shift_a: float
+) -> tuple[Array, Array]:
+    """Derivatives of t' and t'' by the angle, each (ne, 2, 2, 1), from angular rates v and a (nn, 1)."""
+    ne = tangent.shape[0]
+    first, second = np.empty((ne, 2, 2, 1)), np.empty((ne, 2, 2, 1))
     for e in range(ne):
         for side in range(2):
             w, alpha = v[e + side, 0], a[e + side, 0]
             for i in range(2):
                 t, n = tangent[e, side, i], normal[e, side, i]
-                first[e, side, i] = w * n
-                second[e, side, i] = alpha * n - w**2 * t
-                by_first[e, side, i, 0] = shift_v * n - w * t
-                by_second[e, side, i, 0] = (shift_a - w**2) * n - (alpha + 2.0 * shift_v * w) * t
-    return first, second, by_first, by_second
+                first[e, side, i, 0] = shift_v * n - w * t
+                second[e, side, i, 0] = (shift_a - w**2) * n - (alpha + 2.0 * shift_v * w) * t
+    return first, second
+
+
+@njit
+def _orient(Rn: Array, Theta: Array, T0: Array) -> tuple[Array, Array, Array, Array, Array, Array]:
+    """R and H of the nodes, frames and tangents of the elements' ends, P."""
+    R, H = node_frames(Rn, Theta)
+    first, second, tangent = end_frames(R, T0)
+    return R, H, first, second, tangent, _spatial_P(tangent, H)
+
+
+@njit
+def _turned(Rn: Array, Theta: Array) -> Array:
+    """R = Rn exp(Theta) (nn, 3, 3), rounded to 3 R/2 - R R' R/2."""
+    out = np.empty_like(Rn)
+    for i in range(Rn.shape[0]):
+        R = matmul(matrix(Rn[i]), rotations.exp(vector(Theta[i])))
+        square = matmul(R, transpose(R))
+        store(matadd(matscale(1.5, R), matscale(-0.5, matmul(square, R))), out[i])
+    return out
+
+
+@njit
+def _wound(Theta: Array) -> BoolArray:
+    wound = np.empty(Theta.shape[0] - 1, dtype=np.bool_)
+    for e in range(wound.size):
+        turn = sub(vector(Theta[e + 1]), vector(Theta[e]))
+        wound[e] = dot(turn, turn) > math.pi**2
+    return wound
+
+
+@njit
+def _to_body_axes(moment: Array, Theta: Array) -> Array:
+    """T_R^-1 and the turn to the new axes together are the transpose of T_R^-1, that is T_L^-1."""
+    out = np.empty_like(moment)
+    for i in range(moment.shape[0]):
+        turned = matvec(rotations.left_tangent_inverse(vector(Theta[i])), vector(moment[i]))
+        out[i, 0], out[i, 1], out[i, 2] = turned
+    return out
 
 
 @njit
@@ -273,6 +328,12 @@ def _spatial_rates(R: Array, T0: Array, v: Array, a: Array) -> tuple[Array, Arra
             bend = matvec(frame, plus(cross(alpha, t0), cross(w, turning)))
             second[e, side, 0], second[e, side, 1], second[e, side, 2] = bend
     return first, second
+
+
+@njit
+def _spatial_motion(R: Array, T0: Array, v: Array, a: Array) -> tuple[Array, Array]:
+    first, second = _spatial_rates(R, T0, v[:, 3:], a[:, 3:])
+    return interleave(v, first, SPACE), interleave(a, second, SPACE)
 
 
 @njit

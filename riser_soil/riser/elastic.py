@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.arrays import Array
+from riser_soil.compiled import njit
 from riser_soil.riser import beam2d, beam3d, increments
 from riser_soil.riser.directors import PlanarFrames, PlanarTurn, SpatialFrames, SpatialTurn
 from riser_soil.riser.line import Line
@@ -35,10 +36,9 @@ class PlanarElements:
         """(ne, 6)."""
         return np.asarray(beam2d.forces(*self.configuration(trial), self.reference, self.section))
 
-    def tangent(self, trial: Trial) -> Array:
-        """(ne, 6, 6)."""
-        at = self.configuration(trial)
-        return np.asarray(beam2d.forces_and_tangent(*at, self.reference, self.section)[1])
+    def add_tangent(self, out: Array, weight: float, trial: Trial) -> None:
+        """Add weight times the tangents to out (ne, 6, 6)."""
+        out += weight * beam2d.forces_and_tangent(*self.configuration(trial), self.reference, self.section)[1]
 
 
 class SpatialElements:
@@ -59,16 +59,44 @@ class SpatialElements:
 
     def forces(self, trial: Trial) -> Array:
         """(ne, 12), conjugate to displacements and rotation increments."""
-        f = beam3d.forces(*self.configuration(trial), self.reference, self.section)
-        increments.forces_to_increments(f, _spatial(trial).H)
-        return np.asarray(f)
+        at = self.configuration(trial)
+        return np.asarray(_spatial_forces(*at, self.reference, self.section, _spatial(trial).H))
 
-    def tangent(self, trial: Trial) -> Array:
-        """(ne, 12, 12)."""
-        turn = _spatial(trial)
-        f, K = beam3d.forces_and_tangent(*self.configuration(trial), self.reference, self.section)
-        increments.to_increments(f, K, turn.H, turn.Rn, turn.Theta)
-        return np.asarray(K)
+    def add_tangent(self, out: Array, weight: float, trial: Trial) -> None:
+        """Add weight times the tangents to out (ne, 12, 12)."""
+        turn, at = _spatial(trial), self.configuration(trial)
+        _add_spatial_tangent(out, weight, *at, self.reference, self.section, turn.H, turn.Rn, turn.Theta)
+
+
+@njit
+def _spatial_forces(
+    chord: Array, frame1: Array, frame2: Array, reference: beam3d.Reference, section: beam3d.Section, H: Array
+) -> Array:
+    f = beam3d.forces(chord, frame1, frame2, reference, section)
+    increments.forces_to_increments(f, H)
+    return f
+
+
+@njit
+def _add_spatial_tangent(
+    out: Array,
+    weight: float,
+    chord: Array,
+    frame1: Array,
+    frame2: Array,
+    reference: beam3d.Reference,
+    section: beam3d.Section,
+    H: Array,
+    Rn: Array,
+    Theta: Array,
+) -> None:
+    f, K = np.empty(12), np.empty((12, 12))
+    for e in range(len(chord)):
+        beam3d.put_element(e, chord, frame1, frame2, reference, section, f, K)
+        increments.tangent_to_increments(e, f, K, H, Rn, Theta)
+        for i in range(12):
+            for j in range(12):
+                out[e, i, j] += weight * K[i, j]
 
 
 def elastic_elements(line: Line, elements: Elements) -> PlanarElements | SpatialElements:

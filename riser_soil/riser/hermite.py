@@ -113,6 +113,25 @@ def _pull_back(F: Array, P: Array, D: Size, R: Size) -> Array:
     return out
 
 
+def collect(F: Array, P: Array, nodal: Array) -> None:
+    """Add F (ne, 4, d) conjugate to q, pulled back and summed along the chain, to nodal (nn, d + r)."""
+    _collect(F, P, nodal, fixed(P.shape[2]), fixed(P.shape[3]))
+
+
+@njit
+def _collect(F: Array, P: Array, nodal: Array, D: Size, R: Size) -> None:
+    d = len(D)
+    for e in range(P.shape[0]):
+        for side in range(2):
+            for i in range(d):
+                nodal[e + side, i] += F[e, 2 * side, i]
+            for k in range(len(R)):
+                total = 0.0
+                for i in range(d):
+                    total += P[e, side, i, k] * F[e, 2 * side + 1, i]
+                nodal[e + side, d + k] += total
+
+
 def add_mass(out: Array, scale: float, P: Array, columns: Array, shift: float, M: Array) -> None:
     """Add scale P^T M D to out (ne, n, n), D being the derivative of q'' by the dofs; M (ne, 4, 4) as in `weigh`.
 
@@ -140,14 +159,14 @@ def _add_mass(out: Array, scale: float, P: Array, columns: Array, shift: float, 
 @njit
 def add_rows(out: Array, P: Array, S: Array, D: Size, R: Size) -> None:
     """Add P^T S of one element to out (n, n); S: (4, d, n), rows conjugate to q, columns by the dofs."""
-    d, r = len(D), len(R)
+    d, r, columns = len(D), len(R), out.shape[1]
     n = d + r
     for side in range(2):
         for i in range(d):
-            for c in range(2 * n):
+            for c in range(columns):
                 out[side * n + i, c] += S[2 * side, i, c]
         for m in range(r):
-            for c in range(2 * n):
+            for c in range(columns):
                 total = 0.0
                 for i in range(d):
                     total += P[side, i, m] * S[2 * side + 1, i, c]

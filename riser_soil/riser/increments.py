@@ -58,8 +58,14 @@ def to_increments(f: Array, K: Array, H: Array, Rn: Array, Theta: Array) -> None
     H, Rn (nn, 3, 3) and Theta (nn, 3) belong to the nodes. K becomes the Hessian of the strain energy.
     """
     for e in range(len(f)):
-        for end in range(2):
-            n, at = e + end, 3 + 6 * end
-            moment = vector(f[e, at : at + 3])
-            _end_to_increments(K[e], at, moment, matrix(H[n]), matrix(Rn[n]), vector(Theta[n]))
+        tangent_to_increments(e, f[e], K[e], H, Rn, Theta)
     forces_to_increments(f, H)
+
+
+@njit
+def tangent_to_increments(e: int, f: Array, K: Array, H: Array, Rn: Array, Theta: Array) -> None:
+    """Turn the tangent K (12, 12) of element e, whose forces by spins are f (12,)."""
+    for end in range(2):
+        n, at = e + end, 3 + 6 * end
+        moment = vector(f[at : at + 3])
+        _end_to_increments(K, at, moment, matrix(H[n]), matrix(Rn[n]), vector(Theta[n]))

@@ -57,7 +57,8 @@ class Inertia:
 
     def residual(self, state: State, forces: Forces) -> None:
         if self.line.active:
-            self.line.scatter(self._all_forces(state), forces.inertia)
+            trial = self.line.trial(state)
+            self.line.collect(trial, trial.once((self, "F"), self._F), forces.inertia)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:

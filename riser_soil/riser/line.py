@@ -16,6 +16,7 @@ from riser_soil.arrays import Array, BoolArray, IntArray
 from riser_soil.compiled import njit
 from riser_soil.errors import SceneError
 from riser_soil.part import Block, State
+from riser_soil.riser import hermite
 from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames
 from riser_soil.riser.ends import End, Turning
 from riser_soil.riser.trial import Trial
@@ -82,6 +83,7 @@ class Line:
         self._supports = self._bases = {node: unturned.at(node).copy() for node in (0, self.arc.size - 1)}
         self.offset = 0
         self._first: Trial | None = None
+        self._left: Trial | None = None
         self._trials: deque[Trial] = deque(maxlen=2)
         self._number()
         self.hold_spin(hold_spin)
@@ -127,7 +129,11 @@ class Line:
 
     def nodal(self, values: Array) -> Array:
         """View (nn, ndof) of the riser's slice of a local array."""
-        return values[self.part].reshape(self.nodes, self.ndof)
+        return values[self.offset : self.offset + self.size].reshape(self.nodes, self.ndof)
+
+    def collect(self, trial: Trial, F: Array, values: Array) -> None:
+        """Add a residual (ne, 4, d) conjugate to the trial's q to the riser's slice of a local array."""
+        hermite.collect(F, trial.turn.P, self.nodal(values))
 
     def scatter(self, element: Array, values: Array) -> None:
         """Add element arrays (ne, 2 ndof) along the chain to the riser's slice of a local array."""
@@ -180,9 +186,18 @@ class Line:
             self._trials.appendleft(trial)
         return trial
 
+    def left_at(self, before: State) -> Trial:
+        """The line where a step begins, for all but the rotation dofs: the trial in which the last step has left it, so
+        that parts need not look at it anew, unless its rates have been changed since.
+        """
+        left = self._left
+        if left is not None and before.v is left.state.v and before.a is left.state.a and before.t == left.state.t:
+            return left
+        return self.trial(before)
+
     def forget(self) -> None:
         """Drop the trials that are kept."""
-        self._first = None
+        self._first = self._left = None
         self._trials.clear()
 
     def _make_trial(self, state: State) -> Trial:
@@ -190,6 +205,13 @@ class Line:
         x = self.x + u[:, :d]
         chord = self.chord + np.subtract(u[1:, :d], u[:-1, :d])
         return Trial(state, x, chord, self.frames.turn(u[:, d:]), (self.nodal(state.v), self.nodal(state.a)))
+
+    def in_new_axes(self, conjugate: Array, increments: Array) -> Array:
+        """Forces (size,) conjugate to the increments, as those of the step after these increments have them."""
+        out = conjugate.copy().reshape(self.nodes, self.ndof)
+        turned = increments.reshape(self.nodes, self.ndof)[:, self.dimension :]
+        out[:, self.dimension :] = self.frames.in_new_axes(out[:, self.dimension :], turned)
+        return out.ravel()
 
     def commit(self, state: State) -> None:
         """Accept the increments of a state; chords sum theirs, so their round-off is not that of far
@@ -200,6 +222,7 @@ class Line:
         self.frames.commit(self.nodal(state.u)[:, self.dimension :])
         self._supports = {node: self.support(node, state.t) for node in self._supports}
         self.forget()
+        self._left = trial
 
     def begin_stage(self) -> None:
         """Supports turn from where they are now."""
@@ -234,13 +257,12 @@ class Line:
         pipe knows nothing like it, and an end spring would count the turns.
         """
         trial = self.trial(state)
-        ahead = np.sum(trial.turn.tangent * trial.chord[:, None, :], axis=2).min(axis=1)
-        faulty = np.flatnonzero((ahead <= 0.0) | trial.turn.wound)
-        if faulty.size == 0:
+        faulty = _folded(trial.chord, trial.turn.tangent) | trial.turn.wound
+        if not faulty.any():
             return ""
         return (
-            f"the riser is folded at arc {self.arc[faulty[0]]:.6g} m, where an element's end turns by more than 90 "
-            "degrees from its chord; start nearer to the shape sought, or take shorter elements or steps"
+            f"the riser is folded at arc {self.arc[faulty.argmax()]:.6g} m, where an element's end turns by more than "
+            "90 degrees from its chord; start nearer to the shape sought, or take shorter elements or steps"
         )
 
     def to_global(self, x: Array) -> Array:
@@ -281,6 +303,19 @@ class Line:
             else ("force x", "force y", "vertical force", "moment 1", "moment 2", "moment 3")
         )
         return f"riser node at arc {self.arc[node]:.6g} m, {names[dof]}"
+
+
+@njit
+def _folded(chord: Array, tangent: Array) -> BoolArray:
+    """Elements (ne,) with an end whose tangent points against the chord."""
+    folded = np.zeros(chord.shape[0], dtype=np.bool_)
+    for e in range(chord.shape[0]):
+        for side in range(2):
+            ahead = 0.0
+            for i in range(chord.shape[1]):
+                ahead += chord[e, i] * tangent[e, side, i]
+            folded[e] |= ahead <= 0.0
+    return folded
 
 
 @njit

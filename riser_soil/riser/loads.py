@@ -100,7 +100,7 @@ class PointLoads:
         out = np.zeros_like(state.u)
         self._add(self.line.trial(state), out)
         inside = np.zeros_like(state.u)
-        self.line.scatter(self.line.trial(state).pull_back(self._F(state.t, self._within)), inside)
+        self.line.collect(self.line.trial(state), self._F(state.t, self._within), inside)
         return self.line.nodal(out - inside)
 
     def residual(self, state: State, forces: Forces) -> None:
@@ -108,7 +108,7 @@ class PointLoads:
             self._add(self.line.trial(state), forces.force)
 
     def _add(self, trial: Trial, out: Array) -> None:
-        self.line.scatter(trial.pull_back(self._F(trial.state.t, self._loads)), out)
+        self.line.collect(trial, self._F(trial.state.t, self._loads), out)
         rotations = self.line.nodal(out)[:, self.line.dimension :]
         for load, node in self._moments:
             rotations[node] -= self._conjugate(trial, node, self._moment(load, trial.state.t))

@@ -64,7 +64,8 @@ class RotaryInertia:
 
     def __init__(self, line: Line, inertia: Array) -> None:
         self.line, self.symmetric = line, line.dimension == 2
-        self._sections = _sections(line, 0.5 * line.length * inertia)
+        self.of_ends = 0.5 * line.length * inertia  # kg m2
+        self._sections = _sections(line, self.of_ends)
 
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}

@@ -167,18 +167,6 @@ def add_tangent(out: Array, at: Stations, by: Derivatives, columns: Columns) -> 
 
 
 @njit
-def _spread(P: Array, shift: float, e: int, out: Array, D: Size, R: Size) -> None:
-    """Write the columns of both ends' position and tangent to out (d, n)."""
-    d, r = len(D), len(R)
-    for i in range(d):
-        for side in range(2):
-            for k in range(d):
-                out[i, side * (d + r) + k] = shift if i == k else 0.0
-            for k in range(r):
-                out[i, side * (d + r) + d + k] = P[e, side, i, k]
-
-
-@njit
 def _add_tangent(
     out: Array,
     N: Array,
@@ -196,28 +184,34 @@ def _add_tangent(
     D: Size,
     R: Size,
 ) -> None:
-    d, half = len(D), len(D) + len(R)
-    n = 2 * half
-    q, q1, q2 = np.empty((d, n)), np.empty((d, n)), np.empty((d, n))
-    rows = np.empty((4, d, n))
+    d, r, ng, columns = len(D), len(R), by_slope.shape[1], out.shape[1]
+    n = d + r
+    change, S = np.empty((ng, d, columns)), np.empty((4, d, columns))
     for e in range(by_slope.shape[0]):
-        _spread(P, 1.0, e, q, D, R)
-        _spread(rate, shift_v, e, q1, D, R)
-        _spread(acceleration, shift_a, e, q2, D, R)
-        rows[:] = 0.0
-        for g in range(by_slope.shape[1]):
-            for i in range(d):
-                for c in range(n):
-                    b = 2 * (c // half) + (1 if c % half >= d else 0)
-                    turning, moving = 0.0, 0.0
+        for g in range(ng):
+            for side in range(2):
+                at, by_chord, by_end = side * n, dN[e, g, 2 * side], dN[e, g, 2 * side + 1]
+                position, tangent = N[e, g, 2 * side], N[e, g, 2 * side + 1]
+                for i in range(d):
                     for j in range(d):
-                        turning += by_slope[e, g, i, j] * q[j, c]
-                        moving += by_position[e, g, i, j] * q[j, c]
-                        moving += by_rate[e, g, i, j] * q1[j, c] + by_acceleration[e, g, i, j] * q2[j, c]
-                    change = dN[e, g, b] * turning + N[e, g, b] * moving
-                    for a in range(4):
-                        rows[a, i, c] += weighted[e, g, a] * change
-        add_rows(out[e], P[e], rows, D, R)
+                        moving = by_position[e, g, i, j] + shift_v * by_rate[e, g, i, j]
+                        moving += shift_a * by_acceleration[e, g, i, j]
+                        change[g, i, at + j] = by_chord * by_slope[e, g, i, j] + position * moving
+                    for k in range(r):
+                        sloping, turning = 0.0, 0.0
+                        for j in range(d):
+                            sloping += by_slope[e, g, i, j] * P[e, side, j, k]
+                            turning += by_position[e, g, i, j] * P[e, side, j, k]
+                            turning += by_rate[e, g, i, j] * rate[e, side, j, k]
+                            turning += by_acceleration[e, g, i, j] * acceleration[e, side, j, k]
+                        change[g, i, at + d + k] = by_end * sloping + tangent * turning
+        S[:] = 0.0
+        for g in range(ng):
+            for a in range(4):
+                for i in range(d):
+                    for c in range(columns):  # a number unknown to the compiler is left to vector registers
+                        S[a, i, c] += weighted[e, g, a] * change[g, i, c]
+        add_rows(out[e], P[e], S, D, R)
 
 
 def add_stiffness(out: Array, at: Stations, elements: IntArray, by_position: Array, P: Array) -> None:
@@ -231,19 +225,25 @@ def add_stiffness(out: Array, at: Stations, elements: IntArray, by_position: Arr
 def _add_stiffness(
     out: Array, N: Array, weighted: Array, elements: IntArray, by_position: Array, P: Array, D: Size, R: Size
 ) -> None:
-    d, half = len(D), len(D) + len(R)
-    q, rows = np.empty((d, 2 * half)), np.empty((4, d, 2 * half))
+    d, r, columns = len(D), len(R), out.shape[1]
+    n = d + r
+    change, S = np.empty((d, columns)), np.empty((4, d, columns))
     for m in range(elements.size):
         e = elements[m]
-        _spread(P, 1.0, e, q, D, R)
-        rows[:] = 0.0
+        S[:] = 0.0
         for g in range(by_position.shape[1]):
-            for i in range(d):
-                for c in range(2 * half):
-                    b = 2 * (c // half) + (1 if c % half >= d else 0)
-                    change = 0.0
+            for side in range(2):
+                at, position, tangent = side * n, N[e, g, 2 * side], N[e, g, 2 * side + 1]
+                for i in range(d):
                     for j in range(d):
-                        change += by_position[m, g, i, j] * q[j, c]
-                    for a in range(4):
-                        rows[a, i, c] += weighted[e, g, a] * N[e, g, b] * change
-        add_rows(out[e], P[e], rows, D, R)
+                        change[i, at + j] = position * by_position[m, g, i, j]
+                    for k in range(r):
+                        turning = 0.0
+                        for j in range(d):
+                            turning += by_position[m, g, i, j] * P[e, side, j, k]
+                        change[i, at + d + k] = tangent * turning
+            for a in range(4):
+                for i in range(d):
+                    for c in range(columns):
+                        S[a, i, c] += weighted[e, g, a] * change[i, c]
+        add_rows(out[e], P[e], S, D, R)

@@ -12,10 +12,8 @@ import math
 from typing import NamedTuple
 
 from riser_soil.compiled import njit
+from riser_soil.riser.angle_over_sine import angle_over_sine
 from riser_soil.riser.vectors import Mat, Vec, add, cross, dot, scale
-
-SERIES_BELOW = 0.03  # 1 - cos(alpha) under which the closed form of f'' loses digits
-SERIES_TERMS = 10
 
 
 class Swing(NamedTuple):
@@ -29,25 +27,10 @@ class Swing(NamedTuple):
 
 
 @njit
-def swing_coefficients(cosine: float, sine: float) -> tuple[float, float, float]:
-    """f = alpha/sin(alpha) and its first two derivatives by cos(alpha)."""
-    if cosine > 1.0 - SERIES_BELOW:
-        x = 1.0 - cosine
-        f, df, ddf = 1.0, 0.0, 0.0
-        for n in range(SERIES_TERMS, 0, -1):
-            ratio = n / (2.0 * n + 1.0)
-            f, df, ddf = 1.0 + ratio * x * f, ratio * (f + x * df), ratio * (2.0 * df + x * ddf)
-        return f, -df, ddf
-    f = math.atan2(sine, cosine) / sine
-    df = (cosine * f - 1.0) / (sine * sine)
-    return f, df, (f + 3.0 * cosine * df) / (sine * sine)
-
-
-@njit
 def split(A: Mat) -> Swing:
     """Twist and swing of the rotation matrix A."""
     t = (A[0][0], A[1][0], A[2][0])
-    f, df, ddf = swing_coefficients(t[0], math.sqrt(t[1] * t[1] + t[2] * t[2]))
+    f, df, ddf = angle_over_sine(t[0], math.sqrt(t[1] * t[1] + t[2] * t[2]))
     tau = math.atan2(A[2][1] - A[1][2], A[1][1] + A[2][2])
     return Swing((tau, -f * t[2], f * t[1]), t, f, df, ddf)
 

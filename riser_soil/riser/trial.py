@@ -45,19 +45,18 @@ class Trial:
         return _interleave(self.x, self.turn.tangent)
 
     @cached_property
-    def _director_rates(self) -> tuple[Array, Array]:
-        d = self.x.shape[1]
-        return self.turn.rates(self._v[:, d:], self._a[:, d:])
+    def _motion(self) -> tuple[Array, Array]:
+        return self.turn.motion(self._v, self._a)
 
-    @cached_property
+    @property
     def q_rate(self) -> Array:
         """q' (ne, 4, d)."""
-        return _interleave(self._v, self._director_rates[0])
+        return self._motion[0]
 
-    @cached_property
+    @property
     def q_acceleration(self) -> Array:
         """q'' (ne, 4, d)."""
-        return _interleave(self._a, self._director_rates[1])
+        return self._motion[1]
 
     def pull_back(self, F: Array) -> Array:
         """Element residual in the dofs (ne, 2 ndof) of F (ne, 4, d) conjugate to q."""

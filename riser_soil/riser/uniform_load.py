@@ -16,30 +16,10 @@ import numpy as np
 
 from riser_soil.arrays import Array
 from riser_soil.compiled import fixed, njit
+from riser_soil.riser.angle_over_sine import angle_over_sine
 from riser_soil.riser.hermite import Size
 
-SERIES_BELOW = 0.05  # 1 - cos(theta) under which closed forms lose digits and the series has converged
-SERIES: Array = np.cumprod([1.0] + [2.0 * n / (2.0 * n + 1.0) for n in range(1, 13)])[::-1].copy()
-
-
 Three = tuple[float, float, float]
-
-
-@njit
-def angle_over_sine(c: float) -> Three:
-    """g = theta/sin(theta) and its first two derivatives by c = cos(theta), for theta below pi."""
-    g, slope, bend = 0.0, 0.0, 0.0
-    if 1.0 - c < SERIES_BELOW:
-        x = 0.5 * (1.0 - c)  # sin^2(theta/2)
-        for coefficient in SERIES:
-            bend = bend * x + 2.0 * slope
-            slope = slope * x + g
-            g = g * x + coefficient
-        return g, -0.5 * slope, 0.25 * bend
-    sine2 = 1.0 - c * c
-    g = math.acos(c) / math.sqrt(sine2)
-    slope = (c * g - 1.0) / sine2
-    return g, slope, (g + 3.0 * c * slope) / sine2
 
 
 @njit
@@ -60,8 +40,14 @@ def _axis(D: Size, chord: Array, e: Array) -> float:
 
 
 @njit
+def _factor(c: float) -> Three:
+    """g and its derivatives by c."""
+    return angle_over_sine(c, math.sqrt(max(1.0 - c * c, 0.0)))
+
+
+@njit
 def _psi_slopes(D: Size, e: Array, t: Array, w: Array, g: Three, by_t: Array, by_e: Array) -> None:
-    """Gradient of psi with respect to t and e, both varied freely; g from `angle_over_sine`."""
+    """Gradient of psi with respect to t and e, both varied freely; g from `_factor`."""
     c, along = _dot(D, e, t), _dot(D, w, e)
     P = g[1] * (_dot(D, w, t) - c * along) - g[0] * along
     for i in range(len(D)):
@@ -100,7 +86,7 @@ def _potential(D: Size, chord: Array, middle: Array, tangent: Array, L: Array, w
         for end in range(2):
             t = tangent[k, end]
             c = _dot(D, e, t)
-            psi = angle_over_sine(c)[0] * (_dot(D, w[k], t) - c * _dot(D, w[k], e))
+            psi = _factor(c)[0] * (_dot(D, w[k], t) - c * _dot(D, w[k], e))
             V[k] -= (1 - 2 * end) * L[k] * L[k] / 12.0 * psi
     return V
 
@@ -122,7 +108,7 @@ def _residual(D: Size, chord: Array, tangent: Array, L: Array, w: Array) -> Arra
         for end in range(2):
             factor = (2 * end - 1) * L[k] * L[k] / 12.0
             t[:] = tangent[k, end]
-            _psi_slopes(D, e, t, load, angle_over_sine(_dot(D, e, t)), by_t, by_e)
+            _psi_slopes(D, e, t, load, _factor(_dot(D, e, t)), by_t, by_e)
             along = _dot(D, e, by_e)
             for i in range(d):
                 F[k, 2 * end + 1, i] = factor * by_t[i]
@@ -132,19 +118,18 @@ def _residual(D: Size, chord: Array, tangent: Array, L: Array, w: Array) -> Arra
 
 
 @njit
-def _chord_bend(D: Size, ee: Array, by_e: Array, e: Array, l: float, out: Array) -> None:
-    """Second derivative of psi by the chord, out (d, d): (I - e e) ee (I - e e)/l^2 and the turn of e."""
+def _chord_bend(D: Size, ee: Array, by_e: Array, e: Array, l: float, row: Array, out: Array) -> None:
+    """Second derivative of psi by the chord, out (d, d): (I - e e) ee (I - e e)/l^2 and the turn of e; ee symmetric.
+
+    row: room for d numbers.
+    """
     along, twice = _dot(D, e, by_e), 0.0
     for i in range(len(D)):
-        for j in range(len(D)):
-            twice += e[i] * ee[i, j] * e[j]
+        row[i] = _dot(D, ee[i], e)
+        twice += e[i] * row[i]
     for i in range(len(D)):
         for j in range(len(D)):
-            row, col = 0.0, 0.0
-            for k in range(len(D)):
-                row += ee[i, k] * e[k]
-                col += e[k] * ee[k, j]
-            inner = ee[i, j] - row * e[j] - e[i] * col + (twice + 3.0 * along) * e[i] * e[j]
+            inner = ee[i, j] - row[i] * e[j] - e[i] * row[j] + (twice + 3.0 * along) * e[i] * e[j]
             inner -= by_e[i] * e[j] + e[i] * by_e[j]
             out[i, j] = (inner - (along if i == j else 0.0)) / (l * l)
 
@@ -194,10 +179,12 @@ def _add_turning_block(
             out[j, at + m] -= change
             out[at + m, n + j] += change
             out[n + j, at + m] += change
-        for k in range(len(R)):
+        for j in range(len(D)):
+            turned = 0.0
             for i in range(len(D)):
-                for j in range(len(D)):
-                    out[at + m, at + k] += factor * P[i, m] * tt[i, j] * P[j, k]
+                turned += factor * P[i, m] * tt[i, j]
+            for k in range(len(R)):
+                out[at + m, at + k] += turned * P[j, k]
 
 
 @njit
@@ -205,17 +192,17 @@ def _add_tangent(
     D: Size, R: Size, out: Array, weight: float, P: Array, chord: Array, tangent: Array, L: Array, w: Array
 ) -> None:
     d, n = len(D), len(D) + len(R)
-    e, t, by_t, by_e = np.empty(d), np.empty(d), np.empty(d), np.empty(d)
+    e, t, by_t, by_e, row = np.empty(d), np.empty(d), np.empty(d), np.empty(d), np.empty(d)
     tt, te, ee, dd = np.empty((d, d)), np.empty((d, d)), np.empty((d, d)), np.empty((d, d))
     for k in range(chord.shape[0]):
         l, load = _axis(D, chord[k], e), w[k]
         for end in range(2):
             factor = weight * (2 * end - 1) * L[k] * L[k] / 12.0
             t[:] = tangent[k, end]
-            g = angle_over_sine(_dot(D, e, t))
+            g = _factor(_dot(D, e, t))
             _psi_slopes(D, e, t, load, g, by_t, by_e)
             _psi_bends(D, e, t, load, g, tt, te, ee)
             _project(D, te, e, l)
-            _chord_bend(D, ee, by_e, e, l, dd)
+            _chord_bend(D, ee, by_e, e, l, row, dd)
             _add_turning_block(D, R, out[k], n, end, P[k, end], tt, te, factor)
             _add_chord_block(D, out[k], n, dd, factor)

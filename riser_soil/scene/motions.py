@@ -205,6 +205,12 @@ class EndMotion(BaseModel):
             raise wrong("rotation", "the vessel turns the end already", "leave one of the two out")
         return self
 
+    @property
+    def turns(self) -> bool:
+        """Whether the support turns."""
+        by_table = self.table is not None and any(map(any, self.table.rotations))
+        return by_table or self.rotation is not None or self.vessel is not None
+
 
 class Motion(BaseModel):
     """Prescribed motions of held ends."""

@@ -9,7 +9,7 @@ from riser_soil.scene.problem import Path, Problem
 from riser_soil.scene.quantities import Vector
 from riser_soil.scene.riser import End, Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, Load, StaticStage
+from riser_soil.scene.stages import DynamicStage, Load, MidpointScheme, StaticStage
 
 # Strain of a riser pulled straight beyond which a new position must be a mistake.
 _GREATEST_STRAIN = 0.1
@@ -83,11 +83,25 @@ def _dynamic(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
         yield from _held(ends, {("stages", n, "motion", key): key for key in stage.motion.by_end})
         for key, motion in stage.motion.by_end.items():
             yield from motion_conflicts(scene, ("stages", n, "motion", key), motion, stage.duration)
+    yield from _midpoint(scene, n, stage)
     if scene.solver.min_time_step > stage.time_step:
         allowed = f"must not be smaller than solver.min_time_step ({scene.solver.min_time_step:g} s)"
         yield Problem(
             ("stages", n, "time_step"), allowed, "lower solver.min_time_step or take a longer time_step"
         )
+
+
+def _midpoint(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
+    """What the midpoint rule can't do: it has no forces or rotations at the end of a step alone."""
+    if not isinstance(stage.scheme, MidpointScheme):
+        return
+    path, remedy = ("stages", n, "scheme"), "choose another scheme"
+    if scene.contact:
+        yield Problem(path, "the midpoint rule would make energy out of contact", remedy)
+    for key, motion in stage.motion.by_end.items() if stage.motion else ():
+        end = getattr(scene.riser, key)
+        if isinstance(end, Support) and end.rotation == "fixed" and motion.turns:
+            yield Problem(path, f"the midpoint rule can't turn a fixed end, and the riser's {key} turns", remedy)
 
 
 def _held(ends: dict[str, End], places: dict[Path, str]) -> Iterator[Problem]:

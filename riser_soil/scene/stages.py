@@ -114,13 +114,30 @@ class GeneralizedAlphaScheme(BaseModel):
     generalized_alpha: GeneralizedAlpha = Field(description="rho_inf")
 
 
+class Midpoint(BaseModel):
+    """The midpoint rule has no parameters."""
+
+    model_config = FROZEN
+
+
+class MidpointScheme(BaseModel):
+    """The implicit midpoint rule, which keeps linear and angular momentum."""
+
+    model_config = FROZEN
+
+    midpoint: Midpoint = Field(description="no parameters: {}")
+
+
 Scheme = Annotated[
     Annotated[NewmarkScheme, Tag("<NewmarkScheme>")]
-    | Annotated[GeneralizedAlphaScheme, Tag("<GeneralizedAlphaScheme>")],
+    | Annotated[GeneralizedAlphaScheme, Tag("<GeneralizedAlphaScheme>")]
+    | Annotated[MidpointScheme, Tag("<MidpointScheme>")],
     Discriminator(
-        by_key({"newmark": NewmarkScheme, "generalized_alpha": GeneralizedAlphaScheme}),
+        by_key(
+            {"newmark": NewmarkScheme, "generalized_alpha": GeneralizedAlphaScheme, "midpoint": MidpointScheme}
+        ),
         custom_error_type="choice",
-        custom_error_message="must be {newmark: {beta, gamma}} or {generalized_alpha: {rho_inf}}",
+        custom_error_message="must be {newmark: {beta, gamma}}, {generalized_alpha: {rho_inf}} or {midpoint: {}}",
     ),
 ]
 
@@ -149,7 +166,7 @@ class DynamicStage(BaseModel):
     loads: tuple[Load, ...] = Field(default=(), description="loads on the riser during this stage")
     scheme: Scheme = Field(
         default=GeneralizedAlphaScheme(generalized_alpha=GeneralizedAlpha()),
-        description="{newmark: {beta, gamma}} or {generalized_alpha: {rho_inf}}",
+        description="{newmark: {beta, gamma}}, {generalized_alpha: {rho_inf}} or {midpoint: {}}",
     )
 
     @model_validator(mode="after")

@@ -82,7 +82,8 @@ class Buoyancy:
 
     def residual(self, state: State, forces: Forces) -> None:
         if self.line.active:
-            self.line.scatter(self.element_forces(state)[1], forces.force)
+            trial = self.line.trial(state)
+            self.line.collect(trial, trial.once((self, "F"), self._F), forces.force)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:
@@ -100,7 +101,8 @@ class Buoyancy:
         """Work that waves put in."""
         if self._flat or not self.line.active:
             return Work()
-        return Work(external=-self._pipe.taken(lambda state: self.element_forces(state)[1], before, after))
+        first, last = self.line.left_at(before), self.line.trial(after)
+        return Work(external=-self._pipe.taken(lambda trial: trial.once((self, "F"), self._F), first, last))
 
     def commit(self, state: State) -> None:
         pass

@@ -28,9 +28,10 @@ class Morison:
 
     def residual(self, state: State, forces: Forces) -> None:
         if self.line.active:
-            inertia, force = self.element_forces(state)
-            self.line.scatter(inertia, forces.inertia)
-            self.line.scatter(force, forces.force)
+            trial = self.line.trial(state)
+            inertia, force = self._q_forces(trial)
+            self.line.collect(trial, inertia, forces.inertia)
+            self.line.collect(trial, force, forces.force)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if not self.line.active:
@@ -55,20 +56,20 @@ class Morison:
         """
         if not self.line.active:
             return Work()
-        resisted = self._pipe.taken(lambda state: self.element_forces(state)[1], before, after)
-        changed = self._changed(before, after)
+        first, last = self.line.left_at(before), self.line.trial(after)
+        resisted = self._pipe.taken(lambda trial: self._q_forces(trial)[1], first, last)
+        changed = self._changed(first, last)
         if self._loads.dissipative:
             return Work(dissipated=resisted, external=changed)
         return Work(external=changed - resisted)
 
-    def _changed(self, before: State, after: State) -> float:
+    def _changed(self, first: Trial, last: Trial) -> float:
         """What a change dm of the added mass, as it turns or gets wet, adds to its kinetic energy beyond the work of
         its force.
 
         That force is m a, so the remainder is 1/2 v.dm v per length. Written in rates alone it owes nothing to the
         accelerations, which generalised-alpha knows to first order only.
         """
-        first, last = self.line.trial(before), self.line.trial(after)
         v = 0.5 * (self._pipe.flow(first).v + self._pipe.flow(last).v)
         return 0.5 * self._pipe.total(v * (self._loads.momentum(last, v) - self._loads.momentum(first, v)))
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.arrays import Array, IntArray
-from riser_soil.part import State, Weights
+from riser_soil.part import Weights
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
 from riser_soil.riser.trial import Trial
@@ -91,8 +91,6 @@ class Pipe:
         if self._points is not None:
             np.add.at(K, self._points.element, own)
 
-    def taken(self, force: Callable[[State], Array], before: State, after: State) -> float:
-        """Work [J] against the mean of element residuals (ne, 2 ndof) at the ends of a step."""
-        moved = self.line.nodal(after.u) - self.line.nodal(before.u)
-        element = np.concatenate([moved[:-1], moved[1:]], axis=1)
-        return 0.5 * float(np.sum((force(before) + force(after)) * element))
+    def taken(self, force: Callable[[Trial], Array], first: Trial, last: Trial) -> float:
+        """Work [J] against the mean of residuals conjugate to q (ne, 4, d) at the ends of a step."""
+        return 0.5 * float(np.sum((force(first) + force(last)) * (last.q - first.q)))

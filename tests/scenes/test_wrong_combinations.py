@@ -65,6 +65,21 @@ CASES: list[tuple[Changes, str, str]] = [
         "riser.attachments.0.drag_area: value 0.3",
         "the scene has no water",
     ),
+    (
+        (("    time_step: 0.1", "    time_step: 0.1\n    scheme: {midpoint: {}}"),),
+        "stages.1.scheme: value {",
+        "the midpoint rule would make energy out of contact",
+    ),
+    (
+        (
+            *(NO_SEABED, NO_SOIL, (GOOD[GOOD.index("contact:") : GOOD.index("stages:")], "")),
+            ("100.0], rotation: free", "100.0], rotation: fixed"),
+            ("    time_step: 0.1", "    time_step: 0.1\n    scheme: {midpoint: {}}"),
+            ("ramp: 5.0}}", "ramp: 5.0}, rotation: {axis: [0, 1, 0], amplitude_deg: 3.0, period: 9.0, ramp: 9.0}}"),
+        ),
+        "stages.1.scheme: value {",
+        "the midpoint rule can't turn a fixed end, and the riser's end turns",
+    ),
     ((NO_SEABED, NO_SOIL), "contact: value {", "there is nothing to touch"),
     (
         (("initial: catenary", "initial: straight"), ("length: 148.0", "length: 100.0")),

@@ -283,7 +283,7 @@ LEFT_OUT = {
 
 def interpret(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs the tangent's own functions uncompiled, so that they see substitutes."""
-    for name in ("move", "strain_of", "forces_change", "_vary", "_tangent"):
+    for name in ("move", "strain_of", "forces_change", "_vary", "_tangent", "put_element"):
         monkeypatch.setattr(beam3d, name, getattr(beam3d, name).py_func)
 
 
@@ -304,7 +304,8 @@ def test_geometric_term_of_rotation_vectors_matters(monkeypatch: pytest.MonkeyPa
     f, K = elements.call(beam3d.forces_and_tangent)
     f_incomplete, incomplete = f.copy(), K.copy()
     increments.to_increments(f, K, nodes.H, nodes.Rn, nodes.Theta)
-    monkeypatch.setattr(increments, "_end_to_increments", increments._end_to_increments.py_func)
+    for name in ("tangent_to_increments", "_end_to_increments"):
+        monkeypatch.setattr(increments, name, getattr(increments, name).py_func)
     monkeypatch.setattr(increments, "_moment_tangent", lambda *_: isotropic(0.0))
     increments.to_increments.py_func(f_incomplete, incomplete, nodes.H, nodes.Rn, nodes.Theta)
     assert difference(incomplete, K) > 1e4 * TOLERANCE

@@ -316,6 +316,19 @@ def test_residual_survives_a_commit(name: str, dimension: int) -> None:
     assert np.abs(after - before).max() <= 1e-11 * max(np.abs(before).max(), 1.0)
 
 
+@both_dimensions
+@every_part
+def test_forces_of_an_accepted_step_are_those_that_the_next_one_starts_from(name: str, dimension: int) -> None:
+    """In the axes of the configuration just accepted; in space those of the step would not do."""
+    at = sample(dimension)
+    part, state = MAKERS[name](at), at.state(5)
+    accepted = residual([part], state, WEIGHTS)
+    at.line.commit(state)
+    anew = residual([part], State(state.t, 0.0 * state.u, state.v, state.a), WEIGHTS)
+    assert error(at.line.in_new_axes(accepted, state.u), anew) < 1e-12
+    assert (error(accepted, anew) > 1e-3) == (dimension == 3)
+
+
 def forces_in_global_axes(at: Sample, state: State, part: Part, weights: Weights) -> Array:
     """Residual with spatial moments instead of those conjugate to the rotation increment."""
     out = at.line.nodal(residual([part], state, weights)).copy()

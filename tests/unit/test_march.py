@@ -17,7 +17,7 @@ from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.stepping import StepControl
 from riser_soil.system import Clock, System
-from riser_soil.time_scheme import GeneralizedAlpha, Scheme
+from riser_soil.time_scheme import GeneralizedAlpha, Midpoint, Scheme
 from tests.toy_chain import Chain, Floor, Inertia, Springs
 
 AVERAGE = GeneralizedAlpha.newmark()
@@ -48,7 +48,10 @@ def oscillate(scheme: Scheme, dt: float) -> float:
     return float(chain.z[-1])
 
 
-@pytest.mark.parametrize("scheme", [AVERAGE, GeneralizedAlpha.from_rho_inf(0.6), GeneralizedAlpha.newmark(0.3, 0.5)])
+@pytest.mark.parametrize(
+    "scheme",
+    [AVERAGE, GeneralizedAlpha.from_rho_inf(0.6), GeneralizedAlpha.newmark(0.3, 0.5), Midpoint()],
+)
 def test_second_order_in_time(scheme: Scheme) -> None:
     steps = [0.03, 0.015, 0.0075]
     z = [oscillate(scheme, dt) for dt in steps]
@@ -62,13 +65,14 @@ def test_spectral_radius_one_is_the_average_acceleration() -> None:
     assert oscillate(GeneralizedAlpha.from_rho_inf(1.0), 0.03) == pytest.approx(oscillate(AVERAGE, 0.03), rel=1e-9)
 
 
-def test_average_acceleration_keeps_the_energy_of_a_linear_chain() -> None:
+@pytest.mark.parametrize("scheme", [AVERAGE, Midpoint()])
+def test_average_acceleration_and_midpoint_rule_keep_the_energy_of_a_linear_chain(scheme: Scheme) -> None:
     chain = Chain(np.arange(6.0), held=True)
     inertia = Inertia(chain, 1.0)
     parts: list[Part] = [Springs(chain, 1.0, 50.0, weight=2.0), inertia]
     v0 = np.array([0.0, 1.0, -1.0, 0.5, 0.2, 2.0])
     start = 0.5 * float(inertia.nodal() @ v0**2)
-    energies = [s.energy.total for s in march_through(chain, parts, AVERAGE, v0, 100.0, 0.1)]
+    energies = [s.energy.total for s in march_through(chain, parts, scheme, v0, 100.0, 0.1)]
     assert len(energies) == 1000
     assert np.ptp(energies) < 1e-8 * start
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from riser_soil.arrays import Array
-from riser_soil.riser import rotations, swing_twist
+from riser_soil.riser import angle_over_sine, rotations, swing_twist
 from riser_soil.riser.vectors import Vec, matrix, vector
 
 UNHURRIED = settings(deadline=None)  # the first call compiles
@@ -65,7 +65,7 @@ def test_moment_variation_is_the_derivative_of_the_moment(angles: Vec) -> None:
 
 
 def test_power_series_meets_the_closed_form() -> None:
-    cosine = 1.0 - swing_twist.SERIES_BELOW
+    cosine = 1.0 - angle_over_sine.SERIES_BELOW
     sides = [np.nextafter(cosine, 1.0), np.nextafter(cosine, 0.0)]
-    series, closed = (np.array(swing_twist.swing_coefficients(c, np.sqrt(1.0 - c * c))) for c in sides)
+    series, closed = (np.array(angle_over_sine.angle_over_sine(c, np.sqrt(1.0 - c * c))) for c in sides)
     assert np.abs(series / closed - 1.0).max() < 1e-12

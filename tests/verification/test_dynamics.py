@@ -98,12 +98,19 @@ def surging(time_step: float, **more: Any) -> Mapping:
     )
 
 
-@pytest.mark.parametrize("scheme", [AVERAGE, {"generalized_alpha": {"rho_inf": 0.8}}])
+@pytest.mark.parametrize("scheme", [AVERAGE, {"generalized_alpha": {"rho_inf": 0.8}}, {"midpoint": {}}])
 def test_second_order_in_the_time_step(scheme: Mapping) -> None:
     shapes = [tell(surging(dt, scheme=scheme))[-1].end.position for dt in (0.2, 0.1, 0.05)]
     first, second = distance(shapes[0], shapes[1]), distance(shapes[1], shapes[2])
     assert np.log2(first / second) == pytest.approx(2.0, abs=0.2)
     assert second < 1e-2
+
+
+@pytest.mark.parametrize("scheme", [AVERAGE, {"midpoint": {}}])
+def test_a_moving_hinge_carries_no_moment(scheme: Mapping) -> None:
+    """Its recorded moment is what the inertia beside it leaves of the balance."""
+    last = tell(surging(0.1, scheme=scheme, duration=3.0))[-1].end
+    assert np.linalg.norm(last.end_moment) < 1e-6 * last.bending_moment.max()
 
 
 def test_generalised_alpha_that_keeps_all_is_average_acceleration() -> None:

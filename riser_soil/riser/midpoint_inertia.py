@@ -1,0 +1,206 @@
+"""Inertia for the midpoint rule, which keeps linear and angular momentum: the parts "inertia" and "rotary inertia".
+
+The kinetic energy is 1/2 q' M q' with a constant mass M, q being positions and directors fixed in the sections. From
+q'(n+1) = 2 (q(n+1) - q(n))/dt - q'(n) the inertia force of a step is F = M (q'(n+1) - q'(n))/dt. It acts on the means
+of q over the step, so that
+
+    sum of mean(q) x F dt  =  change of the angular momentum  sum of q x M q',
+
+exactly, as the elements' own forces have no moment on the line as a whole, in the middle as anywhere. Its work is the
+change of the kinetic energy, so that energy errs only by what the strain energy's change differs from the work of the
+stresses in the middle, which is of second order and does not pile up.
+
+The rates q'(n+1) of directors are not quite at right angles to them. Each step starts from the angular velocities of
+the same momentum, P^T M q'(v) = P^T M q'(n+1) with P = dq/d(dofs): a rigid motion is one of the dofs', so that both
+momenta stay, and the part of q' at odds with it takes its energy along, a loss of third order. Steps may then change
+in size. Compare Simo, Tarnow & Doblare, Int. J. Numer. Meth. Engng 38 (1995), and Betsch & Steinmann, Int. J. Numer.
+Meth. Engng 54 (2002), who keep the rates as they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.compiled import fixed
+from riser_soil.part import Block, Energy, Forces, Part, State, Weights, Work
+from riser_soil.riser import hermite
+from riser_soil.riser.inertia import Inertia
+from riser_soil.riser.line import Line
+from riser_soil.riser.rotary_inertia import RotaryInertia
+from riser_soil.riser.secants import Carried, Secant, directors
+from riser_soil.riser.trial import Trial
+
+
+class MidpointInertia:
+    """The line's mass in steps of the midpoint rule (group I).
+
+    instant: the same mass as it acts at an instant, which is asked for at accepted states.
+    """
+
+    name, symmetric = "inertia", False
+
+    def __init__(self, instant: Inertia) -> None:
+        self.instant, self.line = instant, instant.line
+        self._tangents = Carried(directors(self.line.frames, 0))
+
+    def begin(self, state: State) -> None:
+        """Start from an accepted state."""
+        self._tangents.begin(state.t, _turning(self.line, state.v))
+
+    def blocks(self) -> dict[str, Block]:
+        return self.instant.blocks()
+
+    def q_rate(self, state: State) -> Array:
+        """q' (ne, 4, d) at the end of a step, as the midpoint rule has it."""
+        rate = self._tangents.rate(state.t, _turning(self.line, state.u))
+        return self._interleave(state.v, rate)
+
+    def _interleave(self, nodal: Array, at_ends: Array) -> Array:
+        q: Array = hermite.interleave(self.line.nodal(nodal), at_ends, fixed(self.line.dimension))
+        return q
+
+    def _step(self, trial: Trial) -> tuple[Secant, Array]:
+        """The tangents through the step, and the residual conjugate to the means of q (ne, 4, d)."""
+        state = trial.state
+        secant, acceleration = self._tangents.accelerate(state.t, _turning(self.line, state.u))
+        return secant, hermite.weigh(self.instant.M, self._interleave(state.a, acceleration))
+
+    def residual(self, state: State, forces: Forces) -> None:
+        if not self._tangents.within_step(state.t):
+            self.instant.residual(state, forces)
+        elif self.line.active:
+            secant, F = self.line.trial(state).once((self, "step"), self._step)
+            self.line.scatter(hermite.pull_back(F, secant.P), forces.inertia)
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        if not self._tangents.within_step(state.t):
+            self.instant.tangent(state, weights, values)
+        elif self.line.active:
+            secant, F = self.line.trial(state).once((self, "step"), self._step)
+            K, shift = values["riser"], weights.shift_a
+            G = self._tangents.geometric(secant, _turning(self.line, state.u), F[:, 1::2])
+            hermite.add_geometric(K, weights.inertia, G, self.line.dimension)
+            hermite.add_mass(K, weights.inertia, secant.P, 0.5 * shift * secant.by_end, shift, self.instant.M)
+
+    def add_excess(self, state: State, out: Array) -> None:
+        """Add P^T M (q' - q'(v)) at an accepted state to a local array [N s, N m s]."""
+        if self.line.active:
+            trial = self.line.trial(state)
+            excess = hermite.weigh(self.instant.M, self.q_rate(state) - trial.q_rate)
+            self.line.scatter(trial.pull_back(excess), out)
+
+    def element_forces(self, state: State) -> tuple[Array, None]:
+        """Element residuals (inertia, force), each (ne, 2 ndof) or None, at an accepted state."""
+        return self.instant.element_forces(state)
+
+    def nodal_forces(self, state: State) -> Array:
+        """Residual (nn, ndof) of what sits at the line's ends, at an accepted state."""
+        return self.instant.nodal_forces(state)
+
+    def energy(self, state: State) -> Energy:
+        """Kinetic energy at the start or the end of a step."""
+        if not self.line.active:
+            return Energy()
+        rate = self.q_rate(state)
+        return Energy(kinetic=0.5 * float(np.sum(rate * hermite.weigh(self.instant.M, rate))))
+
+    def work(self, before: State, after: State) -> Work:
+        return Work()
+
+    def commit(self, state: State) -> None:
+        self._tangents.commit(state.t, _turning(self.line, state.u))
+
+
+class MidpointRotaryInertia:
+    """The sections' rotary inertia in steps of the midpoint rule (group I): mass that sits on their normals.
+
+    instant: the same inertia as it acts at an instant, which is asked for at accepted states.
+    """
+
+    name, symmetric = "rotary inertia", False
+
+    def __init__(self, instant: RotaryInertia) -> None:
+        self.instant, self.line = instant, instant.line
+        self._mass = instant.of_ends[:, None, None]
+        self._normals = [Carried(directors(self.line.frames, k)) for k in range(1, self.line.dimension)]
+
+    def begin(self, state: State) -> None:
+        """Start from an accepted state."""
+        for normals in self._normals:
+            normals.begin(state.t, _turning(self.line, state.v))
+
+    def blocks(self) -> dict[str, Block]:
+        return self.instant.blocks()
+
+    def rates(self, state: State) -> Sequence[Array]:
+        """Of the normals, each (ne, 2, d), at the end of a step, as the midpoint rule has them."""
+        return [normals.rate(state.t, _turning(self.line, state.u)) for normals in self._normals]
+
+    def _step(self, trial: Trial) -> list[tuple[Secant, Array]]:
+        """The normals through the step, each with its force on their means (ne, 2, d)."""
+        middle = _turning(self.line, trial.state.u)
+        steps = [normals.accelerate(trial.state.t, middle) for normals in self._normals]
+        return [(secant, self._mass * acceleration) for secant, acceleration in steps]
+
+    def residual(self, state: State, forces: Forces) -> None:
+        if not self._normals[0].within_step(state.t):
+            self.instant.residual(state, forces)
+        elif self.line.active:
+            steps = self.line.trial(state).once((self, "step"), self._step)
+            self._scatter([secant.moments(F) for secant, F in steps], forces.inertia)
+
+    def _scatter(self, moments: list[Array], out: Array) -> None:
+        """Add moments on element ends, each (ne, 2, r), to a local array."""
+        element = np.zeros((len(self.line.length), 2, self.line.ndof))
+        element[:, :, self.line.dimension :] = np.sum(moments, axis=0)
+        self.line.scatter(element.reshape(len(element), -1), out)
+
+    def add_excess(self, state: State, out: Array) -> None:
+        """Add P^T M (d' - d'(v)) at an accepted state to a local array [N m s]."""
+        if self.line.active:
+            v = _turning(self.line, state.v)
+            self._scatter([n.excess(v, self._mass) for n in self._normals], out)
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        if not self._normals[0].within_step(state.t):
+            self.instant.tangent(state, weights, values)
+        elif self.line.active:
+            middle, mass = _turning(self.line, state.u), 0.5 * weights.shift_a * self._mass[..., None]
+            steps = self.line.trial(state).once((self, "step"), self._step)
+            for normals, (secant, F) in zip(self._normals, steps, strict=True):
+                block = np.swapaxes(secant.P, 2, 3) @ (mass * secant.by_end)
+                block += normals.geometric(secant, middle, F)
+                hermite.add_geometric(values["riser"], weights.inertia, block, self.line.dimension)
+
+    def element_forces(self, state: State) -> tuple[Array, None]:
+        """Element residuals (inertia, force), each (ne, 2 ndof) or None, at an accepted state."""
+        return self.instant.element_forces(state)
+
+    def energy(self, state: State) -> Energy:
+        """Kinetic energy at the start or the end of a step."""
+        if not self.line.active:
+            return Energy()
+        return Energy(kinetic=0.5 * sum(float(np.sum(self._mass * rate**2)) for rate in self.rates(state)))
+
+    def work(self, before: State, after: State) -> Work:
+        return Work()
+
+    def commit(self, state: State) -> None:
+        for normals in self._normals:
+            normals.commit(state.t, _turning(self.line, state.u))
+
+
+def over_steps(instant: Part) -> Part:
+    """Inertia of an instant as the midpoint rule has it over steps."""
+    if isinstance(instant, Inertia):
+        return MidpointInertia(instant)
+    assert isinstance(instant, RotaryInertia)
+    return MidpointRotaryInertia(instant)
+
+
+def _turning(line: Line, values: Array) -> Array:
+    """Rotation dofs of the nodes (nn, r)."""
+    return line.nodal(values)[:, line.dimension :]

@@ -1,0 +1,200 @@
+"""Directors fixed in the sections at element ends, from the start to the end of a step.
+
+The midpoint rule needs of a director d its mean (d0 + d1)/2, its change d1 - d0, and how both follow the rotation
+increment Theta to the middle of the step; the end lies at twice that increment. A spin w of the middle turns the mean
+by w x mean: this pulls inertia forces back so that a rigid turn of the whole line does no work that the angular
+momentum doesn't show.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.compiled import njit
+from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames, moment_stiffness, node_frames
+from riser_soil.riser.rotations import exp_coefficients
+from riser_soil.riser.vectors import (
+    Vec,
+    add,
+    cross,
+    dot,
+    matrix,
+    matvec,
+    scale,
+    transpose,
+    vector,
+)
+
+
+class Secant(NamedTuple):
+    """A director at element ends through a step: mean and change (ne, 2, d).
+
+    P (ne, 2, d, r): change of the mean by the spin of the middle that each rotation dof there gives. by_end (ne, 2, d,
+    r): derivative by these dofs of the change, and of twice the mean.
+    """
+
+    mean: Array
+    change: Array
+    P: Array
+    by_end: Array
+
+    def moments(self, F: Array) -> Array:
+        """P^T F (ne, 2, r) of forces F (ne, 2, d) on the means."""
+        return np.asarray(np.einsum("esik,esi->esk", self.P, F))
+
+
+class PlanarDirectors:
+    """Tangents (column 0) or normals (column 1) of a line in its plane."""
+
+    def __init__(self, frames: PlanarFrames, column: int) -> None:
+        self._frames, self._ahead = frames, 0.5 * math.pi * column
+
+    def _at(self, increment: Array) -> Array:
+        """Directors (ne, 2, 2) at rotation increments (nn, 1)."""
+        angle = self._frames.turn(increment).end_angle + self._ahead
+        return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+
+    def secant(self, middle: Array) -> Secant:
+        """For the rotation increments to the middle (nn, 1)."""
+        halfway, angle = self._at(middle), np.stack([middle[:-1], middle[1:]], axis=1)
+        mean, change = np.cos(angle) * halfway, 2.0 * np.sin(angle) * _turned(halfway)
+        return Secant(mean, change, _turned(mean)[..., None], 2.0 * _turned(mean + 0.5 * change)[..., None])
+
+    def rates(self, v: Array) -> Array:
+        """(ne, 2, 2) at the accepted configuration, from angular velocities (nn, 1)."""
+        return np.asarray(np.stack([v[:-1], v[1:]], axis=1) * _turned(self._at(np.zeros_like(v))))
+
+    def geometric(self, secant: Secant, middle: Array, F: Array) -> Array:
+        """(ne, 2, 1, 1): derivative of P^T F at fixed F (ne, 2, 2)."""
+        return np.asarray(0.5 * np.sum(_turned(secant.by_end[..., 0]) * F, axis=2)[..., None, None])
+
+
+class SpatialDirectors:
+    """Tangents (column 0) or normals (columns 1 and 2) of a line in space."""
+
+    def __init__(self, frames: SpatialFrames, column: int) -> None:
+        self._frames, self._fixed = frames, np.ascontiguousarray(frames.T0[..., column])
+
+    def secant(self, middle: Array) -> Secant:
+        """For the rotation increments to the middle (nn, 3)."""
+        return Secant(*_secant(self._frames.R, np.ascontiguousarray(middle), self._fixed))
+
+    def rates(self, v: Array) -> Array:
+        """(ne, 2, 3) at the accepted configuration, from body-axes angular velocities (nn, 3)."""
+        turning, R = np.cross(np.stack([v[:-1], v[1:]], axis=1), self._fixed), self._frames.R
+        return np.asarray(np.einsum("esij,esj->esi", np.stack([R[:-1], R[1:]], axis=1), turning))
+
+    def geometric(self, secant: Secant, middle: Array, F: Array) -> Array:
+        """(ne, 2, 3, 3): derivative of P^T F at fixed F (ne, 2, 3)."""
+        force = np.ascontiguousarray(F)
+        return np.asarray(
+            _geometric(self._frames.R, np.ascontiguousarray(middle), secant.mean, secant.by_end, force)
+        )
+
+
+Directors = PlanarDirectors | SpatialDirectors
+
+
+def directors(frames: Frames, column: int) -> Directors:
+    """The directors that suit the line's dimension."""
+    if isinstance(frames, PlanarFrames):
+        return PlanarDirectors(frames, column)
+    return SpatialDirectors(frames, column)
+
+
+class Carried:
+    """Directors and their rates through a step.
+
+    The rates (ne, 2, d) at its end are those of the midpoint rule, whose mean over the step is change/dt. They need not
+    be at right angles to the directors.
+    """
+
+    def __init__(self, moving: Directors) -> None:
+        self._moving = moving
+        self._t, self._rate = math.inf, np.zeros(0)
+
+    def begin(self, t: float, v: Array) -> None:
+        """Start from the accepted configuration with angular velocities v (nn, r)."""
+        self._t, self._rate = t, self._moving.rates(v)
+
+    def within_step(self, t: float) -> bool:
+        """Whether a time lies beyond the last accepted one."""
+        return t > self._t
+
+    def accelerate(self, t: float, middle: Array) -> tuple[Secant, Array]:
+        """The step with its middle at time t, and the directors' mean accelerations over it (ne, 2, d)."""
+        secant, dt = self._moving.secant(middle), 2.0 * (t - self._t)
+        return secant, 2.0 / dt * (secant.change / dt - self._rate)
+
+    def rate(self, t: float, end: Array) -> Array:
+        """Rates (ne, 2, d) at the end of a step, reached by the increments `end` (nn, r); or at its start."""
+        if not self.within_step(t):
+            return self._rate
+        return 2.0 / (t - self._t) * self._moving.secant(0.5 * end).change - self._rate
+
+    def excess(self, v: Array, mass: Array) -> Array:
+        """Moments of momentum (ne, 2, r) that the rates have beyond those of angular velocities v, once accepted."""
+        return self._moving.secant(np.zeros_like(v)).moments(mass * (self._rate - self._moving.rates(v)))
+
+    def commit(self, t: float, end: Array) -> None:
+        """Accept a step; to be called before the line's frames do."""
+        self._rate, self._t = self.rate(t, end), t
+
+    def geometric(self, secant: Secant, middle: Array, F: Array) -> Array:
+        """(ne, 2, r, r): derivative of P^T F at fixed F (ne, 2, d)."""
+        return self._moving.geometric(secant, middle, F)
+
+
+def _turned(vectors: Array) -> Array:
+    """By a right angle, from p to z."""
+    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
+
+
+@njit
+def _change(rotation: Vec, d: Vec) -> Vec:
+    """(exp[rotation] - I) d, exact to round-off of the small difference itself."""
+    a, b, _ = exp_coefficients(dot(rotation, rotation))
+    once = cross(rotation, d)
+    return add(scale(a, once), scale(b, cross(rotation, once)))
+
+
+@njit
+def _secant(Rn: Array, Theta: Array, fixed: Array) -> tuple[Array, Array, Array, Array]:
+    ne = fixed.shape[0]
+    mean, change = np.empty((ne, 2, 3)), np.empty((ne, 2, 3))
+    P, by_end = np.empty((ne, 2, 3, 3)), np.empty((ne, 2, 3, 3))
+    _, H = node_frames(Rn, Theta)
+    _, H1 = node_frames(Rn, 2.0 * Theta)
+    for e in range(ne):
+        for side in range(2):
+            n, d = e + side, vector(fixed[e, side])
+            start = matvec(matrix(Rn[n]), d)
+            way = matvec(matrix(Rn[n]), _change(scale(2.0, vector(Theta[n])), d))
+            middle, end = add(start, scale(0.5, way)), add(start, way)
+            mean[e, side, 0], mean[e, side, 1], mean[e, side, 2] = middle
+            change[e, side, 0], change[e, side, 1], change[e, side, 2] = way
+            spins, end_spins = transpose(matrix(H[n])), transpose(matrix(H1[n]))
+            for k in range(3):
+                P[e, side, 0, k], P[e, side, 1, k], P[e, side, 2, k] = cross(spins[k], middle)
+                turned = scale(2.0, cross(end_spins[k], end))
+                by_end[e, side, 0, k], by_end[e, side, 1, k], by_end[e, side, 2, k] = turned
+    return mean, change, P, by_end
+
+
+@njit
+def _geometric(Rn: Array, Theta: Array, mean: Array, by_end: Array, F: Array) -> Array:
+    G = np.empty(by_end.shape)
+    _, H = node_frames(Rn, Theta)
+    for e in range(F.shape[0]):
+        for side in range(2):
+            n, force = e + side, vector(F[e, side])
+            spins, changes = transpose(matrix(H[n])), transpose(matrix(by_end[e, side]))
+            lever = moment_stiffness(matrix(Rn[n]), vector(Theta[n]), cross(vector(mean[e, side]), force))
+            for k in range(3):
+                for j in range(3):
+                    G[e, side, k, j] = 0.5 * dot(spins[k], cross(changes[j], force)) + lever[k][j]
+    return G

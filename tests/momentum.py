@@ -1,0 +1,48 @@
+"""Momentum of a riser in motion, as its time scheme knows the rates."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.arrays import Array
+from riser_soil.build import World
+from riser_soil.march import March
+from riser_soil.riser.directors import SpatialTurn
+from riser_soil.riser.hermite import weigh
+from riser_soil.riser.inertia import Inertia
+from riser_soil.riser.midpoint_inertia import MidpointInertia, MidpointRotaryInertia
+from riser_soil.riser.rotary_inertia import RotaryInertia
+from riser_soil.riser.secants import directors
+
+
+def momentum(world: World, march: March) -> tuple[Array, Array]:
+    """Linear (3,) and angular (3,) momentum about the origin, the sections' own spin included; global axes."""
+    line, trial = world.line, world.line.trial(march.now)
+    x, t = line.to_global(trial.x), trial.turn.tangent @ line.basis.T
+    q = np.stack([x[:-1], t[:, 0], x[1:], t[:, 1]], axis=1)
+    linear, angular = np.zeros(3), np.zeros(3)
+    for part in march.system.model.parts:
+        if isinstance(part, Inertia | MidpointInertia):
+            M = part.M if isinstance(part, Inertia) else part.instant.M
+            rate = trial.q_rate if isinstance(part, Inertia) else part.q_rate(march.now)
+            impulse = weigh(M, rate) @ line.basis.T
+            linear += impulse[:, [0, 2]].sum(axis=(0, 1))
+            angular += np.cross(q, impulse).sum(axis=(0, 1))
+        if isinstance(part, RotaryInertia | MidpointRotaryInertia):
+            angular += _of_sections(world, march, part)
+    return linear, angular
+
+
+def _of_sections(world: World, march: March, part: RotaryInertia | MidpointRotaryInertia) -> Array:
+    """Angular momentum of the sections about their centres: their mass on their normals d, sum of d x m d'."""
+    line, trial = world.line, world.line.trial(march.now)
+    still = np.zeros((line.nodes, line.frames.dofs))
+    normals = [directors(line.frames, k) for k in range(1, line.dimension)]
+    W = line.nodal(march.now.v)[:, line.dimension :]
+    rates = [n.rates(W) for n in normals] if isinstance(part, RotaryInertia) else part.rates(march.now)
+    mass = (part if isinstance(part, RotaryInertia) else part.instant).of_ends[:, None, None]
+    assert isinstance(trial.turn, SpatialTurn) == (line.dimension == 3)
+    pairs = zip(normals, rates, strict=True)
+    return np.asarray(
+        sum(np.cross(n.secant(still).mean @ line.basis.T, mass * r @ line.basis.T).sum(axis=(0, 1)) for n, r in pairs)
+    )
