@@ -37,10 +37,13 @@ class Touching(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """The line over the ground at a trial: position (ne, ng, d) and penetration (ne, ng) of the stations [m]."""
+    """The line over the ground at a trial: position (ne, ng, d) and penetration (ne, ng) of the stations [m]; away
+    (ne, ng, d): gradient of their distance from the ground.
+    """
 
     position: Array
     penetration: Array
+    away: Array
     touching: Touching
 
 
@@ -49,7 +52,7 @@ class SeabedContact:
 
     line: the riser's field. radius (ne,): distance [m] from the axis to the line that touches, 0 for the axis itself.
     rule: the stations of an element, Gauss points by default; its two ends make it the classical contact of nodes.
-    covered: where the seabed does not act.
+    covered: where the seabed does not act. at: the stations; share (ne, ng): arc length that each stands for [m].
     """
 
     name = "seabed"
@@ -67,8 +70,8 @@ class SeabedContact:
     ) -> None:
         self.line, self.ground, self.law = line, ground, law
         self._radius, self._covered = radius, covered
-        self._at = stations.stations(line.length, rule)
-        self._share = line.length[:, None] * rule.weights
+        self.at = stations.stations(line.length, rule)
+        self.share = line.length[:, None] * rule.weights
         self._arc = line.arc[:-1, None] + line.length[:, None] * rule.points
         self._linear = np.stack([1.0 - rule.points, rule.points])
         self._history = law.fresh((line.length.size, rule.points.size))
@@ -79,18 +82,18 @@ class SeabedContact:
         return seen
 
     def _see(self, trial: Trial) -> Seen:
-        x = stations.interpolate(self._at, trial.q)
+        x = stations.interpolate(self.at, trial.q)
         value, gradient, hessian = self._distance(self.line.to_global(x).reshape(-1, 3))
         penetration = self._radius[:, None] - value.reshape(x.shape[:2])
         touched = self.law.touched(penetration, self._history).any(axis=1)
         at = np.flatnonzero(touched)
         force, slope = self.law.respond(penetration[at], self._history[at])
-        away = (gradient @ self.line.basis).reshape(x.shape)[at]
+        away = (gradient @ self.line.basis).reshape(x.shape)
         bend = None
         if hessian is not None:
             local = self.line.basis.T @ hessian @ self.line.basis
             bend = local.reshape(*x.shape, x.shape[2])[at]
-        return Seen(x, penetration, Touching(at, force, slope, away, bend, -force[..., None] * away))
+        return Seen(x, penetration, away, Touching(at, force, slope, away[at], bend, -force[..., None] * away[at]))
 
     def _distance(self, x: Array) -> Distance:
         """From the ground, inf where something else covers it; x (n, 3) in global axes."""
@@ -114,7 +117,7 @@ class SeabedContact:
         """Residual conjugate to q (ne, 4, d)."""
         touching = self.see(trial).touching
         F = np.zeros((self.line.length.size, 4, self.line.dimension))
-        F[touching.elements] = stations.integrate(self._at.of(touching.elements), touching.resistance)
+        F[touching.elements] = stations.integrate(self.at.of(touching.elements), touching.resistance)
         return F
 
     def residual(self, state: State, forces: Forces) -> None:
@@ -129,7 +132,7 @@ class SeabedContact:
         touching = self.see(trial).touching
         if touching.elements.size == 0:
             return
-        stations.add_stiffness(K, self._at, touching.elements, self._by_position(touching), trial.turn.P)
+        stations.add_stiffness(K, self.at, touching.elements, self._by_position(touching), trial.turn.P)
         trial.add_turning(K, 1.0, trial.once((self, "F"), self._F))
 
     def _by_position(self, t: Touching) -> Array:
@@ -142,7 +145,7 @@ class SeabedContact:
         if not self.line.active:
             return Energy()
         penetration = self.see(self.line.trial(state)).penetration
-        return Energy(potential=float(np.sum(self._share * self.law.stored(penetration, self._history))))
+        return Energy(potential=float(np.sum(self.share * self.law.stored(penetration, self._history))))
 
     def work(self, before: State, after: State) -> Work:
         """What the force at the end of the step took out beyond the change of what it stores.
@@ -154,7 +157,7 @@ class SeabedContact:
         first, last = (self.see(self.line.trial(state)) for state in (before, after))
         at = last.touching.elements
         moved = last.position[at] - first.position[at]
-        taken = float(np.sum(self._share[at] * np.sum(last.touching.resistance * moved, axis=2)))
+        taken = float(np.sum(self.share[at] * np.sum(last.touching.resistance * moved, axis=2)))
         return Work(dissipated=taken - self.energy(after).potential + self.energy(before).potential)
 
     def commit(self, state: State) -> None:
@@ -166,7 +169,7 @@ class SeabedContact:
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m]: the stations' forces, shared linearly by two nodes."""
         touching = self.see(self.line.trial(state)).touching
-        shares = (self._share[touching.elements] * touching.force) @ self._linear.T
+        shares = (self.share[touching.elements] * touching.force) @ self._linear.T
         total = np.zeros(self.line.nodes)
         np.add.at(total, touching.elements, shares[:, 0])
         np.add.at(total, touching.elements + 1, shares[:, 1])
@@ -181,7 +184,7 @@ class SeabedContact:
         if not self.line.active:
             return np.zeros(3)
         touching = self.see(self.line.trial(state)).touching
-        per_station = self._share[touching.elements][..., None] * touching.resistance
+        per_station = self.share[touching.elements][..., None] * touching.resistance
         return np.asarray(-self.line.basis @ per_station.sum(axis=(0, 1)))
 
     def touchdown_arc(self, state: State) -> float:

@@ -1,0 +1,179 @@
+"""Friction of the riser on a seabed that has no dofs: a load along its elements, where the seabed presses on it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.arrays import Array, IntArray
+from riser_soil.contact.coulomb import traction
+from riser_soil.contact.seabed_contact import SeabedContact
+from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.riser import stations
+from riser_soil.riser.trial import Trial
+
+UPRIGHT = 1e-6  # sine of the angle to the ground's normal below which a riser has no axial direction along the ground
+
+
+class Sliding(NamedTuple):
+    """Elements that touch (m,); minus the traction on the riser (m, ng, d) [N/m], its derivative by the position
+    (m, ng, d, d).
+    """
+
+    elements: IntArray
+    resistance: Array
+    by_position: Array
+
+
+class Grip(NamedTuple):
+    """Where a step begins: positions (ne, ng, d), directions along the ground (ne, ng, d, r), axial and, in space,
+    lateral; traction (ne, ng, d) on the riser.
+    """
+
+    position: Array
+    along: Array
+    traction: Array
+
+
+class Friction:
+    """Part "friction": Coulomb friction at the stations of a `SeabedContact`, whose normal forces it reads; group E.
+
+    axial, lateral: coefficients, > 0. stiffness (ne,): of the ground along itself, per length [N/m2]; with the weight w
+    of the pipe and a mobilisation length, max(axial, lateral) w/mobilisation: `mobilised_within`. The force acts on the
+    axis. Directions are those of the start of the step; the traction is kept in the line's constant axes.
+    """
+
+    name = "friction"
+    symmetric = False
+    impulsive = True
+
+    def __init__(self, contact: SeabedContact, axial: float, lateral: float, stiffness: Array) -> None:
+        self.contact, self.line = contact, contact.line
+        self._mu = np.array([axial, lateral])[: self.line.dimension - 1]
+        self._stiffness = stiffness[:, None, None]
+        self._begun: Grip | None = None
+
+    def see(self, trial: Trial) -> Sliding:
+        """Tractions of the elements that touch."""
+        seen: Sliding = trial.once((self, "seen"), self._see)
+        return seen
+
+    def _see(self, trial: Trial) -> Sliding:
+        seen = self.contact.see(trial)
+        touching, at = seen.touching, seen.touching.elements
+        position, along, t_n = (values[at] for values in self._grip(trial))
+        k = self._stiffness[at]
+        elastic = _components(along, t_n - k * (seen.position[at] - position))
+        t, by_elastic, by_N = traction(elastic, np.maximum(touching.force, 0.0), self._mu)
+        N_slope = np.where(touching.force > 0.0, touching.slope, 0.0)
+        stuck = k[..., None] * along @ by_elastic @ np.swapaxes(along, -1, -2)
+        pressed = N_slope[..., None, None] * (along @ by_N[..., None]) * touching.away[..., None, :]
+        return Sliding(at, -(along @ t[..., None])[..., 0], stuck + pressed)
+
+    def _grip(self, trial: Trial) -> Grip:
+        if self._begun is None:
+            start = self.line.trial(State.at_rest(trial.state.t, trial.state.u.size))
+            self._begun = self._grip_at(start, np.zeros_like(self.contact.see(start).position))
+        return self._begun
+
+    def _grip_at(self, trial: Trial, traction: Array) -> Grip:
+        seen = self.contact.see(trial)
+        tau, _ = stations.unit_tangents(self.contact.at, trial.chord, trial.turn.tangent)
+        return Grip(seen.position, directions(tau, seen.away), traction)
+
+    def blocks(self) -> dict[str, Block]:
+        return {"riser": self.line.element_block()} if self.line.active else {}
+
+    def element_forces(self, state: State) -> tuple[None, Array]:
+        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
+        found: Array = self.line.trial(state).once((self, "element forces"), self._element_forces)
+        return None, found
+
+    def _element_forces(self, trial: Trial) -> Array:
+        return trial.pull_back(trial.once((self, "F"), self._F))
+
+    def _F(self, trial: Trial) -> Array:
+        """Residual conjugate to q (ne, 4, d)."""
+        sliding = self.see(trial)
+        F = np.zeros((self.line.length.size, 4, self.line.dimension))
+        F[sliding.elements] = stations.integrate(self.contact.at.of(sliding.elements), sliding.resistance)
+        return F
+
+    def residual(self, state: State, forces: Forces) -> None:
+        if self.line.active:
+            self.line.scatter(self.element_forces(state)[1], forces.end)
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        """Unweighted: friction stands at the end of the step."""
+        if not self.line.active:
+            return
+        trial, K = self.line.trial(state), values["riser"]
+        sliding = self.see(trial)
+        if sliding.elements.size == 0:
+            return
+        stations.add_stiffness(K, self.contact.at, sliding.elements, sliding.by_position, trial.turn.P)
+        trial.add_turning(K, 1.0, trial.once((self, "F"), self._F))
+
+    def energy(self, state: State) -> Energy:
+        """Stored in what the ground gives elastically along itself."""
+        if not self.line.active:
+            return Energy()
+        sliding = self.see(self.line.trial(state))
+        return Energy(potential=self._stored(sliding.elements, sliding.resistance))
+
+    def _stored(self, elements: IntArray, traction: Array) -> float:
+        per_length = 0.5 * np.sum(traction**2 / self._stiffness[elements], axis=2)
+        return float(np.sum(self.contact.share[elements] * per_length))
+
+    def work(self, before: State, after: State) -> Work:
+        """What friction took out beyond the change of what it stores: never negative."""
+        if not self.line.active:
+            return Work()
+        trial = self.line.trial(after)
+        sliding, begun, at = self.see(trial), self._grip(trial), self.see(trial).elements
+        moved = self.contact.see(trial).position[at] - begun.position[at]
+        taken = float(np.sum(self.contact.share[at] * np.sum(sliding.resistance * moved, axis=2)))
+        stored = self._stored(np.arange(self.line.length.size), begun.traction)
+        return Work(dissipated=taken - self.energy(after).potential + stored)
+
+    def commit(self, state: State) -> None:
+        """Keep the traction, and the place and directions from which the next step slides."""
+        if self.line.active:
+            trial = self.line.trial(state)
+            sliding = self.see(trial)
+            traction = np.zeros_like(self.contact.see(trial).position)
+            traction[sliding.elements] = -sliding.resistance
+            self._begun = self._grip_at(trial, traction)
+
+    def force_on_riser(self, state: State) -> Array:
+        """Sum of the friction on the riser (3,) [N], global axes."""
+        if not self.line.active:
+            return np.zeros(3)
+        sliding = self.see(self.line.trial(state))
+        per_station = self.contact.share[sliding.elements][..., None] * sliding.resistance
+        return np.asarray(-self.line.basis @ per_station.sum(axis=(0, 1)))
+
+
+def mobilised_within(mobilisation: float, axial: float, lateral: float, weight: Array) -> Array:
+    """Stiffness (ne,) [N/m2] at which the larger coefficient is mobilised after so long a slide [m] under the weight
+    (ne,) [N/m].
+    """
+    return max(axial, lateral) * weight / mobilisation
+
+
+def directions(tau: Array, away: Array) -> Array:
+    """Unit vectors (ne, ng, d, d - 1) along the ground: axial, and in space lateral, from the riser's tangents and the
+    ground's normals (ne, ng, d); zero where the riser stands upright on the ground.
+    """
+    n = away / np.linalg.norm(away, axis=2, keepdims=True)
+    axial = tau - np.sum(tau * n, axis=2, keepdims=True) * n
+    length = np.linalg.norm(axial, axis=2, keepdims=True)
+    axial = np.where(length > UPRIGHT, axial / np.maximum(length, UPRIGHT), 0.0)
+    if tau.shape[2] == 2:
+        return axial[..., None]
+    return np.stack([axial, np.cross(n, axial)], axis=-1)
+
+
+def _components(along: Array, vectors: Array) -> Array:
+    return np.asarray((np.swapaxes(along, -1, -2) @ vectors[..., None])[..., 0])

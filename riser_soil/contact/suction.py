@@ -1,0 +1,80 @@
+"""Penalty contact that sticks: tension up to a cap when the riser lifts, which breaks away and returns at a touch.
+
+With the opening w = -penetration > 0, the stiffness k of the penalty, the cap p and the reach r, the tension is
+
+    k w up to the cap, then p (r - w)/(r - p/k), 0 beyond r.
+
+The fall beyond the cap is spread over the reach instead of being sudden, so that the force is continuous within a
+step. Between the largest opening wm since the last touch and the surface it follows the straight line from 0 to the
+tension at wm: what has been broken stays broken until the riser touches again. Breaking away takes p r/2 of energy per
+length, all of it dissipated; the line gives back what it took, hence no path gains work.
+Bilinear cohesive law with secant unloading, as for delamination: M. Ortiz & A. Pandolfi, International Journal for
+Numerical Methods in Engineering 44 (1999), here healed by a touch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from riser_soil.arrays import Array, BoolArray
+from riser_soil.contact.law import Penalty
+
+
+@dataclass(frozen=True)
+class Sticking:
+    """penalty: the law in compression. cap [N/m], reach [m] > cap/stiffness: ValueError else.
+
+    History (..., 1): largest opening [m] since the last touch, inf before the first.
+    """
+
+    penalty: Penalty
+    cap: float
+    reach: float
+
+    def __post_init__(self) -> None:
+        if self.reach <= self._peak:
+            raise ValueError(f"suction must reach farther than {self._peak:g} m, where it peaks; got {self.reach:g} m")
+
+    @property
+    def _peak(self) -> float:
+        return self.cap / self.penalty.stiffness
+
+    @property
+    def start(self) -> float:
+        return self.penalty.start
+
+    def fresh(self, shape: tuple[int, ...]) -> Array:
+        return np.full((*shape, 1), np.inf)
+
+    def touched(self, penetration: Array, history: Array) -> BoolArray:
+        stuck = (-penetration < self.reach) & (history[..., 0] < self.reach)
+        return self.penalty.touched(penetration, history) | stuck
+
+    def respond(self, penetration: Array, history: Array) -> tuple[Array, Array]:
+        force, slope = self.penalty.respond(penetration, history)
+        tension, stiffness = self._tension(self._opening(penetration), history[..., 0])
+        return force - tension, slope + stiffness
+
+    def stored(self, penetration: Array, history: Array) -> Array:
+        w = self._opening(penetration)
+        tension, _ = self._tension(w, history[..., 0])
+        return self.penalty.stored(penetration, history) + 0.5 * tension * w
+
+    def renewed(self, penetration: Array, history: Array) -> Array:
+        opened = np.maximum(-penetration[..., None], history)
+        return np.where(penetration[..., None] >= 0.0, 0.0, opened)
+
+    def _opening(self, penetration: Array) -> Array:
+        """Opening as far as it matters [m]."""
+        return np.clip(-penetration, 0.0, self.reach)
+
+    def _tension(self, w: Array, widest: Array) -> tuple[Array, Array]:
+        """Tension and its derivative by the opening w >= 0."""
+        fall = self.cap / (self.reach - self._peak)
+        at = np.clip(np.maximum(w, widest), self._peak, self.reach)
+        secant = fall * (self.reach - at) / at
+        falling = (w > np.maximum(widest, self._peak)) & (w < self.reach)
+        stiffness = np.where(falling, -fall, np.where(w > 0.0, secant, 0.0))
+        return secant * w, np.where(w < self.reach, stiffness, 0.0)

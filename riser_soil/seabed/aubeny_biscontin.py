@@ -1,0 +1,177 @@
+"""Hysteretic resistance of a trenched seafloor to a riser: backbone, bounding loop with suction, and turns within.
+
+Source: C. Aubeny & G. Biscontin, Seafloor-riser interaction model, International Journal of Geomechanics 9 (2009),
+doi 10.1061/(ASCE)1532-3641(2009)9:5(218). With y the penetration, (y1, P1) the deepest point so far, on the backbone:
+
+    backbone             Pb(y) = a (y/D)^b su(y) D                                                         (1)
+    rebound, 1 to 2      P = P1 - d/(1/k + d/((1 + omega) P1)),  d = y1 - y,  to P2 = -phi P1              (2)
+    separation, 2 to 3   P = P2/2 + P2/4 (3 t - t^3),  t from 1 at y2 to -1 at y3;  y2 - y3 = psi (y1 - y2)  (3)
+    no contact           P = 0 above y3
+    reloading, 3 to 1    P = P1/2 + P1/4 (3 t - t^3),  t from -1 at y3 to 1 at y1                          (4)
+    turn at (yr, Pr)     P = Pr + d/(1/k + |d|/((1 + omega) P1)),  d = y - yr                              (5)
+
+(2) and (3) are the loop's lower edge, (4) the upper one; (5) holds between them, and (1) beyond y1: from the lower
+edge, (5) meets (y1, P1) and would rise above (1).
+
+Certainty: the report that the paper grew from (C. Aubeny, G. Biscontin & J. Zhang, Seafloor interaction with steel
+catenary risers, OTRC 9/06A173) and an abstract of work on the same model were read for its make-up: backbone, bounding
+loop of four parameters, turns from and within the loop, partial and full separation. The formulas and numbers are from
+memory: a = 6.73, b = 0.29 for a rough pipe in a trench of its own width to half a diameter deep, k/su = 660,
+omega = 0.433, phi = 0.203, psi = 0.661. Own choices: the backbone begins with the slope k, as (1) is upright at the
+surface; where the loop would reach above the surface (y3 < 0, at small penetrations), k is raised until y3 = 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.arrays import Array, BoolArray
+from riser_soil.seabed.bearing import PowerLaw, Strength
+
+TINY = 1e-30
+
+
+class Past(NamedTuple):
+    """History of a point: whether it went down, penetration z [m] and resistance P [N/m] where it is, z0, P0 where it
+    last turned, and the largest penetration z1 when it turned.
+    """
+
+    down: Array
+    z: Array
+    P: Array
+    z0: Array
+    P0: Array
+    z1: Array
+
+    @classmethod
+    def of(cls, history: Array) -> Past:
+        return cls(*np.moveaxis(history, -1, 0))
+
+
+class Loop(NamedTuple):
+    """Bounding loop: deepest point y1, P1 and stiffness k [N/m2] there; tension's ends y2 and y3."""
+
+    y1: Array
+    P1: Array
+    k: Array
+    y2: Array
+    y3: Array
+
+
+@dataclass(frozen=True)
+class AubenyBiscontin:
+    """Law of a pipe of one diameter [m]; see the module's text. su [Pa] at the surface, su_gradient [Pa/m]."""
+
+    diameter: float
+    su: float
+    su_gradient: float = 0.0
+    a: float = 6.73
+    b: float = 0.29
+    k_over_su: float = 660.0
+    omega: float = 0.433
+    phi: float = 0.203
+    psi: float = 0.661
+
+    @cached_property
+    def _strength(self) -> Strength:
+        return Strength(self.su, self.su_gradient)
+
+    @cached_property
+    def _power_law(self) -> PowerLaw:
+        return PowerLaw(self.diameter, self._strength, self.a, self.b)
+
+    @property
+    def _fall(self) -> float:
+        """(y1 - y2) k/P1."""
+        return (1.0 + self.phi) * (1.0 + self.omega) / (self.omega - self.phi)
+
+    @property
+    def start(self) -> float:
+        return 0.0
+
+    def fresh(self, shape: tuple[int, ...]) -> Array:
+        history = np.zeros((*shape, len(Past._fields)))
+        history[..., 0] = 1.0
+        return history
+
+    def touched(self, penetration: Array, history: Array) -> BoolArray:
+        return penetration > 0.0
+
+    def respond(self, penetration: Array, history: Array) -> tuple[Array, Array]:
+        return self._riser(*self._way(penetration, history))
+
+    def stored(self, penetration: Array, history: Array) -> Array:
+        """What a rebound at the stiffness k would give back."""
+        z, now = self._way(penetration, history)
+        P, _ = self._riser(z, now)
+        return 0.5 * P**2 / self._loop(np.maximum(now.z1, z)).k
+
+    def renewed(self, penetration: Array, history: Array) -> Array:
+        z, now = self._way(penetration, history)
+        return np.stack(now._replace(z=z, P=self._riser(z, now)[0]), axis=-1)
+
+    def backbone(self, z: Array) -> tuple[Array, Array]:
+        """Resistance (1) to a first penetration, and its slope."""
+        P, slope = self._power_law.resistance(z)
+        z = np.maximum(z, 0.0)
+        elastic = self._stiffness(z) * z
+        rise = self._stiffness(z) + self.k_over_su * self.su_gradient * z
+        return np.minimum(elastic, P), np.where(elastic < P, rise, slope)
+
+    def _stiffness(self, z: Array) -> Array:
+        return self.k_over_su * self._strength.at(z)
+
+    def _loop(self, y1: Array) -> Loop:
+        P1, _ = self.backbone(y1)
+        reach = self._fall * P1
+        k = np.maximum(self._stiffness(y1), (1.0 + self.psi) * reach / np.maximum(y1, TINY))
+        return Loop(y1, P1, k, y1 - reach / k, y1 - (1.0 + self.psi) * reach / k)
+
+    def _way(self, penetration: Array, history: Array) -> tuple[Array, Past]:
+        """Penetration, 0 above the surface, and the past as the way there continues it or turns."""
+        z = np.maximum(penetration, 0.0)
+        return z, self._continued(z, Past.of(history))
+
+    def _continued(self, z: Array, past: Past) -> Past:
+        down = np.where(z == past.z, past.down > 0.0, z > past.z)
+        turned = down != (past.down > 0.0)
+        z0, P0 = np.where(turned, past.z, past.z0), np.where(turned, past.P, past.P0)
+        return Past(down * 1.0, past.z, past.P, z0, P0, np.where(turned, np.maximum(past.z1, past.z), past.z1))
+
+    def _riser(self, z: Array, past: Past) -> tuple[Array, Array]:
+        """Resistance and its slope: the turn's hyperbola between the loop's edges, the backbone beyond the loop."""
+        loop, down = self._loop(past.z1), past.down > 0.0
+        inner, slope = self._hyperbola(z - past.z0, past.P0, loop)
+        lower, upper = self._lower(z, loop), self._upper(z, loop)
+        edge, edge_slope = (np.where(down, u, l) for u, l in zip(upper, lower, strict=True))
+        held = np.where(down, (inner > edge) | (z >= past.z1), inner < edge)
+        value, derivative = np.where(held, edge, inner), np.where(held, edge_slope, slope)
+        return np.where(z > 0.0, value, 0.0), np.where(z > 0.0, derivative, 0.0)
+
+    def _hyperbola(self, d: Array, P: Array, loop: Loop) -> tuple[Array, Array]:
+        """(5), and (2) from the deepest point."""
+        give = 1.0 / loop.k + np.abs(d) / np.maximum((1.0 + self.omega) * loop.P1, TINY)
+        return P + d / give, 1.0 / (loop.k * give**2)
+
+    def _lower(self, z: Array, loop: Loop) -> tuple[Array, Array]:
+        """Edge (2) and (3), 0 above y3."""
+        rebound, slope = self._hyperbola(np.minimum(z - loop.y1, 0.0), loop.P1, loop)
+        parting, parting_slope = _s_curve(z, loop.y3, loop.y2, -self.phi * loop.P1)
+        return np.where(z > loop.y2, rebound, parting), np.where(z > loop.y2, slope, parting_slope)
+
+    def _upper(self, z: Array, loop: Loop) -> tuple[Array, Array]:
+        """Edge (4), then the backbone."""
+        again, slope = _s_curve(z, loop.y3, loop.y1, loop.P1)
+        first, rise = self.backbone(z)
+        return np.where(z < loop.y1, again, first), np.where(z < loop.y1, slope, rise)
+
+
+def _s_curve(z: Array, first: Array, last: Array, height: Array) -> tuple[Array, Array]:
+    """Cubic from 0 to a height, level at both ends and constant beyond, and its slope."""
+    half = np.maximum(0.5 * (last - first), TINY)
+    t = np.clip((z - 0.5 * (first + last)) / half, -1.0, 1.0)
+    return 0.25 * height * (2.0 + 3.0 * t - t**3), 0.75 * height * (1.0 - t**2) / half

@@ -1,0 +1,246 @@
+"""Friction on a seabed: the law's return map, and the part along the riser's elements."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from riser_soil.arrays import Array
+from riser_soil.contact.coulomb import traction
+from riser_soil.contact.friction import Friction, directions, mobilised_within
+from riser_soil.contact.law import Penalty
+from riser_soil.contact.seabed_contact import SeabedContact
+from riser_soil.part import State
+from riser_soil.riser import hermite, shapes, stations
+from riser_soil.riser.ends import End
+from riser_soil.riser.line import Line
+from riser_soil.seabed.grounds import Ground, Plane, Profile
+from tests.dense_chain import residual, tangent
+from tests.sample_line import DIRECTION, START, sample
+from tests.unit.test_line_parts import WEIGHTS, difference_tangent, error
+
+both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
+MU = np.array([0.3, 0.7])
+AXIAL, LATERAL = 0.4, 0.8
+DEPTH, K_N, MOBILISATION = 0.01, 1.0e5, 0.02
+PRESSED = DEPTH * K_N  # N/m, on each metre of the pipe
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    numbers=st.lists(st.floats(-2.0, 2.0), min_size=6, max_size=6),
+    N=st.lists(st.floats(0.0, 2.0), min_size=3, max_size=3),
+)
+def test_every_step_dissipates_and_keeps_to_the_cone(numbers: list[float], N: list[float]) -> None:
+    """Taken less the change of what is stored, for steps of any size under any normal force."""
+    t, k = np.zeros(2), 1.7
+    for ds, normal in zip(np.array(numbers).reshape(3, 2), N, strict=True):
+        new, _, _ = traction(t - k * ds, np.array(normal), MU)
+        assert -(new @ ds) - (new @ new - t @ t) / (2.0 * k) >= -1e-14
+        assert np.sqrt(np.sum((new / MU) ** 2)) <= normal * (1.0 + 1e-12)
+        t = new
+
+
+@pytest.mark.parametrize("N", [5.0, 0.7, 0.0])
+def test_derivatives_of_the_return_map(N: float) -> None:
+    t, h = np.array([0.25, -0.6]), 1e-6
+    _, by_elastic, by_N = traction(t, np.array(N), MU)
+    for j, e in enumerate(np.eye(2)):
+        ahead, behind = (traction(t + s * h * e, np.array(N), MU)[0] for s in (1, -1))
+        assert by_elastic[:, j] == pytest.approx((ahead - behind) / (2 * h), abs=1e-8)
+    if N > 0.0:
+        ahead, behind = (traction(t, np.array(N + s * h), MU)[0] for s in (1, -1))
+        assert by_N == pytest.approx((ahead - behind) / (2 * h), abs=1e-8)
+
+
+def test_directions_lie_in_the_ground_and_follow_the_pipe() -> None:
+    tau = np.array([[[0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]])
+    up = np.broadcast_to([0.0, 0.0, 2.0], (1, 3, 3))
+    found = directions(tau, up)
+    np.testing.assert_allclose(found[0, 0], [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]], atol=1e-15)
+    np.testing.assert_allclose(found[0, 1], [[0.0, -1.0], [1.0, 0.0], [0.0, 0.0]], atol=1e-15)
+    assert not found[0, 2].any()
+    np.testing.assert_allclose(directions(tau[:, :1, ::2], up[:, :1, ::2])[0, 0], [[1.0], [0.0]], atol=1e-15)
+
+
+def straight(dimension: int) -> tuple[Line, Friction]:
+    """10 m of pipe, evenly pressed into level ground."""
+    arc = np.linspace(0.0, 10.0, 6)
+    flat = shapes.straight(arc, (0.0, 0.0, -DEPTH))
+    line = Line(dimension, shapes.layout(arc, np.full(5, 0.2), flat, flat), End(False), End(False))
+    contact = SeabedContact(line, np.zeros(5), Plane.level(0.0), Penalty(K_N))
+    stiffness = mobilised_within(MOBILISATION, AXIAL, LATERAL, np.full(5, PRESSED))
+    return line, Friction(contact, AXIAL, LATERAL, stiffness)
+
+
+def slid(line: Line, move: Array) -> State:
+    u = np.zeros(line.size)
+    line.nodal(u)[:, : line.dimension] = move @ line.basis
+    return State(0.0, u, np.zeros(line.size), np.zeros(line.size))
+
+
+def slide(line: Line, friction: Friction, moves: Array) -> tuple[Array, float, float]:
+    """Force on the riser at the last of some moves (n, 3), the energy taken and that dissipated."""
+    taken, lost, force = 0.0, 0.0, np.zeros(3)
+    for move in moves:
+        rest, state = slid(line, np.zeros(3)), slid(line, move)
+        force = friction.force_on_riser(state)
+        lost += friction.work(rest, state).dissipated
+        taken -= float(force @ move)
+        friction.commit(state)
+        line.commit(state)
+    return force, taken, lost
+
+
+@both_dimensions
+def test_dragged_along_it_resists_with_mu_w_L_after_mobilisation(dimension: int) -> None:
+    line, friction = straight(dimension)
+    force, _, _ = slide(line, friction, np.array([[0.25 * MOBILISATION, 0.0, 0.0]]))
+    assert force == pytest.approx([-0.25 * LATERAL * PRESSED * 10.0, 0.0, 0.0])  # still stuck
+    force, _, _ = slide(line, friction, np.array([[MOBILISATION, 0.0, 0.0]] * 3))
+    assert force == pytest.approx([-AXIAL * PRESSED * 10.0, 0.0, 0.0])
+
+
+def test_dragged_across_it_resists_with_the_lateral_coefficient() -> None:
+    line, friction = straight(3)
+    force, _, _ = slide(line, friction, np.array([[0.0, 0.5 * MOBILISATION, 0.0]]))
+    assert force == pytest.approx([0.0, -0.5 * LATERAL * PRESSED * 10.0, 0.0])
+    force, _, _ = slide(line, friction, np.array([[0.0, MOBILISATION, 0.0]] * 2))
+    assert force == pytest.approx([0.0, -LATERAL * PRESSED * 10.0, 0.0])
+
+
+def test_dragged_askew_it_resists_by_the_ellipse() -> None:
+    line, friction = straight(3)
+    force, _, _ = slide(line, friction, np.array([[0.01, 0.01, 0.0]] * 400))
+    share = force[:2] / (PRESSED * 10.0) / np.array([AXIAL, LATERAL])
+    assert share @ share == pytest.approx(1.0)
+    assert np.all(force[:2] < 0.0)
+
+
+@both_dimensions
+def test_back_and_forth_it_takes_four_slides(dimension: int) -> None:
+    """A cycle of amplitude A loses 4 mu w L (A - m), m being the slide that mobilises it, and keeps its traction."""
+    line, friction = straight(dimension)
+    A, m = 0.1, MOBILISATION * AXIAL / LATERAL
+    step = np.array([0.002, 0.0, 0.0])
+    slide(line, friction, np.array([step] * 50))
+    before = friction.energy(slid(line, np.zeros(3))).potential
+    cycle = np.concatenate([np.tile(-step, (100, 1)), np.tile(step, (100, 1))])
+    force, taken, lost = slide(line, friction, cycle)
+    limit = AXIAL * PRESSED * 10.0
+    assert force[0] == pytest.approx(-limit)
+    assert friction.energy(slid(line, np.zeros(3))).potential == pytest.approx(before)
+    assert before == pytest.approx(0.5 * limit * m)
+    assert lost == pytest.approx(taken)
+    assert lost == pytest.approx(4.0 * limit * (A - m), rel=0.03)  # the force at the end of each step of m/5 counts
+
+
+def test_stick_and_slip() -> None:
+    """Pulled by a spring whose end moves on, a pipe sticks until the spring overcomes friction, then follows."""
+    line, friction = straight(2)
+    k_t, limit, spring = LATERAL * PRESSED / MOBILISATION * 10.0, AXIAL * PRESSED * 10.0, 2.0e4
+    place, pulls = 0.0, []
+    for end in np.linspace(0.0, 0.6, 61)[1:]:
+        moved = 0.0
+        for _ in range(30):
+            state = slid(line, np.array([moved, 0.0, 0.0]))
+            out = spring * (end - place - moved) + friction.force_on_riser(state)[0]
+            slope = tangent([friction], state)[:: line.ndof, :: line.ndof].sum() + spring
+            moved += out / slope
+            if abs(out) < 1e-9 * limit:
+                break
+        else:
+            raise AssertionError("no balance")
+        friction.commit(state)
+        line.commit(state)
+        place += moved
+        pulls.append(spring * (end - place))
+        free = min(spring * k_t / (spring + k_t) * end, limit)
+        assert pulls[-1] == pytest.approx(free, rel=1e-8)
+    assert pulls[-1] == pytest.approx(limit)
+
+
+def test_a_lifted_pipe_lets_go_and_begins_anew() -> None:
+    line, friction = straight(3)
+    slide(line, friction, np.array([[0.0, 0.05, 0.0]]))
+    force, _, lost = slide(line, friction, np.array([[0.0, 0.0, 0.02]]))
+    assert not force.any()
+    assert lost == pytest.approx(0.5 * LATERAL * PRESSED * MOBILISATION * 10.0)  # what was stored
+    force, _, _ = slide(line, friction, np.array([[0.0, 0.0, -0.02]]))
+    assert not force.any()
+
+
+HILL = Profile(START[:2], DIRECTION[:2], np.array([-1.0, 2.0, 4.0, 8.0]), START[2] + np.array([0.5, -0.6, 0.3, 1.0]))
+GROUNDS: dict[str, Ground] = {"level": Plane.level(START[2] - 0.1), "profile": HILL}
+ROUND = Penalty(4.0e4, smoothing=30.0)  # its rounded corner holds the whole sample
+
+
+def rubbing(dimension: int, ground: str, stiffness: float) -> tuple[Friction, State]:
+    at = sample(dimension)
+    contact = SeabedContact(at.line, 0.5 * at.elements.outer_diameter, GROUNDS[ground], ROUND)
+    friction = Friction(contact, AXIAL, LATERAL, np.full(at.line.length.size, stiffness))
+    first = at.state(5, 0.1)
+    friction.commit(first)
+    contact.commit(first)
+    at.line.commit(first)
+    state = at.state(1)
+    at.line.nodal(state.u)[:, :dimension] += DIRECTION @ at.line.basis  # far from where the slip turns round
+    return friction, state
+
+
+@both_dimensions
+@pytest.mark.parametrize("ground", GROUNDS)
+@pytest.mark.parametrize("stiffness", [1.0e3, 1.0e7], ids=["sticks", "slips"])
+def test_tangent_is_the_derivative_of_the_residual(dimension: int, ground: str, stiffness: float) -> None:
+    friction, state = rubbing(dimension, ground, stiffness)
+    K = tangent([friction], state, WEIGHTS)
+    assert error(K, difference_tangent(friction, state, WEIGHTS)) < 1e-7
+    symmetric = bool(np.abs(K - K.T).max() <= 1e-11 * np.abs(K).max())
+    assert symmetric == (stiffness < 1.0e6)
+    assert not friction.symmetric
+
+
+@both_dimensions
+@pytest.mark.parametrize("term", ["turning of the slip", "change of the normal force", "geometric"])
+def test_tangent_needs_all_its_terms(dimension: int, term: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    friction, state = rubbing(dimension, "profile", 1.0e7)
+    expected = tangent([friction], state, WEIGHTS)
+    if term == "geometric":
+        monkeypatch.setattr(hermite, "add_geometric", lambda *_: None)
+    else:
+
+        def without(elastic: Array, N: Array, mu: Array) -> tuple[Array, Array, Array]:
+            t, by_elastic, by_N = traction(elastic, N, mu)
+            return (t, 0.0 * by_elastic, by_N) if term.startswith("turning") else (t, by_elastic, 0.0 * by_N)
+
+        monkeypatch.setattr("riser_soil.contact.friction.traction", without)
+    friction.line.forget()
+    found = tangent([friction], state, WEIGHTS)
+    if dimension == 2 and term.startswith("turning"):
+        assert error(found, expected) < 1e-12  # in a plane the slip has one direction only
+    else:
+        assert error(found, expected) > 1e-5
+
+
+@both_dimensions
+def test_random_steps_along_a_hill_dissipate(dimension: int) -> None:
+    at = sample(dimension)
+    contact = SeabedContact(at.line, 0.5 * at.elements.outer_diameter, HILL, Penalty(1.0e4, 1e-3), stations.gauss(5))
+    friction = Friction(contact, AXIAL, LATERAL, np.full(at.line.length.size, 5.0e4))
+    for seed in range(8):
+        rest, state = State.at_rest(0.0, at.line.size), at.state(seed, 0.05)
+        assert friction.work(rest, state).dissipated >= -1e-9
+        assert friction.work(rest, state).external == 0.0
+        for part in (friction, contact):
+            part.commit(state)
+        at.line.commit(state)
+
+
+def test_plane_and_space_agree_along_the_pipe() -> None:
+    (flat, planar), (_, spatial) = straight(2), straight(3)
+    move = np.array([0.013, 0.0, -0.002])
+    flat_force, spatial_force = (f.force_on_riser(slid(f.line, move)) for f in (planar, spatial))
+    assert flat_force == pytest.approx(spatial_force)
+    assert residual([planar], slid(flat, move)).reshape(-1, 3)[:, 0].sum() == pytest.approx(-flat_force[0])

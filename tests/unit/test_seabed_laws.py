@@ -1,0 +1,171 @@
+"""What both hysteretic laws of the seabed share: continuity, exact slopes, steps, passivity."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from riser_soil.arrays import Array
+from riser_soil.contact.law import NormalLaw
+from riser_soil.contact.seabed_contact import SeabedContact
+from riser_soil.part import State
+from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
+from riser_soil.seabed.bearing import PowerLaw, Strength, displaced
+from riser_soil.seabed.grounds import Plane
+from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
+from tests.dense_chain import tangent
+from tests.sample_line import START, Sample, sample
+from tests.soil_loops import after, at, forces, through, work
+from tests.unit.test_line_parts import WEIGHTS, difference_tangent, error
+
+D, SU, GRADIENT = 0.3, 2000.0, 1500.0
+LAWS: dict[str, NormalLaw] = {
+    "randolph-quiggin": RandolphQuiggin(D, SU, GRADIENT, unit_weight=4.0e3),
+    "randolph-quiggin, even, light": RandolphQuiggin(D, SU, f_suc=0.3, lambda_suc=0.4, lambda_rep=0.5),
+    "aubeny-biscontin": AubenyBiscontin(D, SU, GRADIENT),
+    "aubeny-biscontin, even": AubenyBiscontin(D, SU, omega=0.8, phi=0.3, psi=0.4),
+}
+WAYS = {
+    "first": (0.0,),
+    "pressed": (0.0, 0.07),
+    "lifted": (0.0, 0.07, 0.064),
+    "in suction": (0.0, 0.07, 0.055),
+    "pressed again": (0.0, 0.07, 0.055, 0.06),
+    "lifted again": (0.0, 0.07, 0.055, 0.066, 0.061),
+    "left and back": (0.0, 0.07, -0.01, 0.03),
+    "shallow": (0.0, 4e-4, 2e-4),
+}
+every_law = pytest.mark.parametrize("law", LAWS.values(), ids=LAWS.keys())
+every_way = pytest.mark.parametrize("way", WAYS.values(), ids=WAYS.keys())
+paths = st.lists(st.floats(-0.02, 0.1), min_size=2, max_size=25)
+trembling = st.lists(st.floats(-0.003, 0.003), min_size=2, max_size=40)
+
+
+@every_law
+@every_way
+def test_slope_is_the_derivative_but_where_branches_meet(law: NormalLaw, way: tuple[float, ...]) -> None:
+    history = after(law, through(*way)) if len(way) > 1 else law.fresh((1,))
+    z, h = np.linspace(-0.01, 0.12, 1001), 1e-8
+    ahead, behind = at(law, z + h, history)[0], at(law, z - h, history)[0]
+    error = np.abs(at(law, z, history)[1] - (ahead - behind) / (2 * h))
+    wrong = error > 1e-5 * np.abs(at(law, z, history)[1]).max()
+    assert np.count_nonzero(wrong) <= 5
+
+
+@every_law
+@every_way
+def test_force_is_continuous_within_a_step(law: NormalLaw, way: tuple[float, ...]) -> None:
+    """Turning back, leaving the ground and passing the deepest point within one step make no jump."""
+    history = after(law, through(*way)) if len(way) > 1 else law.fresh((1,))
+    z = np.linspace(-0.01, 0.12, 100_001)
+    force, slope = at(law, z, history)
+    rise = np.abs(np.diff(force))
+    bound = 1.01 * (z[1] - z[0]) * np.maximum(np.abs(slope[1:]), np.abs(slope[:-1])) + 1e-6 * SU * D
+    surface = np.abs(z[1:]) < 1e-5  # suction ends upright at the surface, as the square root of the depth
+    assert np.all(rise[~surface] < 3.0 * bound[~surface])
+    assert np.all(rise < 5e-2 * SU * D)
+
+
+@every_law
+@every_way
+def test_a_way_without_turns_does_not_depend_on_its_steps(law: NormalLaw, way: tuple[float, ...]) -> None:
+    history = after(law, through(*way)) if len(way) > 1 else law.fresh((1,))
+    for end in (0.11, 1e-3):
+        once = at(law, np.array([end]), history)[0][0]
+        begin = way[-1]
+        assert forces(law, through(begin, end, steps=37), history)[-1] == pytest.approx(once, rel=1e-9, abs=1e-6)
+
+
+@every_law
+@every_way
+def test_a_response_keeps_nothing(law: NormalLaw, way: tuple[float, ...]) -> None:
+    history = after(law, through(*way)) if len(way) > 1 else law.fresh((1,))
+    kept, here = history.copy(), np.array([0.05])
+    before = law.respond(here, history)
+    law.respond(np.array([0.1]), history)
+    law.renewed(np.array([0.1]), history)
+    np.testing.assert_array_equal(history, kept)
+    np.testing.assert_array_equal(before, law.respond(here, history))
+
+
+@every_law
+def test_force_is_zero_out_of_contact(law: NormalLaw) -> None:
+    away = np.array([-np.inf, -1.0, -1e-9, 0.0])
+    for history in (law.fresh((1,)), after(law, through(0.0, 0.07, 0.05))):
+        np.testing.assert_array_equal(at(law, away, history), np.zeros((2, 4)))
+        assert not law.touched(away, np.repeat(history, 4, axis=0)).any()
+        assert not law.stored(away, np.repeat(history, 4, axis=0)).any()
+
+
+@every_law
+@settings(max_examples=60, deadline=None)
+@given(path=paths, tremble=trembling)
+def test_no_path_from_untouched_ground_gains_work(law: NormalLaw, path: list[float], tremble: list[float]) -> None:
+    whole = np.array([*path, *(0.05 + np.array(tremble))])
+    assert work(whole, forces(law, whole)).min() >= -1e-9
+
+
+def lost_per_cycle(law: NormalLaw, cycle: Array, times: int) -> Array:
+    """Work of each repetition but the first, less the change of what is stored."""
+    path = np.tile(cycle, times)
+    histories = [law.fresh((1,))]
+    for z in path:
+        histories.append(law.renewed(np.array([z]), histories[-1]))
+    ends = slice(cycle.size - 1, None, cycle.size)
+    stored = [law.stored(cycle[-1:], h)[0] for h in histories[cycle.size :: cycle.size]]
+    return np.asarray(np.diff(work(path, forces(law, path))[ends]) - np.diff(stored))
+
+
+@every_law
+@settings(max_examples=40, deadline=None)
+@given(path=paths)
+def test_cycles_dissipate(law: NormalLaw, path: list[float]) -> None:
+    assert np.all(lost_per_cycle(law, np.array(path), 5) >= -1e-9)
+
+
+@every_law
+def test_dissipation_per_cycle_grows_with_its_amplitude(law: NormalLaw) -> None:
+    cycles = [through(0.06, 0.06 - amplitude, 0.06, steps=50) for amplitude in (1e-4, 3e-4, 1e-3, 3e-3)]
+    lost = [lost_per_cycle(law, cycle, 4)[-1] for cycle in cycles]
+    assert lost[0] > 0.0
+    assert np.all(np.diff(lost) > 0.0)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("rise", [-0.16, 0.1], ids=["sinking", "rising"])
+@pytest.mark.parametrize("kind", ["randolph-quiggin", "aubeny-biscontin"])
+def test_tangent_along_a_riser_with_a_history(kind: str, rise: float, dimension: int) -> None:
+    """Pressed in, lifted a little, then on or back: laws softer than clay, that differences are smooth."""
+    law = RandolphQuiggin(D, SU, 50.0, K_max=2.0) if kind[0] == "r" else AubenyBiscontin(D, SU, k_over_su=5.0)
+    riser = sample(dimension)
+    part = SeabedContact(riser.line, np.zeros(riser.line.length.size), Plane.level(START[2] + 5.0), law)
+    for lift, size in ((-0.5, 0.0), (0.1, 0.0)):
+        state = lifted(riser, lift, size)
+        part.commit(state)
+        riser.line.commit(state)
+    state = lifted(riser, rise, 0.01)
+    assert error(tangent([part], state, WEIGHTS), difference_tangent(part, state, WEIGHTS)) < 1e-7
+
+
+def lifted(riser: Sample, lift: float, size: float) -> State:
+    state = riser.state(4, size)
+    riser.line.nodal(state.u)[:, riser.line.dimension - 1] += lift
+    return state
+
+
+def test_bearing_resistance() -> None:
+    clay = PowerLaw(D, Strength(SU, GRADIENT), 6.0, 0.25, shallow=0.1)
+    z = np.array([0.03, 0.0075, 0.3, 0.0, -1.0])
+    Nc = np.array([6.0 * 0.1**0.25, 3.0 * 0.1**0.25, 6.0, 0.0, 0.0])
+    np.testing.assert_allclose(clay.resistance(z)[0], Nc * (SU + GRADIENT * z) * D, rtol=1e-13)
+
+
+def test_displaced_area_of_half_a_pipe_and_of_a_whole_one() -> None:
+    integral, area, width = displaced(np.array([-0.1, 0.5 * D, D, 2.0 * D]), D)
+    half = 0.125 * np.pi * D**2
+    np.testing.assert_allclose(area, [0.0, half, 2.0 * half, 2.0 * half], atol=1e-15)
+    np.testing.assert_allclose(width, [0.0, D, 0.0, 0.0], atol=1e-15)
+    assert integral[-1] == pytest.approx(quad(lambda z: displaced(np.array(z), D)[1], 0.0, 2.0 * D, points=[D])[0])
