@@ -9,17 +9,20 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.arrays import Array
+from riser_soil.part import Part
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.contact import Contact as ContactScene
 from riser_soil.scene.plane import vertical_plane
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.seabed import RigidSeabed, Seabed, SpringSeabed
+from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed, Seabed, SpringSeabed
+from riser_soil.scene.seabed import Law as HystereticLaw
 from riser_soil.scene.soil import LinearElastic, MeshFile
 from riser_soil.scene.soil import Soil as SoilScene
 
 if TYPE_CHECKING:
     from riser_soil.build.world import World
+    from riser_soil.contact.law import NormalLaw
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.seabed.grounds import Ground
@@ -91,7 +94,6 @@ def soil_contact_of(scene: Scene, settings: ContactScene, world: World) -> SoilC
 
 def seabed_contact_of(scene: Scene, settings: ContactScene, world: World) -> SeabedContact:
     """Contact of the riser with the seabed, beside the soil where there is one."""
-    from riser_soil.contact.law import Penalty
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.riser.stations import ENDS, gauss
 
@@ -100,10 +102,49 @@ def seabed_contact_of(scene: Scene, settings: ContactScene, world: World) -> Sea
         world.line,
         contact_radius(scene, world.elements),
         _ground(scene, scene.seabed),
-        Penalty(world.contact_stiffness["seabed"], settings.smoothing),
+        _law(scene.seabed, settings, world),
         ENDS if settings.method == "node" else gauss(GAUSS_POINTS),
         covered=world.soil_contact.covers if world.soil_contact is not None else None,
     )
+
+
+def friction_of(settings: ContactScene, world: World) -> list[Part]:
+    """Friction on the seabed, where the scene asks for it."""
+    given = settings.friction
+    if given is None or world.seabed is None:
+        return []
+    from riser_soil.contact.friction import Friction, mobilised_within
+
+    mu = given.axial, given.axial if given.lateral is None else given.lateral
+    stiffness = mobilised_within(given.mobilisation, *mu, np.abs(world.elements.weight))
+    return [Friction(world.seabed, *mu, stiffness)]
+
+
+def _law(seabed: Seabed, settings: ContactScene, world: World) -> NormalLaw:
+    """How the seabed answers to penetration."""
+    if isinstance(seabed, HystereticSeabed):
+        return _hysteretic(seabed.law, world.elements)
+    from riser_soil.contact.law import Penalty
+
+    penalty = Penalty(world.contact_stiffness["seabed"], settings.smoothing)
+    if settings.suction is None:
+        return penalty
+    from riser_soil.contact.suction import Sticking
+
+    return Sticking(penalty, settings.suction.cap, settings.suction.reach)
+
+
+def _hysteretic(given: HystereticLaw, elements: Elements) -> NormalLaw:
+    """The law for the mean diameter of the line."""
+    diameter = float(np.average(elements.outer_diameter, weights=elements.length))
+    constants = given.model_dump(exclude={"kind"})
+    if given.kind == "randolph-quiggin":
+        from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
+
+        return RandolphQuiggin(diameter, **constants)
+    from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
+
+    return AubenyBiscontin(diameter, **constants)
 
 
 def _ground(scene: Scene, seabed: Seabed) -> Ground:

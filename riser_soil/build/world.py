@@ -57,6 +57,7 @@ class World:
     soil: Soil | None = None
     soil_contact: SoilContact | None = None
     seabed: SeabedContact | None = None
+    friction: list[Part] = field(default_factory=list)
     contact_stiffness: dict[str, float] = field(default_factory=dict)
     vessels: Vessels | None = None
 
@@ -122,7 +123,7 @@ class World:
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
         soil = [self.soil] if self.soil is not None else []
-        return Model(self.fields, [*parts, *soil, *self.contacts])
+        return Model(self.fields, [*parts, *soil, *self.contacts, *self.friction])
 
 
 def build(scene: Scene, comm: MPI.Intracomm) -> World:
@@ -149,3 +150,4 @@ def _add_ground(world: World) -> None:
         world.soil_contact = ground.soil_contact_of(scene, settings, world)
     if scene.seabed is not None:
         world.seabed = ground.seabed_contact_of(scene, settings, world)
+        world.friction = ground.friction_of(settings, world)

@@ -14,6 +14,30 @@ Stiffness = Annotated[
 ]
 
 
+class Friction(BaseModel):
+    """Coulomb friction on the seabed."""
+
+    model_config = FROZEN
+
+    axial: Positive = Field(description="friction coefficient along the pipe [-]")
+    lateral: Positive | None = Field(
+        default=None, description="friction coefficient across the pipe [-]; that along it by default"
+    )
+    mobilisation: Positive = Field(
+        default=0.01,
+        description="slide after which friction is fully mobilised under the pipe's submerged weight [m]",
+    )
+
+
+class Suction(BaseModel):
+    """Tension of a penalty seabed on a pipe that lifts; once broken it is gone until the pipe touches again."""
+
+    model_config = FROZEN
+
+    cap: Positive = Field(description="greatest tension per length of pipe [N/m]")
+    reach: Positive = Field(description="opening over which it breaks away [m]; more than cap/stiffness")
+
+
 class Contact(BaseModel):
     """Penalty contact."""
 
@@ -32,4 +56,9 @@ class Contact(BaseModel):
     )
     smoothing: NonNegative = Field(
         default=1.0e-3, description="contact sets in smoothly between this gap and this penetration [m]"
+    )
+    friction: Friction | None = Field(default=None, description="friction on the seabed; none by default")
+    suction: Suction | None = Field(
+        default=None,
+        description="suction of a rigid or spring seabed; none by default, and a hysteretic one has its own",
     )

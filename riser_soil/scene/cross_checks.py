@@ -11,7 +11,7 @@ from riser_soil.scene.problem import Path, Problem, dotted, hint
 from riser_soil.scene.quantities import Vector
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.seabed import RigidSeabed
+from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed
 from riser_soil.scene.shapes import ArcShape, PointsShape
 from riser_soil.scene.soil import Block
 from riser_soil.scene.stage_checks import stage_conflicts
@@ -80,6 +80,8 @@ def _mass_needed(scene: Scene, line: LineType) -> str | None:
 
 
 def _diameter_needed(scene: Scene, line: LineType) -> str | None:
+    if isinstance(scene.seabed, HystereticSeabed):
+        return "the law of a hysteretic seabed counts in diameters"
     if scene.water and scene.gravity > 0.0 and line.submerged_weight is None:
         return "buoyancy follows from the outer diameter, unless submerged_weight is given"
     if line.rotary_inertia is True and any(stage.kind == "dynamic" for stage in scene.stages):
@@ -151,6 +153,14 @@ def _seabed_has_one_shape(scene: Scene) -> Iterator[Problem]:
     if scene.soil is not None and (seabed.profile is not None or seabed.slope_deg):
         key = "slope_deg" if seabed.slope_deg else "profile"
         yield Problem(("seabed", key), "the soil's top is level, and so must be the seabed beside it", "leave it out")
+
+
+def _seabed_can_do_so(scene: Scene) -> Iterator[Problem]:
+    for key in ("friction", "suction"):
+        if scene.contact and getattr(scene.contact, key) and scene.seabed is None:
+            yield Problem(("contact", key), "acts on a seabed, and the scene has none", "add seabed, or leave it out")
+    if scene.contact and scene.contact.suction and isinstance(scene.seabed, HystereticSeabed):
+        yield Problem(("contact", "suction"), "a hysteretic seabed has its own, in seabed.law", "leave it out")
 
 
 def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
@@ -266,6 +276,7 @@ _CHECKS: tuple[_Check, ...] = (
     _stays_in_plane,
     _contact_with_something,
     _seabed_has_one_shape,
+    _seabed_can_do_so,
     _ends_above_seabed,
     _initial_shape_possible,
     _straight_without_slack,

@@ -11,15 +11,12 @@ from riser_soil.scene.problem import Path, Problem
 
 # key -> values that mean "off"; the key itself is not part of the models. `*` stands for any name or number.
 KEYS: dict[tuple[str, ...], tuple[Any, ...]] = {
-    ("contact", "friction"): (None, 0, 0.0, False),
-    ("contact", "suction"): (None, 0, 0.0, False),
     ("stages", "*", "initial_velocity"): (None,),
     ("stages", "*", "tolerance"): (None,),
 }
 
 # key -> values of the language that can't be chosen yet; the key is part of the models.
 VALUES: dict[tuple[str, ...], tuple[Any, ...]] = {
-    ("seabed", "kind"): ("hysteretic",),
     ("soil", "inertia"): (True,),
     ("contact", "method"): ("surface",),
     ("stages", "*", "time_step"): ("auto",),

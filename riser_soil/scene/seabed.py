@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, BaseModel, Discriminator, Field, Tag
 from pydantic_core import PydanticCustomError
 
-from riser_soil.scene.quantities import FROZEN, Positive, Real, by_kind
+from riser_soil.scene.quantities import FROZEN, NonNegative, Positive, Real, by_kind
 
 ContactAt = Literal["axis", "outer"]
 
@@ -50,7 +50,7 @@ class RigidSeabed(BaseModel):
 
     model_config = FROZEN
 
-    kind: Literal["rigid"] = Field(description="rigid or spring")
+    kind: Literal["rigid"] = Field(description="rigid, spring or hysteretic")
     level: Level = 0.0
     slope_deg: Slope = 0.0
     profile: Profile = None
@@ -62,7 +62,7 @@ class SpringSeabed(BaseModel):
 
     model_config = FROZEN
 
-    kind: Literal["spring"] = Field(description="rigid or spring")
+    kind: Literal["spring"] = Field(description="rigid, spring or hysteretic")
     level: Level = 0.0
     slope_deg: Slope = 0.0
     profile: Profile = None
@@ -70,11 +70,70 @@ class SpringSeabed(BaseModel):
     stiffness: Positive = Field(description="force per length of pipe and penetration [N/m2]")
 
 
-Seabed = Annotated[
-    Annotated[RigidSeabed, Tag("<RigidSeabed>")] | Annotated[SpringSeabed, Tag("<SpringSeabed>")],
+class RandolphQuiggin(BaseModel):
+    """Hysteretic law of Randolph & Quiggin (2009); `riser_soil.seabed.randolph_quiggin` tells what is certain of it."""
+
+    model_config = FROZEN
+
+    kind: Literal["randolph-quiggin"] = Field(description="randolph-quiggin or aubeny-biscontin")
+    su: Positive = Field(description="undrained shear strength at the surface [Pa]")
+    su_gradient: NonNegative = Field(default=0.0, description="its growth with depth [Pa/m]")
+    unit_weight: NonNegative = Field(default=0.0, description="submerged unit weight, for the soil's buoyancy [N/m3]")
+    a: Positive = Field(default=6.0, description="factor of the bearing capacity a (z/D)^b [-]")
+    b: NonNegative = Field(default=0.25, lt=1.0, description="power of the bearing capacity a (z/D)^b [-]")
+    K_max: Positive = Field(default=200.0, description="greatest stiffness, over the ultimate pressure [-]")
+    f_suc: NonNegative = Field(default=0.6, lt=1.0, description="suction over the ultimate resistance [-]")
+    lambda_suc: Positive = Field(default=1.0, description="decay length of suction over the greatest penetration [-]")
+    lambda_rep: NonNegative = Field(default=0.3, description="softening of repenetration [-]")
+    f_b: NonNegative = Field(default=1.5, description="factor of the soil's buoyancy [-]")
+
+
+class AubenyBiscontin(BaseModel):
+    """Hysteretic law of Aubeny & Biscontin (2009); `riser_soil.seabed.aubeny_biscontin` tells what is certain of it."""
+
+    model_config = FROZEN
+
+    kind: Literal["aubeny-biscontin"] = Field(description="randolph-quiggin or aubeny-biscontin")
+    su: Positive = Field(description="undrained shear strength at the surface [Pa]")
+    su_gradient: NonNegative = Field(default=0.0, description="its growth with depth [Pa/m]")
+    a: Positive = Field(default=6.73, description="factor of the backbone a (y/D)^b [-]")
+    b: NonNegative = Field(default=0.29, lt=1.0, description="power of the backbone a (y/D)^b [-]")
+    k_over_su: Positive = Field(default=660.0, description="initial stiffness over the shear strength [-]")
+    omega: Positive = Field(default=0.433, description="asymptote of the rebound [-]")
+    phi: NonNegative = Field(default=0.203, lt=1.0, description="suction over the resistance before the uplift [-]")
+    psi: Positive = Field(default=0.661, description="length of the separation over that of the rebound [-]")
+
+
+Law = Annotated[
+    Annotated[RandolphQuiggin, Tag("<RandolphQuiggin>")] | Annotated[AubenyBiscontin, Tag("<AubenyBiscontin>")],
     Discriminator(
-        by_kind({"rigid": RigidSeabed, "spring": SpringSeabed}),
+        by_kind({"randolph-quiggin": RandolphQuiggin, "aubeny-biscontin": AubenyBiscontin}),
         custom_error_type="kind",
-        custom_error_message="rigid, spring",
+        custom_error_message="randolph-quiggin, aubeny-biscontin",
+    ),
+]
+
+
+class HystereticSeabed(BaseModel):
+    """A bed of clay that remembers: it resists penetration, holds the pipe by suction, and softens."""
+
+    model_config = FROZEN
+
+    kind: Literal["hysteretic"] = Field(description="rigid, spring or hysteretic")
+    level: Level = 0.0
+    slope_deg: Slope = 0.0
+    profile: Profile = None
+    contact_at: Toucher = "outer"
+    law: Law = Field(description="{kind: randolph-quiggin, su: ...} or {kind: aubeny-biscontin, su: ...}")
+
+
+Seabed = Annotated[
+    Annotated[RigidSeabed, Tag("<RigidSeabed>")]
+    | Annotated[SpringSeabed, Tag("<SpringSeabed>")]
+    | Annotated[HystereticSeabed, Tag("<HystereticSeabed>")],
+    Discriminator(
+        by_kind({"rigid": RigidSeabed, "spring": SpringSeabed, "hysteretic": HystereticSeabed}),
+        custom_error_type="kind",
+        custom_error_message="rigid, spring, hysteretic",
     ),
 ]
