@@ -164,7 +164,8 @@ class SoilContact:
         """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""
         if not self.active:
             return float("nan")
-        return touchdown(self._riser.arc, self._clearance(state))
+        force = self.force_per_length(state)
+        return touchdown(self._riser.arc, self._riser.tributary_length, self._clearance(state), force)
 
     def improve(self, guess: State) -> Array:
         """First guess of a step: the guess's increment, lifted where a node would sink below its present depth.
