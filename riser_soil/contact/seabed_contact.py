@@ -202,7 +202,7 @@ class SeabedContact:
         seen = self.see(self.line.trial(state))
         force = np.zeros_like(self._arc)
         force[seen.touching.elements] = seen.touching.force
-        return self._arc.ravel(), self._share.ravel(), -seen.penetration.ravel() - self.law.start, force.ravel()
+        return self._arc.ravel(), self.share.ravel(), -seen.penetration.ravel() - self.law.start, force.ravel()
 
     def improve(self, guess: State) -> Array:
         """First guess of a step: the guess's increment, lifted where a node would sink below its present depth.
