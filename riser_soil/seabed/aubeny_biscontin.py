@@ -1,7 +1,7 @@
 """Hysteretic resistance of a trenched seafloor to a riser: backbone, bounding loop with suction, and turns within.
 
-Source: C. Aubeny & G. Biscontin, Seafloor-riser interaction model, International Journal of Geomechanics 9 (2009),
-doi 10.1061/(ASCE)1532-3641(2009)9:5(218). With y the penetration, (y1, P1) the deepest point so far, on the backbone:
+Source: C. Aubeny & G. Biscontin, Seafloor-riser interaction model, International Journal of Geomechanics 9 (2009).
+With y the penetration and (y1, P1) the deepest point so far, which lies on the backbone:
 
     backbone             Pb(y) = a (y/D)^b su(y) D                                                         (1)
     rebound, 1 to 2      P = P1 - d/(1/k + d/((1 + omega) P1)),  d = y1 - y,  to P2 = -phi P1              (2)
@@ -13,13 +13,14 @@ doi 10.1061/(ASCE)1532-3641(2009)9:5(218). With y the penetration, (y1, P1) the 
 (2) and (3) are the loop's lower edge, (4) the upper one; (5) holds between them, and (1) beyond y1: from the lower
 edge, (5) meets (y1, P1) and would rise above (1).
 
-Certainty: the report that the paper grew from (C. Aubeny, G. Biscontin & J. Zhang, Seafloor interaction with steel
-catenary risers, OTRC 9/06A173) and an abstract of work on the same model were read for its make-up: backbone, bounding
-loop of four parameters, turns from and within the loop, partial and full separation. The formulas and numbers are from
-memory: a = 6.73, b = 0.29 for a rough pipe in a trench up to half a diameter deep, k/su = 660, omega = 0.433,
-phi = 0.203, psi = 0.661. Own choices: the backbone begins with the slope k, as (1) is upright at the surface; where the
-loop would reach above the surface (y3 < 0, at small penetrations), phi, psi and 1/(1 + omega) shrink together until
-y3 = 0, so that a pipe that rests on the first slope feels elastic ground; the upper edge is nowhere below the lower.
+Certainty: of its make-up (backbone, bounding loop of four parameters, turns from and within the loop, partial and full
+separation) the contents of the report that it grew from (C. Aubeny, G. Biscontin & J. Zhang, Seafloor interaction with
+steel catenary risers, OTRC 9/06A173) and the abstract of a thesis (Y. Jiao, Texas A&M University, 2007) were read, not
+the paper. The formulas and numbers are from memory: a = 6.73, b = 0.29 for a rough pipe in a trench up to half a
+diameter deep, k/su = 660, omega = 0.433, phi = 0.203, psi = 0.661. Own choices: the backbone begins with the slope k,
+as (1) is upright at the surface; where the loop would reach above the surface (y3 < 0, at small penetrations), phi,
+psi and 1/(1 + omega) shrink together until y3 = 0, so that a pipe that rests on the first slope feels elastic ground;
+the upper edge is nowhere below the lower.
 """
 
 from __future__ import annotations
