@@ -11,8 +11,9 @@ import numpy as np
 
 from riser_soil import __version__
 from riser_soil.arrays import Array
+from riser_soil.balance import Balance
 from riser_soil.build import World
-from riser_soil.inventory import built, left_out, unknowns
+from riser_soil.inventory import built, dissipating, left_out, unknowns, working
 from riser_soil.march import Accepted, March
 from riser_soil.part import Energy, Forces, State
 from riser_soil.progress import Progress
@@ -30,7 +31,7 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.schedule import Schedule
 from riser_soil.screen import print_summary
-from riser_soil.snapshot import Ledger, RiserSnapshot, RunFacts, StepHealth, Touch
+from riser_soil.snapshot import RiserSnapshot, RunFacts, StepHealth, Touch
 from riser_soil.system import Clock
 
 
@@ -61,8 +62,7 @@ class Observer:
     def begin_stage(self, stage: Stage, energy: Energy) -> None:
         """energy: stored at the stage's beginning."""
         self._schedule.begin_stage(stage.kind)
-        self._static = isinstance(stage, StaticStage)
-        self._begun, self._ledger = energy, Ledger()
+        self._balance = Balance(energy, isinstance(stage, StaticStage))
         self._relaxed = 0
         if self._recorder is not None:
             self._recorder.begin_stage(stage.name, stage.kind)
@@ -74,13 +74,12 @@ class Observer:
         due = self._schedule.due(step.t, last)
         wanted = due.pictures and self._world.soil is not None
         soil = self._world.soil.output_fields() if wanted and self._world.soil is not None else None
-        previous, self._ledger = self._ledger, self._balance(march.energy, step)
+        change = self._balance.add(march.energy, step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
         if self._recorder is not None:
-            change = self._ledger.residual - previous.residual
             health = StepHealth(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
             riser, touching = riser_snapshot(self._world, march), touch(self._world, march.now)
-            self._recorder.accept(step.t, due, riser, touching, health, self._ledger, soil)
+            self._recorder.accept(step.t, due, riser, touching, health, self._balance.ledger, soil)
         self._relaxed = 0
         self._clock.add("output", since)
 
@@ -104,13 +103,6 @@ class Observer:
             self._recorder.add_seconds(self._clock.seconds)
             self._recorder.finish()
             print_summary(self._recorder.summary.as_dict(), self._recorder.settlement)
-
-    def _balance(self, e: Energy, step: Accepted) -> Ledger:
-        """The ledger after a step. A static stage balances no energy: its first shape need not be an equilibrium."""
-        before = self._ledger
-        dissipated, work = before.dissipated + step.dissipated, before.work + step.work
-        residual = np.nan if self._static else e.total - self._begun.total + dissipated - work
-        return Ledger(e.kinetic, e.strain, e.potential, dissipated, work, residual)
 
 
 def _known_fields(world: World) -> tuple[str, ...]:
@@ -183,6 +175,8 @@ def facts(world: World) -> RunFacts:
         ranks=world.comm.size,
         built=built(world.scene),
         left_out=left_out(world.scene),
+        dissipating=dissipating(world.scene),
+        working=working(world.scene),
         riser_dofs=unknowns(world.comm, world.line),
         soil_dofs=unknowns(world.comm, world.soil.field) if world.soil is not None else 0,
     )

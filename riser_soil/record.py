@@ -11,7 +11,7 @@ from typing import Self
 from riser_soil import folder as run_folder
 from riser_soil.arrays import Array
 from riser_soil.errors import SceneError
-from riser_soil.netcdf import SeriesFile
+from riser_soil.netcdf import SeriesFile, ledger_variables
 from riser_soil.schedule import Due
 from riser_soil.snapshot import Ledger, RiserSnapshot, RunFacts, SoilMesh, SoilSnapshot, StepHealth, Touch
 from riser_soil.summary import StageTally, Summary, final_state, pack
@@ -81,7 +81,8 @@ class Recorder:
         self._arc = arc
         self._fields = fields
         left_out = set(RISER_FIELDS) - set(fields)
-        self._series = SeriesFile(folder / run_folder.SERIES, arc, facts.title, facts.version, left_out)
+        self._ledger = ledger_variables(facts.dissipating, facts.working)
+        self._series = SeriesFile(folder / run_folder.SERIES, arc, facts.title, facts.version, left_out, self._ledger)
         self._riser_frames = XdmfFile(
             folder / run_folder.RISER_XDMF, "riser", polyline(arc.size), polyline=True
         )
@@ -156,7 +157,8 @@ class Recorder:
         """
         self._clock.advance(t)
         self._tally(t, riser, touch, health, ledger)
-        self._series.step({"step_time": self._clock.now} | vars(health))
+        row = {"step_time": self._clock.now} | vars(health) | _ledger_row(ledger)
+        self._series.step(dict.fromkeys(self._ledger, 0.0) | row)
         if due.series:
             stamp = self._clock.stamp()
             self._series.record(_series_row(stamp, riser, touch))
@@ -198,7 +200,7 @@ class Recorder:
         self._latest = pack(riser, touch)
         stage.count(health)
         stage.time = self._clock.stage_time
-        stage.energy = ledger
+        stage.balance(self._clock.now, ledger)
         stage.extremes.update(t if stage.kind == "static" else self._clock.now, self._latest)
         stage.final = final_state(self._arc, riser, touch)
 
@@ -224,6 +226,20 @@ def _check_fields(fields: tuple[str, ...]) -> tuple[str, ...]:
 def _series_row(stamp: float, riser: RiserSnapshot, touch: Touch) -> dict[str, object]:
     row = vars(riser) | {"time": stamp, "touchdown_arc": touch.touchdown_arc}
     return row | {"max_penetration": touch.max_penetration, "contact_force_sum": touch.contact_force}
+
+
+def _ledger_row(ledger: Ledger) -> dict[str, float]:
+    return {
+        "kinetic_energy": ledger.kinetic,
+        "strain_energy": ledger.strain,
+        "potential_energy": ledger.potential,
+        "dissipated": ledger.dissipated,
+        "dissipated_time_scheme": ledger.numerical,
+        "work": ledger.work,
+        "relative_energy_residual": ledger.relative_residual,
+        **{f"dissipated_{name}": value for name, value in ledger.dissipated_by.items()},
+        **{f"work_{name}": value for name, value in ledger.work_by.items()},
+    }
 
 
 def _soil_file(folder: Path, mesh: SoilMesh | None) -> XdmfFile | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -34,6 +34,8 @@ _PLACES: tuple[tuple[tuple[str, ...], int], ...] = (
     *((("end", name), size) for name, size in _END),
     *(((name,), size) for name, size in _WHOLE),
 )
+
+DOUBTFUL = 0.01  # share of the energy turned over above which what is wrong in its balance is a warning
 
 
 def angle_deg(tangent: Array) -> float:
@@ -78,6 +80,22 @@ def final_state(arc: Array, riser: RiserSnapshot, touch: Touch) -> dict[str, Any
     return {name: value for name, value in final.items() if name not in _OF_WALL or math.isfinite(value["value"])}
 
 
+def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
+    """worst: largest residual on the way [J], at time t [s]."""
+    allowed = DOUBTFUL * ledger.turned_over
+    if abs(worst) > allowed:
+        yield (
+            f"the energy balance is {worst:.3g} J off at {t:.5g} s, {abs(worst) / ledger.turned_over:.2%} of the "
+            f"{ledger.turned_over:.3g} J turned over, and {ledger.residual:.3g} J at the end: take a smaller time_step"
+        )
+    if abs(ledger.numerical) > allowed:
+        done, own = ("took out" if ledger.numerical > 0.0 else "put in"), abs(ledger.numerical)
+        yield (
+            f"the time scheme {done} {own:.3g} J, {own / ledger.turned_over:.2%} of the {ledger.turned_over:.3g} J "
+            "turned over: take a smaller time_step"
+        )
+
+
 class Extremes:
     """Smallest and largest of every observable, with their times; nan does not count."""
 
@@ -118,6 +136,13 @@ class StageTally:
     final: dict[str, Any] | None = None
     extremes: Extremes = field(default_factory=Extremes)
     energy: Ledger = field(default_factory=Ledger)
+    worst_residual: tuple[float, float] = (0.0, math.nan)  # of the energy balance [J], and its time [s]
+
+    def balance(self, t: float, ledger: Ledger) -> None:
+        """t: s, total simulated time."""
+        self.energy = ledger
+        if abs(ledger.residual) > abs(self.worst_residual[0]):
+            self.worst_residual = ledger.residual, t
 
     def count(self, health: StepHealth) -> None:
         self.steps += 1
@@ -135,9 +160,21 @@ class StageTally:
         return "load steps" if self.step_cuts else "newton"
 
     def as_dict(self) -> dict[str, Any]:
-        plain = {k: v for k, v in vars(self).items() if k not in ("extremes", "energy")}
+        plain = {k: v for k, v in vars(self).items() if k not in ("extremes", "energy", "worst_residual")}
         extremes = self.extremes.nested() if self.steps else None
-        return plain | {"method": self.method, "extremes": extremes, "energy": asdict(self.energy)}
+        return plain | {"method": self.method, "extremes": extremes, "energy": self._energy, "warnings": self.warnings}
+
+    @property
+    def _energy(self) -> dict[str, Any]:
+        worst, t = self.worst_residual
+        worst_residual = {"value": worst if self.kind == "dynamic" else math.nan, "time": t}
+        relative = self.energy.relative_residual
+        return asdict(self.energy) | {"relative_residual": relative, "worst_residual": worst_residual}
+
+    @property
+    def warnings(self) -> list[str]:
+        """What is doubtful about the stage's results, with numbers and a remedy."""
+        return list(energy_warnings(self.energy, *self.worst_residual)) if self.kind == "dynamic" else []
 
 
 class Summary:

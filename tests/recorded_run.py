@@ -102,6 +102,11 @@ def _bowl(points: Array, s0: float) -> Array:
     return values
 
 
+def _ledger(heave: float) -> Ledger:
+    residual = 1e-6 if heave else np.nan
+    return Ledger(kinetic=heave, work=heave + 1.0, residual=residual, turned_over=heave + 1.0)
+
+
 def record(
     folder: Path,
     *,
@@ -132,7 +137,7 @@ def record(
                     line.riser(arc),
                     line.touch(),
                     StepHealth(3, 0.1, 1e-6, 0),
-                    Ledger(kinetic=heave, work=heave + 1.0, residual=1e-6 if heave else np.nan),
+                    _ledger(heave),
                     None if mesh is None else soil(mesh, line.s0),
                 )
         recorder.add_seconds({"newton": 1.25})

@@ -160,4 +160,23 @@ def test_structure_of_the_file(tmp_path: Path) -> None:
     assert (lay["kind"], lay["time"], lay["steps"], lay["newton_iterations"]) == ("static", 0.0, 2, 6)
     assert (heave["kind"], heave["steps"]) == ("dynamic", 10)
     assert heave["time"] == pytest.approx(1.0)
-    assert set(heave["energy"]) == set(vars(Ledger()))
+    assert set(heave["energy"]) == {*vars(Ledger()), "relative_residual", "worst_residual"}
+    assert heave["energy"]["worst_residual"] == {"value": 1e-6, "time": pytest.approx(0.1)}
+    assert lay["energy"]["worst_residual"] == {"value": None, "time": None}
+
+
+def test_energy_that_does_not_balance_is_a_warning() -> None:
+    """1 J of 99 J is more than a hundredth, at its worst or at the end; the scheme's own share has its own warning."""
+    stage = StageTally("heave", "dynamic")
+    stage.balance(0.5, Ledger(kinetic=99.0, turned_over=99.0, residual=-1.0))
+    stage.balance(1.0, Ledger(kinetic=99.0, turned_over=99.0, residual=0.1))
+    assert len(stage.warnings) == 1
+    assert stage.warnings[0].startswith("the energy balance is -1 J off at 0.5 s, 1.01% of the 99 J turned over")
+    quiet, greedy = StageTally("heave", "dynamic"), StageTally("heave", "dynamic")
+    quiet.balance(0.5, Ledger(turned_over=101.0, residual=1.0, numerical=1.0))
+    assert quiet.warnings == []
+    greedy.balance(0.5, Ledger(turned_over=99.0, numerical=-1.0))
+    assert greedy.warnings == [
+        "the time scheme put in 1 J, 1.01% of the 99 J turned over: take a smaller time_step"
+    ]
+    assert StageTally("lay", "static", energy=Ledger(residual=math.nan)).warnings == []
