@@ -10,8 +10,10 @@ S the line's end,
     E0 = int (f - f0) ds = R - f0 tau,    E1 = int (f - f0)(S - s) ds = R tau - f0 tau²/2,
     R² = E0² + 2 f0 E1,                   tau = (R - E0)/f0.
 
-By statics neither d nor R knows how the force is spread; what remains of the ground's give is of the order of the depth
-to which the riser sinks. Quadrature along the line makes both sums as exact as the balance of forces.
+By statics neither d nor R knows how the force is spread. On a bed of springs under the tension H and small slopes, d
+lies sqrt(EI/H - H/k) before the place where the catenary of the hanging part touches down, sqrt(EI/H) on a rigid floor:
+an error of the order of 1/k, whereas the contact's end moves with the power -1/4 of k. On beds softer than H²/EI there
+is no such R, and d is that place itself. Quadrature along the line makes the sums as exact as the balance of forces.
 """
 
 from __future__ import annotations
