@@ -54,8 +54,20 @@ SERIES: dict[str, Variable] = {
     ),
     "bending_moment": Variable(("time", "arc"), "N m", "magnitude of the bending moment"),
     "curvature": Variable(("time", "arc"), "m-1", "magnitude of the curvature"),
+    "bend_utilisation": Variable(
+        ("time", "arc"), "1", "curvature times the smallest bend radius allowed", "above 1 the pipe is bent too much"
+    ),
     "contact_force": Variable(
         ("time", "arc"), "N m-1", "contact force per length of riser", "magnitude, >= 0"
+    ),
+    "penetration": Variable(
+        ("time", "arc"), "m", "penetration of the riser's underside into the ground as it is at the time", ">= 0"
+    ),
+    "embedment": Variable(
+        ("time", "arc"),
+        "m",
+        "greatest depth yet of the riser's underside below the ground as it lay before the riser came",
+        ">= 0",
     ),
     "moment_vector": Variable(
         ("time", "arc", "component"),
@@ -67,7 +79,24 @@ SERIES: dict[str, Variable] = {
     "end_force": Variable(("time", "component"), "N", "force at the end", _ON_RISER),
     "start_moment": Variable(("time", "component"), "N m", "moment at the start", _RIGHT_HAND),
     "end_moment": Variable(("time", "component"), "N m", "moment at the end", _RIGHT_HAND),
-    "touchdown_arc": Variable(("time",), "m", "arc length of the touchdown point; nan when nothing touches"),
+    "touchdown_arc": Variable(
+        ("time",),
+        "m",
+        "arc length of the touchdown point towards the end: where a rigid contact with the resultant and moment of the "
+        "contact forces would end; nan when nothing touches",
+    ),
+    "touchdown_position": Variable(
+        ("time", "component"), "m", "position of the riser's axis at the touchdown point", "global axes, z up"
+    ),
+    "touchdown_points": Variable(
+        ("time",), "1", "places where the riser comes down or leaves the seabed, without its ends", dtype="i4"
+    ),
+    "min_effective_tension": Variable(
+        ("time",), "N", "least effective tension along the riser", "negative in compression"
+    ),
+    "min_effective_tension_arc": Variable(("time",), "m", "arc length of the least effective tension"),
+    "min_bend_radius": Variable(("time",), "m", "smallest bend radius, one over the largest curvature of the nodes"),
+    "min_bend_radius_arc": Variable(("time",), "m", "arc length of the smallest bend radius"),
     "max_penetration": Variable(("time",), "m", "deepest penetration of the riser into the seabed", ">= 0"),
     "contact_force_sum": Variable(
         ("time", "component"),

@@ -22,6 +22,7 @@ from riser_soil.riser.section_forces import (
     HasElementForces,
     HasNodalForces,
     HasViscousForces,
+    at_most,
     element_residual,
     end_reactions,
     section_forces,
@@ -31,8 +32,9 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.schedule import Schedule
 from riser_soil.screen import print_summary
-from riser_soil.snapshot import RiserSnapshot, RunFacts, StepHealth, Touch
+from riser_soil.snapshot import RiserSnapshot, RunFacts, StepHealth
 from riser_soil.system import Clock
+from riser_soil.touchdown_zone import TouchdownZone
 
 
 class Observer:
@@ -42,6 +44,7 @@ class Observer:
         self._world, self._clock, self._recorder, self._progress = world, clock, recorder, progress
         output = world.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
+        self._zone = TouchdownZone(world, _known_fields(world))
 
     @classmethod
     @contextmanager
@@ -78,7 +81,7 @@ class Observer:
         self._progress.update(step.t, step.dt, step.solution.iterations)
         if self._recorder is not None:
             health = StepHealth(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
-            riser, touching = riser_snapshot(self._world, march), touch(self._world, march.now)
+            riser, touching = riser_snapshot(self._world, march), self._zone.look(march.now)
             self._recorder.accept(step.t, due, riser, touching, health, self._balance.ledger, soil)
         self._relaxed = 0
         self._clock.add("output", since)
@@ -107,8 +110,14 @@ class Observer:
 
 def _known_fields(world: World) -> tuple[str, ...]:
     """What the scene wants to be told of, as far as it is known."""
-    wanted = world.scene.output.fields
-    return tuple(name for name in wanted if name != "wall_tension" or world.pressures is not None)
+    unknown = set()
+    if world.pressures is None:
+        unknown |= {"wall_tension"}
+    if not world.elements.min_bend_radius.any():
+        unknown |= {"bend_utilisation"}
+    if not world.contacts:
+        unknown |= {"penetration", "embedment"}
+    return tuple(name for name in world.scene.output.fields if name not in unknown)
 
 
 def riser_snapshot(world: World, march: March) -> RiserSnapshot:
@@ -126,6 +135,7 @@ def riser_snapshot(world: World, march: March) -> RiserSnapshot:
         wall_tension=_wall_tension(world, inside.effective_tension, position[:, 2]),
         bending_moment=inside.bending_moment,
         curvature=inside.curvature,
+        bend_utilisation=_bend_utilisation(world, inside.curvature_beside),
         contact_force=_contact_force(world, state),
         moment_vector=inside.moment,
         start_force=start.force,
@@ -135,6 +145,12 @@ def riser_snapshot(world: World, march: March) -> RiserSnapshot:
         start_tangent=tangent[0, 0],
         end_tangent=tangent[-1, 1],
     )
+
+
+def _bend_utilisation(world: World, curvature: Array) -> Array:
+    """curvature (ne, 2): at the elements' ends."""
+    allowed = world.elements.min_bend_radius
+    return at_most(allowed[:, None] * curvature) if allowed.any() else np.full(world.line.nodes, np.nan)
 
 
 def _wall_tension(world: World, effective: Array, z: Array) -> Array:
@@ -155,16 +171,6 @@ def _on_nodes(world: World, march: March) -> Array:
 def _contact_force(world: World, state: State) -> Array:
     forces = (contact.force_per_length(state) for contact in world.contacts)
     return np.asarray(sum(forces, np.zeros(world.line.nodes)))
-
-
-def touch(world: World, state: State) -> Touch:
-    """Where the riser touches the ground, on the rank that holds contact."""
-    arcs = [arc for contact in world.contacts if np.isfinite(arc := contact.touchdown_arc(state))]
-    return Touch(
-        max(arcs, default=float("nan")),
-        max((contact.max_penetration(state) for contact in world.contacts), default=0.0),
-        np.asarray(sum((contact.force_on_riser(state) for contact in world.contacts), np.zeros(3))),
-    )
 
 
 def facts(world: World) -> RunFacts:

@@ -57,9 +57,14 @@ def _stage_rows(stage: dict[str, Any]) -> list[Row]:
         *_wall_rows(stage),
         ("largest bending moment", _at("max_bending_moment", stage, "kN.m", 1e-3)),
         ("largest curvature", _at("max_curvature", stage, "1/m")),
+        ("smallest bend radius", _at("min_bend_radius", stage, "m")),
+        *_bend_rows(stage),
         ("touchdown arc length", _span(final["touchdown_arc"], extremes["touchdown_arc"], "m")),
+        ("touchdown point, x, y, z", _place(final["touchdown_position"])),
+        ("touchdown points", _span(final["touchdown_points"], extremes["touchdown_points"], "")),
         ("contact force", _span(final["contact_force"], extremes["contact_force"], "kN", 1e-3)),
         ("deepest penetration", _span(final["max_penetration"], extremes["max_penetration"], "mm", 1e3)),
+        *_embedment_rows(stage),
         ("steps, cut", f"{stage['steps']}, {stage['step_cuts']}"),
         ("Newton iterations per step", _newton(stage)),
         *([("found by", stage["method"])] if stage["method"] not in (None, "newton") else []),
@@ -71,6 +76,22 @@ def _wall_rows(stage: dict[str, Any]) -> list[Row]:
     if "max_wall_tension" not in stage["final"]:
         return []
     return [("greatest wall tension", _at("max_wall_tension", stage, "kN", 1e-3))]
+
+
+def _bend_rows(stage: dict[str, Any]) -> list[Row]:
+    if "max_bend_utilisation" not in stage["final"]:
+        return []
+    return [("allowed over actual bend radius", _at("max_bend_utilisation", stage, ""))]
+
+
+def _embedment_rows(stage: dict[str, Any]) -> list[Row]:
+    if "max_embedment" not in stage["final"]:
+        return []
+    return [("deepest embedment", _at("max_embedment", stage, "mm", 1e3))]
+
+
+def _place(position: list[float]) -> str:
+    return "-" if np.isnan(position[0]) else f"{', '.join(f'{x:.5g}' for x in position)} m"
 
 
 def _run_rows(summary: dict[str, Any], settlement: float | None) -> Iterator[Row]:
@@ -119,4 +140,4 @@ def _range(extremes: dict[str, float | None], scale: float) -> str:
 
 
 def _number(value: float | None, unit: str, scale: float) -> str:
-    return "-" if value is None or np.isnan(value) else f"{value * scale:.5g} {unit}"
+    return "-" if value is None or np.isnan(value) else f"{value * scale:.5g} {unit}".rstrip()

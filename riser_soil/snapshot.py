@@ -23,6 +23,7 @@ class RiserSnapshot:
     wall_tension: Array  # (nn,) N, positive in tension; nan where the pressures are unknown
     bending_moment: Array  # (nn,) N.m, magnitude >= 0
     curvature: Array  # (nn,) 1/m, magnitude >= 0
+    bend_utilisation: Array  # (nn,) curvature times the least bend radius allowed; nan where none is given
     contact_force: Array  # (nn,) N/m, magnitude >= 0
     moment_vector: Array  # (nn, 3) N.m, exerted by the part towards `end` on the part towards `start`
     start_force: Array  # (3,) N
@@ -55,8 +56,12 @@ class Touch:
     """Where the riser touches the seabed and what the seabed does to it."""
 
     touchdown_arc: float  # m, nan when nothing touches
+    touchdown_position: Array  # (3,) m, of the riser's axis there; nan when nothing touches
+    touchdown_points: int  # places where the riser comes down or leaves the seabed; its ends don't count
     max_penetration: float  # m, 0 when nothing touches
     contact_force: Array  # (3,) N, the sum over the riser, exerted on the riser
+    penetration: Array | None = None  # (nn,) m, of the underside into the ground as it is now; None where not wanted
+    embedment: Array | None = None  # (nn,) m, greatest depth yet below the ground as it lay at first; the same
 
 
 @dataclass(frozen=True)

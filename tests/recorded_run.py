@@ -56,6 +56,7 @@ class Catenary:
             wall_tension=tension + 1.0e3,
             bending_moment=EI * curvature,
             curvature=curvature,
+            bend_utilisation=20.0 * curvature,
             contact_force=np.where(arc < self.s0, WEIGHT, 0.0),
             moment_vector=moment,
             start_force=np.array([-WEIGHT * a, 0.0, 0.0]),
@@ -66,8 +67,10 @@ class Catenary:
             end_tangent=top / np.linalg.norm(top),
         )
 
-    def touch(self) -> Touch:
-        return Touch(self.s0, 0.003, np.array([0.0, 0.0, WEIGHT * self.s0]))
+    def touch(self, arc: Array) -> Touch:
+        place, force = np.array([self.s0, 0.0, RADIUS]), np.array([0.0, 0.0, WEIGHT * self.s0])
+        depth = np.where(arc < self.s0, 0.002, 0.0)
+        return Touch(self.s0, place, 1, 0.003, force, depth, 1.5 * depth)
 
 
 def block(nx: int = 40, ny: int = 10, nz: int = 5, *, tetrahedra: bool = False) -> SoilMesh:
@@ -135,7 +138,7 @@ def record(
                     float(t),
                     schedule.due(float(t), t == times[-1]),
                     line.riser(arc),
-                    line.touch(),
+                    line.touch(arc),
                     StepHealth(3, 0.1, 1e-6, 0),
                     _ledger(heave),
                     None if mesh is None else soil(mesh, line.s0),

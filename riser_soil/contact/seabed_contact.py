@@ -175,6 +175,16 @@ class SeabedContact:
         np.add.at(total, touching.elements + 1, shares[:, 1])
         return np.asarray(total / self.line.tributary_length)
 
+    def penetration(self, state: State) -> Array:
+        """Penetration (nn,) [m] of the underside at the nodes, 0 above the ground."""
+        if not self.line.active:
+            return np.zeros(self.line.nodes)
+        return np.maximum(0.0, -self._clearance(self.line.trial(state)) - self.law.start)
+
+    def depth(self, state: State) -> Array:
+        """The same: this ground is where it lay at first."""
+        return self.penetration(state)
+
     def max_penetration(self, state: State) -> float:
         """Deepest penetration of a station [m], >= 0: an error where the ground is rigid."""
         return max(0.0, float(self.see(self.line.trial(state)).penetration.max())) if self.line.active else 0.0
