@@ -43,6 +43,25 @@ def _reasons(scene: Scene) -> dict[str, str]:
     }
 
 
+DISSIPATING = ("morison", "structural damping", "contact", "seabed", "friction", "soil")
+WORKING = ("loads", "morison", "buoyancy")
+
+
+def dissipating(scene: Scene) -> tuple[str, ...]:
+    """Parts of the energy ledger that may dissipate."""
+    return _in_ledger(scene, DISSIPATING)
+
+
+def working(scene: Scene) -> tuple[str, ...]:
+    """Parts of the energy ledger that may put energy in, and the supports."""
+    return (*_in_ledger(scene, WORKING), "supports")
+
+
+def _in_ledger(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
+    parts = {*built(scene)} - (set() if scene.soil is not None else {"contact"})
+    return tuple(name.replace(" ", "_") for name in names if name in parts)
+
+
 def has_dynamics(scene: Scene) -> bool:
     return any(s.kind == "dynamic" for s in scene.stages)
 

@@ -13,7 +13,7 @@ from riser_soil.errors import SolveError
 from riser_soil.extrapolation import Extrapolation
 from riser_soil.mass import RiserMass
 from riser_soil.newton import Newton, NotConvergedError, Solution, Step
-from riser_soil.part import Energy, Forces, State
+from riser_soil.part import Energy, Forces, State, Work
 from riser_soil.stepping import StepControl
 from riser_soil.system import System, total
 from riser_soil.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
@@ -65,15 +65,27 @@ class Turning(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Accepted:
-    """A solved step and its energy balance [J]; cuts: failed attempts before it."""
+    """A solved step and its energy balance [J]; cuts: failed attempts before it.
+
+    turned: what each part, and "supports", dissipates and puts in. braking: what all forces, supports included, take
+    out of the motion; in exact time integration the kinetic energy loses that much.
+    """
 
     t: float
     dt: float
     solution: Solution
     cuts: int
     energy: Energy
-    dissipated: float
-    work: float
+    turned: dict[str, Work]
+    braking: float
+
+    @property
+    def dissipated(self) -> float:
+        return sum(work.dissipated for work in self.turned.values())
+
+    @property
+    def work(self) -> float:
+        return sum(work.external for work in self.turned.values())
 
 
 class March:
@@ -176,10 +188,15 @@ class March:
     def _account(self, solution: Solution, control: StepControl, cuts: int) -> Accepted:
         state = solution.state
         turned = self.system.work(self.before, state)
-        supports = self.system.work_of_supports(self.scheme.mean(self._forces, solution.forces), state.u)
-        work, energy = turned.external + supports, self.system.energy(state)
-        self._refuse_wrong_root(energy, turned.dissipated, work)
-        return Accepted(control.target, control.dt, solution, cuts, energy, turned.dissipated, work)
+        mean = self.scheme.mean(self._forces, solution.forces)
+        supports = self.system.work_of_supports(mean, state.u)
+        start = self._forces if self._history is None else self._history
+        against = self.system.work_against(self.scheme.mean(start, solution.forces), solution.forces, state.u)
+        braking = against - supports - sum(work.inertial for work in turned.values())
+        turned["supports"] = Work(external=supports)
+        step = Accepted(control.target, control.dt, solution, cuts, self.system.energy(state), turned, braking)
+        self._refuse_wrong_root(step.energy, step.dissipated, step.work)
+        return step
 
     def _refuse_wrong_root(self, energy: Energy, dissipated: float, work: float) -> None:
         """A dynamic step that adds much to the energy in motion out of nothing is a root of the equations far from the
@@ -249,7 +266,10 @@ class March:
 
     @property
     def _needs_history(self) -> bool:
-        return isinstance(self.scheme, GeneralizedAlpha) and self.scheme.needs_history
+        """Whether the scheme weighs the forces at the start, or contact has changed the rates since they were found."""
+        if not isinstance(self.scheme, GeneralizedAlpha):
+            return False
+        return self.scheme.needs_history or not self.system.riser_alone
 
     def _forces_after(self, step: Accepted) -> Forces:
         """Bulk forces at the state just accepted, in its own axes: the step's, unless contact has changed the rates."""

@@ -19,6 +19,14 @@ from riser_soil.arrays import Array
 from riser_soil.folder import replacing
 
 _ON_RISER = "exerted by the support on the riser; global axes, z up"
+_FROM_NOWHERE = "positive when energy appears from nowhere"
+_TAKEN_OUT = "negative where it was taken out"
+_SPOKEN = {  # parts whose names don't tell what dissipates or works
+    "morison": "drag and other forces of the water's motion",
+    "buoyancy": "buoyancy in waves",
+    "contact": "contact of the riser with the soil",
+    "supports": "moving ends",
+}
 _RIGHT_HAND = "right-hand rule; " + _ON_RISER
 
 
@@ -46,8 +54,20 @@ SERIES: dict[str, Variable] = {
     ),
     "bending_moment": Variable(("time", "arc"), "N m", "magnitude of the bending moment"),
     "curvature": Variable(("time", "arc"), "m-1", "magnitude of the curvature"),
+    "bend_utilisation": Variable(
+        ("time", "arc"), "1", "curvature times the smallest bend radius allowed", "above 1 the pipe is bent too much"
+    ),
     "contact_force": Variable(
         ("time", "arc"), "N m-1", "contact force per length of riser", "magnitude, >= 0"
+    ),
+    "penetration": Variable(
+        ("time", "arc"), "m", "penetration of the riser's underside into the ground as it is at the time", ">= 0"
+    ),
+    "embedment": Variable(
+        ("time", "arc"),
+        "m",
+        "greatest depth yet of the riser's underside below the ground as it lay before the riser came",
+        ">= 0",
     ),
     "moment_vector": Variable(
         ("time", "arc", "component"),
@@ -59,7 +79,24 @@ SERIES: dict[str, Variable] = {
     "end_force": Variable(("time", "component"), "N", "force at the end", _ON_RISER),
     "start_moment": Variable(("time", "component"), "N m", "moment at the start", _RIGHT_HAND),
     "end_moment": Variable(("time", "component"), "N m", "moment at the end", _RIGHT_HAND),
-    "touchdown_arc": Variable(("time",), "m", "arc length of the touchdown point; nan when nothing touches"),
+    "touchdown_arc": Variable(
+        ("time",),
+        "m",
+        "arc length of the touchdown point towards the end: where a rigid contact with the resultant and moment of the "
+        "contact forces would end; nan when nothing touches",
+    ),
+    "touchdown_position": Variable(
+        ("time", "component"), "m", "position of the riser's axis at the touchdown point", "global axes, z up"
+    ),
+    "touchdown_points": Variable(
+        ("time",), "1", "places where the riser comes down or leaves the seabed, without its ends", dtype="i4"
+    ),
+    "min_effective_tension": Variable(
+        ("time",), "N", "least effective tension along the riser", "negative in compression"
+    ),
+    "min_effective_tension_arc": Variable(("time",), "m", "arc length of the least effective tension"),
+    "min_bend_radius": Variable(("time",), "m", "smallest bend radius, one over the largest curvature of the nodes"),
+    "min_bend_radius_arc": Variable(("time",), "m", "arc length of the smallest bend radius"),
     "max_penetration": Variable(("time",), "m", "deepest penetration of the riser into the seabed", ">= 0"),
     "contact_force_sum": Variable(
         ("time", "component"),
@@ -75,28 +112,63 @@ HEALTH: dict[str, Variable] = {
     "newton_iterations": Variable(("step",), "1", "Newton iterations", dtype="i4"),
     "time_step": Variable(("step",), "s", "time step; in static stages the increment of the load factor"),
     "energy_residual": Variable(
-        ("step",),
-        "J",
-        "residual of the step's energy balance; nan in static stages",
-        "positive when energy appears from nowhere",
+        ("step",), "J", "residual of the step's energy balance; nan in static stages", _FROM_NOWHERE
     ),
+    "relative_energy_residual": Variable(
+        ("step",),
+        "1",
+        "residual of the energy balance since the stage began, over the energy turned over; nan in static stages",
+        _FROM_NOWHERE,
+    ),
+    "kinetic_energy": Variable(("step",), "J", "kinetic energy, added mass included"),
+    "strain_energy": Variable(("step",), "J", "elastic energy"),
+    "potential_energy": Variable(("step",), "J", "energy of weight, buoyancy and contact; its zero is anywhere"),
+    "dissipated": Variable(("step",), "J", "energy dissipated since the stage began, but for the time scheme's"),
+    "dissipated_time_scheme": Variable(
+        ("step",), "J", "energy taken out by the time scheme since the stage began", "negative where it put energy in"
+    ),
+    "work": Variable(("step",), "J", "energy put in since the stage began", _TAKEN_OUT),
     "step_cuts": Variable(("step",), "1", "failed attempts before the step was accepted", dtype="i4"),
 }
+
+
+def ledger_variables(dissipating: Collection[str], working: Collection[str]) -> dict[str, Variable]:
+    """Of each step, beside HEALTH: what adds up to `dissipated` and to `work`, by part."""
+    lost = "energy dissipated since the stage began by: "
+    put_in = "energy put in since the stage began by: "
+    return {
+        **{f"dissipated_{name}": Variable(("step",), "J", lost + _spoken(name)) for name in dissipating},
+        **{f"work_{name}": Variable(("step",), "J", put_in + _spoken(name), _TAKEN_OUT) for name in working},
+    }
+
+
+def _spoken(name: str) -> str:
+    return _SPOKEN.get(name, name.replace("_", " "))
+
+
 _CHUNK_BYTES = 65536
 
 
 class SeriesFile:
     """Writer of results.nc.
 
-    arc: (nn,) m, arc lengths of the nodes. left_out: names of SERIES that are not wanted.
+    arc: (nn,) m, arc lengths of the nodes. left_out: names of SERIES that are not wanted. ledger: of
+    `ledger_variables`.
     Rows given to `record` and `step` live in memory until `flush`.
     """
 
     def __init__(
-        self, path: Path, arc: Array, title: str, version: str, left_out: Collection[str] = ()
+        self,
+        path: Path,
+        arc: Array,
+        title: str,
+        version: str,
+        left_out: Collection[str] = (),
+        ledger: Mapping[str, Variable] | None = None,
     ) -> None:
         self._path = path
-        self._variables = {name: v for name, v in SERIES.items() if name not in left_out} | HEALTH
+        self._of_step = HEALTH | dict(ledger or {})
+        self._variables = {name: v for name, v in SERIES.items() if name not in left_out} | self._of_step
         self._rows: defaultdict[str, list[object]] = defaultdict(list)
         self._steps = 0
         self._stages: list[str] = []
@@ -112,10 +184,10 @@ class SeriesFile:
             self._rows[name].append(np.array(row[name]))
 
     def step(self, values: Mapping[str, object]) -> None:
-        """Adds one accepted step. values: by the names of HEALTH, without `step` and `step_stage`."""
+        """Adds one accepted step. values: by the names of HEALTH and the ledger, without `step` and `step_stage`."""
         row = dict(values, step=self._steps, step_stage=len(self._stages) - 1)
         self._steps += 1
-        for name in HEALTH:
+        for name in self._of_step:
             self._rows[name].append(np.array(row[name]))
 
     def flush(self, finished: bool = False) -> None:

@@ -11,8 +11,9 @@ import numpy as np
 
 from riser_soil import __version__
 from riser_soil.arrays import Array
+from riser_soil.balance import Balance
 from riser_soil.build import World
-from riser_soil.inventory import built, left_out, unknowns
+from riser_soil.inventory import built, dissipating, left_out, unknowns, working
 from riser_soil.march import Accepted, March
 from riser_soil.part import Energy, Forces, State
 from riser_soil.progress import Progress
@@ -21,6 +22,7 @@ from riser_soil.riser.section_forces import (
     HasElementForces,
     HasNodalForces,
     HasViscousForces,
+    at_most,
     element_residual,
     end_reactions,
     section_forces,
@@ -30,8 +32,9 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.schedule import Schedule
 from riser_soil.screen import print_summary
-from riser_soil.snapshot import Ledger, RiserSnapshot, RunFacts, StepHealth, Touch
+from riser_soil.snapshot import RiserSnapshot, RunFacts, StepHealth
 from riser_soil.system import Clock
+from riser_soil.touchdown_zone import TouchdownZone
 
 
 class Observer:
@@ -41,6 +44,7 @@ class Observer:
         self._world, self._clock, self._recorder, self._progress = world, clock, recorder, progress
         output = world.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
+        self._zone = TouchdownZone(world, _known_fields(world))
 
     @classmethod
     @contextmanager
@@ -61,8 +65,7 @@ class Observer:
     def begin_stage(self, stage: Stage, energy: Energy) -> None:
         """energy: stored at the stage's beginning."""
         self._schedule.begin_stage(stage.kind)
-        self._static = isinstance(stage, StaticStage)
-        self._begun, self._ledger = energy, Ledger()
+        self._balance = Balance(energy, isinstance(stage, StaticStage))
         self._relaxed = 0
         if self._recorder is not None:
             self._recorder.begin_stage(stage.name, stage.kind)
@@ -74,13 +77,12 @@ class Observer:
         due = self._schedule.due(step.t, last)
         wanted = due.pictures and self._world.soil is not None
         soil = self._world.soil.output_fields() if wanted and self._world.soil is not None else None
-        previous, self._ledger = self._ledger, self._balance(march.energy, step)
+        change = self._balance.add(march.energy, step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
         if self._recorder is not None:
-            change = self._ledger.residual - previous.residual
             health = StepHealth(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
-            riser, touching = riser_snapshot(self._world, march), touch(self._world, march.now)
-            self._recorder.accept(step.t, due, riser, touching, health, self._ledger, soil)
+            riser, touching = riser_snapshot(self._world, march), self._zone.look(march.now)
+            self._recorder.accept(step.t, due, riser, touching, health, self._balance.ledger, soil)
         self._relaxed = 0
         self._clock.add("output", since)
 
@@ -105,18 +107,17 @@ class Observer:
             self._recorder.finish()
             print_summary(self._recorder.summary.as_dict(), self._recorder.settlement)
 
-    def _balance(self, e: Energy, step: Accepted) -> Ledger:
-        """The ledger after a step. A static stage balances no energy: its first shape need not be an equilibrium."""
-        before = self._ledger
-        dissipated, work = before.dissipated + step.dissipated, before.work + step.work
-        residual = np.nan if self._static else e.total - self._begun.total + dissipated - work
-        return Ledger(e.kinetic, e.strain, e.potential, dissipated, work, residual)
-
 
 def _known_fields(world: World) -> tuple[str, ...]:
     """What the scene wants to be told of, as far as it is known."""
-    wanted = world.scene.output.fields
-    return tuple(name for name in wanted if name != "wall_tension" or world.pressures is not None)
+    unknown = set()
+    if world.pressures is None:
+        unknown |= {"wall_tension"}
+    if not world.elements.min_bend_radius.any():
+        unknown |= {"bend_utilisation"}
+    if not world.contacts:
+        unknown |= {"penetration", "embedment"}
+    return tuple(name for name in world.scene.output.fields if name not in unknown)
 
 
 def riser_snapshot(world: World, march: March) -> RiserSnapshot:
@@ -134,6 +135,7 @@ def riser_snapshot(world: World, march: March) -> RiserSnapshot:
         wall_tension=_wall_tension(world, inside.effective_tension, position[:, 2]),
         bending_moment=inside.bending_moment,
         curvature=inside.curvature,
+        bend_utilisation=_bend_utilisation(world, inside.curvature_beside),
         contact_force=_contact_force(world, state),
         moment_vector=inside.moment,
         start_force=start.force,
@@ -143,6 +145,12 @@ def riser_snapshot(world: World, march: March) -> RiserSnapshot:
         start_tangent=tangent[0, 0],
         end_tangent=tangent[-1, 1],
     )
+
+
+def _bend_utilisation(world: World, curvature: Array) -> Array:
+    """curvature (ne, 2): at the elements' ends."""
+    allowed = world.elements.min_bend_radius
+    return at_most(allowed[:, None] * curvature) if allowed.any() else np.full(world.line.nodes, np.nan)
 
 
 def _wall_tension(world: World, effective: Array, z: Array) -> Array:
@@ -165,16 +173,6 @@ def _contact_force(world: World, state: State) -> Array:
     return np.asarray(sum(forces, np.zeros(world.line.nodes)))
 
 
-def touch(world: World, state: State) -> Touch:
-    """Where the riser touches the ground, on the rank that holds contact."""
-    arcs = [arc for contact in world.contacts if np.isfinite(arc := contact.touchdown_arc(state))]
-    return Touch(
-        max(arcs, default=float("nan")),
-        max((contact.max_penetration(state) for contact in world.contacts), default=0.0),
-        np.asarray(sum((contact.force_on_riser(state) for contact in world.contacts), np.zeros(3))),
-    )
-
-
 def facts(world: World) -> RunFacts:
     """What is known of a run before its first step; collective."""
     return RunFacts(
@@ -183,6 +181,8 @@ def facts(world: World) -> RunFacts:
         ranks=world.comm.size,
         built=built(world.scene),
         left_out=left_out(world.scene),
+        dissipating=dissipating(world.scene),
+        working=working(world.scene),
         riser_dofs=unknowns(world.comm, world.line),
         soil_dofs=unknowns(world.comm, world.soil.field) if world.soil is not None else 0,
     )

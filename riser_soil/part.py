@@ -94,13 +94,19 @@ class Energy:
 
 @dataclass
 class Work:
-    """Energy turned over in one accepted step [J]: dissipated, and put in by external non-conservative loads."""
+    """Energy turned over in one accepted step [J]: dissipated, and put in by external non-conservative loads.
+
+    inertial: the share of `external` that a mass gains as it changes, beyond the work of its force m a.
+    """
 
     dissipated: float = 0.0
     external: float = 0.0
+    inertial: float = 0.0
 
     def __add__(self, other: Work) -> Work:
-        return Work(self.dissipated + other.dissipated, self.external + other.external)
+        return Work(
+            self.dissipated + other.dissipated, self.external + other.external, self.inertial + other.inertial
+        )
 
 
 class Part(Protocol):

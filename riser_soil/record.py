@@ -6,18 +6,28 @@ import time
 from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 from riser_soil import folder as run_folder
 from riser_soil.arrays import Array
 from riser_soil.errors import SceneError
-from riser_soil.netcdf import SeriesFile
+from riser_soil.netcdf import SeriesFile, ledger_variables
 from riser_soil.schedule import Due
 from riser_soil.snapshot import Ledger, RiserSnapshot, RunFacts, SoilMesh, SoilSnapshot, StepHealth, Touch
-from riser_soil.summary import StageTally, Summary, final_state, pack
+from riser_soil.summary import StageTally, Summary, bend_radius, final_state, pack
 from riser_soil.xdmf import Frame, XdmfFile, polyline
 
-RISER_FIELDS = ("effective_tension", "wall_tension", "bending_moment", "curvature", "contact_force", "moment_vector")
+RISER_FIELDS = (
+    "effective_tension",
+    "wall_tension",
+    "bending_moment",
+    "curvature",
+    "bend_utilisation",
+    "contact_force",
+    "penetration",
+    "embedment",
+    "moment_vector",
+)
 SOIL_FIELDS = ("displacement", "von_mises_stress", "equivalent_plastic_strain")
 FIELDS = RISER_FIELDS + SOIL_FIELDS
 
@@ -81,7 +91,8 @@ class Recorder:
         self._arc = arc
         self._fields = fields
         left_out = set(RISER_FIELDS) - set(fields)
-        self._series = SeriesFile(folder / run_folder.SERIES, arc, facts.title, facts.version, left_out)
+        self._ledger = ledger_variables(facts.dissipating, facts.working)
+        self._series = SeriesFile(folder / run_folder.SERIES, arc, facts.title, facts.version, left_out, self._ledger)
         self._riser_frames = XdmfFile(
             folder / run_folder.RISER_XDMF, "riser", polyline(arc.size), polyline=True
         )
@@ -156,12 +167,14 @@ class Recorder:
         """
         self._clock.advance(t)
         self._tally(t, riser, touch, health, ledger)
-        self._series.step({"step_time": self._clock.now} | vars(health))
+        row = {"step_time": self._clock.now} | vars(health) | _ledger_row(ledger)
+        self._series.step(dict.fromkeys(self._ledger, 0.0) | row)
         if due.series:
             stamp = self._clock.stamp()
-            self._series.record(_series_row(stamp, riser, touch))
+            row = _series_row(stamp, self._arc, riser, touch)
+            self._series.record(row)
             if due.pictures:
-                self._picture(stamp, riser, soil)
+                self._picture(stamp, row, soil)
         if time.monotonic() > self._next_flush:
             self.flush()
 
@@ -198,13 +211,16 @@ class Recorder:
         self._latest = pack(riser, touch)
         stage.count(health)
         stage.time = self._clock.stage_time
-        stage.energy = ledger
-        stage.extremes.update(t if stage.kind == "static" else self._clock.now, self._latest)
+        stage.balance(self._clock.now, ledger)
+        now = t if stage.kind == "static" else self._clock.now
+        stage.extremes.update(now, self._latest)
         stage.final = final_state(self._arc, riser, touch)
+        stage.bend(now, self._arc, riser)
 
-    def _picture(self, stamp: float, riser: RiserSnapshot, soil: SoilSnapshot | None) -> None:
-        on_points = {name: getattr(riser, name) for name in RISER_FIELDS if name in self._fields}
-        self._riser_frames.add(Frame(stamp, on_points | {"position": riser.position}, geometry="position"))
+    def _picture(self, stamp: float, row: Mapping[str, Array], soil: SoilSnapshot | None) -> None:
+        wanted = [name for name in RISER_FIELDS if name in self._fields]
+        on_points = {name: row[name] for name in (*wanted, "position")}
+        self._riser_frames.add(Frame(stamp, on_points, geometry="position"))
         if self._soil_frames is not None:
             if soil is None:
                 raise ValueError(
@@ -221,9 +237,33 @@ def _check_fields(fields: tuple[str, ...]) -> tuple[str, ...]:
     return fields
 
 
-def _series_row(stamp: float, riser: RiserSnapshot, touch: Touch) -> dict[str, object]:
-    row = vars(riser) | {"time": stamp, "touchdown_arc": touch.touchdown_arc}
-    return row | {"max_penetration": touch.max_penetration, "contact_force_sum": touch.contact_force}
+def _series_row(stamp: float, arc: Array, riser: RiserSnapshot, touch: Touch) -> dict[str, Any]:
+    """By the names of netcdf.SERIES."""
+    slack, bent = riser.effective_tension.argmin(), riser.curvature.argmax()
+    return {
+        **vars(touch),
+        **vars(riser),
+        "time": stamp,
+        "contact_force_sum": touch.contact_force,
+        "min_effective_tension": riser.effective_tension[slack],
+        "min_effective_tension_arc": arc[slack],
+        "min_bend_radius": bend_radius(riser.curvature[bent]),
+        "min_bend_radius_arc": arc[bent],
+    }
+
+
+def _ledger_row(ledger: Ledger) -> dict[str, float]:
+    return {
+        "kinetic_energy": ledger.kinetic,
+        "strain_energy": ledger.strain,
+        "potential_energy": ledger.potential,
+        "dissipated": ledger.dissipated,
+        "dissipated_time_scheme": ledger.numerical,
+        "work": ledger.work,
+        "relative_energy_residual": ledger.relative_residual,
+        **{f"dissipated_{name}": value for name, value in ledger.dissipated_by.items()},
+        **{f"work_{name}": value for name, value in ledger.work_by.items()},
+    }
 
 
 def _soil_file(folder: Path, mesh: SoilMesh | None) -> XdmfFile | None:

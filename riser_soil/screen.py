@@ -11,8 +11,6 @@ from rich.table import Table
 
 Row = tuple[str, str]
 
-DOUBTFUL = 0.01  # share of the energy turned over above which its residual is a warning
-
 
 def print_summary(
     summary: dict[str, Any], settlement: float | None = None, console: Console | None = None
@@ -25,6 +23,8 @@ def print_summary(
     for stage in summary["stages"]:
         if stage["final"] is not None:
             console.print(_table(_stage_title(stage), _stage_rows(stage)))
+        for warning in stage["warnings"]:
+            console.print(f"warning: {stage['name']}: {warning}", soft_wrap=True, markup=False)
     console.print(_table(_title(summary), [*_run_rows(summary, settlement)]))
 
 
@@ -57,13 +57,18 @@ def _stage_rows(stage: dict[str, Any]) -> list[Row]:
         *_wall_rows(stage),
         ("largest bending moment", _at("max_bending_moment", stage, "kN.m", 1e-3)),
         ("largest curvature", _at("max_curvature", stage, "1/m")),
+        ("smallest bend radius", _at("min_bend_radius", stage, "m")),
+        *_bend_rows(stage),
         ("touchdown arc length", _span(final["touchdown_arc"], extremes["touchdown_arc"], "m")),
+        ("touchdown point, x, y, z", _place(final["touchdown_position"])),
+        ("touchdown points", _span(final["touchdown_points"], extremes["touchdown_points"], "")),
         ("contact force", _span(final["contact_force"], extremes["contact_force"], "kN", 1e-3)),
         ("deepest penetration", _span(final["max_penetration"], extremes["max_penetration"], "mm", 1e3)),
+        *_embedment_rows(stage),
         ("steps, cut", f"{stage['steps']}, {stage['step_cuts']}"),
         ("Newton iterations per step", _newton(stage)),
         *([("found by", stage["method"])] if stage["method"] not in (None, "newton") else []),
-        ("energy residual", _residual(stage["energy"])),
+        *_energy_rows(stage),
     ]
 
 
@@ -71,6 +76,22 @@ def _wall_rows(stage: dict[str, Any]) -> list[Row]:
     if "max_wall_tension" not in stage["final"]:
         return []
     return [("greatest wall tension", _at("max_wall_tension", stage, "kN", 1e-3))]
+
+
+def _bend_rows(stage: dict[str, Any]) -> list[Row]:
+    if "max_bend_utilisation" not in stage["final"]:
+        return []
+    return [("allowed over actual bend radius", _at("max_bend_utilisation", stage, ""))]
+
+
+def _embedment_rows(stage: dict[str, Any]) -> list[Row]:
+    if "max_embedment" not in stage["final"]:
+        return []
+    return [("deepest embedment", _at("max_embedment", stage, "mm", 1e3))]
+
+
+def _place(position: list[float]) -> str:
+    return "-" if np.isnan(position[0]) else f"{', '.join(f'{x:.5g}' for x in position)} m"
 
 
 def _run_rows(summary: dict[str, Any], settlement: float | None) -> Iterator[Row]:
@@ -86,17 +107,17 @@ def _newton(stage: dict[str, Any]) -> str:
     return f"{mean:.2f} on average, at most {stage['most_newton_iterations']}"
 
 
-def _residual(energy: dict[str, float]) -> str:
-    number = _number(energy["residual"], "J", 1.0)
-    if number == "-":
-        return "not balanced in statics"
-    off = abs(energy["residual"]) > DOUBTFUL * _turnover(energy)
-    return f"{number} of {_turnover(energy):.3g} J" + (", WARNING: take a smaller time_step" if off else "")
-
-
-def _turnover(energy: dict[str, float]) -> float:
-    """J, what the residual is to be measured by; not the potential, whose zero is anywhere."""
-    return max(abs(energy[key]) for key in ("kinetic", "strain", "dissipated", "work"))
+def _energy_rows(stage: dict[str, Any]) -> list[Row]:
+    energy, share = stage["energy"], 100.0 / max(stage["energy"]["turned_over"], 1e-300)
+    if stage["kind"] == "static":
+        return [("energy residual", "not balanced in statics")]
+    worst = energy["worst_residual"]
+    at = f", at most {worst['value'] * share:.2g} % at {worst['time']:.4g} s" if worst["value"] else ""
+    residual = f"{energy['residual'] * share:.2g} % of {energy['turned_over']:.3g} J{at}"
+    return [
+        ("energy residual", residual),
+        ("energy taken out by the time scheme", f"{energy['numerical'] * share:.2g} %"),
+    ]
 
 
 def _span(value: float | None, extremes: dict[str, float | None], unit: str, scale: float = 1.0) -> str:
@@ -119,4 +140,4 @@ def _range(extremes: dict[str, float | None], scale: float) -> str:
 
 
 def _number(value: float | None, unit: str, scale: float) -> str:
-    return "-" if value is None or np.isnan(value) else f"{value * scale:.5g} {unit}"
+    return "-" if value is None or np.isnan(value) else f"{value * scale:.5g} {unit}".rstrip()

@@ -5,6 +5,7 @@ nn riser nodes in the order of the arc length; nv points and nc cells of the soi
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from riser_soil.arrays import Array, IntArray
@@ -22,6 +23,7 @@ class RiserSnapshot:
     wall_tension: Array  # (nn,) N, positive in tension; nan where the pressures are unknown
     bending_moment: Array  # (nn,) N.m, magnitude >= 0
     curvature: Array  # (nn,) 1/m, magnitude >= 0
+    bend_utilisation: Array  # (nn,) curvature times the least bend radius allowed; nan where none is given
     contact_force: Array  # (nn,) N/m, magnitude >= 0
     moment_vector: Array  # (nn, 3) N.m, exerted by the part towards `end` on the part towards `start`
     start_force: Array  # (3,) N
@@ -54,8 +56,12 @@ class Touch:
     """Where the riser touches the seabed and what the seabed does to it."""
 
     touchdown_arc: float  # m, nan when nothing touches
+    touchdown_position: Array  # (3,) m, of the riser's axis there; nan when nothing touches
+    touchdown_points: int  # places where the riser comes down or leaves the seabed; its ends don't count
     max_penetration: float  # m, 0 when nothing touches
     contact_force: Array  # (3,) N, the sum over the riser, exerted on the riser
+    penetration: Array | None = None  # (nn,) m, of the underside into the ground as it is now; None where not wanted
+    embedment: Array | None = None  # (nn,) m, greatest depth yet below the ground as it lay at first; the same
 
 
 @dataclass(frozen=True)
@@ -72,16 +78,33 @@ class StepHealth:
 class Ledger:
     """Energy of the whole model [J]: stored now, and turned over since the stage began.
 
-    residual = change of (kinetic + strain + potential) + dissipated - work; nan in a static
-    stage, whose first shape need not be an equilibrium.
+    numerical: taken out by the time scheme, negative where it put energy in; see `riser_soil.balance`.
+    residual = change of (kinetic + strain + potential) + dissipated + numerical - work, positive when energy appears
+    from nowhere; nan in a static stage, whose first shape need not be an equilibrium.
+    turned_over: the largest yet of kinetic energy, strain energy, energy dissipated, and work, by their sizes; the
+    potential's zero is anywhere.
+    dissipated_by, work_by: what adds up to `dissipated` and `work`, by part; "supports" are the ends that move.
     """
 
     kinetic: float = 0.0
     strain: float = 0.0
     potential: float = 0.0
     dissipated: float = 0.0
+    numerical: float = 0.0
     work: float = 0.0
     residual: float = 0.0
+    turned_over: float = 0.0
+    dissipated_by: Mapping[str, float] = field(default_factory=dict)
+    work_by: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def stored(self) -> float:
+        return self.kinetic + self.strain + self.potential
+
+    @property
+    def relative_residual(self) -> float:
+        """Residual over the energy turned over; nan where there is none."""
+        return self.residual / self.turned_over if self.turned_over > 0.0 else float("nan")
 
 
 @dataclass(frozen=True)
@@ -93,5 +116,7 @@ class RunFacts:
     ranks: int
     built: tuple[str, ...]  # names of the parts that were built
     left_out: dict[str, str] = field(default_factory=dict)  # part -> reason
+    dissipating: tuple[str, ...] = ()  # names that may stand in the ledger's dissipated_by
+    working: tuple[str, ...] = ()  # names that may stand in the ledger's work_by
     riser_dofs: int = 0
     soil_dofs: int = 0

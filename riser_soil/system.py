@@ -94,9 +94,17 @@ class System:
         values = self.sum([mine.kinetic, mine.strain, mine.potential])
         return Energy(*values)
 
-    def work(self, before: State, after: State) -> Work:
-        mine = sum((p.work(before, after) for p in self.model.parts), Work())
-        return Work(*self.sum([mine.dissipated, mine.external]))
+    def work(self, before: State, after: State) -> dict[str, Work]:
+        """Energy turned over by each part; those of one name together."""
+        mine: dict[str, Work] = {}
+        for part in self.model.parts:
+            mine[part.name] = mine.get(part.name, Work()) + part.work(before, after)
+        summed = self.sum([x for work in mine.values() for x in (work.dissipated, work.external, work.inertial)])
+        return {name: Work(*summed[3 * i : 3 * i + 3]) for i, name in enumerate(mine)}
+
+    def work_against(self, mean: Forces, end: Forces, u: Array) -> float:
+        """Work [J] that bulk forces F, as their mean, and end-of-step forces E take out over a step."""
+        return self.sum([float((mean.force + end.end) @ u)])[0]
 
     def work_of_supports(self, mean: Forces, u: Array) -> float:
         """Work [J] that prescribed motions put in over a step: reaction to the mean forces times increment."""

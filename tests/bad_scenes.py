@@ -118,6 +118,7 @@ VALUES = [
         "missing",
         "the key is required here",
     ),
+    Bad("    EA:", "    min_bend_radius: 0\n    EA:", 9, "line_types.pipe.min_bend_radius", "0", "greater than 0"),
     Bad("    EA:", "    rotary_inertia: -2\n    EA:", 9, "line_types.pipe.rotary_inertia", "-2", "must be at least 0"),
     Bad(
         "    EA:",

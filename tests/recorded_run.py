@@ -56,6 +56,7 @@ class Catenary:
             wall_tension=tension + 1.0e3,
             bending_moment=EI * curvature,
             curvature=curvature,
+            bend_utilisation=20.0 * curvature,
             contact_force=np.where(arc < self.s0, WEIGHT, 0.0),
             moment_vector=moment,
             start_force=np.array([-WEIGHT * a, 0.0, 0.0]),
@@ -66,8 +67,10 @@ class Catenary:
             end_tangent=top / np.linalg.norm(top),
         )
 
-    def touch(self) -> Touch:
-        return Touch(self.s0, 0.003, np.array([0.0, 0.0, WEIGHT * self.s0]))
+    def touch(self, arc: Array) -> Touch:
+        place, force = np.array([self.s0, 0.0, RADIUS]), np.array([0.0, 0.0, WEIGHT * self.s0])
+        depth = np.where(arc < self.s0, 0.002, 0.0)
+        return Touch(self.s0, place, 1, 0.003, force, depth, 1.5 * depth)
 
 
 def block(nx: int = 40, ny: int = 10, nz: int = 5, *, tetrahedra: bool = False) -> SoilMesh:
@@ -102,6 +105,11 @@ def _bowl(points: Array, s0: float) -> Array:
     return values
 
 
+def _ledger(heave: float) -> Ledger:
+    residual = 1e-6 if heave else np.nan
+    return Ledger(kinetic=heave, work=heave + 1.0, residual=residual, turned_over=heave + 1.0)
+
+
 def record(
     folder: Path,
     *,
@@ -130,9 +138,9 @@ def record(
                     float(t),
                     schedule.due(float(t), t == times[-1]),
                     line.riser(arc),
-                    line.touch(),
+                    line.touch(arc),
                     StepHealth(3, 0.1, 1e-6, 0),
-                    Ledger(kinetic=heave, work=heave + 1.0, residual=1e-6 if heave else np.nan),
+                    _ledger(heave),
                     None if mesh is None else soil(mesh, line.s0),
                 )
         recorder.add_seconds({"newton": 1.25})

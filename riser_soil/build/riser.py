@@ -50,6 +50,7 @@ def _line_type(given: LineType) -> sections.LineType:
         added_mass=(given.added_mass.normal, given.added_mass.tangential) if given.added_mass else (0.0, 0.0),
         rotary_inertia=None if given.rotary_inertia is True else float(given.rotary_inertia),
         damping=given.damping.time if given.damping else 0.0,
+        min_bend_radius=given.min_bend_radius or 0.0,
     )
 
 

@@ -92,6 +92,11 @@ class Soil:
         return np.asarray(s.points + s.committed + u)
 
     @property
+    def at_first(self) -> Array:
+        """Points (np, 3) of the surface before the riser came [m]."""
+        return self._surface.points
+
+    @property
     def settled(self) -> Array:
         """Points (np, 3) of the surface as accepted so far [m]."""
         return np.asarray(self._surface.points + self._surface.committed)

@@ -9,7 +9,7 @@ import numpy as np
 
 from riser_soil.arrays import Array, BoolArray, IntArray
 from riser_soil.contact.law import NormalLaw
-from riser_soil.contact.touchdown import touchdown
+from riser_soil.contact.touchdown import Stretch, stretches, touchdown
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
@@ -175,6 +175,16 @@ class SeabedContact:
         np.add.at(total, touching.elements + 1, shares[:, 1])
         return np.asarray(total / self.line.tributary_length)
 
+    def penetration(self, state: State) -> Array:
+        """Penetration (nn,) [m] of the underside at the nodes, 0 above the ground."""
+        if not self.line.active:
+            return np.zeros(self.line.nodes)
+        return np.maximum(0.0, -self._clearance(self.line.trial(state)) - self.law.start)
+
+    def depth(self, state: State) -> Array:
+        """The same: this ground is where it lay at first."""
+        return self.penetration(state)
+
     def max_penetration(self, state: State) -> float:
         """Deepest penetration of a station [m], >= 0: an error where the ground is rigid."""
         return max(0.0, float(self.see(self.line.trial(state)).penetration.max())) if self.line.active else 0.0
@@ -191,8 +201,18 @@ class SeabedContact:
         """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""
         if not self.line.active:
             return float("nan")
-        penetration = self.see(self.line.trial(state)).penetration
-        return touchdown(self._arc.ravel(), -penetration.ravel() - self.law.start)
+        return touchdown(*self._lying(state))
+
+    def stretches(self, state: State) -> list[Stretch]:
+        """Where the riser lies on the seabed, from its start on."""
+        return stretches(*self._lying(state)) if self.line.active else []
+
+    def _lying(self, state: State) -> tuple[Array, Array, Array, Array]:
+        """Arc, share of the length, clearance and force per length of the stations, all (ne ng,)."""
+        seen = self.see(self.line.trial(state))
+        force = np.zeros_like(self._arc)
+        force[seen.touching.elements] = seen.touching.force
+        return self._arc.ravel(), self.share.ravel(), -seen.penetration.ravel() - self.law.start, force.ravel()
 
     def improve(self, guess: State) -> Array:
         """First guess of a step: the guess's increment, lifted where a node would sink below its present depth.

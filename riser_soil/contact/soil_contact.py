@@ -8,10 +8,11 @@ import numpy as np
 
 from riser_soil.arrays import Array, BoolArray
 from riser_soil.contact.encounter import SOIL, Encounter, Grounds, RiserNodes, Touching, add_blocks, add_shares
+from riser_soil.contact.gap import heights
 from riser_soil.contact.ground import ASPECT, ContactPoints, Soil, SoilSurface
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.patch import Patch, around
-from riser_soil.contact.touchdown import touchdown
+from riser_soil.contact.touchdown import Stretch, stretches, touchdown
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 
 FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
@@ -61,7 +62,7 @@ class SoilContact:
         active: bool = True,
     ) -> None:
         self.active, self.outgrown = active, False
-        self._riser, self._rounding = riser, law.smoothing
+        self._riser, self._radius, self._rounding = riser, radius, law.smoothing
         if not active:
             return
         self._soil = Soil(surface)
@@ -137,6 +138,22 @@ class SoilContact:
             add_shares(total, touching.node[:, None], touching.force[:, None])
         return np.asarray(total / self._riser.tributary_length)
 
+    def penetration(self, state: State) -> Array:
+        """Penetration (nn,) [m] of the nodes' undersides into the soil as it is now, 0 above it: an error."""
+        if not self.active:
+            return np.zeros(len(self._riser.arc))
+        return np.maximum(0.0, -self._clearance(state) - self._rounding)
+
+    def depth(self, state: State) -> Array:
+        """Depth (nn,) [m] of the nodes' undersides below the soil's surface before the riser came, 0 above it."""
+        deepest = np.zeros(len(self._riser.arc))
+        if self.active:
+            points, x, surface = self.meet(state).points, self._riser.positions3(state), self._soil.at_first
+            facet, xi = self._soil.locate(x[points.node, :2] + points.offset, surface)
+            underside = (x[:, 2] - self._radius)[points.node]
+            np.maximum.at(deepest, points.node, heights(facet, xi, self._soil.facets, surface) - underside)
+        return deepest
+
     def max_penetration(self, state: State) -> float:
         """Largest penetration [m], ≥ 0: an error."""
         return max(0.0, -float(self.meet(state).gap.min(initial=np.inf))) if self.active else 0.0
@@ -164,7 +181,16 @@ class SoilContact:
         """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""
         if not self.active:
             return float("nan")
-        return touchdown(self._riser.arc, self._clearance(state))
+        return touchdown(*self._lying(state))
+
+    def stretches(self, state: State) -> list[Stretch]:
+        """Where the riser lies on the soil, from its start on."""
+        return stretches(*self._lying(state)) if self.active else []
+
+    def _lying(self, state: State) -> tuple[Array, Array, Array, Array]:
+        """Arc, share of the length, clearance and force per length of the nodes, all (nn,)."""
+        arc, share = self._riser.arc, self._riser.tributary_length
+        return arc, share, self._clearance(state), self.force_per_length(state)
 
     def improve(self, guess: State) -> Array:
         """First guess of a step: the guess's increment, lifted where a node would sink below its present depth.

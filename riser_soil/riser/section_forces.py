@@ -52,8 +52,8 @@ class HasNodalForces(Protocol):
 class SectionForces:
     """What the line after a node exerts on the line before it, at nodes and in global axes: (nn, 3) or (nn,).
 
-    force N, moment N m; effective_tension N, positive in tension; bending_moment N m and curvature 1/m,
-    magnitudes.
+    force N, moment N m; effective_tension N, positive in tension; bending_moment N m and curvature 1/m, magnitudes.
+    curvature_beside (ne, 2): of the elements themselves at their ends; they differ where stiffnesses meet.
     """
 
     force: Array
@@ -61,6 +61,7 @@ class SectionForces:
     effective_tension: Array
     bending_moment: Array
     curvature: Array
+    curvature_beside: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,12 +101,14 @@ def section_forces(
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
     bending = _across(moment, tangent)
     damping = 0.0 if viscous is None else _across(_nodal_section(line, trial, viscous)[1], tangent)
+    first, second = _curvatures(trial, elements, bending - damping)
     return SectionForces(
         force=force,
         moment=moment,
         effective_tension=np.sum(force * tangent, axis=1),
         bending_moment=np.linalg.norm(bending, axis=1),
-        curvature=_curvature(trial, elements, bending - damping),
+        curvature=_nodal(first, second),
+        curvature_beside=np.stack([first, second], axis=1),
     )
 
 
@@ -162,17 +165,22 @@ def _nodal(first: Array, second: Array) -> Array:
     return total
 
 
-def _curvature(trial: Trial, elements: Elements, bending: Array) -> Array:
-    """Bending moment over stiffness, about the section axes where there are two stiffnesses (nn,)."""
+def at_most(beside: Array) -> Array:
+    """The larger (nn,) of what the elements beside a node have there (ne, 2)."""
+    return np.maximum(np.append(beside[:, 0], -np.inf), np.append(-np.inf, beside[:, 1]))
+
+
+def _curvatures(trial: Trial, elements: Elements, bending: Array) -> tuple[Array, Array]:
+    """Bending moment over stiffness at both ends of the elements (ne,), about the section axes where there are two
+    stiffnesses.
+    """
     if isinstance(trial.turn, SpatialTurn):
-        sides = [
+        return (
             _section_curvature(trial.turn.frame1, bending[:-1], elements),
             _section_curvature(trial.turn.frame2, bending[1:], elements),
-        ]
-    else:
-        magnitude = np.linalg.norm(bending, axis=1)
-        sides = [magnitude[:-1] / elements.EI_y, magnitude[1:] / elements.EI_y]
-    return _nodal(sides[0], sides[1])
+        )
+    magnitude = np.linalg.norm(bending, axis=1)
+    return magnitude[:-1] / elements.EI_y, magnitude[1:] / elements.EI_y
 
 
 def _section_curvature(frame: Array, moment: Array, elements: Elements) -> Array:

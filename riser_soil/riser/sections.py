@@ -22,7 +22,7 @@ class LineType:
     drag and added_mass: (normal, tangential) coefficients of Morison's formula, see
     `riser_soil.sea.morison_law`.
     rotary_inertia: kg m about an axis across the pipe; None computes it from masses and diameters.
-    damping: s, ratio of viscous to elastic stiffness.
+    damping: s, ratio of viscous to elastic stiffness. min_bend_radius: m, the least that is allowed; 0 for any.
     """
 
     EA: float
@@ -37,6 +37,7 @@ class LineType:
     added_mass: tuple[float, float] = (0.0, 0.0)
     rotary_inertia: float | None = 0.0
     damping: float = 0.0
+    min_bend_radius: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,7 @@ class Surroundings:
 class Elements:
     """Properties per element (ne,); drag and added_mass (ne, 2). mass includes the contents, weight is
     submerged. rotary_inertia: kg m about an axis across the pipe; damping: s, of viscous over elastic stiffness.
+    min_bend_radius: m, the least that is allowed, 0 for any.
     """
 
     length: Array
@@ -80,6 +82,7 @@ class Elements:
     added_mass: Array
     rotary_inertia: Array
     damping: Array
+    min_bend_radius: Array
 
     @property
     def arc(self) -> Array:
@@ -135,4 +138,5 @@ def elements(segments: Sequence[Segment], around: Surroundings) -> Elements:
         added_mass=spread([t.added_mass for t in types]),
         rotary_inertia=spread([rotary_inertia(t, around) for t in types]),
         damping=spread([t.damping for t in types]),
+        min_bend_radius=spread([t.min_bend_radius for t in types]),
     )

@@ -93,6 +93,11 @@ class LineType(BaseModel):
         "axis; true: (m (D^2 + d^2) + m_contents d^2)/16 from masses and diameters; false: none",
     )
 
+    min_bend_radius: Positive | None = Field(
+        default=None,
+        description="smallest bend radius allowed [m]; a run warns where the pipe is bent more; any by default",
+    )
+
     @model_validator(mode="after")
     def _bore_inside_wall(self) -> Self:
         if self.outer_diameter is not None and self.inner_diameter >= self.outer_diameter:

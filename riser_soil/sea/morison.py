@@ -60,8 +60,8 @@ class Morison:
         resisted = self._pipe.taken(lambda trial: self._q_forces(trial)[1], first, last)
         changed = self._changed(first, last)
         if self._loads.dissipative:
-            return Work(dissipated=resisted, external=changed)
-        return Work(external=changed - resisted)
+            return Work(dissipated=resisted, external=changed, inertial=changed)
+        return Work(external=changed - resisted, inertial=changed)
 
     def _changed(self, first: Trial, last: Trial) -> float:
         """What a change dm of the added mass, as it turns or gets wet, adds to its kinetic energy beyond the work of

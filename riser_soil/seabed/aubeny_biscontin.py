@@ -1,7 +1,7 @@
 """Hysteretic resistance of a trenched seafloor to a riser: backbone, bounding loop with suction, and turns within.
 
-Source: C. Aubeny & G. Biscontin, Seafloor-riser interaction model, International Journal of Geomechanics 9 (2009),
-doi 10.1061/(ASCE)1532-3641(2009)9:5(218). With y the penetration, (y1, P1) the deepest point so far, on the backbone:
+Source: C. Aubeny & G. Biscontin, Seafloor-riser interaction model, International Journal of Geomechanics 9 (2009).
+With y the penetration and (y1, P1) the deepest point so far, which lies on the backbone:
 
     backbone             Pb(y) = a (y/D)^b su(y) D                                                         (1)
     rebound, 1 to 2      P = P1 - d/(1/k + d/((1 + omega) P1)),  d = y1 - y,  to P2 = -phi P1              (2)
@@ -13,12 +13,14 @@ doi 10.1061/(ASCE)1532-3641(2009)9:5(218). With y the penetration, (y1, P1) the 
 (2) and (3) are the loop's lower edge, (4) the upper one; (5) holds between them, and (1) beyond y1: from the lower
 edge, (5) meets (y1, P1) and would rise above (1).
 
-Certainty: the report that the paper grew from (C. Aubeny, G. Biscontin & J. Zhang, Seafloor interaction with steel
-catenary risers, OTRC 9/06A173) and an abstract of work on the same model were read for its make-up: backbone, bounding
-loop of four parameters, turns from and within the loop, partial and full separation. The formulas and numbers are from
-memory: a = 6.73, b = 0.29 for a rough pipe in a trench of its own width to half a diameter deep, k/su = 660,
-omega = 0.433, phi = 0.203, psi = 0.661. Own choices: the backbone begins with the slope k, as (1) is upright at the
-surface; where the loop would reach above the surface (y3 < 0, at small penetrations), k is raised until y3 = 0.
+Certainty: of its make-up (backbone, bounding loop of four parameters, turns from and within the loop, partial and full
+separation) the contents of the report that it grew from (C. Aubeny, G. Biscontin & J. Zhang, Seafloor interaction with
+steel catenary risers, OTRC 9/06A173) and the abstract of a thesis (Y. Jiao, Texas A&M University, 2007) were read, not
+the paper. The formulas and numbers are from memory: a = 6.73, b = 0.29 for a rough pipe in a trench up to half a
+diameter deep, k/su = 660, omega = 0.433, phi = 0.203, psi = 0.661. Own choices: the backbone begins with the slope k,
+as (1) is upright at the surface; where the loop would reach above the surface (y3 < 0, at small penetrations), phi,
+psi and 1/(1 + omega) shrink together until y3 = 0, so that a pipe that rests on the first slope feels elastic ground;
+the upper edge is nowhere below the lower.
 """
 
 from __future__ import annotations
@@ -53,11 +55,13 @@ class Past(NamedTuple):
 
 
 class Loop(NamedTuple):
-    """Bounding loop: deepest point y1, P1 and stiffness k [N/m2] there; tension's ends y2 and y3."""
+    """Bounding loop: deepest point y1, P1; stiffness k [N/m2]; 1/((1 + omega) P1); greatest tension; y2 and y3."""
 
     y1: Array
     P1: Array
     k: Array
+    bend: Array
+    tension: Array
     y2: Array
     y3: Array
 
@@ -83,11 +87,6 @@ class AubenyBiscontin:
     @cached_property
     def _power_law(self) -> PowerLaw:
         return PowerLaw(self.diameter, self._strength, self.a, self.b)
-
-    @property
-    def _fall(self) -> float:
-        """(y1 - y2) k/P1."""
-        return (1.0 + self.phi) * (1.0 + self.omega) / (self.omega - self.phi)
 
     @property
     def start(self) -> float:
@@ -127,9 +126,22 @@ class AubenyBiscontin:
 
     def _loop(self, y1: Array) -> Loop:
         P1, _ = self.backbone(y1)
-        reach = self._fall * P1
-        k = np.maximum(self._stiffness(y1), (1.0 + self.psi) * reach / np.maximum(y1, TINY))
-        return Loop(y1, P1, k, y1 - reach / k, y1 - (1.0 + self.psi) * reach / k)
+        k, firm = self._stiffness(y1), 1.0 / (1.0 + self.omega)
+        part = self._part(k * y1 / np.maximum(P1, TINY))
+        phi = part * self.phi
+        fall = (1.0 + phi) / (1.0 - part * firm * (1.0 + phi)) * P1 / k
+        bend = part * firm / np.maximum(P1, TINY)
+        return Loop(y1, P1, k, bend, phi * P1, y1 - fall, y1 - (1.0 + part * self.psi) * fall)
+
+    def _part(self, room: Array) -> Array:
+        """Share 0 to 1 of phi, psi and 1/(1 + omega) at which the loop is as long as y1 = room P1/k, or shorter:
+
+        (1 + part psi)(1 + part phi)/(1 - part (1 + part phi)/(1 + omega)) = room, a quadratic equation.
+        """
+        inward = room / (1.0 + self.omega)
+        a, b = self.phi * (self.psi + inward), self.psi + self.phi + inward
+        c = np.maximum(room - 1.0, 0.0)
+        return np.minimum(2.0 * c / (b + np.sqrt(b**2 + 4.0 * a * c)), 1.0)
 
     def _way(self, penetration: Array, history: Array) -> tuple[Array, Past]:
         """Penetration, 0 above the surface, and the past as the way there continues it or turns."""
@@ -146,7 +158,8 @@ class AubenyBiscontin:
         """Resistance and its slope: the turn's hyperbola between the loop's edges, the backbone beyond the loop."""
         loop, down = self._loop(past.z1), past.down > 0.0
         inner, slope = self._hyperbola(z - past.z0, past.P0, loop)
-        lower, upper = self._lower(z, loop), self._upper(z, loop)
+        lower = self._lower(z, loop)
+        upper = self._upper(z, loop, lower)
         edge, edge_slope = (np.where(down, u, l) for u, l in zip(upper, lower, strict=True))
         held = np.where(down, (inner > edge) | (z >= past.z1), inner < edge)
         value, derivative = np.where(held, edge, inner), np.where(held, edge_slope, slope)
@@ -154,18 +167,20 @@ class AubenyBiscontin:
 
     def _hyperbola(self, d: Array, P: Array, loop: Loop) -> tuple[Array, Array]:
         """(5), and (2) from the deepest point."""
-        give = 1.0 / loop.k + np.abs(d) / np.maximum((1.0 + self.omega) * loop.P1, TINY)
+        give = 1.0 / loop.k + np.abs(d) * loop.bend
         return P + d / give, 1.0 / (loop.k * give**2)
 
     def _lower(self, z: Array, loop: Loop) -> tuple[Array, Array]:
         """Edge (2) and (3), 0 above y3."""
         rebound, slope = self._hyperbola(np.minimum(z - loop.y1, 0.0), loop.P1, loop)
-        parting, parting_slope = _s_curve(z, loop.y3, loop.y2, -self.phi * loop.P1)
+        parting, parting_slope = _s_curve(z, loop.y3, loop.y2, -loop.tension)
         return np.where(z > loop.y2, rebound, parting), np.where(z > loop.y2, slope, parting_slope)
 
-    def _upper(self, z: Array, loop: Loop) -> tuple[Array, Array]:
+    def _upper(self, z: Array, loop: Loop, lower: tuple[Array, Array]) -> tuple[Array, Array]:
         """Edge (4), then the backbone."""
         again, slope = _s_curve(z, loop.y3, loop.y1, loop.P1)
+        crossed = again < lower[0]
+        again, slope = np.where(crossed, lower[0], again), np.where(crossed, lower[1], slope)
         first, rise = self.backbone(z)
         return np.where(z < loop.y1, again, first), np.where(z < loop.y1, slope, rise)
 

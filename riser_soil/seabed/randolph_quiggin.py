@@ -15,7 +15,7 @@ clay is. Both are 1 at first touch, decay by (6) and are 0 after the pipe has le
 the pipe is pressed again, c by penetrating beyond zm. (3) with P0 + f_suc Pu in place of S is the usual form
 P0 - x/(S/Pu(z0) + x) S, and (4) from the origin is (2). The soil's buoyancy adds f_b gamma' A(z), A the area displaced.
 
-Certainty. Read in a published manual of a program that has the model (OrcaFlex): su(z), Nc with its square root (1),
+Certainty. Read in an extract of the manual of a program with the model (OrcaFlex): su(z), Nc with its square root (1),
 f_suc as the ratio of suction to Pu, zeta, the start (z0, P0) of an episode, the order of the modes, no force out of
 contact; in the abstract of the paper: hyperbolae for the three ways whose parameters change at each reversal, stiffness
 Kmax. From memory: (2), (3) without s and d, the hyperbolic form of (4), and all default numbers. Own choices, where

@@ -351,12 +351,14 @@ def test_sliding_within_the_patch_keeps_the_pattern() -> None:
     assert case.outgrows(u)
 
 
-def test_touchdown_is_interpolated_to_where_the_force_begins() -> None:
-    case = level_case(np.array([0.01, 0.003, -0.005, -0.2, -0.4]), top("quad4"))
-    arc = case.contact.touchdown_arc(case.state())
-    assert arc == pytest.approx(0.5 + 0.5 * (0.003 + 0.001) / (0.003 + 0.005))
-    turned = level_case(np.array([-0.4, -0.2, -0.005, 0.003, 0.01]), top("quad4"))
-    assert turned.contact.touchdown_arc(turned.state()) == pytest.approx(2.0 - arc)
+def test_touchdown_ends_an_even_contact_of_the_same_force() -> None:
+    """Shares of 0.25, 0.5, 0.5 m at rest and one of 0.5 m pressed 0.3 times as much: in sum 1.4 m, with the moment
+    0.975 m² about the end. So have 1.3 m pressed evenly and what 0.1 m bears at their end.
+    """
+    depth = np.array([0.01, 0.01, 0.01, 0.003, -0.005, -0.2])
+    case, turned = level_case(depth, top("quad4")), level_case(depth[::-1], top("quad4"))
+    assert case.contact.touchdown_arc(case.state()) == pytest.approx(1.3)
+    assert turned.contact.touchdown_arc(turned.state()) == pytest.approx(2.5 - 1.3)
     assert np.isnan(level_case(np.full(3, -0.1), top("quad4")).contact.touchdown_arc(case.state()))
     assert level_case(np.full(3, 0.1), top("quad4")).contact.touchdown_arc(case.state()) == pytest.approx(1.0)
 

@@ -26,7 +26,7 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("march", "relax"),
     ("folder", "schedule", "progress", "inventory", "wave_doubts"),
     ("doubts",),
-    ("netcdf", "xdmf", "summary", "screen"),
+    ("netcdf", "xdmf", "summary", "screen", "balance", "touchdown_zone"),
     ("record",),
     ("observe",),
     ("run", "check"),

@@ -23,13 +23,8 @@ def a_row(time: float, value: float = 1.0) -> dict[str, object]:
 
 
 def a_step(iterations: int = 2) -> dict[str, object]:
-    return {
-        "step_time": 0.1,
-        "newton_iterations": iterations,
-        "time_step": 0.1,
-        "energy_residual": 1e-3,
-        "step_cuts": 0,
-    }
+    values: dict[str, object] = dict.fromkeys(HEALTH, 0.1)
+    return values | {"newton_iterations": iterations, "step_cuts": 0}
 
 
 def a_file(folder: Path) -> SeriesFile:
@@ -58,6 +53,9 @@ def test_every_variable_has_unit_and_long_name(tmp_path: Path) -> None:
         for name in (*SERIES, *HEALTH, "arc"):
             assert file[name].attrs["units"], name
             assert file[name].attrs["long_name"], name
+        energies = [name for name in HEALTH if name.startswith(("dissipated", "work")) or name.endswith("_energy")]
+        assert len(energies) == 6
+        assert all(file[name].attrs["units"] == "J" for name in energies)
         for name in ("start_force", "end_moment", "effective_tension", "moment_vector", "energy_residual"):
             assert file[name].attrs["sign_convention"], name
 

@@ -16,8 +16,13 @@ from tests.recorded_run import EI, FACTS, WEIGHT, Catenary, record
 ARC = np.linspace(0.0, 150.0, 301)
 LINE = Catenary(32.0, 30.0)
 END = {"position", "force", "moment", "effective_tension", "angle_deg"}
+PLACE = "touchdown_position"
 WHOLE = {
     "touchdown_arc",
+    "touchdown_points",
+    "min_bend_radius",
+    "max_bend_utilisation",
+    "max_embedment",
     "max_bending_moment",
     "max_curvature",
     "min_effective_tension",
@@ -38,8 +43,8 @@ def strictly(text: str) -> Any:
 
 
 def test_final_state_of_a_catenary() -> None:
-    final = final_state(ARC, LINE.riser(ARC), LINE.touch())
-    assert set(final) == {"start", "end"} | WHOLE
+    final = final_state(ARC, LINE.riser(ARC), LINE.touch(ARC))
+    assert set(final) == {"start", "end", PLACE} | WHOLE
     assert set(final["start"]) == set(final["end"]) == END
     assert final["start"]["force"] == pytest.approx([-WEIGHT * 32.0, 0.0, 0.0])
     assert final["end"]["force"] == pytest.approx([WEIGHT * 32.0, 0.0, WEIGHT * 120.0])
@@ -51,14 +56,38 @@ def test_final_state_of_a_catenary() -> None:
     assert final["min_effective_tension"] == {"value": pytest.approx(WEIGHT * 32.0), "arc": 0.0}
     assert final["contact_force"] == pytest.approx(WEIGHT * 30.0)
     assert final["touchdown_arc"] == 30.0
+    assert (final["touchdown_position"], final["touchdown_points"]) == ([30.0, 0.0, 0.15], 1.0)
+    assert final["min_bend_radius"] == {"value": pytest.approx(32.0), "arc": 30.0}
+    assert final["max_bend_utilisation"] == {"value": pytest.approx(20.0 / 32.0), "arc": 30.0}
+    assert final["max_embedment"] == {"value": 0.003, "arc": 0.0}
 
 
-def test_an_unknown_wall_tension_is_left_out() -> None:
-    riser = replace(LINE.riser(ARC), wall_tension=np.full(ARC.size, math.nan))
-    extremes = Extremes()
-    extremes.update(0.0, pack(riser, LINE.touch()))
-    for found in (final_state(ARC, riser, LINE.touch()), extremes.nested()):
-        assert set(found) == {"start", "end"} | WHOLE - {"min_wall_tension", "max_wall_tension"}
+def test_what_is_unknown_is_left_out() -> None:
+    nothing = np.full(ARC.size, math.nan)
+    riser = replace(LINE.riser(ARC), wall_tension=nothing, bend_utilisation=nothing)
+    touch, extremes = replace(LINE.touch(ARC), embedment=None), Extremes()
+    extremes.update(0.0, pack(riser, touch))
+    unknown = {"min_wall_tension", "max_wall_tension", "max_bend_utilisation", "max_embedment"}
+    for found in (final_state(ARC, riser, touch), extremes.nested()):
+        assert set(found) == {"start", "end", PLACE} | WHOLE - unknown
+
+
+def test_a_straight_pipe_has_no_bend_radius() -> None:
+    riser = replace(LINE.riser(ARC), curvature=np.zeros(ARC.size))
+    assert plain_json(final_state(ARC, riser, LINE.touch(ARC)))["min_bend_radius"] == {"value": None, "arc": 0.0}
+
+
+def test_a_pipe_bent_too_much_is_a_warning() -> None:
+    stage = StageTally("heave", "dynamic")
+    for t, a in ((0.1, 25.0), (0.2, 16.0), (0.3, 18.0)):
+        stage.bend(t, ARC, Catenary(a, 30.0).riser(ARC))
+    assert stage.warnings == [
+        "the pipe is bent beyond its min_bend_radius: 1.25 times what is allowed at arc 30 m and 0.2 s, where the bend "
+        "radius is 16 m"
+    ]
+    stage = StageTally("heave", "dynamic")
+    stage.bend(0.1, ARC, Catenary(20.1, 30.0).riser(ARC))
+    assert stage.warnings == []
 
 
 @pytest.mark.parametrize(
@@ -71,7 +100,7 @@ def test_angle_from_the_horizontal(tangent: tuple[float, ...], angle: float) -> 
 def test_extremes_know_when() -> None:
     extremes = Extremes()
     for t, a in ((0.0, 32.0), (0.1, 35.0), (0.2, 30.0)):
-        extremes.update(t, pack(Catenary(a, 30.0).riser(ARC), LINE.touch()))
+        extremes.update(t, pack(Catenary(a, 30.0).riser(ARC), LINE.touch(ARC)))
     nested = extremes.nested()
     assert nested["end"]["force"]["max"][0] == pytest.approx(WEIGHT * 35.0)
     assert nested["end"]["force"]["t_max"][0] == 0.1
@@ -87,9 +116,9 @@ def test_extremes_know_when() -> None:
 
 def test_extremes_mirror_the_final_state() -> None:
     extremes = Extremes()
-    extremes.update(0.0, pack(LINE.riser(ARC), LINE.touch()))
+    extremes.update(0.0, pack(LINE.riser(ARC), LINE.touch(ARC)))
     nested = extremes.nested()
-    assert set(nested) == {"start", "end"} | WHOLE
+    assert set(nested) == {"start", "end", PLACE} | WHOLE
     assert set(nested["start"]) == set(nested["end"]) == END
     for name in WHOLE:
         assert set(nested[name]) == {"min", "max", "t_min", "t_max"}
@@ -98,14 +127,14 @@ def test_extremes_mirror_the_final_state() -> None:
 def test_lifting_off_does_not_spoil_the_touchdown_extremes() -> None:
     extremes = Extremes()
     for t, arc in ((0.0, math.nan), (0.1, 20.0), (0.2, math.nan)):
-        extremes.update(t, pack(LINE.riser(ARC), replace(LINE.touch(), touchdown_arc=arc)))
+        extremes.update(t, pack(LINE.riser(ARC), replace(LINE.touch(ARC), touchdown_arc=arc)))
     assert extremes.nested()["touchdown_arc"] == {"min": 20.0, "max": 20.0, "t_min": 0.1, "t_max": 0.1}
 
 
 def test_never_touching_is_null(tmp_path: Path) -> None:
     summary = Summary(FACTS)
     stage = StageTally("hang", "static", steps=1)
-    free = Touch(math.nan, 0.0, np.zeros(3))
+    free = Touch(math.nan, np.full(3, math.nan), 0, 0.0, np.zeros(3))
     stage.extremes.update(1.0, pack(LINE.riser(ARC), free))
     stage.final = final_state(ARC, LINE.riser(ARC), free)
     summary.stages.append(stage)
@@ -116,11 +145,12 @@ def test_never_touching_is_null(tmp_path: Path) -> None:
 
 
 def test_packing_and_unpacking_agree() -> None:
-    vector = np.arange(30.0)
+    vector = np.arange(37.0)
     nested = unpack(vector)
     assert nested["start"]["position"] == [0.0, 1.0, 2.0]
     assert nested["end"]["angle_deg"] == 21.0
-    assert nested["contact_force"] == 29.0
+    assert nested["touchdown_position"] == [23.0, 24.0, 25.0]
+    assert nested["contact_force"] == 36.0
 
 
 def test_plain_json() -> None:
@@ -160,4 +190,23 @@ def test_structure_of_the_file(tmp_path: Path) -> None:
     assert (lay["kind"], lay["time"], lay["steps"], lay["newton_iterations"]) == ("static", 0.0, 2, 6)
     assert (heave["kind"], heave["steps"]) == ("dynamic", 10)
     assert heave["time"] == pytest.approx(1.0)
-    assert set(heave["energy"]) == set(vars(Ledger()))
+    assert set(heave["energy"]) == {*vars(Ledger()), "relative_residual", "worst_residual"}
+    assert heave["energy"]["worst_residual"] == {"value": 1e-6, "time": pytest.approx(0.1)}
+    assert lay["energy"]["worst_residual"] == {"value": None, "time": None}
+
+
+def test_energy_that_does_not_balance_is_a_warning() -> None:
+    """1 J of 99 J is more than a hundredth, at its worst or at the end; the scheme's own share has its own warning."""
+    stage = StageTally("heave", "dynamic")
+    stage.balance(0.5, Ledger(kinetic=99.0, turned_over=99.0, residual=-1.0))
+    stage.balance(1.0, Ledger(kinetic=99.0, turned_over=99.0, residual=0.1))
+    assert len(stage.warnings) == 1
+    assert stage.warnings[0].startswith("the energy balance is -1 J off at 0.5 s, 1.01% of the 99 J turned over")
+    quiet, greedy = StageTally("heave", "dynamic"), StageTally("heave", "dynamic")
+    quiet.balance(0.5, Ledger(turned_over=101.0, residual=1.0, numerical=1.0))
+    assert quiet.warnings == []
+    greedy.balance(0.5, Ledger(turned_over=99.0, numerical=-1.0))
+    assert greedy.warnings == [
+        "the time scheme put in 1 J, 1.01% of the 99 J turned over: take a smaller time_step"
+    ]
+    assert StageTally("lay", "static", energy=Ledger(residual=math.nan)).warnings == []

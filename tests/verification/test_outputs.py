@@ -23,9 +23,11 @@ from tests.watched_run import WatchedRun
 HEXAHEDRON, POLYLINE = 12, 4
 ON_NODES = ("effective_tension", "bending_moment", "curvature", "contact_force")
 
+ENERGY = {"kinetic", "strain", "potential", "dissipated", "numerical", "work", "residual", "turned_over"}
+ENERGY |= {"dissipated_by", "work_by", "relative_residual", "worst_residual"}
 VECTORS, SCALARS = ("position", "force", "moment"), ("effective_tension", "angle_deg")
-WHOLE = ("touchdown_arc", "max_penetration", "contact_force")
-PLACED = ("max_bending_moment", "max_curvature", "min_effective_tension")
+WHOLE = ("touchdown_arc", "touchdown_points", "max_penetration", "contact_force")
+PLACED = ("max_bending_moment", "max_curvature", "min_bend_radius", "min_effective_tension", "max_embedment")
 
 
 def test_vtk_reads_the_riser(demo: WatchedRun) -> None:
@@ -118,10 +120,11 @@ def test_summary_is_as_documented(demo: WatchedRun) -> None:
     assert {"riser", "soil", "contact", "linear_solve"} <= set(summary["seconds"])
     documented = {"name", "kind", "time", "steps", "newton_iterations", "step_cuts", "final", "extremes", "energy"}
     for stage in summary["stages"]:
-        assert set(stage) == documented | {"most_newton_iterations", "method", "relaxations"}
+        assert set(stage) == documented | {"most_newton_iterations", "method", "relaxations", "warnings"}
         assert_final(stage["final"])
         assert_extremes(stage["extremes"])
-        assert set(stage["energy"]) == {"kinetic", "strain", "potential", "dissipated", "work", "residual"}
+        assert set(stage["energy"]) == ENERGY
+        assert stage["warnings"] == []
     assert [(s["name"], s["kind"], s["time"], s["steps"]) for s in summary["stages"]] == [
         ("lay", "static", 0.0, 1),
         ("heave", "dynamic", 15.0, 150),
@@ -129,7 +132,8 @@ def test_summary_is_as_documented(demo: WatchedRun) -> None:
 
 
 def assert_final(final: Any) -> None:
-    assert set(final) == {"start", "end", *WHOLE, *PLACED}
+    assert set(final) == {"start", "end", "touchdown_position", *WHOLE, *PLACED}
+    assert len(final["touchdown_position"]) == 3
     for end in (final["start"], final["end"]):
         assert set(end) == {*VECTORS, *SCALARS}
         assert all(len(end[name]) == 3 for name in VECTORS)
@@ -140,7 +144,7 @@ def assert_final(final: Any) -> None:
 
 def assert_extremes(extremes: Any) -> None:
     kinds = {"min", "max", "t_min", "t_max"}
-    assert set(extremes) == {"start", "end", *WHOLE, *PLACED}
+    assert set(extremes) == {"start", "end", "touchdown_position", *WHOLE, *PLACED}
     for end in (extremes["start"], extremes["end"]):
         assert all(set(end[name]) == kinds for name in (*VECTORS, *SCALARS))
     for name in (*WHOLE, *PLACED):

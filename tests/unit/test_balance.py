@@ -1,0 +1,101 @@
+"""The energy ledger: the scheme's own dissipation, and what is left over."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from riser_soil.arrays import Array
+from riser_soil.balance import Balance
+from riser_soil.march import March
+from riser_soil.newton import Newton, NewtonSettings
+from riser_soil.part import Model, Part, State
+from riser_soil.snapshot import Ledger
+from riser_soil.stepping import StepControl
+from riser_soil.system import Clock, System
+from riser_soil.time_scheme import GeneralizedAlpha, Scheme
+from tests.toy_chain import Chain, Floor, Inertia, Springs
+
+ALPHA = GeneralizedAlpha.from_rho_inf(0.6)
+DAMPED = GeneralizedAlpha.newmark(0.4225, 0.8)
+AVERAGE = GeneralizedAlpha.newmark()
+
+
+class Seen(NamedTuple):
+    """Ledgers after each step; heights z, rates v and a before all steps and after each (steps + 1, n)."""
+
+    ledgers: list[Ledger]
+    z: Array
+    v: Array
+    a: Array
+
+
+def balanced(chain: Chain, parts: list[Part], scheme: Scheme, v0: list[float], end: float, dt: float) -> Seen:
+    system = System(MPI.COMM_SELF, Model([chain], parts), Clock.new())
+    newton = Newton(system, NewtonSettings(1e-13, 30, 1e-14))
+    nothing = np.zeros(chain.size)
+    march = March(system, newton, scheme, State(0.0, nothing, np.array(v0), nothing))
+    control, balance = StepControl(end, dt, dt / 8), Balance(march.energy, static=False)
+    ledgers, path = [], [(chain.z, march.before.v, march.before.a)]
+    while not control.finished:
+        step = march.advance(control)
+        march.commit(step, control)
+        balance.add(march.energy, step)
+        ledgers.append(balance.ledger)
+        path.append((chain.z, march.now.v, march.now.a))
+    newton.destroy()
+    system.destroy()
+    return Seen(ledgers, *(np.array(column) for column in zip(*path, strict=True)))
+
+
+def swing(scheme: Scheme, dt: float = 0.1, cubic: float = 0.0) -> Seen:
+    """A held chain under weight."""
+    chain = Chain(np.arange(4.0), held=True)
+    parts: list[Part] = [Springs(chain, 1.0, 20.0, cubic, weight=1.0), Inertia(chain, 1.0)]
+    return balanced(chain, parts, scheme, [0.0, 0.3, 0.1, 0.8], 3.0, dt)
+
+
+@pytest.mark.parametrize("scheme", [ALPHA, DAMPED, AVERAGE])
+def test_linear_motion_leaves_no_residual(scheme: Scheme) -> None:
+    last = swing(scheme).ledgers[-1]
+    assert abs(last.residual) < 1e-11 * last.turned_over
+    assert last.numerical == pytest.approx(0.0, abs=1e-11) if scheme is AVERAGE else last.numerical > 1e-3
+
+
+def test_newmark_dissipates_as_hughes_says() -> None:
+    """d(v.M v + u.K u)/2 + b dt²/2 d(a.M a) = -(g - 1/2) (du.K du + b dt² da.M da) in a step, b = beta - gamma/2."""
+    dt, seen = 0.1, swing(DAMPED, dt=0.1)
+    M = Inertia(Chain(np.arange(4.0)), 1.0).nodal()
+    b, g = DAMPED.beta - 0.5 * DAMPED.gamma, DAMPED.gamma - 0.5
+    du, da, a2 = np.diff(seen.z, axis=0), np.diff(seen.a, axis=0), seen.a**2 @ M
+    K = 20.0 * np.sum(np.diff(du, axis=1) ** 2, axis=1)
+    lost = g * (K + b * dt**2 * da**2 @ M) + 0.5 * b * dt**2 * np.diff(a2)
+    assert seen.ledgers[-1].numerical == pytest.approx(lost.sum(), rel=1e-10)
+
+
+@pytest.mark.parametrize("scheme", [ALPHA, AVERAGE])
+def test_nonlinear_forces_leave_a_residual_of_second_order(scheme: Scheme) -> None:
+    worst = [max(abs(led.residual) for led in swing(scheme, dt, cubic=50.0).ledgers) for dt in (0.02, 0.01, 0.005)]
+    assert np.log2(worst[1] / worst[2]) == pytest.approx(2.0, abs=0.2)
+    assert worst[0] > 1e-6
+
+
+@pytest.mark.parametrize("scheme", [ALPHA, DAMPED, AVERAGE])
+def test_impact_is_contact_s_and_not_the_scheme_s(scheme: Scheme) -> None:
+    """Two masses that hardly know of each other fall 1 m on a stiff floor and come to rest: contact takes it all."""
+    chain = Chain(np.array([1.0, 1.0]))
+    parts: list[Part] = [Springs(chain, 0.0, 1e-9, weight=9.81), Inertia(chain, 2.0), Floor(chain, 1e7)]
+    last = balanced(chain, parts, scheme, [0.0, 0.0], 5.0, 0.01).ledgers[-1]
+    assert last.dissipated_by == {"contact": pytest.approx(2.0 * 9.81, rel=1e-5)}
+    assert last.work_by == {}
+    assert abs(last.residual) < 1e-11 * last.turned_over
+    assert abs(last.numerical) < 1e-11 * last.turned_over
+
+
+def test_sums_are_those_of_the_parts() -> None:
+    last = swing(ALPHA).ledgers[-1]
+    assert last.dissipated == sum(last.dissipated_by.values()) == 0.0
+    assert last.work == sum(last.work_by.values())

@@ -1,0 +1,112 @@
+"""Touchdown points from clearances and forces alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from riser_soil.arrays import Array
+from riser_soil.contact.touchdown import stretches, touchdown
+from riser_soil.riser import stations
+
+LENGTH, W, R = 40.0, 150.0, 280.0
+UNEVEN = np.append(0.0, np.cumsum(np.random.default_rng(4).uniform(0.5, 1.5, size=400)))
+NODES = LENGTH * UNEVEN / UNEVEN[-1]
+RULES = {"line": stations.gauss(5), "node": stations.ENDS}
+both_rules = pytest.mark.parametrize("rule", RULES)
+
+
+def points(rule: str, nodes: Array = NODES) -> tuple[Array, Array]:
+    """Arc and share of stations."""
+    size, made = np.diff(nodes)[:, None], RULES[rule]
+    return (nodes[:-1, None] + size * made.points).ravel(), (size * made.weights).ravel()
+
+
+def landed(arc: Array, end: float, layer: float) -> tuple[Array, Array]:
+    """Clearance and force on a bed of springs that a force R presses down at an end, one layer before it."""
+    t = (end - arc) / layer
+    force = np.where(t >= 0.0, W + 2.0 * R / layer * np.exp(-np.maximum(t, 0.0)) * np.sin(t), 0.0)
+    return np.where(t >= 0.0, -1e-9 * force, 1e-6 * t**2), force
+
+
+def exact(end: float, layer: float) -> float:
+    """Sum R, moment R layer about the end."""
+    return end - (np.sqrt(R**2 + 2.0 * W * R * layer) - R) / W
+
+
+@both_rules
+@pytest.mark.parametrize(("layer", "tolerance"), [(1.0, 5e-3), (0.4, 1e-4)])
+def test_rigid_contact_with_the_same_resultant(rule: str, layer: float, tolerance: float) -> None:
+    """Up to what is left of the layer where the force at rest is read, or to what quadrature by nodes leaves."""
+    arc, share = points(rule)
+    end = float(NODES[220])
+    clearance, force = landed(arc, end, layer)
+    found = touchdown(arc, share, clearance, force)
+    assert found == pytest.approx(exact(end, layer), abs=tolerance if rule == "line" else 0.05)
+
+
+def test_softness_of_the_bed_cancels() -> None:
+    """The force ends 0.45 m apart; the touchdown points differ by second-order terms in the layer's length."""
+    arc, share = points("line", np.linspace(0.0, LENGTH, 3201))
+    found = [touchdown(arc, share, *landed(arc, 22.0 + layer, layer)) for layer in (0.05, 0.5)]
+    assert exact(22.05, 0.05) - exact(22.5, 0.5) == pytest.approx(found[0] - found[1], abs=2e-3)
+    assert abs(found[0] - found[1]) < 0.1
+
+
+@both_rules
+@pytest.mark.parametrize("level", [1.0, 7.0])
+def test_even_force_ends_at_the_touchdown_point(rule: str, level: float) -> None:
+    """However large: a riser that slaps the ground evenly touches down at the end of it."""
+    arc, share = points(rule)
+    force = np.where(arc < NODES[200], level * W, 0.0)
+    found = touchdown(arc, share, np.where(force > 0.0, -1e-3, 1e-3), force)
+    assert found == pytest.approx(NODES[200], abs=0.15)
+
+
+def test_what_lies_far_behind_does_not_matter() -> None:
+    arc, share = points("line")
+    end = float(NODES[220])
+    clearance, force = landed(arc, end, 0.3)
+    clump = force + np.where(np.abs(arc - 10.0) < 0.2, 3000.0, 0.0)
+    heavy = force + np.where(arc < 5.0, 200.0, 0.0)
+    expected = touchdown(arc, share, clearance, force)
+    assert touchdown(arc, share, clearance, clump) == pytest.approx(expected, abs=1e-9)
+    assert touchdown(arc, share, clearance, heavy) == pytest.approx(expected, abs=1e-9)
+
+
+@both_rules
+def test_from_either_side(rule: str) -> None:
+    """A riser that lies at its end comes down from the start."""
+    arc, share = points(rule)
+    clearance, force = landed(arc, float(NODES[220]), 0.5)
+    mirrored = LENGTH - arc[::-1], share[::-1], clearance[::-1], force[::-1]
+    assert touchdown(*mirrored) == pytest.approx(LENGTH - touchdown(arc, share, clearance, force), abs=1e-12)
+
+
+def test_stretches_part_at_spans_and_not_at_a_layers_small_gaps() -> None:
+    arc, share = points("line")
+    clearance = np.where((arc < 5.0) | ((arc > 10.0) & (arc < 30.0)), -1e-3, 0.2)
+    force = np.where(clearance < 0.0, W, 0.0)
+    clearance[(arc > 18.0) & (arc < 19.0)] = 0.9e-3
+    first, second = stretches(arc, share, clearance, force)
+    assert (first.start, first.end) == pytest.approx((0.0, 5.0), abs=0.1)
+    assert (second.start, second.end) == pytest.approx((10.0, 30.0), abs=0.1)
+    assert touchdown(arc, share, clearance, force) == second.end
+    clearance[(arc > 18.0) & (arc < 19.0)] = 1.1e-3
+    assert len(stretches(arc, share, clearance, force)) == 3
+
+
+def test_nothing_and_all_of_it() -> None:
+    arc, share = points("line")
+    none, all_of_it = np.zeros_like(arc), np.full_like(arc, W)
+    assert np.isnan(touchdown(arc, share, none + 1.0, none))
+    assert stretches(arc, share, none + 1.0, none) == []
+    assert touchdown(arc, share, none - 1.0, all_of_it) == pytest.approx(LENGTH)
+
+
+def test_unknown_clearance_beyond_and_no_force() -> None:
+    """Points that nothing is known of have an infinite clearance; touching need not press."""
+    arc, share = points("node")
+    clearance = np.where(arc < 20.0, -1e-3, np.inf)
+    last = float(arc[arc < 20.0].max())
+    assert touchdown(arc, share, clearance, np.zeros_like(arc)) == last

@@ -1,0 +1,153 @@
+"""What a run tells of the touchdown zone: where and how deep the riser lies, how tightly it is bent."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from riser_soil.contact.touchdown import Stretch
+from riser_soil.errors import ResultsError
+from riser_soil.results import Run
+from riser_soil.run import run
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.touchdown_zone import joined
+from tests.coupled_scenes import LAY, Mapping, touchdown
+from tests.riser_scenes import dynamic, held, riser_scene, static
+
+EI, ALLOWED, RADIUS = 2.0e4, 4.0, 0.1
+PIPE: Mapping = {"EA": 1e7, "EI": EI, "mass": 60.0, "outer_diameter": 2.0 * RADIUS, "submerged_weight": 300.0}
+
+
+def sagging(stiffness: float = 1e5, **more: object) -> Mapping:
+    """Held at both ends 8 m above a bed of springs on which its middle lies; one end then moves up and down."""
+    motion = {"end": {"harmonic": {"amplitude": [0.0, 0.0, 1.0], "period": 4.0, "ramp": 2.0}}}
+    return riser_scene(
+        static("lay"),
+        dynamic(4.0, 0.1, "heave", motion=motion),
+        pipe=PIPE | {"min_bend_radius": ALLOWED},
+        length=60.0,
+        elements=80,
+        start=held(0.0, 0.0, 8.0),
+        end=held(48.0, 0.0, 8.0),
+        seabed={"kind": "spring", "stiffness": stiffness},
+        gravity=9.81,
+        **more,
+    )
+
+
+@pytest.fixture(scope="module")
+def sag(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    folder = tmp_path_factory.mktemp("sag")
+    run(scene_from_mapping(sagging()), folder)
+    return Run(folder)
+
+
+def test_a_sag_has_two_touchdown_points(sag: Run) -> None:
+    np.testing.assert_array_equal(sag["touchdown_points"], 2)
+    final = sag.summary["stages"][0]["final"]
+    assert final["touchdown_points"] == 2
+    lying = sag.arc[sag["contact_force"][0] > 0.0]
+    assert lying.mean() == pytest.approx(30.0, abs=0.1), "as long on either side"
+    assert 0.0 < lying.max() - final["touchdown_arc"] < 2.0
+
+
+def test_touchdown_point_is_on_the_riser(sag: Run) -> None:
+    """Between the nodes beside it, and as high as the pipe's radius but for the penetration and its lift-off."""
+    place, arc = sag["touchdown_position"], sag["touchdown_arc"]
+    for row, position in enumerate(sag["position"]):
+        near = [np.interp(arc[row], sag.arc, position[:, i]) for i in range(3)]
+        np.testing.assert_allclose(place[row], near, atol=3e-3)
+    np.testing.assert_allclose(place[:, 2], RADIUS, atol=0.02)
+    assert sag.summary["stages"][1]["final"]["touchdown_position"] == place[-1].tolist()
+    extremes = sag.summary["stages"][1]["extremes"]["touchdown_position"]
+    assert extremes["max"][0] == place[:, 0].max()
+    assert extremes["t_max"][0] == pytest.approx(sag.time[place[:, 0].argmax()])
+
+
+def test_penetration_is_the_underside_below_the_bed(sag: Run) -> None:
+    expected = np.maximum(0.0, RADIUS - sag["position"][:, :, 2])
+    np.testing.assert_allclose(sag["penetration"], expected, atol=1e-12)
+    assert expected.max() > 1e-3
+
+
+def test_embedment_is_the_greatest_penetration_so_far(sag: Run) -> None:
+    expected = np.maximum.accumulate(sag["penetration"], axis=0)
+    np.testing.assert_array_equal(sag["embedment"], expected)
+    assert expected[-1].max() > sag["penetration"][-1].max()
+    final = sag.summary["stages"][1]["final"]["max_embedment"]
+    assert final == {"value": expected[-1].max(), "arc": sag.arc[expected[-1].argmax()]}
+
+
+def test_least_tension_and_bend_radius_are_those_of_the_fields(sag: Run) -> None:
+    for row, (tension, curvature) in enumerate(zip(sag["effective_tension"], sag["curvature"], strict=True)):
+        assert sag["min_effective_tension"][row] == tension.min()
+        assert sag["min_effective_tension_arc"][row] == sag.arc[tension.argmin()]
+        assert sag["min_bend_radius"][row] == 1.0 / curvature.max()
+        assert sag["min_bend_radius_arc"][row] == sag.arc[curvature.argmax()]
+    np.testing.assert_allclose(sag["bend_utilisation"], ALLOWED * sag["curvature"], rtol=1e-12)
+
+
+def test_the_warning_tells_where_and_when_the_pipe_is_bent_most(sag: Run) -> None:
+    lay, heave = sag.summary["stages"]
+    used, arc, t = sag["bend_utilisation"], sag.arc, sag.time
+    row, node = np.unravel_index(used.argmax(), used.shape)
+    assert lay["warnings"] == []
+    assert heave["extremes"]["max_bend_utilisation"]["max"] == used.max() > 1.0
+    assert heave["warnings"][0] == (
+        f"the pipe is bent beyond its min_bend_radius: {used.max():.4g} times what is allowed at arc {arc[node]:.5g} m "
+        f"and {t[row]:.5g} s, where the bend radius is {1.0 / sag['curvature'][row, node]:.4g} m"
+    )
+
+
+def test_units(sag: Run) -> None:
+    units = {"touchdown_position": "m", "touchdown_points": "1", "penetration": "m", "embedment": "m"}
+    units |= {"min_effective_tension": "N", "min_bend_radius": "m", "bend_utilisation": "1"}
+    with h5py.File(sag.folder / "results.nc") as file:
+        assert {name: file[name].attrs["units"] for name in units} == units
+
+
+def test_only_what_is_asked_and_known(tmp_path: Path) -> None:
+    scene = sagging(output={"fields": ["curvature", "penetration"]})
+    del scene["line_types"]["pipe"]["min_bend_radius"], scene["stages"][1]
+    run(scene_from_mapping(scene), tmp_path)
+    assert Run(tmp_path)["penetration"].max() > 0.0
+    for name in ("embedment", "bend_utilisation"):
+        with pytest.raises(ResultsError, match=f"no {name};"):
+            Run(tmp_path)[name]
+    assert not {"max_embedment", "max_bend_utilisation"} & {*Run(tmp_path).summary["stages"][0]["final"]}
+
+
+def test_where_line_types_meet_the_one_nearer_to_its_limit_counts(tmp_path: Path) -> None:
+    """A cantilever of two pipes: the moment at the joint is one, the curvatures are M/EI of either pipe."""
+    soft, stiff = PIPE | {"min_bend_radius": 3.0}, PIPE | {"EI": 4.0 * EI, "min_bend_radius": 10.0}
+    scene = riser_scene(static(), pipe=soft, length=2.0, elements=4, start=held(0, 0, 0, rotation="fixed"), end="free")
+    scene["line_types"]["stiff"] = stiff
+    scene["riser"]["segments"].insert(0, {"line_type": "stiff", "length": 2.0, "elements": 4})
+    scene["riser"]["initial"] = "straight"
+    run(scene_from_mapping(scene | {"dimension": 2, "gravity": 9.81}), tmp_path / "soft_governs")
+    seen = Run(tmp_path / "soft_governs")
+    M, used = seen["bending_moment"][-1], seen["bend_utilisation"][-1]
+    assert used[4] == pytest.approx(M[4] * 3.0 / EI, rel=1e-9)
+    assert used[3] == pytest.approx(M[3] * 10.0 / (4.0 * EI), rel=1e-9)
+
+
+def test_embedment_in_soil_counts_from_where_it_lay(tmp_path: Path) -> None:
+    run(scene_from_mapping(touchdown(LAY, su=1000.0)), tmp_path)
+    seen = Run(tmp_path)
+    settlement = -seen.soil_frame().fields["displacement"][:, 2].min()
+    on_soil = (seen["position"][-1, :, 0] > 2.5) & (seen["position"][-1, :, 0] < 8.5)
+    embedment, penetration = seen["embedment"][-1, on_soil], seen["penetration"][-1, on_soil]
+    assert settlement > 1e-3
+    assert penetration.max() < 0.3 * settlement
+    assert embedment.max() == pytest.approx(settlement, rel=0.2)
+    assert seen["touchdown_points"][-1] == 1
+
+
+def test_ground_after_ground_is_one_stretch() -> None:
+    on_seabed, on_soil, far = Stretch(0.0, 10.0, 0, 9), Stretch(10.4, 20.0, 0, 5), Stretch(25.0, 30.0, 8, 9)
+    assert [s[:2] for s in joined([far, on_soil, on_seabed], near=0.5)] == [(0.0, 20.0), (25.0, 30.0)]
+    assert len(joined([on_seabed, on_soil], near=0.3)) == 2
+    assert joined([], near=1.0) == []
