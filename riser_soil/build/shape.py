@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 # The least radius H/w of a first shape's bends, over the elements' length, and over the length (EI/w)^(1/3) that a line
 # needs to bend under its own weight: sharper than elements and pipe can follow.
 SHARPEST_IN_ELEMENTS = 0.5
-SHARPEST_BEND = 0.3
+SHARPEST_BEND = 0.4
 
 
 def _ends(riser: Riser) -> tuple[Array | None, Array | None]:
