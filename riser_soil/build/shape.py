@@ -77,12 +77,12 @@ def _catenary(scene: Scene, elements: sections.Elements, attachments: Sequence[A
 
 
 def _resting_level(scene: Scene, elements: sections.Elements) -> float:
-    """Height z [m] of the axis where the riser rests; -inf where there is nothing to rest on."""
+    """Height z [m] of the axis where the thinnest of the riser rests; -inf where there is nothing to rest on."""
     if scene.contact is None:
         return -np.inf
     from riser_soil.build.ground import contact_radius
 
-    return scene.seabed_level + float(contact_radius(scene, elements).max())
+    return scene.seabed_level + float(contact_radius(scene, elements).min())
 
 
 def least_bend(elements: sections.Elements) -> float:
