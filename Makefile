@@ -24,8 +24,9 @@ setup: ## Debian packages, the environment .venv, riser_soil in it; does nothing
 demo: setup ## a flexible riser comes down on 3D clay: results and a picture in demos/touchdown_clay/results
 	$(PYTHON) demos/touchdown_clay/run.py
 
-demos: demo ## all demos: that one, and each in demos/*/README.md, with tables and pictures
+demos: demo ## that demo and the others (demos/*/README.md), with their tables and pictures
 	$(PYTHON) -m demos.catenary.run
+	$(PYTHON) -m demos.waves.run
 
 test: lint ## linters, types, and the quick tests, some of them on two ranks
 	$(PYTHON) -m pytest -n $(WORKERS) --dist loadfile

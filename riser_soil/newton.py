@@ -53,8 +53,9 @@ class NewtonSettings:
 
     floor [N]: the norm that counts as zero, for round-off of a scene whose forces all vanish.
     reuse: an iteration that leaves less than this share of the residual hands its factorised tangent on to the next of
-    the same step (Shamanskii's method), which leaves about that share again at a fraction of the cost. Only in time
-    steps of a riser alone, which start near their end: contact has corners, and an equilibrium may be far away.
+    the same step (Shamanskii's method), as long as each leaves less than this share: two or three such iterations cost
+    less than one with its own tangent. Only in time steps of a riser alone, which start near their end: contact has
+    corners, and an equilibrium may be far away.
     """
 
     tolerance: float

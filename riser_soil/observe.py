@@ -5,7 +5,9 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,7 +17,7 @@ from riser_soil.balance import Balance
 from riser_soil.build import World
 from riser_soil.inventory import built, dissipating, left_out, unknowns, working
 from riser_soil.march import Accepted, March
-from riser_soil.part import Energy, Forces, State
+from riser_soil.part import Energy, Forces, Model, State
 from riser_soil.progress import Progress
 from riser_soil.record import Recorder
 from riser_soil.riser.section_forces import (
@@ -120,13 +122,30 @@ def _known_fields(world: World) -> tuple[str, ...]:
     return tuple(name for name in world.scene.output.fields if name not in unknown)
 
 
+class Acting(NamedTuple):
+    """Parts of a model whose forces are told apart."""
+
+    within: list[HasElementForces]
+    viscous: list[HasViscousForces]
+    on_nodes: list[HasNodalForces]
+
+
+@lru_cache(maxsize=1)
+def _acting(model: Model) -> Acting:
+    """Looked for once a stage, as the question takes longer than the answer's use."""
+    return Acting(
+        [p for p in model.parts if isinstance(p, HasElementForces)],
+        [p for p in model.parts if isinstance(p, HasElementForces) and isinstance(p, HasViscousForces)],
+        [p for p in model.parts if isinstance(p, HasNodalForces)],
+    )
+
+
 def riser_snapshot(world: World, march: March) -> RiserSnapshot:
     """The riser at the accepted state; on the rank that holds it."""
     line, state = world.line, march.now
-    parts = [p for p in march.system.model.parts if isinstance(p, HasElementForces)]
-    residual = element_residual(line, parts, state)
-    viscous = [p for p in parts if isinstance(p, HasViscousForces)]
-    inside = section_forces(line, world.elements, state, residual, viscous_residual(line, viscous, state))
+    parts = _acting(march.system.model)
+    residual = element_residual(line, parts.within, state)
+    inside = section_forces(line, world.elements, state, residual, viscous_residual(line, parts.viscous, state))
     start, end = end_reactions(line, state, residual, _on_nodes(world, march))
     tangent, position = line.trial(state).turn.tangent @ line.basis.T, line.positions3(state)
     return RiserSnapshot(
@@ -164,7 +183,7 @@ def _on_nodes(world: World, march: March) -> Array:
     forces = Forces.zeros(march.now.u.size)
     if world.soil_contact is not None:
         world.soil_contact.residual(march.now, forces)
-    loads = [p.nodal_forces(march.now) for p in march.system.model.parts if isinstance(p, HasNodalForces)]
+    loads = [p.nodal_forces(march.now) for p in _acting(march.system.model).on_nodes]
     return np.asarray(sum(loads, world.line.nodal(forces.end)))
 
 

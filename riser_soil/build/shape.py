@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 # The least radius H/w of a first shape's bends, over the elements' length, and over the length (EI/w)^(1/3) that a line
 # needs to bend under its own weight: sharper than elements and pipe can follow.
 SHARPEST_IN_ELEMENTS = 0.5
-SHARPEST_BEND = 0.3
+SHARPEST_BEND = 0.4
 
 
 def _ends(riser: Riser) -> tuple[Array | None, Array | None]:
@@ -77,12 +77,12 @@ def _catenary(scene: Scene, elements: sections.Elements, attachments: Sequence[A
 
 
 def _resting_level(scene: Scene, elements: sections.Elements) -> float:
-    """Height z [m] of the axis where the riser rests; -inf where there is nothing to rest on."""
+    """Height z [m] of the axis where the thinnest of the riser rests; -inf where there is nothing to rest on."""
     if scene.contact is None:
         return -np.inf
     from riser_soil.build.ground import contact_radius
 
-    return scene.seabed_level + float(contact_radius(scene, elements).max())
+    return scene.seabed_level + float(contact_radius(scene, elements).min())
 
 
 def least_bend(elements: sections.Elements) -> float:

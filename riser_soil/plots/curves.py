@@ -84,14 +84,15 @@ def end_reactions(panels: Sequence[Axes], runs: Mapping[str, Run], since: float 
             axes.plot(run.time[seen], 1e-3 * getattr(found, name)[seen], label=label, linewidth=1.0)
             axes.set_xlabel(_TIME)
             axes.set_ylabel(words)
-    panels[0].legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=len(runs), frameon=False)
+    if len(runs) > 1:
+        panels[0].legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=len(runs), frameon=False)
 
 
 def end_tension(axes: Axes, run: Run, since: float = 0.0, label: str | None = None) -> None:
-    """Effective tension of the last node in time."""
+    """Effective tension at the end in time."""
     seen = run.time >= since
     axes.plot(run.time[seen], 1e-3 * run["effective_tension"][seen, -1], label=label, linewidth=1.0)
-    _name(axes, _TIME, "effective tension at the end [kN], + pulls")
+    _name(axes, _TIME, "tension at the end [kN], + pulls")
 
 
 def instants(run: Run, since: float, until: float, count: int) -> list[int]:

@@ -64,7 +64,8 @@ def catenary(
     least = max(least_H, KINK * float(np.abs(w * chain.l0).max()))
     found = fit(chain, h, least)
     nodes, direction = np.append(0, np.cumsum(pieces)), across / h if h > 0.0 else X
-    return _in_space(found, nodes, start, direction, slack=max(0.0, found.reach - h) if least >= found.H else 0.0)
+    slack = max(0.0, found.reach - h) if least >= found.H else 0.0
+    return _in_space(found, nodes, start, end + slack * direction, direction, slack)
 
 
 def _chain(l0: Array, w: Array, EA: Array, ends: tuple[float, float], level: float) -> Chain:
@@ -91,9 +92,14 @@ def _hang_on(chain: Chain, points: Array) -> None:
     chain.W[1:-1] += added[1:-1]
 
 
-def _in_space(found: Balance, nodes: IntArray, start: Array, direction: Array, slack: float) -> Catenary:
+def _in_space(
+    found: Balance, nodes: IntArray, start: Array, end: Array, direction: Array, slack: float
+) -> Catenary:
+    """The shape at the nodes; it ends where it is to end, beyond the round-off of its balance."""
     x, z, V = (values[nodes, None] for values in (found.x, found.z - found.chain.z0, found.V_at_joints))
     force = found.H * direction + V * UP
     tension = np.linalg.norm(force, axis=1)
-    curve = from_nodes(start + x * direction + z * UP, force / tension[:, None])
+    position = start + x * direction + z * UP
+    position[-1] = end
+    curve = from_nodes(position, force / tension[:, None])
     return Catenary(curve, tension, found.H, slack)

@@ -17,7 +17,7 @@ import math
 
 import numpy as np
 
-from riser_soil.arrays import Array, BoolArray
+from riser_soil.arrays import Array, BoolArray, IntArray
 from riser_soil.compiled import fixed, njit
 from riser_soil.riser import rotations
 from riser_soil.riser.hermite import interleave
@@ -140,6 +140,10 @@ class SpatialTurn:
         rate, acceleration = _spatial_motion(self.R, self.T0, v, a)
         return rate, acceleration
 
+    def in_space(self, moment: Array, nodes: IntArray) -> Array:
+        """Moments (n, 3) in global axes of those conjugate to the rotation increments of some nodes (n,)."""
+        return _in_space(self.Rn, self.Theta, moment, nodes)
+
     def maps(self, v: Array, a: Array, shift_v: float, shift_a: float) -> Maps:
         first, second = _spatial_maps(self.R, self.H, self.T0, v, a, shift_v, shift_a)
         return self.P, first, second
@@ -245,6 +249,16 @@ def _orient(Rn: Array, Theta: Array, T0: Array) -> tuple[Array, Array, Array, Ar
     R, H = node_frames(Rn, Theta)
     first, second, tangent = end_frames(R, T0)
     return R, H, first, second, tangent, _spatial_P(tangent, H)
+
+
+@njit
+def _in_space(Rn: Array, Theta: Array, moment: Array, nodes: IntArray) -> Array:
+    """H^-T m, that is Rn T_R^-1 m."""
+    out = np.empty((nodes.size, 3))
+    for i in range(nodes.size):
+        inverse = transpose(rotations.left_tangent_inverse(vector(Theta[nodes[i]])))
+        out[i, 0], out[i, 1], out[i, 2] = matvec(matrix(Rn[nodes[i]]), matvec(inverse, vector(moment[i])))
+    return out
 
 
 @njit

@@ -151,8 +151,7 @@ def _global(line: Line, trial: Trial, dofs: Array, nodes: IntArray) -> tuple[Arr
     """Forces and moments (n, 3) in global axes from those conjugate to the dofs of the nodes (n, ndof)."""
     force, rest = dofs[:, : line.dimension] @ line.basis.T, dofs[:, line.dimension :]
     if isinstance(trial.turn, SpatialTurn):
-        H = trial.turn.H[nodes]
-        return force, np.linalg.solve(np.swapaxes(H, 1, 2), rest[..., None])[..., 0]
+        return force, trial.turn.in_space(rest, nodes)
     return force, rest * line.normal
 
 
