@@ -38,6 +38,7 @@ def _reasons(scene: Scene) -> dict[str, str]:
         "morison": _no_morison(scene),
         "buoyancy": _no_buoyancy(scene),
         "seabed": "" if scene.seabed is not None else "the scene has no seabed",
+        "friction": "" if scene.contact and scene.contact.friction else "no friction is asked for",
         "soil": "" if scene.soil is not None else "the scene has no soil",
         "contact": "" if ground else "the scene has neither seabed nor soil",
     }

@@ -47,7 +47,7 @@ BASE = {
         "start": {"position": [0.0, 0.0, 0.15]},
         "end": {"position": [80.0, 0.0, 100.0]},
     },
-    "seabed": {"kind": "spring", "stiffness": 1e5},
+    "seabed": {"kind": "rigid"},
     "stages": [{"name": "move", "kind": "dynamic", "duration": 1.0, "time_step": 0.1}],
 }
 

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
+from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
 from riser_soil.snapshot import RiserSnapshot
 from tests.coupled_scenes import Mapping
 from tests.riser_scenes import distance, held, riser_scene, static, tell
@@ -16,22 +18,32 @@ PIPE = {"EA": 3e8, "EI": 2e4, "GJ": 1e4, "outer_diameter": 0.3, "submerged_weigh
 RISE = float(np.tan(np.radians(SLOPE)))
 
 
-def lying(seabed: Mapping, method: str = "line", elements: int = 150, **more: Any) -> RiserSnapshot:
-    """A riser of 150 m from the ground at its start, where its axis rests, to 60 m above and 110 m away."""
+def lying(
+    seabed: Mapping,
+    method: str = "line",
+    elements: int = 150,
+    length: float = 150.0,
+    more_stages: tuple[Mapping, ...] = (),
+    more_contact: Mapping | None = None,
+    **more: Any,
+) -> RiserSnapshot:
+    """A riser from the ground at its start, where its axis rests, to 60 m above and 110 m away; after all stages."""
+    ground = {"kind": "spring", "stiffness": 1e5, "contact_at": "axis"} | seabed
     scene = riser_scene(
         static(),
+        *more_stages,
         pipe=PIPE,
-        length=150.0,
+        length=length,
         elements=elements,
         start=held(0.0, 0.0, 0.0),
         end=held(88.0, 66.0, 60.0),
         gravity=9.81,
-        seabed={"kind": "spring", "stiffness": 1e5, "contact_at": "axis"} | seabed,
-        contact={"method": method},
+        seabed={key: value for key, value in ground.items() if value is not None},
+        contact={"method": method} | (more_contact or {}),
         solver={"tolerance": 1e-10},
         **more,
     )
-    return tell(scene)[0].end
+    return tell(scene)[-1].end
 
 
 def resting(found: RiserSnapshot) -> slice:
@@ -98,3 +110,37 @@ def test_methods_agree_on_fine_meshes() -> None:
     line, node = (lying({}, method, elements=600) for method in ("line", "node"))
     assert line.end_force == pytest.approx(node.end_force, rel=2e-5)
     assert line.bending_moment.max() == pytest.approx(node.bending_moment.max(), rel=1e-4)
+
+
+CLAY = {"kind": "randolph-quiggin", "su": 2e3, "su_gradient": 1.5e3}
+
+
+@pytest.mark.parametrize("law", ["randolph-quiggin", "aubeny-biscontin"])
+def test_riser_at_rest_on_clay_that_remembers(law: str) -> None:
+    """Well behind the touchdown point it lies as deep as the law answers with its weight."""
+    clay = {"kind": "hysteretic", "stiffness": None, "law": CLAY | {"kind": law}}
+    found = lying(clay, dimension=2)
+    at = resting(found)
+    assert found.contact_force[at] == pytest.approx(W, rel=1e-4)
+    known = {"randolph-quiggin": RandolphQuiggin, "aubeny-biscontin": AubenyBiscontin}[law](0.3, 2e3, 1.5e3)
+    depth = -found.position[at, 2]
+    force, _ = known.respond(depth, known.fresh(depth.shape))
+    assert force == pytest.approx(W, rel=1e-3)
+
+
+MU = 0.35
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_pulled_riser_slides_as_far_as_friction_lets_it(dimension: int) -> None:
+    """Where it has slid, its tension falls by mu w per length towards the anchor, and nowhere faster."""
+    pull = static("pull", move={"end": [92.0, 69.0, 60.0]})
+    friction = {"friction": {"axial": MU, "mobilisation": 1e-4}}
+    found = lying({}, dimension=dimension, more_stages=(pull,), more_contact=friction)
+    lain = lying({}, dimension=dimension, more_contact=friction)
+    T, f = found.effective_tension, found.contact_force
+    lying_there = np.flatnonzero((f[:-1] > 0.9 * W) & (f[1:] > 0.9 * W))
+    share = np.diff(T)[lying_there] / (MU * 0.5 * (f[lying_there] + f[lying_there + 1]))
+    assert T.max() > lain.effective_tension.max() + 500.0
+    assert share.max() < 1.02
+    assert np.count_nonzero(np.abs(share - 1.0) < 0.02) > 5
