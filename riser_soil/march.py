@@ -176,7 +176,8 @@ class March:
     def _account(self, solution: Solution, control: StepControl, cuts: int) -> Accepted:
         state = solution.state
         turned = self.system.work(self.before, state)
-        supports = self.system.work_of_supports(self.scheme.mean(self._forces, solution.forces), state.u)
+        reactions = self.scheme.mean(*(self.system.reactions(f) for f in (self._forces, solution.forces)))
+        supports = self.system.work_of_supports(reactions, state.u)
         work, energy = turned.external + supports, self.system.energy(state)
         self._refuse_wrong_root(energy, turned.dissipated, work)
         return Accepted(control.target, control.dt, solution, cuts, energy, turned.dissipated, work)

@@ -98,9 +98,9 @@ class System:
         mine = sum((p.work(before, after) for p in self.model.parts), Work())
         return Work(*self.sum([mine.dissipated, mine.external]))
 
-    def work_of_supports(self, mean: Forces, u: Array) -> float:
-        """Work [J] that prescribed motions put in over a step: reaction to the mean forces times increment."""
-        return self.sum([float(self.reactions(mean) @ u[self.held])])[0]
+    def work_of_supports(self, reactions: Array, u: Array) -> float:
+        """Work [J] that prescribed motions put in over a step: mean reactions times increment."""
+        return self.sum([float(reactions @ u[self.held])])[0]
 
     def reactions(self, forces: Forces) -> Array:
         """What the supports of this rank's prescribed dofs exert [N, N.m]."""
@@ -130,6 +130,8 @@ class System:
 
     def sum(self, values: list[float]) -> list[float]:
         """Sums over all ranks; collective."""
+        if self.comm.size == 1:
+            return values
         summed = np.array(values)
         self.comm.Allreduce(MPI.IN_PLACE, summed)
         return [float(value) for value in summed]
