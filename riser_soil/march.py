@@ -188,10 +188,11 @@ class March:
     def _account(self, solution: Solution, control: StepControl, cuts: int) -> Accepted:
         state = solution.state
         turned = self.system.work(self.before, state)
-        mean = self.scheme.mean(self._forces, solution.forces)
-        supports = self.system.work_of_supports(mean, state.u)
+        reactions = self.scheme.mean(*(self.system.reactions(f) for f in (self._forces, solution.forces)))
+        supports = self.system.work_of_supports(reactions, state.u)
         start = self._forces if self._history is None else self._history
-        against = self.system.work_against(self.scheme.mean(start, solution.forces), solution.forces, state.u)
+        bulk = self.scheme.mean(start.force, solution.forces.force)
+        against = self.system.work_against(bulk, solution.forces.end, state.u)
         braking = against - supports - sum(work.inertial for work in turned.values())
         turned["supports"] = Work(external=supports)
         step = Accepted(control.target, control.dt, solution, cuts, self.system.energy(state), turned, braking)

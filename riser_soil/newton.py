@@ -156,19 +156,13 @@ class Newton:
 
     def _begin(self, step: Step) -> None:
         self._step, self._norms = step, list[float]()
-        self._weights = step.scheme.weights(step.dt)
+        self._weights, self._past = step.scheme.weights(step.dt), step.scheme.past(step.start)
         self._still = step.scheme.trial(step.before, step.t, step.dt, np.zeros_like(step.guess))
         held = State(step.t, *(x.copy() for x in (step.guess, self._still.v, self._still.a)))
         self.system.prescribe(held)
         self._held = [x[self.system.held] for x in (held.u, held.v, held.a)]
         self._state: State | None = None
-        self._restrict(step.guess)
-
-    def _restrict(self, guess: Array) -> None:
-        first, last = self._x.getOwnershipRange()
-        index = self.system.numbering.index
-        mine = (index >= first) & (index < last)
-        self._x.array_w[index[mine] - first] = guess[mine]
+        self.system.numbering.to_global(step.guess, self._x)
 
     def _trial(self, x: PETSc.Vec) -> State:
         """State of the unknowns x; the same object while x stays the same, so that parts need not look twice."""
@@ -190,7 +184,7 @@ class Newton:
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
         self._trial(x)
         self._forces = self.system.forces(self._balanced)
-        residual = self._step.scheme.combine(self._forces, self._step.start)
+        residual = self._step.scheme.combine(self._forces, self._past)
         self.system.numbering.add_to_global(residual, f)
 
     def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, jacobian: PETSc.Mat, p: PETSc.Mat) -> None:

@@ -35,6 +35,13 @@ class Numbering:
         rows = PETSc.IS().createGeneral(index[self._free_local].astype(PETSc.IntType), comm=PETSc.COMM_SELF)
         self._scatter = PETSc.Scatter().create(self.vector, rows, self._local, None)
         rows.destroy()
+        first, last = self.vector.getOwnershipRange()
+        self._owned_local = np.flatnonzero((index >= first) & (index < last))
+        self._owned_rows = index[self._owned_local] - first
+
+    def to_global(self, values: Array, out: PETSc.Vec) -> None:
+        """Copy the free entries of a local array, the same wherever ranks share a dof, to the system's unknowns."""
+        out.array_w[self._owned_rows] = values[self._owned_local]
 
     def to_local(self, x: PETSc.Vec, out: Array) -> None:
         """Copy the system's unknowns into the free entries of a local array."""

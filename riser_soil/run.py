@@ -124,20 +124,22 @@ def _static_step(world: World, march: March, control: StepControl, observer: Fol
         try:
             return march.advance(control, MOST_CUTS if march.depends_on(control) else 0)
         except SolveError:
-            _relax(world, march, control, observer)
+            if _relaxed(world, march, control, observer):
+                return march.advance(control, 0)
 
 
-def _relax(world: World, march: March, control: StepControl, observer: Follower) -> None:
-    """To an equilibrium at the load factor that Newton's method missed, or to half the step."""
+def _relaxed(world: World, march: March, control: StepControl, observer: Follower) -> bool:
+    """Whether an equilibrium was found at the load factor that Newton's method missed; else the step is halved."""
     system, settings = march.system, _settings(world)
     try:
         iterations = relax(world.comm, system.model, world.line, world.weight, settings, system.clock, control.target)
     except SolveError:
         if not march.depends_on(control) or not control.cut():
             raise
-        return
+        return False
     observer.relaxed(iterations)
     march.restart()
+    return True
 
 
 def _settings(world: World) -> NewtonSettings:

@@ -102,13 +102,13 @@ class System:
         summed = self.sum([x for work in mine.values() for x in (work.dissipated, work.external, work.inertial)])
         return {name: Work(*summed[3 * i : 3 * i + 3]) for i, name in enumerate(mine)}
 
-    def work_against(self, mean: Forces, end: Forces, u: Array) -> float:
+    def work_against(self, bulk: Array, end: Array, u: Array) -> float:
         """Work [J] that bulk forces F, as their mean, and end-of-step forces E take out over a step."""
-        return self.sum([float((mean.force + end.end) @ u)])[0]
+        return self.sum([float((bulk + end) @ u)])[0]
 
-    def work_of_supports(self, mean: Forces, u: Array) -> float:
-        """Work [J] that prescribed motions put in over a step: reaction to the mean forces times increment."""
-        return self.sum([float(self.reactions(mean) @ u[self.held])])[0]
+    def work_of_supports(self, reactions: Array, u: Array) -> float:
+        """Work [J] that prescribed motions put in over a step: mean reactions times increment."""
+        return self.sum([float(reactions @ u[self.held])])[0]
 
     def reactions(self, forces: Forces) -> Array:
         """What the supports of this rank's prescribed dofs exert [N, N.m]."""
@@ -138,6 +138,8 @@ class System:
 
     def sum(self, values: list[float]) -> list[float]:
         """Sums over all ranks; collective."""
+        if self.comm.size == 1:
+            return values
         summed = np.array(values)
         self.comm.Allreduce(MPI.IN_PLACE, summed)
         return [float(value) for value in summed]

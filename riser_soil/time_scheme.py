@@ -41,20 +41,17 @@ class Scheme(Protocol):
         """Where in the step forces are asked for: at its end, or at another state that follows from the end."""
         ...
 
-    def combine(self, forces: Forces, start: Forces | None) -> Array:
-        """Local residual from the forces there and, where needed, at the start of the step."""
+    def past(self, start: Forces | None) -> Array | None:
+        """What the forces at the start of the step, where needed, add to the local residual."""
         ...
 
-    def mean(self, start: Forces, balanced: Forces) -> Forces:
-        """Mean forces over the step, of second order."""
+    def combine(self, forces: Forces, past: Array | None) -> Array:
+        """Local residual from the forces there and from `past`."""
         ...
 
-
-def mean_of(start: Forces, end: Forces) -> Forces:
-    """Mean of two sets of forces."""
-    return Forces(
-        0.5 * (start.inertia + end.inertia), 0.5 * (start.force + end.force), 0.5 * (start.end + end.end)
-    )
+    def mean(self, start: Array, balanced: Array) -> Array:
+        """Mean over the step, of second order, of what follows from the forces at its start and there."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -73,10 +70,13 @@ class Static:
     def balanced_at(self, before: State, end: State, dt: float) -> State:
         return end
 
-    def mean(self, start: Forces, balanced: Forces) -> Forces:
-        return mean_of(start, balanced)
+    def mean(self, start: Array, balanced: Array) -> Array:
+        return 0.5 * (start + balanced)
 
-    def combine(self, forces: Forces, start: Forces | None) -> Array:
+    def past(self, start: Forces | None) -> Array | None:
+        return None
+
+    def combine(self, forces: Forces, past: Array | None) -> Array:
         return forces.force + forces.end
 
 
@@ -125,14 +125,22 @@ class GeneralizedAlpha:
     def balanced_at(self, before: State, end: State, dt: float) -> State:
         return end
 
-    def mean(self, start: Forces, balanced: Forces) -> Forces:
-        return mean_of(start, balanced)
+    def mean(self, start: Array, balanced: Array) -> Array:
+        return 0.5 * (start + balanced)
 
-    def combine(self, forces: Forces, start: Forces | None) -> Array:
-        bulk = (1.0 - self.alpha_m) * forces.inertia + (1.0 - self.alpha_f) * forces.force
-        if start is not None:
-            bulk += self.alpha_m * start.inertia + self.alpha_f * start.force
-        return self.bulk_weight * bulk + forces.end
+    def past(self, start: Forces | None) -> Array | None:
+        if start is None:
+            return None
+        return self.bulk_weight * (self.alpha_m * start.inertia + self.alpha_f * start.force)
+
+    def combine(self, forces: Forces, past: Array | None) -> Array:
+        bulk = self.bulk_weight
+        out = bulk * (1.0 - self.alpha_m) * forces.inertia
+        out += bulk * (1.0 - self.alpha_f) * forces.force
+        out += forces.end
+        if past is not None:
+            out += past
+        return out
 
     def split_contact(self, state: State, contact: Array, dt: float) -> State:
         """The state with the contact's share `contact` [m/s2] out of its bulk acceleration and in full in its rate."""
@@ -161,9 +169,12 @@ class Midpoint:
     def balanced_at(self, before: State, end: State, dt: float) -> State:
         return State(end.t - 0.5 * dt, 0.5 * end.u, end.u / dt, (end.v - before.v) / dt)
 
-    def combine(self, forces: Forces, start: Forces | None) -> Array:
+    def past(self, start: Forces | None) -> Array | None:
+        return None
+
+    def combine(self, forces: Forces, past: Array | None) -> Array:
         """Twice the balance, as the parts differentiate by half the increment."""
         return 2.0 * (forces.inertia + forces.force + forces.end)
 
-    def mean(self, start: Forces, balanced: Forces) -> Forces:
+    def mean(self, start: Array, balanced: Array) -> Array:
         return balanced

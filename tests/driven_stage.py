@@ -108,7 +108,7 @@ class FirstStep:
         return state
 
     def residual(self, x: Array) -> Array:
-        local = self.scheme.combine(self.system.forces(self.state(x)), self._start)
+        local = self.scheme.combine(self.system.forces(self.state(x)), self.scheme.past(self._start))
         index = self.system.numbering.index
         return np.asarray(np.bincount(index[index >= 0], local[index >= 0], minlength=self.free), dtype=float)
 

@@ -108,6 +108,7 @@ class Line:
     def _number(self) -> None:
         self.ndof = self.dimension + self.frames.dofs
         self.nodes = self.arc.size
+        self._ends = ((0, self.start), (self.nodes - 1, self.end))
         self.size = self.nodes * self.ndof
         self.global_index: IntArray = np.arange(self.size, dtype=np.int64)
         self.owned: BoolArray = np.full(self.size, self.active)
@@ -243,12 +244,22 @@ class Line:
         iteration. The cube of the distance from the other end keeps the far part, often on the seabed, where it is.
         """
         improved = guess.u.copy()
-        moved = State(guess.t, guess.u.copy(), guess.v.copy(), guess.a.copy())
-        self.prescribe(guess.t, *(array[self.part] for array in (moved.u, moved.v, moved.a)))
-        beyond = (self.nodal(moved.u) - self.nodal(guess.u))[:, : self.dimension]
-        along = (self.arc / self.arc[-1])[:, None]
-        self.nodal(improved)[:, : self.dimension] += along**3 * beyond[-1] + (1.0 - along) ** 3 * beyond[0]
+        moved = self.nodal(improved)[:, : self.dimension]
+        for node, end in self._ends:
+            if end.held:
+                increment = np.zeros(self.dimension) if end.motion is None else self._to(end.motion(guess.t)[0], node)
+                moved += self._reach[node] * (increment - moved[node])
         return improved
+
+    @cached_property
+    def _reach(self) -> dict[int, Array]:
+        """How far the end nodes take the others with them in a guess (nn, 1)."""
+        along = (self.arc / self.arc[-1])[:, None]
+        return {0: (1.0 - along) ** 3, self.nodes - 1: along**3}
+
+    def _to(self, position: Array, node: int) -> Array:
+        """Increment (d,) that brings a node to a position (3,) in global axes."""
+        return np.asarray((position - self.origin) @ self.basis - self.x[node])
 
     def fault(self, state: State) -> str:
         """Where an element is folded (an end's tangent points against its chord) or wound up by whole turns.
@@ -277,11 +288,11 @@ class Line:
         """Write the increments, rates and accelerations of the held ends into views of the field's slice."""
         for values in (u, v, a):
             values[self._held] = 0.0
-        for node, end in ((0, self.start), (self.nodes - 1, self.end)):
+        for node, end in self._ends:
             if end.held and end.motion is not None:
                 at = slice(node * self.ndof, node * self.ndof + self.dimension)
                 position, velocity, acceleration = end.motion(t)
-                u[at] = (position - self.origin) @ self.basis - self.x[node]
+                u[at] = self._to(position, node)
                 v[at], a[at] = velocity @ self.basis, acceleration @ self.basis
             if end.rotation_fixed and end.turning is not None:
                 self._turn(node, end.turning(t), self.support(node, t), (u, v, a))

@@ -114,7 +114,7 @@ QUICK = (
     *(Case(1.01, "inclined", ground, pipe) for ground in GROUNDS for pipe in (ROPE, STIFF, SPATIAL)),
     Case(1.00001, "vertical", "none", SOFT),
     Case(0.999, "vertical", "rigid", STIFF),
-    Case(2.0, "vertical", "none", FINE),
+    *(Case(length, "vertical", "none", FINE) for length in (1.00001, 1.01, 2.0)),  # it may turn about the vertical
     Case(1.01, "level", "rigid", FINE),
     Case(5.0, "steep", "rigid", SOFT),
 )
