@@ -68,18 +68,17 @@ class NodalForces(NamedTuple):
 
 
 @njit
-def _angle_from(axis: Vec2, direction: float) -> float:
-    """Angle from a unit vector to a direction, in (-pi, pi]."""
-    cosine, sine = math.cos(direction), math.sin(direction)
-    return math.atan2(axis[0] * sine - axis[1] * cosine, axis[0] * cosine + axis[1] * sine)
+def _without_turns(angle: float) -> float:
+    """An angle less its whole turns, in [-pi, pi)."""
+    return angle - 2.0 * math.pi * math.floor(0.5 * angle / math.pi + 0.5)
 
 
 @njit
 def corotate(chord: Array, direction1: float, direction2: float) -> Corotated:
     """The element seen from its chord, with the directions of its ends' tangents."""
     length = math.sqrt(chord[0] * chord[0] + chord[1] * chord[1])
-    axis = (chord[0] / length, chord[1] / length)
-    return Corotated(axis, length, _angle_from(axis, direction1), _angle_from(axis, direction2))
+    axis, angle = (chord[0] / length, chord[1] / length), math.atan2(chord[1], chord[0])
+    return Corotated(axis, length, _without_turns(direction1 - angle), _without_turns(direction2 - angle))
 
 
 @njit
@@ -209,9 +208,17 @@ def forces_and_tangent(
     """Internal forces f (ne, 6) and their derivative K (ne, 6, 6) by displacements and angles."""
     f, K = np.empty((len(chord), 6)), np.empty((len(chord), 6, 6))
     for e in range(len(chord)):
-        element, at = element_at(ref, section, e), corotate(chord[e], direction1[e], direction2[e])
-        N, m1, m2 = _stress(element, at)
-        response = nodal_forces(at, N, m1, m2)
-        put_forces(at.axis, response, f[e])
-        _tangent(element, at, N, response.force, K[e])
+        put_element(e, chord, direction1, direction2, ref, section, f[e], K[e])
     return f, K
+
+
+@njit
+def put_element(
+    e: int, chord: Array, direction1: Array, direction2: Array, ref: Reference, section: Section, f: Array, K: Array
+) -> None:
+    """Write forces f (6,) and tangent K (6, 6) of element e; all else as in `forces_and_tangent`."""
+    element, at = element_at(ref, section, e), corotate(chord[e], direction1[e], direction2[e])
+    N, m1, m2 = _stress(element, at)
+    response = nodal_forces(at, N, m1, m2)
+    put_forces(at.axis, response, f)
+    _tangent(element, at, N, response.force, K)

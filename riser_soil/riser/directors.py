@@ -77,7 +77,7 @@ class PlanarTurn:
 
     def geometric(self, F: Array) -> Array:
         """(ne, 2, 1, 1) from the residual conjugate to the tangents, F (ne, 2, 2)."""
-        return np.asarray(-np.sum(self.tangent * F, axis=2)[..., None, None])
+        return np.asarray(_planar_geometric(self.tangent, F))
 
 
 class PlanarFrames:
@@ -150,7 +150,7 @@ class SpatialTurn:
 
     def geometric(self, F: Array) -> Array:
         """(ne, 2, 3, 3) from the residual conjugate to the tangents, F (ne, 2, 3)."""
-        return _spatial_geometric(self.Rn, self.H, self.Theta, self.tangent, np.ascontiguousarray(F))
+        return _spatial_geometric(self.Rn, self.H, self.Theta, self.tangent, F)
 
 
 class SpatialFrames:
@@ -241,6 +241,16 @@ def _planar_maps(
                 first[e, side, i, 0] = shift_v * n - w * t
                 second[e, side, i, 0] = (shift_a - w**2) * n - (alpha + 2.0 * shift_v * w) * t
     return first, second
+
+
+@njit
+def _planar_geometric(tangent: Array, F: Array) -> Array:
+    """d(n . F)/dangle at fixed F: the normal turns against the tangent."""
+    G = np.empty((tangent.shape[0], 2, 1, 1))
+    for e in range(tangent.shape[0]):
+        for side in range(2):
+            G[e, side, 0, 0] = -tangent[e, side, 0] * F[e, side, 0] - tangent[e, side, 1] * F[e, side, 1]
+    return G
 
 
 @njit

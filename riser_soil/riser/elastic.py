@@ -27,7 +27,7 @@ class PlanarElements:
         """Chords (ne, 2) and directions of the tangents at both ends (ne,)."""
         assert isinstance(trial.turn, PlanarTurn)
         angle = trial.turn.end_angle
-        return trial.chord, np.ascontiguousarray(angle[:, 0]), np.ascontiguousarray(angle[:, 1])
+        return trial.chord, angle[:, 0], angle[:, 1]
 
     def energy(self, trial: Trial) -> float:
         return float(np.sum(beam2d.strain_energy(*self.configuration(trial), self.reference, self.section)))
@@ -38,7 +38,7 @@ class PlanarElements:
 
     def add_tangent(self, out: Array, weight: float, trial: Trial) -> None:
         """Add weight times the tangents to out (ne, 6, 6)."""
-        out += weight * beam2d.forces_and_tangent(*self.configuration(trial), self.reference, self.section)[1]
+        _add_planar_tangent(out, weight, *self.configuration(trial), self.reference, self.section)
 
 
 class SpatialElements:
@@ -66,6 +66,24 @@ class SpatialElements:
         """Add weight times the tangents to out (ne, 12, 12)."""
         turn, at = _spatial(trial), self.configuration(trial)
         _add_spatial_tangent(out, weight, *at, self.reference, self.section, turn.H, turn.Rn, turn.Theta)
+
+
+@njit
+def _add_planar_tangent(
+    out: Array,
+    weight: float,
+    chord: Array,
+    direction1: Array,
+    direction2: Array,
+    reference: beam2d.Reference,
+    section: beam2d.Section,
+) -> None:
+    f, K = np.empty(6), np.empty((6, 6))
+    for e in range(len(chord)):
+        beam2d.put_element(e, chord, direction1, direction2, reference, section, f, K)
+        for i in range(6):
+            for j in range(6):
+                out[e, i, j] += weight * K[i, j]
 
 
 @njit

@@ -81,12 +81,14 @@ def weigh(M: Array, q: Array) -> Array:
 
 @njit
 def _weigh(M: Array, q: Array, D: Size) -> Array:
-    F = np.zeros((q.shape[0], 4, len(D)))
+    F = np.empty((q.shape[0], 4, len(D)))
     for e in range(q.shape[0]):
         for a in range(4):
-            for b in range(4):
-                for i in range(len(D)):
-                    F[e, a, i] += M[e, a, b] * q[e, b, i]
+            for i in range(len(D)):
+                total = 0.0
+                for b in range(4):
+                    total += M[e, a, b] * q[e, b, i]
+                F[e, a, i] = total
     return F
 
 

@@ -75,16 +75,31 @@ def _interpolate(N: Array, q: Array, D: Size) -> Array:
     for e in range(ne):
         for g in range(ng):
             for i in range(d):
-                out[e, g, i] = 0.0
+                total = 0.0
                 for a in range(4):
-                    out[e, g, i] += N[e, g, a] * q[e, a, i]
+                    total += N[e, g, a] * q[e, a, i]
+                out[e, g, i] = total
     return out
 
 
-def unit_tangents(at: Stations, chord: Array, ends: Array) -> tuple[Array, Array]:
-    """Unit tangents (ne, ng, d) and stretch |x'| (ne, ng); chord (ne, d), ends: end tangents (ne, 2, d)."""
-    tau, stretch = _unit_tangents(at.dN, chord, ends, fixed(chord.shape[1]))
-    return tau, stretch
+def motion(
+    at: Stations, rate: Array, acceleration: Array, chord: Array, ends: Array
+) -> tuple[Array, Array, Array, Array]:
+    """Velocities, accelerations and unit tangents (ne, ng, d), and the stretch |x'| (ne, ng).
+
+    rate, acceleration: q' and q''; chord (ne, d); ends: end tangents (ne, 2, d).
+    """
+    D = fixed(chord.shape[1])
+    found: tuple[Array, Array, Array, Array] = _motion(at.N, at.dN, rate, acceleration, chord, ends, D)
+    return found
+
+
+@njit
+def _motion(
+    N: Array, dN: Array, rate: Array, acceleration: Array, chord: Array, ends: Array, D: Size
+) -> tuple[Array, Array, Array, Array]:
+    tau, stretch = _unit_tangents(dN, chord, ends, D)
+    return _interpolate(N, rate, D), _interpolate(N, acceleration, D), tau, stretch
 
 
 @njit
@@ -113,12 +128,14 @@ def integrate(at: Stations, f: Array) -> Array:
 @njit
 def _integrate(weighted: Array, f: Array, D: Size) -> Array:
     ne, ng, d = f.shape[0], f.shape[1], len(D)
-    out = np.zeros((ne, 4, d))
+    out = np.empty((ne, 4, d))
     for e in range(ne):
-        for g in range(ng):
-            for a in range(4):
-                for i in range(d):
-                    out[e, a, i] += weighted[e, g, a] * f[e, g, i]
+        for a in range(4):
+            for i in range(d):
+                total = 0.0
+                for g in range(ng):
+                    total += weighted[e, g, a] * f[e, g, i]
+                out[e, a, i] = total
     return out
 
 

@@ -42,10 +42,15 @@ def _split(v: Array, tau: Array, e: int, g: int, D: Size) -> tuple[float, float]
     return along, math.sqrt(square)
 
 
-def drag(v: Array, tau: Array, c: Array) -> Array:
-    """Resistance to the rate (ne, ng, d)."""
-    found: Array = _drag(v, tau, c, fixed(v.shape[2]))
+def resistance(v: Array, a: Array, tau: Array, c: Array, m: Array) -> tuple[Array, Array]:
+    """Resistance to the acceleration and to the rate, each (ne, ng, d)."""
+    found: tuple[Array, Array] = _resistance(v, a, tau, c, m, fixed(v.shape[2]))
     return found
+
+
+@njit
+def _resistance(v: Array, a: Array, tau: Array, c: Array, m: Array, D: Size) -> tuple[Array, Array]:
+    return _added(a, tau, m, D), _drag(v, tau, c, D)
 
 
 @njit
@@ -60,14 +65,24 @@ def _drag(v: Array, tau: Array, c: Array, D: Size) -> Array:
     return f
 
 
-def drag_derivatives(v: Array, tau: Array, c: Array) -> tuple[Array, Array]:
-    """d drag/dv and d drag/dtau; at rest both are zero."""
-    found: tuple[Array, Array] = _drag_derivatives(v, tau, c, fixed(v.shape[2]))
+def resistance_derivatives(v: Array, a: Array, tau: Array, c: Array, m: Array) -> tuple[Array, Array, Array]:
+    """Derivatives of the sum of `resistance` by v, a and tau."""
+    found: tuple[Array, Array, Array] = _resistance_derivatives(v, a, tau, c, m, fixed(v.shape[2]))
     return found
 
 
 @njit
+def _resistance_derivatives(
+    v: Array, a: Array, tau: Array, c: Array, m: Array, D: Size
+) -> tuple[Array, Array, Array]:
+    by_v, by_tau = _drag_derivatives(v, tau, c, D)
+    by_a, added_by_tau = _added_derivatives(a, tau, m, D)
+    return by_v, by_a, by_tau + added_by_tau
+
+
+@njit
 def _drag_derivatives(v: Array, tau: Array, c: Array, D: Size) -> tuple[Array, Array]:
+    """d drag/dv and d drag/dtau; at rest both are zero."""
     ne, ng, d = v.shape[0], v.shape[1], len(D)
     by_v, by_tau = np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d))
     for e in range(ne):

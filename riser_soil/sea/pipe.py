@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -41,7 +42,7 @@ class Pipe:
         self.line, self._points = line, points
         self.at = stations.stations(line.length) if points is None else points.at
 
-    @property
+    @cached_property
     def share(self) -> Array:
         """Arc length that each station stands for (ne, ng) [m]."""
         if self._points is not None:
@@ -71,8 +72,8 @@ class Pipe:
         return flow
 
     def _see(self, trial: Trial) -> Flow:
-        v, a = (stations.interpolate(self.at, self._own(q)) for q in (trial.q_rate, trial.q_acceleration))
-        return Flow(v, a, *stations.unit_tangents(self.at, self._own(trial.chord), self._own(trial.turn.tangent)))
+        seen = (trial.q_rate, trial.q_acceleration, trial.chord, trial.turn.tangent)
+        return Flow(*stations.motion(self.at, *(self._own(values) for values in seen)))
 
     def integrate(self, density: Array) -> Array:
         """Residual conjugate to q (ne, 4, d) of a force per length (ne, ng, d)."""
@@ -80,7 +81,7 @@ class Pipe:
 
     def total(self, density: Array) -> float:
         """Integral over the line of a density (ne, ng, d), its components summed."""
-        return float(self.integrate(density)[:, [0, 2]].sum())
+        return float(np.sum(self.share[..., None] * density))
 
     def add_tangent(self, K: Array, trial: Trial, weights: Weights, by: stations.Derivatives) -> None:
         """Add to K (ne, n, n) what a force per length with these derivatives has as tangent, directors held."""
@@ -93,4 +94,4 @@ class Pipe:
 
     def taken(self, force: Callable[[Trial], Array], first: Trial, last: Trial) -> float:
         """Work [J] against the mean of residuals conjugate to q (ne, 4, d) at the ends of a step."""
-        return 0.5 * float(np.sum((force(first) + force(last)) * (last.q - first.q)))
+        return 0.5 * float(np.vdot(force(first) + force(last), last.q - first.q))

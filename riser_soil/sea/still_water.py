@@ -73,12 +73,11 @@ class StillWater:
 
     def resist(self, flow: Flow) -> tuple[Array, Array]:
         """Resistance to a motion through the water."""
-        return law.added(flow.a, flow.tau, self.mass), law.drag(flow.v, flow.tau, self._drag)
+        return law.resistance(flow.v, flow.a, flow.tau, self._drag, self.mass)
 
     def yielding(self, flow: Flow, weights: Weights) -> Derivatives:
         """Derivatives of `resist` by the motion through the water, weighed and summed."""
-        by_v, by_tau = law.drag_derivatives(flow.v, flow.tau, weights.force * self._drag)
-        by_a, added_by_tau = law.added_derivatives(flow.a, flow.tau, weights.inertia * self.mass)
-        by_tau += added_by_tau
+        drag, mass = weights.force * self._drag, weights.inertia * self.mass
+        by_v, by_a, by_tau = law.resistance_derivatives(flow.v, flow.a, flow.tau, drag, mass)
         by_slope = stations.follow_slope(by_tau, flow.tau, flow.stretch)
         return Derivatives(np.zeros_like(by_v), by_slope, by_v, by_a)

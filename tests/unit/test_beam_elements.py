@@ -314,7 +314,7 @@ def test_geometric_term_of_rotation_vectors_matters(monkeypatch: pytest.MonkeyPa
 def test_geometric_term_of_the_plane_matters(monkeypatch: pytest.MonkeyPatch) -> None:
     elements = plane(0.0, 0.6)
     _, K = elements.call(beam2d.forces_and_tangent)
-    for name in ("_vary", "_tangent"):
+    for name in ("_vary", "_tangent", "put_element"):
         monkeypatch.setattr(beam2d, name, getattr(beam2d, name).py_func)
     monkeypatch.setattr(beam2d, "configuration_variation", lambda *_: (0.0, 0.0))
     _, incomplete = elements.call(beam2d.forces_and_tangent.py_func)
