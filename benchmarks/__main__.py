@@ -1,6 +1,7 @@
 """Run all benchmarks and print their figures."""
 
-from benchmarks import coupled, riser_only
+from benchmarks import adaptive, coupled, riser_only
 
 riser_only.report()
 coupled.report()
+adaptive.report()

@@ -17,9 +17,9 @@ from riser_soil.march import March
 from riser_soil.newton import Newton, NewtonSettings
 from riser_soil.observe import Observer
 from riser_soil.part import State
+from riser_soil.run import steps_of
 from riser_soil.scene.reader import read_scene
-from riser_soil.scene.stages import DynamicStage, Stage
-from riser_soil.stepping import StepControl
+from riser_soil.scene.stages import Stage
 from riser_soil.system import Clock, System
 
 
@@ -33,9 +33,7 @@ class TimedStage:
         settings = NewtonSettings(solver.tolerance, solver.max_iterations, world.force_floor)
         self.newton = Newton(self.system, settings)
         self.march = March(self.system, self.newton, scheme_of(stage), replace(before, t=0.0))
-        self.control = StepControl(1.0, 1.0, 1e-3)
-        if isinstance(stage, DynamicStage):
-            self.control = StepControl(stage.duration, stage.time_step, 1e-5)
+        self.control = steps_of(world, stage, self.march)
         self.iterations, self.seconds = 0, 0.0
 
     def walk(self, steps: int | None = None) -> State:

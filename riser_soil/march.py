@@ -11,10 +11,11 @@ from mpi4py import MPI
 from riser_soil.arrays import Array
 from riser_soil.errors import SolveError
 from riser_soil.extrapolation import Extrapolation
+from riser_soil.local_error import LocalError
 from riser_soil.mass import RiserMass
 from riser_soil.newton import Newton, NotConvergedError, Solution, Step
 from riser_soil.part import Energy, Forces, State, Work
-from riser_soil.stepping import StepControl
+from riser_soil.stepping import Control
 from riser_soil.system import System, total
 from riser_soil.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
 
@@ -63,6 +64,15 @@ class Turning(Protocol):
         ...
 
 
+@runtime_checkable
+class Demanding(Protocol):
+    """Steps that only go on when their local error [m] is small."""
+
+    def fault(self, error: float) -> str:
+        """What is wrong with a step of this error; empty for a good one."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class Accepted:
     """A solved step and its energy balance [J]; cuts: failed attempts before it.
@@ -98,6 +108,7 @@ class March:
     def __init__(self, system: System, newton: Newton, scheme: Scheme, before: State) -> None:
         self.system, self.newton, self.scheme = system, newton, scheme
         self._mass: RiserMass | None = None
+        self._error: LocalError | None = None
         owners = (*system.model.fields, *system.model.parts)
         self._foreseeing = [owner for owner in owners if isinstance(owner, Foreseeing)]
         self._turning = [field for field in system.model.fields if isinstance(field, Turning)]
@@ -128,7 +139,7 @@ class March:
         self.before = State(before.t, rest.u, rest.v, np.where(fixed, rest.a, bulk))
         self._forces = self.system.forces(State(before.t, rest.u, rest.v, np.where(fixed, rest.a, whole)))
 
-    def depends_on(self, control: StepControl) -> bool:
+    def depends_on(self, control: Control) -> bool:
         """Whether loads or supports change until the stage's end; in statics shorter steps are easier only then."""
         end = State(control.end, self.before.u.copy(), self.before.v.copy(), self.before.a.copy())
         change = total(self.system.forces(end)) - total(self.system.forces(self.before))
@@ -136,8 +147,10 @@ class March:
         changed = bool(np.any(change != 0.0) or np.any(end.u != 0.0))
         return bool(self.system.comm.allreduce(changed, MPI.LOR))
 
-    def advance(self, control: StepControl, most_cuts: int | None = None) -> Accepted:
+    def advance(self, control: Control, most_cuts: int | None = None) -> Accepted:
         """Take one step, cut as often as it needs; SolveError when it can't be cut any more, or may not."""
+        if isinstance(control, Demanding) and self._error is None:
+            self._error = self._new_error()
         cuts = 0
         while True:
             try:
@@ -149,12 +162,23 @@ class March:
                         f"no convergence at t = {control.target:.6g} with the smallest step {control.dt:.3g}: {failure}"
                     ) from failure
 
-    def next_step(self, control: StepControl) -> Step:
+    def next_step(self, control: Control) -> Step:
         """The step to be solved next."""
         return self._step(control.target, control.dt)
 
     def _step(self, t: float, dt: float) -> Step:
-        return Step(self.scheme, self.before, t, dt, self._history, self._guess(t, dt))
+        start = self._start(dt)
+        history = self._history if start is self.before else self.system.forces(start)
+        return Step(self.scheme, start, t, dt, history, self._guess(t, dt))
+
+    def _new_error(self) -> LocalError:
+        assert self._mass is not None
+        assert isinstance(self.scheme, GeneralizedAlpha | Midpoint)
+        return LocalError(self.system, self.scheme, self._mass)
+
+    def _start(self, dt: float) -> State:
+        """The accepted state as a step of size dt starts from it."""
+        return self.before if self._error is None else self._error.start(self.before, dt)
 
     def _solve(self, t: float, dt: float) -> Solution:
         step = self._step(t, dt)
@@ -185,7 +209,7 @@ class March:
         self.newton.renew()
         return True
 
-    def _account(self, solution: Solution, control: StepControl, cuts: int) -> Accepted:
+    def _account(self, solution: Solution, control: Control, cuts: int) -> Accepted:
         state = solution.state
         turned = self.system.work(self.before, state)
         reactions = self.scheme.mean(*(self.system.reactions(f) for f in (self._forces, solution.forces)))
@@ -196,29 +220,52 @@ class March:
         braking = against - supports - sum(work.inertial for work in turned.values())
         turned["supports"] = Work(external=supports)
         step = Accepted(control.target, control.dt, solution, cuts, self.system.energy(state), turned, braking)
-        self._refuse_wrong_root(step.energy, step.dissipated, step.work)
+        self._refuse_wrong_root(step)
+        self._refuse_inaccurate(step, control)
         return step
 
-    def _refuse_wrong_root(self, energy: Energy, dissipated: float, work: float) -> None:
+    def _refuse_wrong_root(self, step: Accepted) -> None:
         """A dynamic step that adds much to the energy in motion out of nothing is a root of the equations far from the
         motion that it continues, or too long for it: NotConvergedError, so that it is cut.
         """
         if isinstance(self.scheme, Static):
             return
-        was = self.energy
-        appeared = energy.total - was.total + dissipated - work
-        in_motion = was.kinetic + was.strain + max(0.0, was.potential - energy.potential) + abs(work)
+        was, now = self.energy, step.energy
+        appeared = now.total - was.total + step.dissipated - step.work
+        in_motion = was.kinetic + was.strain + max(0.0, was.potential - now.potential) + abs(step.work)
         negligible = ENERGY_ROUND_OFF * abs(was.potential) + self.newton.settings.floor * METRE
+        if appeared > WRONG_ROOT * in_motion + negligible:
+            appeared += self._kinetic(step) - now.kinetic
         if appeared > WRONG_ROOT * in_motion + negligible:
             raise NotConvergedError(
                 f"the step's solution makes {appeared:.3g} J out of nothing, beside {in_motion:.3g} J in motion"
             )
 
-    def commit(self, step: Accepted, control: StepControl) -> None:
+    def _kinetic(self, step: Accepted) -> float:
+        """Kinetic energy [J] after a step, not yet committed, as the riser moves: in the step's own energy contact has
+        accelerated it as the bulk's forces do, so that it speeds up where it rests.
+        """
+        if self.system.riser_alone or self._mass is None or not isinstance(self.scheme, GeneralizedAlpha):
+            return step.energy.kinetic
+        contact = self._mass.accelerations(self.before.t, -step.solution.forces.end)
+        return self._mass.kinetic_energy(self.scheme.split_contact(step.solution.state, contact, step.dt))
+
+    def _refuse_inaccurate(self, step: Accepted, control: Control) -> None:
+        """NotConvergedError for a step whose local error is too large, so that it is cut."""
+        if self._error is None or not isinstance(control, Demanding):
+            return
+        error = self._error.of(self._start(step.dt), self.now, step.solution, step.dt)
+        if fault := control.fault(error):
+            raise NotConvergedError(fault)
+
+    def commit(self, step: Accepted, control: Control) -> None:
         """Accept the step and get ready for the next."""
         state, forces = step.solution.state, step.solution.forces
         self.system.commit(state)
+        start = self._start(step.dt)
         self.before, self.now = self._rates_after(step)
+        if self._error is not None:
+            self._error.accept(start, self.before, step.dt)
         self._begin_step()
         self._forces, self._history = forces, self._forces_after(step) if self._needs_history else None
         self.energy = self._energy_after(step)

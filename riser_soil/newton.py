@@ -90,10 +90,14 @@ class Solution:
 
 
 class Newton:
-    """Solver of a system's steps. Create once a stage; the symbolic factorisation is reused throughout."""
+    """Solver of a system's steps. Create once a stage; the symbolic factorisation is reused throughout.
+
+    iterations: of all its steps, those that failed included.
+    """
 
     def __init__(self, system: System, settings: NewtonSettings) -> None:
         self.system, self.settings = system, settings
+        self.iterations = 0
         self._x = system.numbering.vector.duplicate()
         self._f = system.numbering.vector.duplicate()
         self._judging = [owner for owner in system.model.fields if isinstance(owner, Judging)]
@@ -118,6 +122,7 @@ class Newton:
         self._begin(step)
         began, counted = time.perf_counter(), self.system.clock.total
         self._snes.solve(None, self._x)
+        self.iterations += len(self._norms) - 1
         self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
         if self._snes.getConvergedReason() <= 0:
             raise NotConvergedError(self._reason())

@@ -9,11 +9,13 @@ from typing import Protocol
 
 from mpi4py import MPI
 
+from riser_soil.auto_steps import AutoSteps
 from riser_soil.build import World, build
-from riser_soil.build.stage import scheme_of
+from riser_soil.build.stage import scheme_of, times_to_hit
 from riser_soil.doubts import physical_warnings
 from riser_soil.errors import SolveError
 from riser_soil.folder import refuse_finished
+from riser_soil.local_error import first_step
 from riser_soil.march import Accepted, March
 from riser_soil.newton import Newton, NewtonSettings
 from riser_soil.observe import Observer
@@ -21,7 +23,7 @@ from riser_soil.part import Energy, Model, State
 from riser_soil.relax import relax
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import Stage, StaticStage
-from riser_soil.stepping import StepControl
+from riser_soil.stepping import Control, StepControl
 from riser_soil.system import Clock, System
 
 MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
@@ -106,7 +108,7 @@ def _take(world: World, model: Model, stage: Stage, before: State, observer: Fol
 
 
 def _walk(world: World, stage: Stage, march: March, observer: Follower) -> State:
-    control = _control(world, stage)
+    control = steps_of(world, stage, march)
     while not control.finished:
         static = isinstance(stage, StaticStage)
         step = _static_step(world, march, control, observer) if static else march.advance(control)
@@ -115,7 +117,7 @@ def _walk(world: World, stage: Stage, march: March, observer: Follower) -> State
     return march.before
 
 
-def _static_step(world: World, march: March, control: StepControl, observer: Follower) -> Accepted:
+def _static_step(world: World, march: March, control: Control, observer: Follower) -> Accepted:
     """By Newton's method, in load steps that are halved a few times, else by dynamic relaxation.
 
     Where relaxation does not get to the load factor that was missed, it all begins again with half the step.
@@ -128,7 +130,7 @@ def _static_step(world: World, march: March, control: StepControl, observer: Fol
                 return march.advance(control, 0)
 
 
-def _relaxed(world: World, march: March, control: StepControl, observer: Follower) -> bool:
+def _relaxed(world: World, march: March, control: Control, observer: Follower) -> bool:
     """Whether an equilibrium was found at the load factor that Newton's method missed; else the step is halved."""
     system, settings = march.system, _settings(world)
     try:
@@ -147,8 +149,13 @@ def _settings(world: World) -> NewtonSettings:
     return NewtonSettings(solver.tolerance, solver.max_iterations, world.force_floor)
 
 
-def _control(world: World, stage: Stage) -> StepControl:
+def steps_of(world: World, stage: Stage, march: March) -> Control:
+    """The steps of a stage, from its beginning to its end."""
     solver = world.scene.solver
     if isinstance(stage, StaticStage):
         return StepControl(1.0, 1.0 / solver.load_steps, solver.min_load_step)
+    if stage.time_step == "auto":
+        first = first_step(march.system, march.now, stage.error_tolerance)
+        stops = times_to_hit(world.scene, stage)
+        return AutoSteps(stage.duration, stage.error_tolerance, solver.min_time_step, first, stops)
     return StepControl(stage.duration, stage.time_step, solver.min_time_step)

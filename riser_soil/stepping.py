@@ -7,8 +7,34 @@ ends where the stage does; it may be shorter than the others.
 from __future__ import annotations
 
 import math
+from typing import Protocol
 
 LEVELS = 20
+
+
+class Control(Protocol):
+    """Says how far the next step goes. Times in s; in a static stage load factors."""
+
+    end: float
+
+    @property
+    def finished(self) -> bool: ...
+
+    @property
+    def target(self) -> float:
+        """Time at the end of the step to be tried."""
+        ...
+
+    @property
+    def dt(self) -> float: ...
+
+    def accept(self, easy: bool) -> None:
+        """Move on from a step that has been taken, with little effort or with much."""
+        ...
+
+    def cut(self) -> bool:
+        """Shorten the step that failed; False when it can't be shortened any more."""
+        ...
 
 
 class StepControl:

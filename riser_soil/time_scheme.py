@@ -54,6 +54,20 @@ class Scheme(Protocol):
         ...
 
 
+class Dynamic(Scheme, Protocol):
+    """What is known of the error of a scheme that goes through time."""
+
+    @property
+    def lag(self) -> float:
+        """Accelerations belong to a time this share of their step before its end."""
+        ...
+
+    @property
+    def error_constant(self) -> float:
+        """Local error in displacements, relative to dt^2 times the change of the accelerations; see `local_error`."""
+        ...
+
+
 @dataclass(frozen=True)
 class Static:
     """Equilibrium: no rates, no inertia."""
@@ -108,6 +122,15 @@ class GeneralizedAlpha:
     def bulk_weight(self) -> float:
         return 2.0 * self.beta / (1.0 - self.alpha_m)
 
+    @property
+    def lag(self) -> float:
+        return self.alpha_f - self.alpha_m
+
+    @property
+    def error_constant(self) -> float:
+        displacement, velocity = self.beta - 0.5 * self.lag - 1.0 / 6.0, self.gamma - self.lag - 0.5
+        return abs(displacement) + abs(velocity)
+
     def weights(self, dt: float) -> Weights:
         bulk = self.bulk_weight
         return Weights(
@@ -153,11 +176,14 @@ class GeneralizedAlpha:
 class Midpoint:
     """The implicit midpoint rule: all forces in balance at the configuration half-way of the increments.
 
-    Rates at the end follow from u = dt (v(n) + v(n+1))/2. With inertia as in `riser.midpoint_inertia` linear and
-    angular momentum are kept to round-off. Not for contact or quasi-static soil, whose forces belong to the end.
+    Rates at the end follow from u = dt (v(n) + v(n+1))/2, as in Newmark's scheme with beta = 1/4 and gamma = 1/2. With
+    inertia as in `riser.midpoint_inertia` linear and angular momentum are kept to round-off. Not for contact or
+    quasi-static soil, whose forces belong to the end.
     """
 
     needs_history = False
+    lag = 0.0
+    error_constant = 1.0 / 12.0
 
     def weights(self, dt: float) -> Weights:
         return Weights(inertia=1.0, force=1.0, shift_v=2.0 / dt, shift_a=4.0 / dt**2)

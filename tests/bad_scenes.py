@@ -462,6 +462,16 @@ CONFLICTS = [
     ),
 ]
 
+DURATION = "duration: 15.0\n    time_step: 0.1"
+TOLERANCE = "stages.1.tolerance"
+AUTO_STEPS = [
+    Bad("time_step: 0.1", "time_step: atuo", 32, "stages.1.time_step", '"atuo"', 'did you mean "auto"?'),
+    Bad("time_step: 0.1", "time_step: 0.1\n    tolerance: 0.1", 33, TOLERANCE, "0.1", "of a given size have no"),
+    Bad("time_step: 0.1", "time_step: auto\n    tolerance: 0", 33, TOLERANCE, "0", "must be greater than 0"),
+    Bad("time_step: 0.1", "time_step: auto\n    tolerance: small", 33, TOLERANCE, '"small"', "must be a number"),
+    Bad(DURATION, "duration: 9e-6\n    time_step: auto", 31, "stages.1.duration", "9e-06", "min_time_step (1e-05 s)"),
+]
+
 NOT_YET = [
     Bad("level: 0.0", "slope_deg: 60.0", 20, "seabed.slope_deg", "60.0", "must be"),
     Bad("level: 0.0", "profile: [[0, 0]]", 20, "seabed.profile", "[[0, 0]]", "at least two points"),
@@ -479,15 +489,6 @@ NOT_YET = [
     Bad("method: node", "method: surface", 26, "contact.method", '"surface"', "not supported yet"),
     Bad("method: node", "friction: 0.5", 26, "contact.friction", "0.5", "must be a mapping"),
     Bad("method: node", "suction: {cap: 1.0}", 26, "contact.suction.reach", "missing", "the key is required here"),
-    Bad("time_step: 0.1", "time_step: auto", 32, "stages.1.time_step", '"auto"', "not supported yet"),
-    Bad(
-        "time_step: 0.1",
-        "time_step: 0.1\n    tolerance: 0.1",
-        33,
-        "stages.1.tolerance",
-        "0.1",
-        "not supported yet",
-    ),
     Bad(
         "time_step: 0.1",
         "time_step: 0.1\n    initial_velocity: [1, 0, 0]",
@@ -589,4 +590,4 @@ WATER = [
     jonswap("Hs: 2.0, Tp: 9.0, components: 0", "components", "0", "must be at least 1"),
 ]
 
-ALL = KEYS + VALUES + ATTACHED + MISSING + CONFLICTS + MOTIONS + NOT_YET + WATER
+ALL = KEYS + VALUES + ATTACHED + MISSING + CONFLICTS + MOTIONS + AUTO_STEPS + NOT_YET + WATER

@@ -21,7 +21,7 @@ from riser_soil.part import Energy, State
 from riser_soil.run import run_stage
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage, Stage
-from riser_soil.stepping import StepControl
+from riser_soil.stepping import Control
 from riser_soil.system import Clock, System
 from riser_soil.time_scheme import Static
 from tests.coupled_scenes import Mapping
@@ -39,7 +39,7 @@ def before_commit(watch: Watch | None) -> Iterator[None]:
     """Show every accepted step to a function before it is committed."""
     usual = March.commit
 
-    def commit(march: March, step: Accepted, control: StepControl) -> None:
+    def commit(march: March, step: Accepted, control: Control) -> None:
         if watch is not None:
             watch(march.system, step)
         usual(march, step, control)
@@ -92,7 +92,7 @@ class FirstStep:
         newton = Newton(self.system, settings)
         self._before = March(self.system, newton, self.scheme, replace(before, t=0.0)).before
         newton.destroy()
-        self._dt = stage.time_step if isinstance(stage, DynamicStage) else 1.0
+        self._dt = float(stage.time_step) if isinstance(stage, DynamicStage) else 1.0
         self._start = None if isinstance(self.scheme, Static) else self.system.forces(self._before)
 
     @property

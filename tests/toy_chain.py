@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.arrays import Array, IntArray
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 
 
@@ -20,6 +20,10 @@ class Chain:
         self.owned = np.full(self.size, owner)
         self.prescribed = np.zeros(self.size, dtype=bool)
         self.prescribed[0] = held
+
+    @property
+    def translation_dofs(self) -> IntArray:
+        return np.asarray(self.offset + np.arange(self.size)[:, None], dtype=np.int64)
 
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
         u[self.prescribed] = v[self.prescribed] = a[self.prescribed] = 0.0

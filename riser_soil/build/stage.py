@@ -32,6 +32,20 @@ def scheme_of(stage: Stage) -> Scheme:
     return GeneralizedAlpha.from_rho_inf(stage.scheme.generalized_alpha.rho_inf)
 
 
+def times_to_hit(scene: Scene, stage: DynamicStage) -> list[float]:
+    """Times [s] in a stage where output is due, a motion's ramp ends or a load's history bends."""
+    motions = stage.motion.by_end.values() if stage.motion else ()
+    ways = [way for m in motions for way in (m.harmonic, m.arc, m.table, m.vessel, m.rotation) if way]
+    ramps = [way.ramp for way in ways if way.ramp]
+    bends = [t for load in stage.loads for t, _ in load.history or ()]
+    paces = {scene.output.interval, scene.output.xdmf_interval} - {None}
+    return [*ramps, *bends, *(t for pace in paces if pace for t in _multiples(pace, stage.duration))]
+
+
+def _multiples(interval: float, end: float) -> list[float]:
+    return [n * interval for n in range(1, int(end / interval) + 1)]
+
+
 def hold_spin(scene: Scene, line: Line, stage: Stage, elements: Elements) -> None:
     """Hold the start's spin about the pipe's axis in stages where neither an end nor rotary inertia resists it."""
     resisted = isinstance(stage, DynamicStage) and elements.rotary_inertia.any()

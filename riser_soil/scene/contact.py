@@ -1,17 +1,10 @@
 """Contact between the riser and the seabed or the soil."""
 
-from typing import Annotated, Literal
+from typing import Literal
 
-from pydantic import BaseModel, Discriminator, Field, Tag
+from pydantic import BaseModel, Field
 
-from riser_soil.scene.quantities import FROZEN, NonNegative, Positive, word_or_number
-
-Stiffness = Annotated[
-    Annotated[Literal["auto"], Tag("<word>")] | Annotated[Positive, Tag("<number>")],
-    Discriminator(
-        word_or_number, custom_error_type="choice", custom_error_message="must be auto or a number"
-    ),
-]
+from riser_soil.scene.quantities import FROZEN, AutoOrPositive, NonNegative, Positive
 
 
 class Friction(BaseModel):
@@ -48,7 +41,7 @@ class Contact(BaseModel):
         description="where contact with the seabed is evaluated: line (along the elements, five Gauss points each) or "
         "node (at the riser's nodes); contact with soil is evaluated at nodes",
     )
-    stiffness: Stiffness = Field(
+    stiffness: AutoOrPositive = Field(
         default="auto",
         description="force per length of pipe and penetration [N/m2], or auto: the larger of 10 times the "
         "soil's Young's modulus at the surface and (submerged weight)/(0.001 outer diameter); a spring "

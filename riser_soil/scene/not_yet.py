@@ -12,14 +12,12 @@ from riser_soil.scene.problem import Path, Problem
 # key -> values that mean "off"; the key itself is not part of the models. `*` stands for any name or number.
 KEYS: dict[tuple[str, ...], tuple[Any, ...]] = {
     ("stages", "*", "initial_velocity"): (None,),
-    ("stages", "*", "tolerance"): (None,),
 }
 
 # key -> values of the language that can't be chosen yet; the key is part of the models.
 VALUES: dict[tuple[str, ...], tuple[Any, ...]] = {
     ("soil", "inertia"): (True,),
     ("contact", "method"): ("surface",),
-    ("stages", "*", "time_step"): ("auto",),
 }
 
 

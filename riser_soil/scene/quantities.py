@@ -1,9 +1,9 @@
 """Number types with their bounds, and the settings shared by every model of the scene language."""
 
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 from pydantic_core import PydanticCustomError
 
 FROZEN = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=False)
@@ -14,6 +14,14 @@ NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0)]
 PoissonRatio = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=-1, lt=0.5)]
 Count = Annotated[int, Field(strict=True, ge=1)]
 Text = Annotated[str, Field(strict=True)]
+AutoOrPositive = Annotated[
+    Annotated[Literal["auto"], Tag("<word>")] | Annotated[Positive, Tag("<number>")],
+    Discriminator(
+        lambda value: word_or_number(value),
+        custom_error_type="choice",
+        custom_error_message="must be auto or a number",
+    ),
+]
 Vector = tuple[Real, Real, Real]
 Interval = tuple[Real, Real]
 

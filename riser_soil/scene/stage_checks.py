@@ -84,10 +84,11 @@ def _dynamic(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
         for key, motion in stage.motion.by_end.items():
             yield from motion_conflicts(scene, ("stages", n, "motion", key), motion, stage.duration)
     yield from _midpoint(scene, n, stage)
-    if scene.solver.min_time_step > stage.time_step:
+    key = "duration" if stage.time_step == "auto" else "time_step"
+    if scene.solver.min_time_step > getattr(stage, key):
         allowed = f"must not be smaller than solver.min_time_step ({scene.solver.min_time_step:g} s)"
         yield Problem(
-            ("stages", n, "time_step"), allowed, "lower solver.min_time_step or take a longer time_step"
+            ("stages", n, key), allowed, f"lower solver.min_time_step or take a longer {key}"
         )
 
 

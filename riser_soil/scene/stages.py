@@ -8,6 +8,7 @@ from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 from riser_soil.scene.motions import Motion
 from riser_soil.scene.quantities import (
     FROZEN,
+    AutoOrPositive,
     NonNegative,
     Positive,
     Real,
@@ -18,6 +19,8 @@ from riser_soil.scene.quantities import (
     word_or_number,
     wrong,
 )
+
+TOLERANCE = 0.005  # m, local error of a step
 
 Place = Annotated[
     Annotated[Literal["start", "end"], Tag("<word>")] | Annotated[NonNegative, Tag("<number>")],
@@ -161,7 +164,15 @@ class DynamicStage(BaseModel):
     name: Text = Field(min_length=1, description="name of the stage, different from the others")
     kind: Literal["dynamic"] = Field(description="static or dynamic")
     duration: Positive = Field(description="duration [s]")
-    time_step: Positive = Field(description="time step [s]")
+    time_step: AutoOrPositive = Field(
+        description="time step [s], or auto: as long as each step's local error stays within tolerance; such steps "
+        "hit the output times, the ends of ramps and the bends of load histories"
+    )
+    tolerance: Positive | None = Field(
+        default=None,
+        description="with time_step: auto, the largest local error of a step: an estimate of how far any node of the "
+        f"riser is off its path after this one step [m]; {TOLERANCE:g} by default",
+    )
     motion: Motion | None = Field(default=None, description="prescribed motions of held ends, {start, end}")
     loads: tuple[Load, ...] = Field(default=(), description="loads on the riser during this stage")
     scheme: Scheme = Field(
@@ -171,13 +182,25 @@ class DynamicStage(BaseModel):
 
     @model_validator(mode="after")
     def _lasts_a_step(self) -> Self:
-        if self.time_step > self.duration:
+        if self.time_step != "auto" and self.time_step > self.duration:
             raise wrong(
                 "time_step",
                 f"must not exceed the stage's duration ({self.duration:g} s)",
                 "take a smaller time_step or a longer duration",
             )
         return self
+
+    @model_validator(mode="after")
+    def _tolerates_only_when_it_chooses(self) -> Self:
+        if self.tolerance is not None and self.time_step != "auto":
+            remedy = "write time_step: auto, or leave tolerance out"
+            raise wrong("tolerance", "steps of a given size have no tolerance", remedy)
+        return self
+
+    @property
+    def error_tolerance(self) -> float:
+        """Largest local error of an automatic step [m]."""
+        return TOLERANCE if self.tolerance is None else self.tolerance
 
 
 Stage = Annotated[

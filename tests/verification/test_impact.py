@@ -22,6 +22,7 @@ from riser_soil.system import Clock, System
 from riser_soil.time_scheme import GeneralizedAlpha
 from tests.coupled_scenes import Mapping
 from tests.driven_stage import Watcher, before_commit, built, take
+from tests.riser_scenes import tell
 
 WEIGHT, LENGTH, DROP = 700.0, 20.0, 1.0  # N/m, m, m
 FALL = WEIGHT * LENGTH * DROP  # J, a measure of the energy in play
@@ -152,3 +153,34 @@ def test_contact_averaged_with_the_pipe_would_gain_energy(monkeypatch: pytest.Mo
     scene = flat(1e8, 0.005)
     scene["stages"][0]["scheme"] = AVERAGE
     assert Fall(scene).gain.max() > 2.0 * FALL
+
+
+def automatic(tolerance: float) -> Mapping:
+    """The swinging pipe on the stiffest springs, with automatic steps until soon after it has struck."""
+    scene = pinned(1e8, 0.1)
+    scene["stages"][0] |= {"time_step": "auto", "tolerance": tolerance, "duration": 0.8}
+    return scene
+
+
+def test_automatic_steps_find_the_impact() -> None:
+    """Before it steps are long; the impact, whose contact lasts about pi sqrt(m/k) = 3.4 ms, is as finely resolved as
+    the tolerance asks. Its energy is still kept.
+    """
+    coarse, fine = tell(automatic(2e-2))[0], tell(automatic(2e-3))[0]
+    for told in (coarse, fine):
+        assert max(told.dt[: len(told.dt) // 4]) > 5.0 * min(told.dt)
+        assert sum(told.cuts) < 0.15 * len(told.dt)
+    assert min(coarse.dt) > 2.0 * min(fine.dt)
+    assert min(fine.dt) < 2e-3
+    assert Fall(automatic(2e-2)).gain.max() < 1e-4 * FALL
+
+
+def test_a_pipe_that_lies_still_needs_no_cuts() -> None:
+    """At rest on the floor no energy moves; what contact gives and takes within a step is none from nowhere."""
+    for k, dt in ((1e6, 0.02), (1e8, 0.005)):
+        assert sum(tell(flat(k, dt))[0].cuts) == 0
+    scene = flat(1e8, 0.1)
+    scene["stages"][0] |= {"time_step": "auto"}
+    told = tell(scene)[0]
+    assert sum(told.cuts) < 15
+    assert max(told.dt) > 0.05

@@ -1,0 +1,99 @@
+"""Steps of a given size against automatic ones on the hose in a tank: error and cost over its first 30 s."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.arrays import Array
+from riser_soil.build import World, build
+from riser_soil.march import Accepted, March
+from riser_soil.observe import riser_snapshot
+from riser_soil.part import Energy, State
+from riser_soil.run import run_stage
+from riser_soil.scene.reader import read_scene
+from riser_soil.scene.stages import Stage
+from riser_soil.system import Clock
+from riser_soil.touchdown_zone import TouchdownZone
+
+SCENE = Path(__file__).parent.parent / "tests" / "scenes" / "tank.yaml"
+DURATION = 30.0  # s
+FINE = 0.0025  # s: the reference
+STEPS = (0.2, 0.1, 0.05, 0.025)  # s
+TOLERANCES = (3e-2, 1e-2, 3e-3, 1e-3)  # m
+
+
+@dataclass
+class Course:
+    """What the accepted steps of a stage tell of the riser."""
+
+    world: World
+    t: list[float] = field(default_factory=list)
+    dt: list[float] = field(default_factory=list)
+    tension: list[float] = field(default_factory=list)
+    touchdown: list[float] = field(default_factory=list)
+    cuts: int = 0
+    iterations: int = 0
+
+    def begin_stage(self, stage: Stage, energy: Energy) -> None:
+        self._zone = TouchdownZone(self.world)
+
+    def relaxed(self, iterations: int) -> None:
+        pass
+
+    def record(self, march: March, step: Accepted, last: bool) -> None:
+        self.t.append(step.t)
+        self.dt.append(step.dt)
+        self.tension.append(float(riser_snapshot(self.world, march).effective_tension[-1]))
+        self.touchdown.append(self._zone.look(march.now).touchdown_arc)
+        self.cuts += step.cuts
+        self.iterations = march.newton.iterations
+
+
+def course(*overrides: str, scene_file: Path = SCENE) -> Course:
+    """The last stage of a scene, without output times."""
+    scene = read_scene(scene_file, ["output={}", *overrides])
+    world = build(scene, MPI.COMM_SELF)
+    before = State.at_rest(0.0, world.size)
+    for stage in scene.stages:
+        seen = Course(world)
+        before = run_stage(world, stage, before, seen, Clock.new())
+    return seen
+
+
+def swing(time_step: float | str, *overrides: str) -> Course:
+    """The hose's swing by steps of one size, or `auto`."""
+    return course(f"stages.1.duration={DURATION}", f"stages.1.time_step={time_step}", *overrides)
+
+
+def automatic(tolerance: float, *overrides: str) -> Course:
+    """The hose's swing by automatic steps."""
+    return swing("auto", f"stages.1.tolerance={tolerance}", *overrides)
+
+
+def errors(seen: Course, reference: Course) -> tuple[float, float]:
+    """Root mean square in time of the errors in top tension [N] and touchdown arc [m]."""
+    return _rms(seen, reference, "tension"), _rms(seen, reference, "touchdown")
+
+
+def _rms(seen: Course, reference: Course, name: str) -> float:
+    exact: Array = np.interp(seen.t, reference.t, getattr(reference, name))
+    return float(np.sqrt(np.average((np.array(getattr(seen, name)) - exact) ** 2, weights=seen.dt)))
+
+
+def report() -> None:
+    reference = swing(FINE)
+    print(f"Hose in a tank, {DURATION:g} s, errors against steps of {FINE:g} s: top tension, touchdown arc; cost")
+    for time_step in STEPS:
+        _print(f"time_step {time_step:g} s", swing(time_step), reference)
+    for tolerance in TOLERANCES:
+        _print(f"auto, tolerance {tolerance:g} m", automatic(tolerance), reference)
+
+
+def _print(name: str, seen: Course, reference: Course) -> None:
+    tension, touchdown = errors(seen, reference)
+    steps = f"{len(seen.t)} steps of {min(seen.dt):.3g} to {max(seen.dt):.3g} s, {seen.cuts} tried again"
+    print(f"  {name:24s} {tension:6.3f} N {1e3 * touchdown:6.2f} mm {seen.iterations:6d} Newton iterations; {steps}")
