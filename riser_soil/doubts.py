@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.arrays import IntArray
 from riser_soil.build import World
-from riser_soil.build.ground import surface_modulus
+from riser_soil.build.ground import smoothing, surface_modulus
 
 # Elements longer than this share of the boundary layer sqrt(EI/H) blur the bending at touchdown and fixed ends.
 LONGEST_ELEMENT = 0.5
@@ -136,12 +136,15 @@ def _penalty_against_soil(world: World) -> Iterator[str]:
 
 def _corner_against_weight(world: World) -> Iterator[str]:
     """A stiff penalty rounded over a long way pushes hard before anything touches."""
-    smoothing = world.scene.contact.smoothing if world.scene.contact is not None else 0.0
+    settings = world.scene.contact
+    if settings is None:
+        return
     for ground, k in world.contact_stiffness.items():
-        force = 0.25 * k * smoothing
+        width = smoothing(settings, world, ground)
+        force = 0.25 * k * width
         if force > CORNER * world.weight:
             yield (
                 f"contact on the {ground} pushes {force:.4g} N/m at the moment of touching, {force / world.weight:.2g} "
                 f"times the riser's weight, as its stiffness of {k:.4g} N/m2 is rounded over contact.smoothing = "
-                f"{smoothing:g} m: take at most {4.0 * world.weight / k:.2g} m, or a lower stiffness"
+                f"{width:g} m: take at most {4.0 * world.weight / k:.2g} m, or a lower stiffness"
             )

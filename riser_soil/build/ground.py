@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from riser_soil.soil.soil import Soil
 
 GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within it, three leave ten times the error
+NARROWEST_CORNER, WIDEST_CORNER = 1e-5, 1e-3  # m, of a penalty by default; a sharper one costs Newton iterations
 NOMINAL_DIAMETER = 0.1  # m, for stiffness and footprint of the contact of a line without an outer diameter
 
 
@@ -85,7 +86,7 @@ def soil_contact_of(scene: Scene, settings: ContactScene, world: World) -> SoilC
         world.line,
         _at_nodes(contact_radius(scene, world.elements)),
         world.soil.surface,
-        Penalty(world.contact_stiffness["soil"], settings.smoothing),
+        Penalty(world.contact_stiffness["soil"], smoothing(settings, world, "soil")),
         footprint=FOOTPRINT * outer_radius,  # also where the axis touches: a single point finds no balance on a kink
         along=world.line.direction[:2],
         active=world.line.active,
@@ -126,7 +127,7 @@ def _law(seabed: Seabed, settings: ContactScene, world: World) -> NormalLaw:
         return _hysteretic(seabed.law, world.elements)
     from riser_soil.contact.law import Penalty
 
-    penalty = Penalty(world.contact_stiffness["seabed"], settings.smoothing)
+    penalty = Penalty(world.contact_stiffness["seabed"], smoothing(settings, world, "seabed"))
     if settings.suction is None:
         return penalty
     from riser_soil.contact.suction import Sticking
@@ -169,6 +170,20 @@ def contact_radius(scene: Scene, elements: Elements) -> Array:
 def _at_nodes(values: Array) -> Array:
     """The larger of what the two elements beside a node have (nn,)."""
     return np.maximum(np.append(values, 0.0), np.append(0.0, values))
+
+
+def smoothing(settings: ContactScene, world: World, ground: str) -> float:
+    """Half width [m] of the rounded corner of a penalty.
+
+    Rounded over much more than the penetration at rest, the riser hovers: on a stiff floor that would shift the tension
+    more than the penalty does.
+    """
+    if settings.smoothing != "auto":
+        return float(settings.smoothing)
+    if ground == "soil":
+        return WIDEST_CORNER
+    at_rest = world.weight / world.contact_stiffness[ground]
+    return float(np.clip(at_rest, NARROWEST_CORNER, WIDEST_CORNER))
 
 
 def stiffnesses(scene: Scene, settings: ContactScene, elements: Elements, weight: float) -> dict[str, float]:

@@ -102,6 +102,12 @@ def _motion(
     return _interpolate(N, rate, D), _interpolate(N, acceleration, D), tau, stretch
 
 
+def unit_tangents(at: Stations, chord: Array, ends: Array) -> tuple[Array, Array]:
+    """Unit tangents (ne, ng, d) and stretch |x'| (ne, ng); chord (ne, d), ends: end tangents (ne, 2, d)."""
+    tau, stretch = _unit_tangents(at.dN, chord, ends, fixed(chord.shape[1]))
+    return tau, stretch
+
+
 @njit
 def _unit_tangents(dN: Array, chord: Array, ends: Array, D: Size) -> tuple[Array, Array]:
     ne, ng, d = dN.shape[0], dN.shape[1], len(D)

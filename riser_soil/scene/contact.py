@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import BaseModel, Field
 
-from riser_soil.scene.quantities import FROZEN, AutoOrPositive, NonNegative, Positive
+from riser_soil.scene.quantities import FROZEN, AutoOrNonNegative, AutoOrPositive, Positive
 
 
 class Friction(BaseModel):
@@ -47,8 +47,10 @@ class Contact(BaseModel):
         "soil's Young's modulus at the surface and (submerged weight)/(0.001 outer diameter); a spring "
         "seabed has its own",
     )
-    smoothing: NonNegative = Field(
-        default=1.0e-3, description="contact sets in smoothly between this gap and this penetration [m]"
+    smoothing: AutoOrNonNegative = Field(
+        default="auto",
+        description="contact sets in smoothly between this gap and this penetration [m], or auto: 0.001 on soil; on a "
+        "seabed what the riser sinks in by its weight, within 0.00001 and 0.001",
     )
     friction: Friction | None = Field(default=None, description="friction on the seabed; none by default")
     suction: Suction | None = Field(

@@ -14,13 +14,16 @@ NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0)]
 PoissonRatio = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=-1, lt=0.5)]
 Count = Annotated[int, Field(strict=True, ge=1)]
 Text = Annotated[str, Field(strict=True)]
+_AUTO_OR_NUMBER = Discriminator(
+    lambda value: word_or_number(value),
+    custom_error_type="choice",
+    custom_error_message="must be auto or a number",
+)
 AutoOrPositive = Annotated[
-    Annotated[Literal["auto"], Tag("<word>")] | Annotated[Positive, Tag("<number>")],
-    Discriminator(
-        lambda value: word_or_number(value),
-        custom_error_type="choice",
-        custom_error_message="must be auto or a number",
-    ),
+    Annotated[Literal["auto"], Tag("<word>")] | Annotated[Positive, Tag("<number>")], _AUTO_OR_NUMBER
+]
+AutoOrNonNegative = Annotated[
+    Annotated[Literal["auto"], Tag("<word>")] | Annotated[NonNegative, Tag("<number>")], _AUTO_OR_NUMBER
 ]
 Vector = tuple[Real, Real, Real]
 Interval = tuple[Real, Real]
