@@ -246,9 +246,8 @@ class Line:
         improved = guess.u.copy()
         moved = self.nodal(improved)[:, : self.dimension]
         for node, end in self._ends:
-            if end.held:
-                increment = np.zeros(self.dimension) if end.motion is None else self._to(end.motion(guess.t)[0], node)
-                moved += self._reach[node] * (increment - moved[node])
+            if end.held and end.motion is not None:
+                moved += self._reach[node] * (self._to(end.motion(guess.t)[0], node) - moved[node])
         return improved
 
     @cached_property
