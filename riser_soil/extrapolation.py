@@ -10,13 +10,14 @@ from riser_soil.arrays import Array
 
 STEPS = 4  # that a smooth motion is continued from, at most
 PARABOLA = 2
+FALL = 0.5  # at most, of each term beyond the parabola to the one before
 
 
 class Extrapolation:
     """Newton's polynomial through where the last steps ended, by divided differences of the increments' sums.
 
     The first difference is the mean rate of the last step [1/s], the second half its change [1/s2]. Beyond them only
-    terms that fall are taken: those of what is rough, such as short waves in the riser, grow.
+    terms that fall fast are taken: those of what is rough, such as short waves in the riser or a gust, don't.
 
     smooth: whether changes go on at all. An impact ends what went before: with contact the last rate alone is the
     better guess.
@@ -34,7 +35,7 @@ class Extrapolation:
         for order, (difference, step) in enumerate(zip(self._differences, self._steps, strict=True), start=1):
             term = factor * difference
             size = float(np.abs(term).max())
-            if order > PARABOLA and size >= largest:
+            if order > PARABOLA and size > FALL * largest:
                 break
             total += term
             largest, span = size, span + step
