@@ -200,14 +200,22 @@ class Newton:
 
     def _reusable(self) -> bool:
         """Whether the tangent of the iteration before will do."""
-        near = self.system.riser_alone and self._weights.inertia > 0.0
-        return near and len(self._norms) > 1 and self._norms[-1] < self.settings.reuse * self._norms[-2]
+        if not self._starts_near or len(self._norms) < 2:
+            return False
+        return self._norms[-1] < self.settings.reuse * self._norms[-2]
+
+    @property
+    def _starts_near(self) -> bool:
+        """Whether the guess continues a smooth motion: time steps of a riser alone."""
+        return self.system.riser_alone and self._weights.inertia > 0.0
 
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
         norm = norms[2]
         self._norms.append(norm)
         if not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
+        if iteration == 0 and self._starts_near:  # a motion that its guess alone carries on would keep its errors
+            return ITERATING
         if norm <= max(self.settings.tolerance * self._scale(), self.settings.floor):
             return CONVERGED
         if iteration >= 4 and norm > 1e6 * self._norms[0]:

@@ -71,7 +71,7 @@ class Inertia:
         if not self.line.active:
             return Energy()
         rate = self.line.trial(state).q_rate
-        return Energy(kinetic=0.5 * float(np.sum(rate * weigh(self.M, rate))))
+        return Energy(kinetic=0.5 * float(np.vdot(rate, weigh(self.M, rate))))
 
     def work(self, before: State, after: State) -> Work:
         return Work()

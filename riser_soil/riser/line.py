@@ -202,10 +202,10 @@ class Line:
         self._trials.clear()
 
     def _make_trial(self, state: State) -> Trial:
-        d, u = self.dimension, self.nodal(state.u)
-        x = self.x + u[:, :d]
-        chord = self.chord + np.subtract(u[1:, :d], u[:-1, :d])
-        return Trial(state, x, chord, self.frames.turn(u[:, d:]), (self.nodal(state.v), self.nodal(state.a)))
+        u = self.nodal(state.u)
+        x, chord = _moved(self.x, self.chord, u)
+        turn = self.frames.turn(u[:, self.dimension :])
+        return Trial(state, x, chord, turn, (self.nodal(state.v), self.nodal(state.a)))
 
     def in_new_axes(self, conjugate: Array, increments: Array) -> Array:
         """Forces (size,) conjugate to the increments, as those of the step after these increments have them."""
@@ -246,9 +246,8 @@ class Line:
         improved = guess.u.copy()
         moved = self.nodal(improved)[:, : self.dimension]
         for node, end in self._ends:
-            if end.held:
-                increment = np.zeros(self.dimension) if end.motion is None else self._to(end.motion(guess.t)[0], node)
-                moved += self._reach[node] * (increment - moved[node])
+            if end.held and end.motion is not None:
+                moved += self._reach[node] * (self._to(end.motion(guess.t)[0], node) - moved[node])
         return improved
 
     @cached_property
@@ -314,6 +313,20 @@ class Line:
             else ("force x", "force y", "vertical force", "moment 1", "moment 2", "moment 3")
         )
         return f"riser node at arc {self.arc[node]:.6g} m, {names[dof]}"
+
+
+@njit
+def _moved(x: Array, chord: Array, u: Array) -> tuple[Array, Array]:
+    """Positions (nn, d) and chords (ne, d) after the increments u (nn, ndof); chords add theirs, see `Line.commit`."""
+    nn, d = x.shape
+    moved, along = np.empty((nn, d)), np.empty((nn - 1, d))
+    for n in range(nn):
+        for i in range(d):
+            moved[n, i] = x[n, i] + u[n, i]
+    for e in range(nn - 1):
+        for i in range(d):
+            along[e, i] = chord[e, i] + (u[e + 1, i] - u[e, i])
+    return moved, along
 
 
 @njit

@@ -82,8 +82,10 @@ def element_residual(line: Line, parts: Sequence[HasElementForces], state: State
     return total
 
 
-def viscous_residual(line: Line, parts: Sequence[HasViscousForces], state: State) -> Array:
-    """The share of `element_residual` (ne, 2 ndof) that follows from strain rates."""
+def viscous_residual(line: Line, parts: Sequence[HasViscousForces], state: State) -> Array | None:
+    """The share of `element_residual` (ne, 2 ndof) that follows from strain rates; None without such parts."""
+    if not parts:
+        return None
     return sum((part.viscous_forces(state) for part in parts), np.zeros((line.length.size, 2 * line.ndof)))
 
 

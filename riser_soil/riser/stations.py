@@ -145,6 +145,22 @@ def _integrate(weighted: Array, f: Array, D: Size) -> Array:
     return out
 
 
+def inner(share: Array, f: Array, g: Array) -> float:
+    """Sum over the stations of f . g, each (ne, ng, d), times their shares (ne, ng)."""
+    total: float = _inner(share, f, g)
+    return total
+
+
+@njit
+def _inner(share: Array, f: Array, g: Array) -> float:
+    total = 0.0
+    for e in range(f.shape[0]):
+        for k in range(f.shape[1]):
+            for i in range(f.shape[2]):
+                total += share[e, k] * f[e, k, i] * g[e, k, i]
+    return total
+
+
 def follow_slope(A: Array, tau: Array, stretch: Array) -> Array:
     """Derivative by x' from that by tau, A (ne, ng, d, d): tau follows x' by (I - tau tau)/|x'|."""
     by_slope: Array = _follow_slope(A, tau, stretch, fixed(tau.shape[2]))

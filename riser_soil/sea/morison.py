@@ -47,7 +47,7 @@ class Morison:
             return Energy()
         trial = self.line.trial(state)
         v = self._pipe.flow(trial).v
-        return Energy(kinetic=0.5 * self._pipe.total(v * self._loads.momentum(trial, v)))
+        return Energy(kinetic=0.5 * self._pipe.total(v, self._loads.momentum(trial, v)))
 
     def work(self, before: State, after: State) -> Work:
         """Drag of still water dissipates; all that moving water does is external work, of either sign.
@@ -71,7 +71,7 @@ class Morison:
         accelerations, which generalised-alpha knows to first order only.
         """
         v = 0.5 * (self._pipe.flow(first).v + self._pipe.flow(last).v)
-        return 0.5 * self._pipe.total(v * (self._loads.momentum(last, v) - self._loads.momentum(first, v)))
+        return 0.5 * self._pipe.total(v, self._loads.momentum(last, v) - self._loads.momentum(first, v))
 
     def commit(self, state: State) -> None:
         pass

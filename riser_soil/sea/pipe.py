@@ -79,9 +79,9 @@ class Pipe:
         """Residual conjugate to q (ne, 4, d) of a force per length (ne, ng, d)."""
         return self._gather(stations.integrate(self.at, density))
 
-    def total(self, density: Array) -> float:
-        """Integral over the line of a density (ne, ng, d), its components summed."""
-        return float(np.sum(self.share[..., None] * density))
+    def total(self, f: Array, g: Array) -> float:
+        """Integral over the line of f . g, of densities (ne, ng, d)."""
+        return stations.inner(self.share, f, g)
 
     def add_tangent(self, K: Array, trial: Trial, weights: Weights, by: stations.Derivatives) -> None:
         """Add to K (ne, n, n) what a force per length with these derivatives has as tangent, directors held."""
