@@ -38,7 +38,7 @@ lint: setup
 verify: setup ## the long comparisons with closed forms, references and finer meshes
 	$(PYTHON) -m pytest -m verify
 
-bench: setup ## seconds by part of the demo, and Newton iterations against the bare work in them
+bench: setup ## seconds by part of the demo, Newton iterations against the bare work in them, energy of an impact by scheme
 	$(PYTHON) -m benchmarks
 
 verify-fresh: ## both commands of the README on a bare Debian 12 made for it (needs root and debootstrap)

@@ -103,10 +103,13 @@ class March:
 
     before: the accepted state that the next step starts from, its increments zero; its rates leave out what contact
     adds to them (see `time_scheme`). now: the same state as the riser moves; energy: stored in it [J].
+    wrong_root: share of the energy in motion that a step may make out of nothing.
     """
 
-    def __init__(self, system: System, newton: Newton, scheme: Scheme, before: State) -> None:
-        self.system, self.newton, self.scheme = system, newton, scheme
+    def __init__(
+        self, system: System, newton: Newton, scheme: Scheme, before: State, wrong_root: float = WRONG_ROOT
+    ) -> None:
+        self.system, self.newton, self.scheme, self._wrong_root = system, newton, scheme, wrong_root
         self._mass: RiserMass | None = None
         self._error: LocalError | None = None
         owners = (*system.model.fields, *system.model.parts)
@@ -234,9 +237,9 @@ class March:
         appeared = now.total - was.total + step.dissipated - step.work
         in_motion = was.kinetic + was.strain + max(0.0, was.potential - now.potential) + abs(step.work)
         negligible = ENERGY_ROUND_OFF * abs(was.potential) + self.newton.settings.floor * METRE
-        if appeared > WRONG_ROOT * in_motion + negligible:
+        if appeared > self._wrong_root * in_motion + negligible:
             appeared += self._kinetic(step) - now.kinetic
-        if appeared > WRONG_ROOT * in_motion + negligible:
+        if appeared > self._wrong_root * in_motion + negligible:
             raise NotConvergedError(
                 f"the step's solution makes {appeared:.3g} J out of nothing, beside {in_motion:.3g} J in motion"
             )

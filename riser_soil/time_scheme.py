@@ -63,6 +63,11 @@ class Dynamic(Scheme, Protocol):
         ...
 
     @property
+    def stiff_lag(self) -> float:
+        """Velocities of motions that stiff forces prescribe are off by minus this times dt^2 times the jerk."""
+        ...
+
+    @property
     def error_constant(self) -> float:
         """Local error in displacements, relative to dt^2 times the change of the accelerations; see `local_error`."""
         ...
@@ -127,9 +132,12 @@ class GeneralizedAlpha:
         return self.alpha_f - self.alpha_m
 
     @property
+    def stiff_lag(self) -> float:
+        return self.beta - 0.5 * self.lag - 1.0 / 6.0
+
+    @property
     def error_constant(self) -> float:
-        displacement, velocity = self.beta - 0.5 * self.lag - 1.0 / 6.0, self.gamma - self.lag - 0.5
-        return abs(displacement) + abs(velocity)
+        return abs(self.stiff_lag) + abs(self.gamma - self.lag - 0.5)
 
     def weights(self, dt: float) -> Weights:
         bulk = self.bulk_weight
@@ -182,7 +190,7 @@ class Midpoint:
     """
 
     needs_history = False
-    lag = 0.0
+    lag = stiff_lag = 0.0
     error_constant = 1.0 / 12.0
 
     def weights(self, dt: float) -> Weights:

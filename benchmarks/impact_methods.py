@@ -1,0 +1,90 @@
+"""Ways to integrate impact in time that the package does not offer, for comparison with its own.
+
+All stand on its own parts: the contact's force is weighed as the riser's other forces, or follows another law.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from riser_soil.arrays import Array, BoolArray
+from riser_soil.contact.law import Penalty
+from riser_soil.contact.seabed_contact import SeabedContact
+from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+
+NEAR = 1e-8  # m: below it a difference quotient of the potential is round-off
+
+
+class Averaged:
+    """Contact in group F: its force counts as the time scheme weighs those of the riser, not at the step's end."""
+
+    symmetric = True
+    impulsive = True
+
+    def __init__(self, contact: SeabedContact) -> None:
+        self._contact, self.name = contact, contact.name
+
+    def blocks(self) -> dict[str, Block]:
+        return self._contact.blocks()
+
+    def residual(self, state: State, forces: Forces) -> None:
+        self._contact.residual(state, Forces(forces.inertia, forces.force, end=forces.force))
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        own = {key: np.zeros_like(value) for key, value in values.items()}
+        self._contact.tangent(state, weights, own)
+        for key, value in own.items():
+            values[key] += weights.force * value
+
+    def energy(self, state: State) -> Energy:
+        return self._contact.energy(state)
+
+    def work(self, before: State, after: State) -> Work:
+        return self._contact.work(before, after)
+
+    def commit(self, state: State) -> None:
+        self._contact.commit(state)
+
+    def improve(self, guess: State) -> Array:
+        return self._contact.improve(guess)
+
+
+@dataclass(frozen=True)
+class DiscreteGradient:
+    """The penalty's potential over a step, difference by difference: f = (psi(d1) - psi(d0))/(d1 - d0).
+
+    Its work over the step is the change of the potential, so that with accelerations of the mean velocity (2 beta = 1,
+    gamma = 1, as contact has them) impact neither takes nor gives energy. O. Gonzalez, Computer Methods in Applied
+    Mechanics and Engineering 190 (2000). History (..., 1): the penetration d0 [m] at the start of the step.
+    """
+
+    penalty: Penalty
+
+    @property
+    def start(self) -> float:
+        return self.penalty.start
+
+    def fresh(self, shape: tuple[int, ...]) -> Array:
+        return np.full((*shape, 1), -1e3)
+
+    def touched(self, penetration: Array, history: Array) -> BoolArray:
+        return np.maximum(penetration, history[..., 0]) > -self.penalty.smoothing
+
+    def respond(self, penetration: Array, history: Array) -> tuple[Array, Array]:
+        before = history[..., 0]
+        way = penetration - before
+        near = np.abs(way) < NEAR
+        safe = np.where(near, 1.0, way)
+        quotient = (self.penalty.potential(penetration) - self.penalty.potential(before)) / safe
+        half = 0.5 * (penetration + before)
+        force = np.where(near, self.penalty.force(half), quotient)
+        slope = (self.penalty.force(penetration) - quotient) / safe
+        return force, np.where(near, 0.5 * self.penalty.slope(half), slope)
+
+    def stored(self, penetration: Array, history: Array) -> Array:
+        return self.penalty.potential(penetration)
+
+    def renewed(self, penetration: Array, history: Array) -> Array:
+        return np.asarray(penetration[..., None])
