@@ -35,7 +35,8 @@ def fall(seabed: str, start: Any, initial: Any, k: float, dt: float, duration: f
         "stages": [{"name": "fall", "kind": "dynamic", "duration": duration, "time_step": dt}],
         "solver": {"tolerance": 1e-9},
     }
-    (scene["seabed"] if seabed == "spring" else scene.setdefault("contact", {}))["stiffness"] = k
+    scene["contact"] = {"smoothing": 1e-3}
+    (scene["seabed"] if seabed == "spring" else scene["contact"])["stiffness"] = k
     return scene
 
 

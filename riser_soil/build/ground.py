@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from riser_soil.soil.soil import Soil
 
 GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within it, three leave ten times the error
-NARROWEST_CORNER, WIDEST_CORNER = 1e-5, 1e-3  # m, of a penalty by default; a sharper one costs Newton iterations
+NARROWEST_CORNER, WIDEST_CORNER = 1e-4, 1e-3  # m, of a penalty by default; a sharper one costs Newton iterations
 NOMINAL_DIAMETER = 0.1  # m, for stiffness and footprint of the contact of a line without an outer diameter
 
 

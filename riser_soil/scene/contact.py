@@ -50,7 +50,7 @@ class Contact(BaseModel):
     smoothing: AutoOrNonNegative = Field(
         default="auto",
         description="contact sets in smoothly between this gap and this penetration [m], or auto: 0.001 on soil; on a "
-        "seabed what the riser sinks in by its weight, within 0.00001 and 0.001",
+        "seabed what the riser sinks in by its weight, within 0.0001 and 0.001",
     )
     friction: Friction | None = Field(default=None, description="friction on the seabed; none by default")
     suction: Suction | None = Field(

@@ -111,10 +111,10 @@ def test_what_cannot_turn_energy_over_is_not_told(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("duration", [2.0])
 def test_too_long_steps_are_a_warning(tmp_path: Path, duration: float, capsys: pytest.CaptureFixture[str]) -> None:
-    """A hanging line swings wildly in steps of half a second."""
+    """A hanging line swings wildly in steps of 0.4 s."""
     pipe = {"EA": 1e5, "EI": 10.0, "mass": 20.0, "submerged_weight": 200.0}
     top = held(0.0, 0.0, 0.0)
-    given = riser_scene(dynamic(duration, 0.5), pipe=pipe, length=9.0, elements=6, start=top, end="free", gravity=9.81)
+    given = riser_scene(dynamic(duration, 0.4), pipe=pipe, length=9.0, elements=6, start=top, end="free", gravity=9.81)
     given["riser"]["initial"] = "straight"
     run(scene_from_mapping(given), tmp_path)
     stage = Run(tmp_path).summary["stages"][0]

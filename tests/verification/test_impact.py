@@ -168,7 +168,14 @@ def tank(k: float, dt: float, duration: float, ramp: float) -> Scene:
     stage = {"time_step": dt, "duration": duration, "motion.end.arc.ramp": ramp}
     overrides = [f"stages.1.{key}={value}" for key, value in stage.items()]
     return read_scene(
-        TANK, [*overrides, f"contact.stiffness={k}", "riser.segments.0.elements=60", "solver.tolerance=1e-9"]
+        TANK,
+        [
+            *overrides,
+            f"contact.stiffness={k}",
+            "contact.smoothing=1e-3",
+            "riser.segments.0.elements=60",
+            "solver.tolerance=1e-9",
+        ],
     )
 
 
