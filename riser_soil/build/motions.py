@@ -37,12 +37,16 @@ def set_motions(line: Line, stage: Stage, vessels: Vessels | None) -> None:
         end.motion = end.turning = None
         origin = line.to_global(line.x[node])
         if isinstance(stage, StaticStage):
-            _move(end, origin, getattr(stage.move, name, None))
+            target = getattr(stage.move, name, None)
+            _move(end, origin, target)
+            if target is not None and vessels is not None:
+                vessels.move(name, np.asarray(target) - origin)
         elif stage.motion is not None and name in stage.motion.by_end:
             given = stage.motion.by_end[name]
             _set(end, origin, given)
             if given.vessel is not None and vessels is not None:
-                _carry(end, origin, vessels.motion(stage, name, origin))
+                vessel = vessels.motion(stage, name, origin)
+                _carry(end, vessel.berth.mean, vessel)
     line.begin_stage()
 
 

@@ -62,6 +62,16 @@ def wave_clock(scene: Scene, stage: Stage) -> float:
     return sum(other.duration for other in before if isinstance(other, DynamicStage))
 
 
+def wave_age(scene: Scene, stage: Stage) -> float:
+    """How long the waves have acted without a break when a stage begins [s]: static stages know no waves, so the first
+    dynamic stage after one finds the riser at rest, and the waves grow anew.
+    """
+    age = 0.0
+    for before in takewhile(lambda other: other.name != stage.name, scene.stages):
+        age = age + before.duration if isinstance(before, DynamicStage) else 0.0
+    return age
+
+
 def _flows(scene: Scene, stage: Stage) -> Iterator[Flow]:
     assert scene.water is not None
     if scene.water.current is not None:
@@ -88,4 +98,5 @@ def _waves(scene: Scene, stage: Stage) -> WaveField:
     assert scene.water.waves is not None
     assert scene.water.surface_level is not None
     waves, level = scene.water.waves, scene.water.surface_level
-    return WaveField(components, scene.water_depth, level, waves.stretching, waves.ramp, wave_clock(scene, stage))
+    times = wave_clock(scene, stage), wave_age(scene, stage)
+    return WaveField(components, scene.water_depth, level, waves.stretching, waves.ramp, *times)

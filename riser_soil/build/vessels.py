@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -39,12 +40,17 @@ class Beyond(NamedTuple):
 class Vessels:
     """The scene's vessels and their responses to its waves; SceneError where a table doesn't cover the waves.
 
+    An end has its mean position where it was before a vessel first moved it, and moves of static stages take it along.
+    A vessel that moves the end again, after a stage in which it didn't or was another one, brings it from where it
+    rests to the response about that mean.
+
     beyond: by the path of the table, where waves beyond its frequencies may matter a little.
     """
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
         self._responses: dict[_Key, Response] = {}
+        self._last: dict[str, tuple[Vessel, float]] = {}  # by the end: what moved it last, and for how long [s]
         self.beyond: dict[str, Beyond] = {}
         waves = components_of(scene)
         assert waves is not None  # the scene's checks have seen to it
@@ -53,15 +59,42 @@ class Vessels:
                 self._responses[_key(vessel)] = self._response(path, vessel, waves)
 
     def motion(self, stage: Stage, end: str, origin: Array) -> Vessel:
-        """The motion of an end that is at origin (3,) as a stage begins."""
-        assert self._scene.water is not None
-        assert self._scene.water.waves is not None
+        """The motion of an end that is at origin (3,) as a stage begins; to be asked for in the order of the stages."""
         given = _vessel(stage, end)
         assert given is not None
         since, first = _beginning(self._scene, stage, end, given)
-        berth = Berth(origin, np.array(given.reference), wave_clock(self._scene, stage), since)
-        ramp = self._scene.water.waves.ramp if first.ramp is None else first.ramp
-        return Vessel(self._responses[_key(given)], berth, ramp)
+        before = self._last.get(end)
+        if before is None or since == 0.0:
+            berth, ramp = self._berth(first, end, origin), self._ramp(first, again=before is not None)
+        else:
+            berth, ramp = before[0].berth, before[0].ramp
+        vessel = Vessel(self._responses[_key(given)], berth, ramp, wave_clock(self._scene, stage), since)
+        self._last[end] = vessel, stage.duration if isinstance(stage, DynamicStage) else 0.0
+        return vessel
+
+    def move(self, end: str, by: Array) -> None:
+        """An end was moved in a static stage, by (3,) [m]: its berth goes along."""
+        if end in self._last:
+            vessel, duration = self._last[end]
+            berth = replace(vessel.berth, mean=vessel.berth.mean + by)
+            self._last[end] = replace(vessel, berth=berth), duration
+
+    def _berth(self, vessel: VesselScene, end: str, origin: Array) -> Berth:
+        """Where the end was before a vessel first moved it; a vessel that moves it again finds it displaced."""
+        reference = np.array(vessel.reference)
+        if end not in self._last:
+            return Berth(origin, reference, np.zeros(6))
+        last, duration = self._last[end]
+        mean = last.berth.mean
+        return Berth(mean, reference, np.concatenate([origin - mean, last(duration)[0][3:]]))
+
+    def _ramp(self, vessel: VesselScene, again: bool) -> float:
+        """Seconds to the full response: after a rest at least a (peak) period, as the end has to come back."""
+        assert self._scene.water is not None
+        assert self._scene.water.waves is not None
+        waves = self._scene.water.waves
+        ramp = waves.ramp if vessel.ramp is None else vessel.ramp
+        return max(ramp, waves.period) if again else ramp
 
     def _response(self, path: str, vessel: VesselScene, waves: Components) -> Response:
         table = _table(vessel)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -31,54 +30,38 @@ class Response:
 
 @dataclass(frozen=True, eq=False)
 class Berth:
-    """Where a stage finds an end on its vessel.
+    """Where an end belongs on its vessel at rest, and where the vessel found it.
 
-    origin: (3,) the end's position at the stage's beginning [m]. reference: (3,) the point that the response belongs
-    to, where the vessel is at rest [m]. clock: what the waves' clock shows then [s]. since: how long the vessel has
-    been moving then [s].
+    mean: (3,) the end while the vessel is at rest [m]. reference: (3,) the point that the response belongs to, then
+    [m]. found: (6,) the end's displacement from there [m] and rotation vector [rad] as the vessel began to move: not
+    zero where the vessel moves again after a rest.
     """
 
-    origin: Array
+    mean: Array
     reference: Array
-    clock: float
-    since: float
+    found: Array
 
 
 @dataclass(frozen=True, eq=False)
 class Vessel:
-    """Displacement from the stage's beginning and rotation vector (6,) of an end on a vessel, and their derivatives.
+    """Displacement from the mean and rotation vector (6,) of an end on a vessel, and their derivatives.
 
-    Linear, as RAOs are: the displacement is s + theta x arm, the arm being that of the vessel at rest. The response
-    grows with a smooth step of ramp [s].
+    r response + (1 - r) found, r being a smooth step of ramp [s]. Linear, as RAOs are: the response of the end is
+    s + theta x arm, the arm being that of the vessel at rest. clock: what the waves' clock shows as the stage begins
+    [s]. since: how long the vessel has been moving then [s].
     """
 
     response: Response
     berth: Berth
     ramp: float
+    clock: float
+    since: float
 
     def __call__(self, t: float) -> Kinematics:
-        x, v, a = self._moved(t)
-        return np.concatenate([x[:3] - self._first[:3], x[3:]]), v, a
-
-    @cached_property
-    def _first(self) -> Array:
-        """The end's displacement and rotation as the stage begins."""
-        return self._moved(0.0)[0]
-
-    def _moved(self, t: float) -> Kinematics:
-        x, v, a = (_carried(values, self._arm) for values in self._at_reference(t))
-        return x, v, a
-
-    def _at_reference(self, t: float) -> Kinematics:
-        x, v, a = self.response(self.berth.clock + t)
-        return ramped(self.berth.since + t, self.ramp, x, v, a)
-
-    @cached_property
-    def _arm(self) -> Array:
-        """From the reference to the end, the vessel at rest: origin - reference = arm + s + theta x arm."""
-        first = self._at_reference(0.0)[0]
-        spin = np.cross(np.eye(3), first[3:])  # spin @ arm is theta x arm
-        return np.linalg.solve(np.eye(3) + spin, self.berth.origin - self.berth.reference - first[:3])
+        response = self.response(self.clock + t)
+        x, v, a = (_carried(values, self.berth.mean - self.berth.reference) for values in response)
+        x, v, a = ramped(self.since + t, self.ramp, x - self.berth.found, v, a)
+        return x + self.berth.found, v, a
 
 
 def _carried(values: Array, arm: Array) -> Array:

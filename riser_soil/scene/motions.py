@@ -150,7 +150,11 @@ class Vessel(BaseModel):
     )
     reference: Vector = Field(description="point that the RAOs belong to, the vessel at rest, [x, y, z] [m]")
     heading_deg: Real = Field(default=0.0, description="direction of the vessel's bow, from x towards y [deg]")
-    ramp: Positive | None = Field(default=None, description=f"{_RAMP}; by default that of the waves")
+    ramp: Positive | None = Field(
+        default=None,
+        description=f"{_RAMP}; by default that of the waves; at least one (peak) period where the vessel moves the end "
+        "again after a stage in which it rested",
+    )
 
     @model_validator(mode="after")
     def _can_be_read(self) -> Self:

@@ -74,7 +74,8 @@ class Waves(BaseModel):
     )
     ramp: NonNegative = Field(
         default=0.0,
-        description="time over which the waves grow smoothly from nothing [s]; by default one (peak) period",
+        description="time over which the waves grow smoothly from nothing, in the first dynamic stage and anew in one "
+        "after a static stage [s]; by default one (peak) period",
     )
 
     @model_validator(mode="before")

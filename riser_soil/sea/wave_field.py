@@ -17,8 +17,9 @@ class WaveField:
     """Linear waves that grow smoothly, with surface, velocity and acceleration ramped alike.
 
     The acceleration is the rate of the ramped velocity, the ramp's own share included. depth [m] may be inf.
-    surface_level: z of the mean surface [m]. ramp [s] is counted on the waves' clock, as their phases are; clock: what
-    it shows when the stage begins [s].
+    surface_level: z of the mean surface [m]. clock: what the waves' clock, which their phases are counted on, shows
+    when the stage begins [s]. ramp [s] is counted from the waves' beginning; since: how long they have acted when the
+    stage begins [s], by default what the clock shows.
     """
 
     def __init__(
@@ -29,13 +30,15 @@ class WaveField:
         stretching: Stretching = "wheeler",
         ramp: float = 0.0,
         clock: float = 0.0,
+        since: float | None = None,
     ) -> None:
         self._train, self._depth, self._level = waves.train(components, depth), depth, surface_level
         self._stretching, self._ramp, self._clock = stretching, ramp, clock
+        self._since = clock if since is None else since
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
         time = self._clock + t
-        r, rate, _ = smooth_step(time, self._ramp)
+        r, rate, _ = smooth_step(self._since + t, self._ramp)
         cosine, sine = waves.circular(self._train, time, x)
         eta, slope = (r * part for part in waves.surface(self._train, cosine, sine))
         full = waves.kinematics(self._train, cosine, sine, self._heights(x[:, 2] - self._level, eta, slope))

@@ -183,6 +183,73 @@ def test_a_vessel_sails_on_through_stages(tmp_path: Path) -> None:
     assert second.end.end_moment == pytest.approx(long.end.end_moment, rel=2e-2, abs=1.0)
 
 
+def ends(floating: Scene) -> tuple[World, list[tuple[Array, Array]]]:
+    """Where each stage's motion puts the end as it begins and as it ends."""
+    world, found = build(floating, MPI.COMM_SELF), []
+    line, state = world.line, State.at_rest(0.0, world.line.size)
+    for stage in floating.stages:
+        world.begin(stage)
+        times = (0.0, 1.0 if stage.kind == "static" else stage.duration)
+        motion, here = line.end.motion, line.to_global(line.x[-1])
+        found.append((motion(times[0])[0], motion(times[1])[0]) if motion else (here, here))
+        line.prescribe(times[1], state.u, state.v, state.a)
+        line.commit(state)
+        state = State.at_rest(0.0, line.size)
+    return world, found
+
+
+BREAKS: dict[str, tuple[Mapping, dict[str, Any]]] = {
+    "static": (static("rest"), {}),
+    "without motion": (dynamic(7.0, 0.2, "rest"), {}),
+    "another heading": (aboard(7.0, "rest", heading_deg=20.0), {}),
+    "none, but another reference": (aboard(7.0, "rest"), {"reference": [50.0, 1.0, 2.0]}),
+}
+
+
+@pytest.mark.parametrize("name", BREAKS)
+def test_after_a_break_it_swings_about_the_same_mean(name: str, tmp_path: Path) -> None:
+    """The end comes back from where it rested, without a jump and from rest."""
+    modes = {mode: (0.3 if n < 3 else 0.02, 50.0 * n) for n, mode in enumerate(MODES)}
+    between, change = BREAKS[name]
+    stages = static(), aboard(12.6), between, aboard(30.0, "again", **change, ramp=2.0)
+    world, found = ends(scene(tmp_path, table(*EVERYWHERE, **modes), *stages))
+    motion, turning = world.line.end.motion, world.line.end.turning
+    assert motion is not None
+    assert turning is not None
+    assert np.abs(found[2][1] - END).max() > 0.1
+    assert motion(0.0)[0] == pytest.approx(found[2][1], abs=1e-12)
+    for values in (*motion(0.0)[1:], *turning(0.0)):
+        assert values == pytest.approx(np.zeros(3), abs=1e-12)
+    period = np.arange(9.0, 18.0, 0.25)
+    assert np.mean([motion(t)[0] for t in period], axis=0) == pytest.approx(END, abs=1e-9)
+    if "reference" not in change:
+        late = displaced(world, 12.0)
+        whole = begun(scene(tmp_path, table(*EVERYWHERE, **modes), static(), aboard(60.0)), 1)
+        clock = 12.6 + (7.0 if between["kind"] == "dynamic" else 0.0)
+        assert late == pytest.approx(displaced(whole, clock + 12.0), abs=1e-12)
+
+
+def test_a_return_goes_on_in_the_next_stage(tmp_path: Path) -> None:
+    text = table(*EVERYWHERE, surge=(1.0, 0.0), pitch=(0.02, 30.0))
+    first = static(), aboard(12.6), static("rest")
+    long, _ = ends(scene(tmp_path, text, *first, aboard(20.0, "again")))
+    short, found = ends(scene(tmp_path, text, *first, aboard(4.0, "again"), aboard(16.0, "and on")))
+    assert found[3][1] == pytest.approx(found[4][0], abs=1e-12)
+    for t in (4.0, 6.0, 8.0, 19.0):
+        assert displaced(short, t - 4.0) == pytest.approx(displaced(long, t), abs=1e-12)
+
+
+def test_a_move_in_a_static_stage_takes_the_berth_along(tmp_path: Path) -> None:
+    text, by = table(*EVERYWHERE, surge=(1.0, 0.0)), np.array([-2.0, 0.5, 1.0])
+    _, found = ends(scene(tmp_path, text, static(), aboard(12.6), static("rest"), aboard(30.0, "again")))
+    target = [float(value) for value in found[1][1] + by]
+    moved = static(), aboard(12.6), static("rest", move={"end": target}), aboard(30.0, "again")
+    world, found = ends(scene(tmp_path, text, *moved))
+    assert displaced(world, 0.0) == pytest.approx(np.array(target) - END, abs=1e-12)
+    mean = np.mean([displaced(world, t) for t in np.arange(9.0, 18.0, 0.25)], axis=0)
+    assert mean == pytest.approx(by, abs=1e-9)
+
+
 def test_interpolation_is_linear_and_periodic_in_direction() -> None:
     response: Array = np.arange(6.0).reshape(3, 2, 1).astype(complex)
     grid = RaoTable(np.array([1.0, 2.0]), np.radians([0.0, 90.0, 300.0]), response)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.build.sea import components_of, water_of, wave_clock
+from riser_soil.build.sea import components_of, water_of, wave_age, wave_clock
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
@@ -84,9 +84,28 @@ def test_waves_run_on_through_dynamic_stages() -> None:
     first, second = water_of(scene, scene.stages[1]), water_of(scene, scene.stages[3])
     assert first is not None
     assert second is not None
-    for before, after in zip(first(23.0, MIDDLE), second(3.0, MIDDLE), strict=True):
+    for before, after in zip(first(43.0, MIDDLE), second(23.0, MIDDLE), strict=True):
         assert after == pytest.approx(before, abs=1e-14)
-    assert np.abs(second(3.0, MIDDLE).velocity).max() > 1e-3
+    assert np.abs(second(23.0, MIDDLE).velocity).max() > 1e-3
+
+
+def test_waves_grow_anew_after_a_static_stage() -> None:
+    """And only there: in a dynamic stage after a dynamic one they go on in full."""
+    stages = static("a"), dynamic(20.0, 0.1, "b"), dynamic(6.0, 0.1, "c"), static("d"), dynamic(2.0, 0.1, "e")
+    scene = scene_in({"surface_level": 100.0, "waves": AIRY}, *stages, dynamic(9.0, 0.1, "f"))
+    assert [wave_age(scene, stage) for stage in scene.stages] == [0.0, 0.0, 20.0, 26.0, 0.0, 2.0]
+    assert scene.water is not None
+    assert scene.water.waves is not None
+    ramp, (through, after, on) = scene.water.waves.ramp, (water_of(scene, scene.stages[n]) for n in (1, 4, 5))
+    assert through is not None
+    assert after is not None
+    assert on is not None
+    assert not np.any(after(0.0, MIDDLE).velocity)
+    full = through(26.0 + 0.5 * ramp, MIDDLE)
+    assert np.abs(full.velocity).max() > 1e-3
+    level = 100.0 - MIDDLE[:, 2]
+    assert after(0.5 * ramp, MIDDLE).immersion - level == pytest.approx(0.5 * (full.immersion - level), abs=1e-12)
+    assert on(0.5 * ramp - 2.0, MIDDLE).velocity == pytest.approx(after(0.5 * ramp, MIDDLE).velocity, abs=1e-14)
 
 
 def test_current_and_waves_add_up() -> None:
