@@ -19,7 +19,8 @@ from tests.coupled_scenes import DEMO, LAY, Mapping, heave, touchdown
 from tests.on_ranks import mpirun
 from tests.riser_scenes import in_waves
 
-CATENARY = Path(__file__).parents[1] / "scenes" / "catenary.yaml"
+SCENES = Path(__file__).parents[1] / "scenes"
+CATENARY, CLAY = SCENES / "catenary.yaml", SCENES / "hysteretic.yaml"
 # What a run counts or clocks may differ: a residual just above the tolerance on one rank is just below it on two.
 COUNTED = {"newton_iterations", "most_newton_iterations", "seconds", "ranks", "energy_residual"}
 
@@ -30,8 +31,8 @@ def scene(name: str) -> Mapping:
         return touchdown(LAY, heave(1.0), kind=name, su=1000.0, dimension=3, tolerance=1e-10)
     if name == "sea":
         return in_waves(0.1, 21.0) | {"output": {"interval": 0.1}}
-    given: Mapping = YAML(typ="safe").load(DEMO if name == "demo" else CATENARY)
-    given["stages"][1]["duration"] = {"demo": 0.5, "riser": 10.0}[name]
+    given: Mapping = YAML(typ="safe").load({"demo": DEMO, "riser": CATENARY, "clay": CLAY}[name])
+    given["stages"][1]["duration"] = {"demo": 0.5, "riser": 10.0, "clay": 3.0}[name]
     return given | {"solver": {"tolerance": 1e-10}, "output": {"interval": 0.1}}
 
 
@@ -117,8 +118,10 @@ def test_small_scenes_agree_on_several_ranks(name: str, ranks: int) -> None:
     assert_same(name, ranks)
 
 
-def test_a_riser_at_sea_agrees_on_two_ranks() -> None:
-    assert_same("sea", 2)
+@pytest.mark.parametrize("name", ["sea", "clay"])
+def test_a_riser_alone_agrees_on_two_ranks(name: str) -> None:
+    """At sea; and on clay that remembers, with friction."""
+    assert_same(name, 2)
 
 
 @pytest.mark.parametrize("ranks", [2, pytest.param(4, marks=pytest.mark.verify)])
