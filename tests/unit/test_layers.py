@@ -24,7 +24,7 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("direct_solver",),
     ("mass", "newton"),
     ("march", "relax"),
-    ("folder", "schedule", "progress", "inventory", "wave_doubts"),
+    ("folder", "schedule", "progress", "inventory", "wave_doubts", "motion_doubts"),
     ("doubts",),
     ("netcdf", "xdmf", "summary", "screen"),
     ("record",),
