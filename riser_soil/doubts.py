@@ -9,6 +9,8 @@ import numpy as np
 from riser_soil.arrays import IntArray
 from riser_soil.build import World
 from riser_soil.build.ground import smoothing, surface_modulus
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage
 
 # Elements longer than this share of the boundary layer sqrt(EI/H) blur the bending at touchdown and fixed ends.
 LONGEST_ELEMENT = 0.5
@@ -34,6 +36,17 @@ def physical_warnings(world: World) -> Iterator[str]:
         from riser_soil.wave_doubts import wave_doubts
 
         yield from wave_doubts(world.scene)
+    if _swings(world.scene):
+        from riser_soil.motion_doubts import motion_doubts
+
+        yield from motion_doubts(world.scene)
+
+
+def _swings(scene: Scene) -> bool:
+    """Whether ends move or waves come in a dynamic stage."""
+    waves = scene.water is not None and scene.water.waves is not None
+    stages = [stage for stage in scene.stages if isinstance(stage, DynamicStage)]
+    return any(waves or stage.motion is not None for stage in stages)
 
 
 def _light_pipes(world: World) -> Iterator[str]:

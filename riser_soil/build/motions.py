@@ -34,20 +34,24 @@ def vessels_of(scene: Scene) -> Vessels | None:
 def set_motions(line: Line, stage: Stage, vessels: Vessels | None) -> None:
     """Give the held ends their motions in this stage, from where they are now; without one they stay there."""
     for end, node, name in ((line.start, 0, "start"), (line.end, -1, "end")):
-        end.motion = end.turning = None
-        origin = line.to_global(line.x[node])
-        if isinstance(stage, StaticStage):
-            target = getattr(stage.move, name, None)
-            _move(end, origin, target)
-            if target is not None and vessels is not None:
-                vessels.move(name, np.asarray(target) - origin)
-        elif stage.motion is not None and name in stage.motion.by_end:
-            given = stage.motion.by_end[name]
-            _set(end, origin, given)
-            if given.vessel is not None and vessels is not None:
-                vessel = vessels.motion(stage, name, origin)
-                _carry(end, vessel.berth.mean, vessel)
+        set_motion(end, name, line.to_global(line.x[node]), stage, vessels)
     line.begin_stage()
+
+
+def set_motion(end: End, name: str, origin: Array, stage: Stage, vessels: Vessels | None) -> None:
+    """Give an end that is at origin (3,) its motion in a stage; vessels want the stages in their order."""
+    end.motion = end.turning = None
+    if isinstance(stage, StaticStage):
+        target = getattr(stage.move, name, None)
+        _move(end, origin, target)
+        if target is not None and vessels is not None:
+            vessels.move(name, np.asarray(target) - origin)
+    elif stage.motion is not None and name in stage.motion.by_end:
+        given = stage.motion.by_end[name]
+        _set(end, origin, given)
+        if given.vessel is not None and vessels is not None:
+            vessel = vessels.motion(stage, name, origin)
+            _carry(end, vessel.berth.mean, vessel)
 
 
 def _move(end: End, origin: Array, target: Vector | None) -> None:

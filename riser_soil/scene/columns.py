@@ -1,8 +1,10 @@
 """Columns of numbers from a CSV file whose header names each with its unit: `t [s], x [m], y [m], z [m]`.
 
 Separated by commas or, where the header has any, by semicolons; empty lines and lines that begin with # don't count.
+Cells may stand in double quotes.
 """
 
+import csv
 import math
 import re
 from collections.abc import Iterator, Mapping
@@ -63,7 +65,8 @@ def _lines(file: Path) -> Iterator[_Line]:
     for number, line in enumerate(_text(file).splitlines(), start=1):
         if line.strip() and not line.lstrip().startswith("#"):
             separator = separator or (";" if ";" in line else ",")
-            yield number, [cell.strip() for cell in line.split(separator)]
+            (cells,) = csv.reader([line], delimiter=separator, skipinitialspace=True)
+            yield number, [cell.strip() for cell in cells]
 
 
 def _text(file: Path) -> str:
@@ -118,7 +121,7 @@ def _row(file: Path, line: _Line, names: list[str]) -> list[float]:
 
 def _number(place: str, cell: str) -> float:
     try:
-        value = float(cell)
+        value = math.nan if "_" in cell else float(cell)  # Python's own digit separators are no plain numbers
     except ValueError:
         value = math.nan
     if not math.isfinite(value):

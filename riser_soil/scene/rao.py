@@ -114,6 +114,10 @@ def _directions(columns: Columns) -> list[float]:
 
 
 def _responses(columns: Columns, mode: str) -> list[complex]:
+    for line, amplitude in zip(columns.lines, columns.values[mode], strict=True):
+        if amplitude < 0.0:
+            text = f"{mode} must not be negative; write its size and add 180 deg to {mode} phase"
+            raise wrong_file(f"{columns.file}:{line}: {text}")
     pairs = zip(columns.values[mode], columns.values[f"{mode} phase"], strict=True)
     return [amplitude * cmath.exp(-1j * lag) for amplitude, lag in pairs]
 

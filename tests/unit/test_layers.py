@@ -25,7 +25,7 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("mass", "newton"),
     ("local_error",),
     ("march", "relax"),
-    ("folder", "schedule", "progress", "inventory", "wave_doubts"),
+    ("folder", "schedule", "progress", "inventory", "wave_doubts", "motion_doubts"),
     ("doubts",),
     ("netcdf", "xdmf", "summary", "screen", "balance", "touchdown_zone"),
     ("record",),

@@ -99,6 +99,7 @@ def test_rotations_turn_the_support(tmp_path: Path) -> None:
         ("t [s], x [m], z [m]\n0, 0, 0\n", "motion.csv:1: there is no column y"),
         (HEADER + STILL + "1, 2, 3\n" + ROWS, "motion.csv:3: the row has 3 values, but the header names 4 columns"),
         (HEADER + STILL + "\n1, a, 0, 0\n", 'motion.csv:4: x: "a" is not a finite number'),
+        (HEADER + STILL + "1, 1_0, 0, 0\n", 'motion.csv:3: x: "1_0" is not a finite number'),
         (HEADER + STILL + "1, nan, 0, 0\n", 'motion.csv:3: x: "nan" is not a finite number'),
         (HEADER + STILL + "1, 0, 0,\n", 'motion.csv:3: z: "" is not a finite number'),
         (HEADER + STILL + ROWS.replace("2,", "1.0,"), "motion.csv:4: times must increase, but 1 s follows 1 s"),
@@ -116,6 +117,16 @@ def test_refused_tables(text: str | None, says: str, tmp_path: Path) -> None:
     assert says in message
     assert str(tmp_path) in message
     assert "; " in message
+
+
+def test_cells_may_stand_in_quotes(tmp_path: Path) -> None:
+    plain = scene(tmp_path, HEADER + STILL + ROWS)
+    lines = (HEADER + STILL + ROWS).splitlines()
+    quoted = "".join(",".join(f'"{cell.strip()}"' for cell in line.split(",")) + "\n" for line in lines)
+    assert '"t [s]","x [m]"' in quoted
+    expected = at(plain, 1.3)
+    for values, other in zip(at(scene(tmp_path, quoted), 1.3), expected, strict=True):
+        assert values == pytest.approx(other, abs=1e-15)
 
 
 def test_not_utf8(tmp_path: Path) -> None:

@@ -352,6 +352,8 @@ HEAD = "frequency [rad/s], direction [deg], heave [m/m], heave phase [deg]\n"
         (HEAD.replace("rad/s", "1/s"), "rao.csv:1: frequency can't be in [1/s], accepted are rad/s, Hz"),
         (HEAD, "rao.csv:1: the table has no rows"),
         (HEAD + "0, 0, 1, 0\n", "rao.csv:2: frequency must be greater than 0"),
+        (HEAD + "1, 0, 1, 0\n2, 0, -1, 0\n", "rao.csv:3: heave must not be negative; write its size and add 180 deg"),
+        (HEAD + "1_0, 0, 1, 0\n", 'rao.csv:2: frequency: "1_0" is not a finite number'),
         (HEAD + "1, 0, 1, x\n", 'rao.csv:2: heave phase: "x" is not a finite number'),
         (HEAD + "1, 0, 1, 0\n1, 360, 2, 0\n", "rao.csv:3: the wave of 1 rad/s (6.28319 s) and 0 deg was given"),
         (HEAD + "1, 0, 1, 0\n2, 45, 2, 0\n", "rao.csv: there is no row for the wave of 2 rad/s (3.14159 s) and 0 deg"),

@@ -1,0 +1,89 @@
+"""Doubts about motions: velocities that jump between stages, and time steps that are too long for what moves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from riser_soil.motion_doubts import motion_doubts
+from riser_soil.scene.reader import scene_from_mapping
+from tests.riser_scenes import Mapping, dynamic, held, riser_scene, static
+
+PIPE = {"EA": 1.0e7, "EI": 1.0e5, "GJ": 1.0e5, "mass": 50.0, "submerged_weight": 200.0, "outer_diameter": 0.2}
+HARMONIC: Mapping = {"amplitude": [0.0, 0.0, 2.0], "period": 6.2831853}  # 2 m/s at its middle
+SWELL: Mapping = {"airy": {"height": 2.0, "period": 8.0}}
+
+
+def doubts(*stages: Mapping, folder: Path | None = None, rotation: Any = "fixed", **more: Any) -> list[str]:
+    pipe = riser_scene(
+        *stages,
+        pipe=PIPE,
+        length=60.0,
+        elements=6,
+        start=held(0.0, 0.0, -30.0),
+        end=held(40.0, 0.0, 3.0, rotation=rotation),
+        gravity=9.81,
+        **more,
+    )
+    return list(motion_doubts(scene_from_mapping(pipe, folder) if folder else scene_from_mapping(pipe)))
+
+
+def moved(name: str = "move", duration: float = 6.2831853, time_step: float = 0.1, **motion: Any) -> Mapping:
+    return dynamic(duration, time_step, name, motion={"end": motion})
+
+
+@pytest.mark.parametrize(
+    ("motion", "speed"),
+    [
+        ({"harmonic": HARMONIC}, "2 m/s"),
+        ({"arc": {"hub": [40.0, 0.0, 13.0], "amplitude_deg": 9.0, "period": 6.2831853}}, "1.57 m/s"),
+        ({"rotation": {"axis": [0.0, 1.0, 0.0], "amplitude_deg": 9.0, "period": 6.2831853}}, "9 deg/s"),
+    ],
+)
+def test_a_start_at_full_speed_is_told_and_a_ramp_heals_it(motion: Mapping, speed: str) -> None:
+    (told,) = doubts(static(), moved(**motion))
+    assert told.startswith(f"stages.1.motion.end: the end starts at {speed} from rest, at once")
+    assert told.endswith("give the motion a ramp [s]")
+    ((kind, given),) = motion.items()
+    assert not doubts(static(), moved(**{kind: given | {"ramp": 3.0}}))
+
+
+def test_a_table_that_starts_moving(tmp_path: Path) -> None:
+    (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + "".join(f"{t},{3 * t},0,0\n" for t in range(8)))
+    (told,) = doubts(moved(table="t.csv"), folder=tmp_path)
+    assert "the end starts at 3 m/s" in told
+    rows = "".join(f"{t},{0.1 * t**3},0,0\n" for t in range(8))
+    (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + rows)
+    assert not doubts(moved(table="t.csv"), folder=tmp_path)
+
+
+def test_what_stops_dead_is_told() -> None:
+    ramped: dict[str, Any] = {"harmonic": HARMONIC | {"ramp": 3.0}}
+    (told,) = doubts(moved(**ramped), dynamic(1.0, 0.1, "still"))
+    assert told.startswith("stages.1: the end stops dead as the stage begins, its velocity jumping by 2 m/s")
+    (told,) = doubts(moved(**ramped), moved("again", **ramped))
+    assert told.startswith("stages.1: the end takes up another motion as the stage begins")
+    assert not doubts(moved(**ramped), moved("on", harmonic=HARMONIC))  # a whole period later it is the same sine
+    assert not doubts(moved(**ramped), static())
+    assert len(doubts(moved(**ramped), static(), moved("again", harmonic=HARMONIC))) == 1
+    assert not doubts(moved(duration=6.2831853 * 1.25, **ramped), dynamic(1.0, 0.1, "still"))  # at rest, at the top
+
+
+@pytest.mark.parametrize(
+    ("period", "waves", "time_step", "says"),
+    [
+        (4.0, None, 0.5, "steps of 0.5 s are long beside the period of the end's harmonic, 4 s: take at most a tenth"),
+        (4.0, None, 0.4, None),
+        (4.0, SWELL, 0.5, "the end's harmonic, 4 s"),
+        (9.0, SWELL, 0.9, "steps of 0.9 s are long beside the period of the waves, 8 s: take at most a tenth of it"),
+        (9.0, SWELL, 0.8, None),
+    ],
+)
+def test_long_time_steps(period: float, waves: Mapping | None, time_step: float, says: str | None) -> None:
+    water: dict[str, Any] = {"water": {"surface_level": 10.0, "waves": waves}} if waves else {}
+    harmonic = {"amplitude": [0.0, 0.0, 2.0], "period": period, "ramp": period}
+    told = doubts(static(), moved(harmonic=harmonic, time_step=time_step), **water)
+    assert len(told) == (says is not None)
+    assert all(says in doubt and doubt.startswith("stages.1.time_step: ") for doubt in told if says)
