@@ -107,7 +107,7 @@ def _long_steps(scene: Scene, path: str, stage: DynamicStage) -> Iterator[str]:
         return
     what = min(periods, key=lambda name: periods[name])
     longest = LONGEST_STEP * periods[what]
-    if stage.time_step > longest * (1.0 + 1e-9):
+    if stage.time_step != "auto" and stage.time_step > longest * (1.0 + 1e-9):
         yield (
             f"{path}: steps of {stage.time_step:g} s are long beside the period of {what}, {periods[what]:g} s: take "
             f"at most a tenth of it, {longest:.3g} s"
