@@ -26,6 +26,7 @@ demo: setup ## a flexible riser comes down on 3D clay: results and a picture in 
 
 demos: demo ## that demo and the others (demos/*/README.md), with their tables and pictures
 	$(PYTHON) -m demos.catenary.run
+	$(PYTHON) -m demos.tank.run
 	$(PYTHON) -m demos.waves.run
 
 test: lint ## linters, types, and the quick tests, some of them on two ranks

@@ -25,6 +25,7 @@ WEIGHT, HUB, ARM = 147.09975, (28.0, 17.0), 2.0
 ROUNDED = 0.1  # the contact law's corner, in depths at rest
 METHODS = ("line", "node")
 ELEMENTS, STIFFNESSES = (50, 100, 200, 400, 800), (1e5, 1e6, 1e7, 1e8, 1e9)
+ON_THE_PAGE = (1e6, 1e8)  # N/m2
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,12 @@ def mesh_errors(folder: Path, method: str, elements: Sequence[int], stiffness: f
 def orders(x: Sequence[float] | Array, errors: Array) -> Array:
     """Slopes of log error over log x, by least squares, without sign; nan where an error is zero to all digits."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(-np.polyfit(np.log(x), np.log(np.abs(errors)), 1)[0])
+        logs = np.log(np.abs(errors))
+    return np.apply_along_axis(lambda column: _slope(np.log(x), column), 0, logs)
+
+
+def _slope(x: Array, y: Array) -> float:
+    return float(-np.polyfit(x, y, 1)[0]) if np.isfinite(y).all() else np.nan
 
 
 def penalty_rows() -> list[list[str]]:
@@ -127,18 +133,19 @@ def _orders(found: Array) -> list[str]:
     return [f"{order:.1f}" if np.isfinite(order) else "–" for order in found]
 
 
-def main(results: Path) -> None:
+def at_rest_blocks(results: Path) -> dict[str, str]:
+    """The page's tables of the hose at rest."""
     relative = ("H", "top tension", "touchdown m", "largest M")
     absolute = ("H N", "top tension N", "touchdown m", "largest M N.m")
-    blocks = {
+    return {
         "at_rest_rigid": table(["arm deg", "", *absolute], rigid_rows(results)),
         "at_rest_penalty": table(["k N/m²", *relative], penalty_rows()),
-        "at_rest_mesh": table(["method", "k N/m²", "elements", *relative], mesh_rows(results)),
+        "at_rest_mesh": table(["method", "k N/m²", "elements", *relative], mesh_rows(results, stiffnesses=ON_THE_PAGE)),
     }
-    publish(blocks, results)
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--results", type=Path, default=HERE / "results", help="folder for runs and tables")
-    main(parser.parse_args().results)
+    folder = parser.parse_args().results
+    publish(at_rest_blocks(folder), folder)
