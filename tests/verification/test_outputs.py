@@ -198,15 +198,16 @@ def resident_memory(scene: Mapping, folder: Path) -> Array:
 
 @pytest.mark.parametrize("name", ["coupled", "riser"])
 def test_memory_stays_flat_over_500_steps(name: str, tmp_path: Path) -> None:
-    """Resident memory grows by less than 3 MB from step 100 to step 600; the states of 500 coupled steps kept would
-    be 7 MB. Results are recorded every tenth step: those of every step would wait in memory for their turn on disk.
+    """Resident memory grows by less than 4 MB from step 100 to step 600; the states of 500 coupled steps kept would
+    be 7 MB. Results are recorded every tenth step: those of every step would wait in memory for their turn on disk. So
+    does the energy balance of the steps, which makes a step of some 2 MB somewhere on the way, once.
     """
     scene = touchdown(LAY, heave(60.0), su=1000.0) | {"output": {"interval": 1.0}}
     if name == "riser":
         del scene["soil"]
     megabytes = resident_memory(scene, tmp_path)
     assert len(megabytes) == 601
-    assert megabytes[-1] - megabytes[100] < 3.0
+    assert megabytes[-1] - megabytes[100] < 4.0
 
 
 @pytest.mark.verify
