@@ -69,6 +69,7 @@ SERIES: dict[str, Variable] = {
         "greatest depth yet of the riser's underside below the ground as it lay before the riser came",
         ">= 0",
     ),
+    "slip": Variable(("time", "arc"), "m", "length of the way that the riser has slid over the seabed so far", ">= 0"),
     "moment_vector": Variable(
         ("time", "arc", "component"),
         "N m",

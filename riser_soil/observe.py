@@ -119,6 +119,8 @@ def _known_fields(world: World) -> tuple[str, ...]:
         unknown |= {"bend_utilisation"}
     if not world.contacts:
         unknown |= {"penetration", "embedment"}
+    if world.friction is None:
+        unknown |= {"slip"}
     return tuple(name for name in world.scene.output.fields if name not in unknown)
 
 

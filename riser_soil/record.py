@@ -26,6 +26,7 @@ RISER_FIELDS = (
     "contact_force",
     "penetration",
     "embedment",
+    "slip",
     "moment_vector",
 )
 SOIL_FIELDS = ("displacement", "von_mises_stress", "equivalent_plastic_strain")

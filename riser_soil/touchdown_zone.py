@@ -38,6 +38,7 @@ class TouchdownZone:
             contact_force=np.asarray(sum((contact.force_on_riser(state) for contact in contacts), np.zeros(3))),
             penetration=self._penetration(state) if "penetration" in self._fields else None,
             embedment=self._embedded(state) if "embedment" in self._fields else None,
+            slip=self._world.friction.slip() if self._world.friction and "slip" in self._fields else None,
         )
 
     def _penetration(self, state: State) -> Array:

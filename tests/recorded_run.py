@@ -70,7 +70,7 @@ class Catenary:
     def touch(self, arc: Array) -> Touch:
         place, force = np.array([self.s0, 0.0, RADIUS]), np.array([0.0, 0.0, WEIGHT * self.s0])
         depth = np.where(arc < self.s0, 0.002, 0.0)
-        return Touch(self.s0, place, 1, 0.003, force, depth, 1.5 * depth)
+        return Touch(self.s0, place, 1, 0.003, force, depth, 1.5 * depth, 0.1 * depth)
 
 
 def block(nx: int = 40, ny: int = 10, nz: int = 5, *, tetrahedra: bool = False) -> SoilMesh:

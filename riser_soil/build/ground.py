@@ -9,7 +9,6 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.arrays import Array
-from riser_soil.part import Part
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.contact import Contact as ContactScene
@@ -22,6 +21,7 @@ from riser_soil.scene.soil import Soil as SoilScene
 
 if TYPE_CHECKING:
     from riser_soil.build.world import World
+    from riser_soil.contact.friction import Friction
     from riser_soil.contact.law import NormalLaw
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
@@ -109,16 +109,16 @@ def seabed_contact_of(scene: Scene, settings: ContactScene, world: World) -> Sea
     )
 
 
-def friction_of(settings: ContactScene, world: World) -> list[Part]:
+def friction_of(settings: ContactScene, world: World) -> Friction | None:
     """Friction on the seabed, where the scene asks for it."""
     given = settings.friction
     if given is None or world.seabed is None:
-        return []
+        return None
     from riser_soil.contact.friction import Friction, mobilised_within
 
     mu = given.axial, given.axial if given.lateral is None else given.lateral
     stiffness = mobilised_within(given.mobilisation, *mu, np.abs(world.elements.weight))
-    return [Friction(world.seabed, *mu, stiffness)]
+    return Friction(world.seabed, *mu, stiffness)
 
 
 def _law(seabed: Seabed, settings: ContactScene, world: World) -> NormalLaw:

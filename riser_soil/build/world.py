@@ -24,6 +24,7 @@ from riser_soil.scene.stages import DynamicStage, Move, Stage, StaticStage
 
 if TYPE_CHECKING:
     from riser_soil.build.vessels import Vessels
+    from riser_soil.contact.friction import Friction
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.riser.attachments import Attachment
@@ -57,7 +58,7 @@ class World:
     soil: Soil | None = None
     soil_contact: SoilContact | None = None
     seabed: SeabedContact | None = None
-    friction: list[Part] = field(default_factory=list)
+    friction: Friction | None = None
     contact_stiffness: dict[str, float] = field(default_factory=dict)
     vessels: Vessels | None = None
 
@@ -123,7 +124,8 @@ class World:
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
         soil = [self.soil] if self.soil is not None else []
-        return Model(self.fields, [*parts, *soil, *self.contacts, *self.friction])
+        friction = [self.friction] if self.friction is not None else []
+        return Model(self.fields, [*parts, *soil, *self.contacts, *friction])
 
 
 def build(scene: Scene, comm: MPI.Intracomm) -> World:

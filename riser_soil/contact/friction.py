@@ -53,6 +53,7 @@ class Friction:
         self._mu = np.array([axial, lateral])[: self.line.dimension - 1]
         self._stiffness = stiffness[:, None, None]
         self._begun: Grip | None = None
+        self._slid = np.zeros(contact.share.shape)
 
     def see(self, trial: Trial) -> Sliding:
         """Tractions of the elements that touch."""
@@ -144,7 +145,22 @@ class Friction:
             sliding = self.see(trial)
             traction = np.zeros_like(self.contact.see(trial).position)
             traction[sliding.elements] = -sliding.resistance
+            self._slid[sliding.elements] += self._slide(trial, sliding)
             self._begun = self._grip_at(trial, traction)
+
+    def _slide(self, trial: Trial, sliding: Sliding) -> Array:
+        """What each station (m, ng) slides in the step beyond what the ground gives elastically [m]."""
+        at = sliding.elements
+        position, along, t_n = (values[at] for values in self._grip(trial))
+        moved = self.contact.see(trial).position[at] - position
+        elastic = (t_n + sliding.resistance) / self._stiffness[at]
+        slid = np.linalg.norm(_components(along, moved - elastic), axis=2)
+        pressed = self.contact.see(trial).touching.force > 0.0
+        return np.where(pressed, slid, 0.0)
+
+    def slip(self) -> Array:
+        """How far the riser has slid over the ground so far, at its nodes (nn,) [m]: the length of its way, >= 0."""
+        return self.contact.at_nodes(self._slid)
 
     def force_on_riser(self, state: State) -> Array:
         """Sum of the friction on the riser (3,) [N], global axes."""

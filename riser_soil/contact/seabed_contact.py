@@ -169,10 +169,14 @@ class SeabedContact:
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m]: the stations' forces, shared linearly by two nodes."""
         touching = self.see(self.line.trial(state)).touching
-        shares = (self.share[touching.elements] * touching.force) @ self._linear.T
-        total = np.zeros(self.line.nodes)
-        np.add.at(total, touching.elements, shares[:, 0])
-        np.add.at(total, touching.elements + 1, shares[:, 1])
+        force = np.zeros_like(self.share)
+        force[touching.elements] = touching.force
+        return self.at_nodes(force)
+
+    def at_nodes(self, values: Array) -> Array:
+        """Means at the nodes (nn,) of values at the stations (ne, ng), which count with their share of arc length."""
+        shares = (self.share * values) @ self._linear.T
+        total = np.append(shares[:, 0], 0.0) + np.append(0.0, shares[:, 1])
         return np.asarray(total / self.line.tributary_length)
 
     def penetration(self, state: State) -> Array:

@@ -15,6 +15,7 @@ FieldName = Literal[
     "contact_force",
     "penetration",
     "embedment",
+    "slip",
     "moment_vector",
     "displacement",
     "von_mises_stress",

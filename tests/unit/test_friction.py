@@ -126,10 +126,11 @@ def test_back_and_forth_it_takes_four_slides(dimension: int) -> None:
     A, m = 0.1, MOBILISATION * AXIAL / LATERAL
     step = np.array([0.002, 0.0, 0.0])
     slide(line, friction, np.array([step] * 50))
-    before = friction.energy(slid(line, np.zeros(3))).potential
+    before, way = friction.energy(slid(line, np.zeros(3))).potential, friction.slip()
     cycle = np.concatenate([np.tile(-step, (100, 1)), np.tile(step, (100, 1))])
     force, taken, lost = slide(line, friction, cycle)
     limit = AXIAL * PRESSED * 10.0
+    assert friction.slip() - way == pytest.approx(np.full(line.nodes, 4.0 * (A - m)))
     assert force[0] == pytest.approx(-limit)
     assert friction.energy(slid(line, np.zeros(3))).potential == pytest.approx(before)
     assert before == pytest.approx(0.5 * limit * m)

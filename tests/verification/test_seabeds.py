@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from riser_soil.errors import ResultsError
+from riser_soil.results import Run
+from riser_soil.run import run
+from riser_soil.scene.reader import read_scene
 from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
 from riser_soil.snapshot import RiserSnapshot
 from tests.coupled_scenes import Mapping
 from tests.riser_scenes import distance, held, riser_scene, static, tell
 
+SCENES = Path(__file__).parents[1] / "scenes"
 W, SLOPE = 700.0, 2.0  # N/m, deg; steeper, the riser would be pushed at its start, and lie down beside its plane
 PIPE = {"EA": 3e8, "EI": 2e4, "GJ": 1e4, "outer_diameter": 0.3, "submerged_weight": W}
 RISE = float(np.tan(np.radians(SLOPE)))
@@ -144,3 +150,16 @@ def test_pulled_riser_slides_as_far_as_friction_lets_it(dimension: int) -> None:
     assert T.max() > lain.effective_tension.max() + 500.0
     assert share.max() < 1.02
     assert np.count_nonzero(np.abs(share - 1.0) < 0.02) > 5
+
+
+def test_slip_is_told_where_there_is_friction(tmp_path: Path) -> None:
+    """The pulled end's side slides, the anchor's side does not; without friction the field is left out."""
+    scene = read_scene(SCENES / "hysteretic.yaml", ("stages.1.duration=6.0", "contact.friction.mobilisation=1e-3"))
+    run(scene, tmp_path / "rough")
+    slip = Run(tmp_path / "rough")["slip"]
+    assert np.all(np.diff(slip, axis=0) >= 0.0)
+    assert slip[-1].max() > 1e-3
+    assert slip[-1, 0] < 0.5 * slip[-1].max()
+    run(read_scene(SCENES / "tank.yaml", ("stages.1.duration=0.5",)), tmp_path / "smooth")
+    with pytest.raises(ResultsError, match="no slip;"):
+        Run(tmp_path / "smooth")["slip"]
