@@ -6,16 +6,20 @@ import tempfile
 from pathlib import Path
 
 from demos.tank.convergence import BEST, CHEAP
-from demos.tank.swing import FORCES, MOMENT, UNTIL, error, swing
+from demos.tank.swing import FORCES, MOMENT, UNTIL, Swing, error, swing
 
 
 def report() -> None:
     with tempfile.TemporaryDirectory() as folder:
         best, *cheap = (swing(Path(folder) / str(n), *case) for n, case in enumerate((BEST, *CHEAP)))
-    for run in (*cheap, best):
-        forces, moment = (100.0 * error(run, best, names) for names in (FORCES, MOMENT))
-        print(
-            f"tank, {run.elements} elements, {run.time_step:g} s: {UNTIL / run.seconds:.1f} simulated seconds per "
-            f"processor second, {run.stage['iterations']:.2f} iterations a step; errors {forces:.2f} % of tensions, "
-            f"{moment:.3f} % of the moment"
-        )
+        for run in (*cheap, best):
+            print(told(run, best))
+
+
+def told(run: Swing, best: Swing) -> str:
+    forces, moment = (100.0 * error(run, best, names) for names in (FORCES, MOMENT))
+    return (
+        f"tank, {run.elements} elements, {run.time_step:g} s: {UNTIL / run.seconds:.1f} simulated seconds per "
+        f"processor second, {run.stage['iterations']:.2f} iterations a step; errors {forces:.2f} % of tensions, "
+        f"{moment:.3f} % of the moment"
+    )
