@@ -96,7 +96,7 @@ def check(case: Case, folder: Path) -> str:
     if "laying" in found.summary:
         return "laid"
     method: str = found.summary["stages"][0]["method"]
-    assert method == "newton", "a catenary under tension is near enough"
+    assert method == "newton" or case.ground == "rigid", "a catenary under tension is near enough, but for a hard floor"
     return method
 
 
