@@ -73,11 +73,6 @@ class StepControl:
         self._level += 1
         return True
 
-    def widen(self) -> None:
-        """Forget the cuts: try the largest step that starts here."""
-        while self._level > 0 and self._at % (2 * self._stride) == 0:
-            self._level -= 1
-
     @property
     def _stride(self) -> int:
         return int(2 ** (self._levels - self._level))

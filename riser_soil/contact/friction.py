@@ -9,6 +9,7 @@ import numpy as np
 from riser_soil.arrays import Array, IntArray
 from riser_soil.contact.coulomb import traction
 from riser_soil.contact.seabed_contact import SeabedContact
+from riser_soil.contact.station_forces import StationForces
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.riser import stations
 from riser_soil.riser.trial import Trial
@@ -53,6 +54,7 @@ class Friction:
         self._mu = np.array([axial, lateral])[: self.line.dimension - 1]
         self._stiffness = stiffness[:, None, None]
         self._begun: Grip | None = None
+        self._forces = StationForces(self.line, contact.at)
         self._slid = np.zeros(contact.share.shape)
 
     def see(self, trial: Trial) -> Sliding:
@@ -88,18 +90,9 @@ class Friction:
 
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
-        found: Array = self.line.trial(state).once((self, "element forces"), self._element_forces)
-        return None, found
-
-    def _element_forces(self, trial: Trial) -> Array:
-        return trial.pull_back(trial.once((self, "F"), self._F))
-
-    def _F(self, trial: Trial) -> Array:
-        """Residual conjugate to q (ne, 4, d)."""
+        trial = self.line.trial(state)
         sliding = self.see(trial)
-        F = np.zeros((self.line.length.size, 4, self.line.dimension))
-        F[sliding.elements] = stations.integrate(self.contact.at.of(sliding.elements), sliding.resistance)
-        return F
+        return None, self._forces.in_elements(trial, sliding.elements, sliding.resistance)
 
     def residual(self, state: State, forces: Forces) -> None:
         if self.line.active:
@@ -107,14 +100,9 @@ class Friction:
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         """Unweighted: friction stands at the end of the step."""
-        if not self.line.active:
-            return
-        trial, K = self.line.trial(state), values["riser"]
-        sliding = self.see(trial)
-        if sliding.elements.size == 0:
-            return
-        stations.add_stiffness(K, self.contact.at, sliding.elements, sliding.by_position, trial.turn.P)
-        trial.add_turning(K, 1.0, trial.once((self, "F"), self._F))
+        if self.line.active:
+            trial = self.line.trial(state)
+            self._forces.add_tangent(values["riser"], trial, *self.see(trial))
 
     def energy(self, state: State) -> Energy:
         """Stored in what the ground gives elastically along itself."""

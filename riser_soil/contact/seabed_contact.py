@@ -9,6 +9,7 @@ import numpy as np
 
 from riser_soil.arrays import Array, BoolArray, IntArray
 from riser_soil.contact.law import NormalLaw
+from riser_soil.contact.station_forces import StationForces
 from riser_soil.contact.touchdown import Stretch, stretches, touchdown
 from riser_soil.part import Block, Energy, Forces, State, Weights, Work
 from riser_soil.riser import stations
@@ -71,6 +72,7 @@ class SeabedContact:
         self.line, self.ground, self.law = line, ground, law
         self._radius, self._covered = radius, covered
         self.at = stations.stations(line.length, rule)
+        self._forces = StationForces(line, self.at)
         self.share = line.length[:, None] * rule.weights
         self._arc = line.arc[:-1, None] + line.length[:, None] * rule.points
         self._linear = np.stack([1.0 - rule.points, rule.points])
@@ -107,18 +109,9 @@ class SeabedContact:
 
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
-        found: Array = self.line.trial(state).once((self, "element forces"), self._element_forces)
-        return None, found
-
-    def _element_forces(self, trial: Trial) -> Array:
-        return trial.pull_back(trial.once((self, "F"), self._F))
-
-    def _F(self, trial: Trial) -> Array:
-        """Residual conjugate to q (ne, 4, d)."""
+        trial = self.line.trial(state)
         touching = self.see(trial).touching
-        F = np.zeros((self.line.length.size, 4, self.line.dimension))
-        F[touching.elements] = stations.integrate(self.at.of(touching.elements), touching.resistance)
-        return F
+        return None, self._forces.in_elements(trial, touching.elements, touching.resistance)
 
     def residual(self, state: State, forces: Forces) -> None:
         if self.line.active:
@@ -126,14 +119,10 @@ class SeabedContact:
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         """Unweighted: contact stands at the end of the step."""
-        if not self.line.active:
-            return
-        trial, K = self.line.trial(state), values["riser"]
-        touching = self.see(trial).touching
-        if touching.elements.size == 0:
-            return
-        stations.add_stiffness(K, self.at, touching.elements, self._by_position(touching), trial.turn.P)
-        trial.add_turning(K, 1.0, trial.once((self, "F"), self._F))
+        if self.line.active:
+            trial = self.line.trial(state)
+            t = self.see(trial).touching
+            self._forces.add_tangent(values["riser"], trial, t.elements, t.resistance, self._by_position(t))
 
     def _by_position(self, t: Touching) -> Array:
         """Derivative (m, ng, d, d) of the resistance by the position."""

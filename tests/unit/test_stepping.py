@@ -55,11 +55,3 @@ def test_cuts_end_at_the_smallest_step() -> None:
     control = StepControl(1.0, 0.5, 0.1)
     assert [control.cut() for _ in range(3)] == [True, True, False]
     assert control.dt == pytest.approx(0.125)
-
-
-def test_widen_forgets_the_cuts() -> None:
-    control = StepControl(1.0, 0.5, 0.01)
-    control.cut()
-    control.cut()
-    control.widen()
-    assert control.dt == pytest.approx(0.5)

@@ -78,7 +78,8 @@ def test_rates_are_derivatives_of_the_increments(dimension: int, turning: Callab
     def at(time: float) -> tuple[Array, Array, Array]:
         u, v, a = np.zeros((3, line.size))
         line.prescribe(time, u, v, a)
-        return tuple(line.nodal(x)[0, dimension:] for x in (u, v, a))  # type: ignore[return-value]
+        angle, rate, acceleration = (line.nodal(x)[0, dimension:] for x in (u, v, a))
+        return angle, rate, acceleration
 
     (ahead, v_ahead, _), (behind, v_behind, _), (_, v, a) = at(t + h), at(t - h), at(t)
     assert v == pytest.approx((ahead - behind) / (2 * h), abs=1e-6)

@@ -17,6 +17,7 @@ from riser_soil.errors import SceneError
 from riser_soil.motion.rao import RaoTable
 from riser_soil.part import State
 from riser_soil.riser import rotations
+from riser_soil.riser.directors import SpatialFrames
 from riser_soil.riser.ends import Turning
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import resolved_dimension
@@ -129,7 +130,8 @@ def test_modes_move_along_and_about_the_vessels_axes(mode: str, axis: int, sign:
     assert turned(world, t).rotation == pytest.approx(sign * size * along, abs=1e-14)
     state = State.at_rest(t, world.line.size)
     world.line.prescribe(t, state.u, state.v, state.a)
-    spin = world.line.frames.R[-1] @ world.line.nodal(state.u)[-1, 3:]  # type: ignore[union-attr]
+    assert isinstance(world.line.frames, SpatialFrames)
+    spin = world.line.frames.R[-1] @ world.line.nodal(state.u)[-1, 3:]
     assert spin == pytest.approx(sign * size * along, abs=1e-13)
 
 
