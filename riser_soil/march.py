@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 from mpi4py import MPI
@@ -15,6 +14,7 @@ from riser_soil.local_error import LocalError
 from riser_soil.mass import RiserMass
 from riser_soil.newton import Newton, NotConvergedError, Solution, Step
 from riser_soil.part import Energy, Forces, State, Work
+from riser_soil.roles import Adaptive, Carrying, Demanding, Foreseeing, Turning
 from riser_soil.stepping import Control
 from riser_soil.system import System, total
 from riser_soil.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
@@ -23,54 +23,6 @@ WRONG_ROOT = 0.2  # of the energy in motion: what a step may make out of nothing
 ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away
 METRE = 1.0  # over which the least force that counts does negligible work, as where a motion starts from rest
 EASY = 6  # Newton iterations up to which a step that was cut may grow again
-
-
-@runtime_checkable
-class Adaptive(Protocol):
-    """A part whose pattern covers what may come; it says when the motion has left it."""
-
-    outgrown: bool
-
-    def rebuild(self, state: State) -> None: ...
-
-
-@runtime_checkable
-class Foreseeing(Protocol):
-    """A part or field that knows a better first guess of a step than the last increment."""
-
-    def improve(self, guess: State) -> Array: ...
-
-
-@runtime_checkable
-class Carrying(Protocol):
-    """A part whose rates at the end of a step are more than the state's; it starts each step from the state's."""
-
-    def begin(self, state: State) -> None: ...
-
-    def add_excess(self, state: State, out: Array) -> None:
-        """Add the momentum beyond that of the state's rates."""
-        ...
-
-
-@runtime_checkable
-class Turning(Protocol):
-    """A field whose dofs refer to axes that turn with it."""
-
-    offset: int
-    size: int
-
-    def in_new_axes(self, conjugate: Array, increments: Array) -> Array:
-        """Forces (field's slice) conjugate to the increments, as those of the step after these increments have them."""
-        ...
-
-
-@runtime_checkable
-class Demanding(Protocol):
-    """Steps that only go on when their local error [m] is small."""
-
-    def fault(self, error: float) -> str:
-        """What is wrong with a step of this error; empty for a good one."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)

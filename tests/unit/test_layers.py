@@ -13,7 +13,7 @@ PACKAGE = Path(riser_soil.__file__).parent
 LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one another
     ("errors", "arrays", "compiled", "smooth_step"),
     ("part", "snapshot"),
-    ("scene", "dolfinx_compat", "time_scheme"),
+    ("scene", "dolfinx_compat", "time_scheme", "roles"),
     ("riser",),
     ("sea", "soil", "seabed", "motion"),
     ("contact",),
