@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.arrays import IntArray
 from riser_soil.build import World
-from riser_soil.build.ground import smoothing, surface_modulus
+from riser_soil.build.ground import smoothing
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage
 
@@ -134,7 +134,7 @@ def _beyond_the_rao(world: World) -> Iterator[str]:
 def _penalty_against_soil(world: World) -> Iterator[str]:
     if world.scene.soil is None:
         return
-    E, k = surface_modulus(world.scene.soil), world.contact_stiffness["soil"]
+    E, k = world.scene.soil.law.surface_modulus, world.contact_stiffness["soil"]
     if k < SOFT * E:
         yield (
             f"contact.stiffness {k:.4g} N/m2 is below the soil's Young's modulus at the surface, {E:.4g} Pa: the pipe "

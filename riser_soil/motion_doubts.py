@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, assert_never
 
 import numpy as np
 
 from riser_soil.arrays import Array
 from riser_soil.build.motions import set_motion, vessels_of
 from riser_soil.riser.ends import End
-from riser_soil.scene.motions import EndMotion
+from riser_soil.scene.motions import Arc, EndMotion, Harmonic, Rotation, Table, Vessel
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage
@@ -124,6 +124,11 @@ def _periods(scene: Scene, stage: DynamicStage) -> Iterator[tuple[str, float]]:
 
 
 def _own_periods(motion: EndMotion) -> Iterator[tuple[str, float]]:
-    for key, given in {"harmonic": motion.harmonic, "arc": motion.arc, "rotation": motion.rotation}.items():
-        if given is not None:
-            yield key, given.period
+    for key, way in motion.ways.items():
+        match way:
+            case Harmonic() | Arc() | Rotation():
+                yield key, way.period
+            case Table() | Vessel():  # as fast as its file, or as the waves
+                pass
+            case _:
+                assert_never(way)
