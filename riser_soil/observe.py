@@ -89,11 +89,11 @@ class Observer:
         self._clock.add("output", since)
 
     def laid(self, slack: float, steps: int, relaxations: int) -> None:
-        """Before the stages, the end of a slack riser was brought to its place from `slack` [m] beyond it."""
+        """Before the stages, the end of a slack or steep riser was brought to its place from `slack` [m] beyond it."""
         if self._recorder is not None:
             self._recorder.summary.laying = {"slack": slack, "load_steps": steps, "relaxations": relaxations}
             helped = f" and {relaxations} dynamic relaxation(s)" if relaxations else ""
-            print(f"the riser is slack: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
+            print(f"{self._world.hanging}: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
 
     def relaxed(self, iterations: int) -> None:
         """Dynamic relaxation was needed; its Newton iterations count with the next step."""
