@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
@@ -12,7 +12,14 @@ from riser_soil.part import Part
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, MidpointScheme, NewmarkScheme, Stage, StaticStage
+from riser_soil.scene.stages import (
+    DynamicStage,
+    GeneralizedAlphaScheme,
+    MidpointScheme,
+    NewmarkScheme,
+    Stage,
+    StaticStage,
+)
 from riser_soil.scene.stages import Load as LoadScene
 from riser_soil.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
 
@@ -25,18 +32,21 @@ def scheme_of(stage: Stage) -> Scheme:
     """How the stage goes from one step to the next."""
     if isinstance(stage, StaticStage):
         return Static()
-    if isinstance(stage.scheme, MidpointScheme):
-        return Midpoint()
-    if isinstance(stage.scheme, NewmarkScheme):
-        return GeneralizedAlpha.newmark(stage.scheme.newmark.beta, stage.scheme.newmark.gamma)
-    return GeneralizedAlpha.from_rho_inf(stage.scheme.generalized_alpha.rho_inf)
+    match stage.scheme:
+        case MidpointScheme():
+            return Midpoint()
+        case NewmarkScheme(newmark=given):
+            return GeneralizedAlpha.newmark(given.beta, given.gamma)
+        case GeneralizedAlphaScheme(generalized_alpha=given):
+            return GeneralizedAlpha.from_rho_inf(given.rho_inf)
+        case _:
+            assert_never(stage.scheme)
 
 
 def times_to_hit(scene: Scene, stage: DynamicStage) -> list[float]:
     """Times [s] in a stage where output is due, a motion's ramp ends or a load's history bends."""
     motions = stage.motion.by_end.values() if stage.motion else ()
-    ways = [way for m in motions for way in (m.harmonic, m.arc, m.table, m.vessel, m.rotation) if way]
-    ramps = [way.ramp for way in ways if way.ramp]
+    ramps = [way.ramp for motion in motions for way in motion.ways.values() if way.ramp]
     bends = [t for load in stage.loads for t, _ in load.history or ()]
     paces = {scene.output.interval, scene.output.xdmf_interval} - {None}
     return [*ramps, *bends, *(t for pace in paces if pace for t in _multiples(pace, stage.duration))]

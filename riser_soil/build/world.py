@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -93,11 +94,21 @@ class World:
         return self.catenary.slack if self.catenary is not None else 0.0
 
     @property
+    def hanging(self) -> str:
+        """How the riser hangs whose first shape ends beyond its place: in a loop, or stretched and so steep that its
+        horizontal tension is less than a bend takes.
+        """
+        ends = self.scene.riser.start, self.scene.riser.end
+        points = [end.position for end in ends if isinstance(end, Support)]
+        taut = len(points) == 2 and math.dist(*points) >= self.scene.riser.length
+        return "the riser is taut and steep" if taut else "the riser is slack"
+
+    @property
     def too_slack(self) -> str:
-        """What to tell where a slack riser finds no equilibrium."""
+        """What to tell where a riser whose first shape ends beyond its place finds no equilibrium."""
         bend = least_bend(self.elements)
         return (
-            f"the riser is slack: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
+            f"{self.hanging}: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
             "its place, and no way back there was found; take shorter segments, move the ends apart, or take "
             f"elements well below (EI/w)^(1/3) = {bend:.3g} m, the length over which it bends under its own weight"
         )
