@@ -29,7 +29,7 @@ CPU_SECONDS = 60
 TOLD_LONG_SECONDS = 5  # of a scene whose computation is long, as the program says
 MEMORY = 6 * 2**30
 STATUSES = {0: "done", 2: "bad input", 3: "solve failed", 4: "results not written"}
-LONG = "takes about"
+LONG = "this takes about"
 
 
 @dataclass(frozen=True)
@@ -53,9 +53,6 @@ def endings(cases: Iterable[Case], folder: Path, workers: int) -> Iterator[Endin
 
 def import_all() -> None:
     """What the processes then have already; MPI and the kernels' caches among it."""
-    import dolfinx.io
-    import gmsh
-    import mpi4py.MPI
 
     import riser_soil.check
     import riser_soil.run

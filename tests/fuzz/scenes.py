@@ -63,7 +63,7 @@ def _beside(file: Path) -> dict[str, bytes]:
 
 
 def _others() -> Iterator[Mapping]:
-    """What the written scenes lack: tables, rotations, attachments, laws of seabeds, soil of tetrahedra and of a file."""
+    """What the written scenes lack: tables, rotations, attachments, seabeds' laws, soil of tetrahedra and of a file."""
     yield parse(GOOD, "good").data
     yield touchdown(LAY, heave(0.2))
     yield touchdown(LAY, kind="tet")
