@@ -24,9 +24,9 @@ FACTOR = 10.0  # entries of the soil's factor: FACTOR n^(4/3), as nested dissect
 PER_NODE, PER_STEP, PER_PICTURE, PER_CELL = 15, 60, 15, 6
 DRAFTS = 2.0  # copies of results.nc while it grows
 
-# Seconds on one core: to lay an element out, of a step, and in it of an element, of an element and wave component, of a cell, of the soil's
-# factor by unknowns squared.
-BUILD, STEP, ELEMENT, WAVE, CELL, FACTORED = 1.5e-4, 5e-4, 4e-5, 3e-7, 5e-5, 3e-9
+# Seconds on one core: to lay an element out; of a step, and in it of an element, of an element and wave component, of a
+# cell, of the soil's factor by unknowns squared.
+BUILD, STEP, ELEMENT, WAVE, CELL, FACTORED = 1.5e-4, 1.5e-3, 6e-5, 3e-7, 5e-5, 3e-9
 LONGEST_AUTO = 0.05  # of a stage: the longest automatic step
 
 BYTES_OF_A_CELL = 60.0  # in a mesh file, with its nodes

@@ -12,7 +12,7 @@ from riser_soil.estimate import Size, riser_memory, size_of
 from riser_soil.machine import available_memory, free_disk
 from riser_soil.scene.scene import Scene
 
-NOTED, LONG = 60.0, 3600.0  # s: a run tells its estimate; a run is warned of
+NOTED, LONG = 20.0, 3600.0  # s: a run tells its estimate; a run is warned of
 _UNITS = ((365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "h"), (60.0, "min"), (0.0, "s"))
 
 
@@ -34,8 +34,8 @@ def too_long(size: Size) -> Iterator[str]:
     """A warning of a long run."""
     if size.seconds > LONG:
         yield (
-            f"the run takes about {in_words(size.seconds)}, {size.told_steps} of {_parts(size)}: check duration, time_step "
-            "and load_steps, and what is meshed more finely than it needs to be"
+            f"the run takes about {in_words(size.seconds)}, {size.told_steps} of {_parts(size)}: check duration, "
+            "time_step and load_steps, and what is meshed more finely than it needs to be"
         )
 
 

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from riser_soil.scene.bounded import content
 from riser_soil.scene.files import wrong_file
 from riser_soil.scene.problem import hint, shown
 from riser_soil.scene.quantities import FARTHEST
@@ -21,6 +22,8 @@ Units = Mapping[str, float]
 TIME: Units = {"s": 1.0, "min": 60.0, "ms": 1e-3}
 LENGTH: Units = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "ft": 0.3048}
 ANGLE: Units = {"deg": math.pi / 180.0, "rad": 1.0}
+
+_MOST_BYTES = 100_000_000  # a million rows or more
 
 Known = Mapping[str, Units]
 _Line = tuple[int, list[str]]
@@ -79,7 +82,7 @@ def _cells(place: str, line: str, separator: str) -> list[str]:
 
 def _text(file: Path) -> str:
     try:
-        return file.read_text(encoding="utf-8-sig")
+        return content(file, _MOST_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError as err:
         line = err.object.count(b"\n", 0, err.start) + 1
         raise wrong_file(f"{file}:{line}: not UTF-8 text; save the table as CSV in UTF-8") from err

@@ -17,7 +17,7 @@ EXTREMES: tuple[Any, ...] = (
     float("nan"), float("inf"), float("-inf"), "text", "", None, True, [], {}, [1, 2, 3], "auto", "free", "1.0e5 N",
 )  # fmt: skip
 FACTORS = (-1.0, 0.1, 0.5, 0.9, 1.1, 2.0, 10.0, 1e2, 1e-2, 1e4, 1e-4, 1e6, 1e-6)
-GARBAGE = ("{", "}", "[", "]", ":", "- ", "&a ", "*a", "<<: ", "!!python/object:os.system ", "\t", "\n", "\x00", "é", "'")
+GARBAGE = ("{", "}", "[", "]", ":", "- ", "&a ", "*a", "<<: ", "!!python/object:x ", "\t", "\n", "\x00", "é", "'")
 
 Place = tuple[Any, Any]
 """A mapping or list, and the key or index of a value in it."""
