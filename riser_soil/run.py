@@ -15,6 +15,7 @@ from riser_soil.build.stage import scheme_of, times_to_hit
 from riser_soil.doubts import physical_warnings
 from riser_soil.errors import SolveError
 from riser_soil.folder import refuse_finished
+from riser_soil.limits import size_that_fits, tell, too_long
 from riser_soil.local_error import first_step
 from riser_soil.march import Accepted, March
 from riser_soil.newton import Newton, NewtonSettings
@@ -37,9 +38,11 @@ def run(scene: Scene, folder: Path, force: bool = False) -> None:
     """
     refuse_finished(folder, force)
     comm, clock, since = MPI.COMM_WORLD, Clock.new(), time.perf_counter()
+    size = size_that_fits(scene, folder, comm)
+    tell(size, comm)
     world = build(scene, comm)
     clock.add("build", since)
-    for doubt in physical_warnings(world):
+    for doubt in (*physical_warnings(world), *too_long(size)):
         if comm.rank == 0:
             print(f"warning: {doubt}")
     with Observer.open(world, clock, folder, force) as observer:

@@ -47,7 +47,7 @@ def soil_of(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> 
 
 
 def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Grid:
-    from riser_soil.soil.block import BlockSpec
+    from riser_soil.build.soil_block import block_of
     from riser_soil.soil.grid import block_grid, file_grid
 
     match given.mesh:
@@ -57,21 +57,8 @@ def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Gr
             pass
         case _:
             assert_never(given.mesh)
-    assert given.block is not None  # the scene's checks have seen to it
     first, last = (line.to_global(line.x[node])[:2].tolist() for node in (0, -1))
-    return block_grid(
-        comm,
-        BlockSpec(
-            x=given.block.x,
-            y=given.block.y,
-            depth=given.block.depth,
-            size_at_riser=given.mesh.size_at_riser,
-            size_far=given.mesh.size_far,
-            level=scene.seabed_level,
-            kind=given.mesh.kind,
-            riser=((first[0], first[1]), (last[0], last[1])),
-        ),
-    )
+    return block_grid(comm, block_of(scene, given, ((first[0], first[1]), (last[0], last[1]))))
 
 
 def soil_contact_of(scene: Scene, settings: ContactScene, world: World) -> SoilContact:

@@ -11,7 +11,7 @@ import riser_soil
 PACKAGE = Path(riser_soil.__file__).parent
 
 LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one another
-    ("errors", "arrays", "compiled", "smooth_step"),
+    ("errors", "arrays", "compiled", "smooth_step", "machine"),
     ("part", "snapshot"),
     ("scene", "dolfinx_compat", "time_scheme", "roles"),
     ("riser",),
@@ -25,9 +25,9 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("mass", "newton"),
     ("local_error",),
     ("march", "relax"),
-    ("folder", "schedule", "progress", "inventory", "wave_doubts", "motion_doubts", "bending_doubts"),
+    ("folder", "schedule", "progress", "inventory", "estimate", "wave_doubts", "motion_doubts", "bending_doubts"),
     ("ground_doubts",),
-    ("doubts",),
+    ("doubts", "limits"),
     ("netcdf", "xdmf", "summary", "screen", "balance", "touchdown_zone", "plausibility"),
     ("record",),
     ("observe",),
