@@ -48,7 +48,7 @@ class Line:
 
     dimension: 2 or 3. A planar line needs a layout in one vertical plane (`shapes.vertical_direction`).
     Where no end holds the rotation of a line in space, `hold_spin` keeps the start from spinning about the
-    pipe's axis: nothing else would, as a round pipe spins at no cost (in motion, unless it has rotary inertia).
+    pipe's axis: nothing else would in statics, as a round pipe spins at no cost.
     active: whether this rank evaluates and owns the riser.
     """
 
