@@ -28,7 +28,7 @@ class RiserMass:
     def accelerations(self, t: float, force: Array) -> Array:
         """a with M a = force, in the accepted configuration at time t; local arrays, zero outside the riser.
 
-        What has no mass (twist of a line without rotary inertia) and prescribed dofs get none.
+        What has no mass (as the twist of a line without inertia about its axis) and prescribed dofs get none.
         """
         at = slice(self._riser.offset, self._riser.offset + self._riser.size)
         mine = self._solve(t, force[at]) if self._system.comm.rank == 0 else None

@@ -12,8 +12,9 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from riser_soil.arrays import Array
-from riser_soil.direct_solver import PREFIX, defaults, factorise_directly, negative_pivots
+from riser_soil.direct_solver import PREFIX, defaults, factorise_directly
 from riser_soil.part import Forces, State
+from riser_soil.stability import unstable_modes
 from riser_soil.system import System
 from riser_soil.time_scheme import Scheme
 
@@ -132,19 +133,20 @@ class Newton:
     def require_stable(self, step: Step, solution: Solution) -> None:
         """Raise UnstableError where a static solution is an unstable equilibrium, such as an unbuckled strut.
 
-        Stable means that the tangent there has no negative pivot. Parts that follow the line are left out of it; where
-        others lack symmetry too, such as moments in space, nothing is judged. Collective.
+        Stable means that the tangent there has no negative pivot, see `stability`. Parts that follow the line are left
+        out of it; where others lack symmetry too, such as moments in space, nothing is judged. Collective.
         """
-        judged = [part for part in self.system.model.parts if not part.traits.follows]
-        if not all(part.traits.symmetric for part in judged):
-            return
-        self.system.assemble(solution.state, step.scheme.weights(step.dt), judged)
-        negative = negative_pivots(self.system)
+        negative = self.unstable_modes(step, solution)
         if negative > 0:
             raise UnstableError(
                 f"the equilibrium found is unstable (its tangent has {negative} negative pivot(s)): the riser would "
                 "buckle or swing away from it; start from a shape nearer to the one that it takes"
             )
+
+    def unstable_modes(self, step: Step, solution: Solution) -> int:
+        """Negative pivots at a static solution; collective."""
+        weights = step.scheme.weights(step.dt)
+        return unstable_modes(self.system, solution.state, weights, self._scale(solution.forces))
 
     def renew(self) -> None:
         """Take over a new matrix after the system's pattern has changed."""
@@ -209,15 +211,15 @@ class Newton:
             return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
         if iteration == 0 and self._starts_near:  # a motion that its guess alone carries on would keep its errors
             return ITERATING
-        if norm <= max(self.settings.tolerance * self._scale(), self.settings.floor):
+        if norm <= max(self.settings.tolerance * self._scale(self._forces), self.settings.floor):
             return CONVERGED
         if iteration >= 4 and norm > 1e6 * self._norms[0]:
             return DIVERGED
         return ITERATING
 
-    def _scale(self) -> float:
+    def _scale(self, forces: Forces) -> float:
         """Norm of the forces in play: reactions, inertia, contact on the riser."""
-        forces, system = self._forces, self.system
+        system = self.system
         riser = system.model.fields[0]
         contact = forces.end[riser.offset : riser.offset + riser.size]
         reactions = system.reactions(forces)

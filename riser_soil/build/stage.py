@@ -56,10 +56,9 @@ def _multiples(interval: float, end: float) -> list[float]:
     return [n * interval for n in range(1, int(end / interval) + 1)]
 
 
-def hold_spin(scene: Scene, line: Line, stage: Stage, elements: Elements) -> None:
-    """Hold the start's spin about the pipe's axis in stages where neither an end nor rotary inertia resists it."""
-    resisted = isinstance(stage, DynamicStage) and elements.rotary_inertia.any()
-    line.hold_spin(spins_freely(scene.riser) and not resisted)
+def hold_spin(scene: Scene, line: Line, stage: Stage) -> None:
+    """Hold the start's spin about the pipe's axis in stages where neither an end nor inertia resists it."""
+    line.hold_spin(spins_freely(scene.riser) and isinstance(stage, StaticStage))
 
 
 def loads_of(line: Line, stage: Stage) -> list[Part]:
@@ -110,10 +109,10 @@ def _inertia(line: Line, elements: Elements, attachments: Sequence[Attachment]) 
     from riser_soil.riser.inertia import Inertia
 
     parts: list[Part] = [Inertia(line, elements.mass, _attached_mass(line, attachments))]
-    if elements.rotary_inertia.any():
+    if line.dimension == 3 or elements.rotary_inertia.any():
         from riser_soil.riser.rotary_inertia import RotaryInertia
 
-        parts.append(RotaryInertia(line, elements.rotary_inertia))
+        parts.append(RotaryInertia(line, elements.rotary_inertia, elements.polar_inertia))
     return parts
 
 

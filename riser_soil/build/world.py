@@ -129,7 +129,7 @@ class World:
     def begin(self, stage: Stage) -> Model:
         """Set the ends in motion and name the parts of a stage."""
         set_motions(self.line, stage, self.vessels)
-        hold_spin(self.scene, self.line, stage, self.elements)
+        hold_spin(self.scene, self.line, stage)
         parts = [*self.riser_parts, *loads_of(self.line, stage)]
         if isinstance(stage, DynamicStage):
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)

@@ -19,6 +19,7 @@ from riser_soil.part import Block, State
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames
 from riser_soil.riser.ends import End, Turning
+from riser_soil.riser.free_turns import free_turns, unit_lengths
 from riser_soil.riser.trial import Trial
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -48,7 +49,7 @@ class Line:
 
     dimension: 2 or 3. A planar line needs a layout in one vertical plane (`shapes.vertical_direction`).
     Where no end holds the rotation of a line in space, `hold_spin` keeps the start from spinning about the
-    pipe's axis: nothing else would, as a round pipe spins at no cost (in motion, unless it has rotary inertia).
+    pipe's axis: nothing else would in statics, as a round pipe spins at no cost.
     active: whether this rank evaluates and owns the riser.
     """
 
@@ -259,6 +260,15 @@ class Line:
     def _to(self, position: Array, node: int) -> Array:
         """Increment (d,) that brings a node to a position (3,) in global axes."""
         return np.asarray((position - self.origin) @ self.basis - self.x[node])
+
+    def free_turns(self, state: State) -> Array:
+        """Rigid motions (k, size) that the supports leave free, see `free_turns`."""
+        trial, prescribed = self.trial(state), self.prescribed.reshape(self.nodes, self.ndof)
+        return free_turns(trial.x, trial.turn, prescribed, float(self.arc[-1])).reshape(-1, self.size)
+
+    def in_newtons(self, forces: Array) -> Array:
+        """Forces and moments (size,), moments over the line's length."""
+        return forces * (unit_lengths(self.x.shape, self.ndof, float(self.arc[-1])) / self.arc[-1]).ravel()
 
     def fault(self, state: State) -> str:
         """Where an element is folded (an end's tangent points against its chord) or wound up by whole turns.

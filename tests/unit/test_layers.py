@@ -22,6 +22,7 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("matrix",),
     ("system",),
     ("direct_solver",),
+    ("stability",),
     ("mass", "newton"),
     ("local_error",),
     ("march", "relax"),
