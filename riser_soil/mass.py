@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import solveh_banded
 
 from riser_soil.arrays import Array, BoolArray
-from riser_soil.part import Field, Impulsive, Part, State, Weights
+from riser_soil.part import Field, Part, State, Weights
 from riser_soil.system import System
 
 MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
@@ -22,9 +22,7 @@ class RiserMass:
     def __init__(self, system: System) -> None:
         self._system = system
         self._riser: Field = system.model.fields[0]
-        self._parts: list[Part] = [
-            p for p in system.model.parts if set(p.blocks()) == {"riser"} and not isinstance(p, Impulsive)
-        ]
+        self._parts: list[Part] = [part for part in system.model.parts if "I" in part.traits.groups]
         self._moving: Array | None = None
 
     def accelerations(self, t: float, force: Array) -> Array:

@@ -40,13 +40,6 @@ class Judging(Protocol):
         ...
 
 
-@runtime_checkable
-class Following(Protocol):
-    """A part whose forces follow the line, but hardly stiffen or soften it, such as the drag of a current."""
-
-    follows: bool
-
-
 @dataclass(frozen=True)
 class NewtonSettings:
     """tolerance: of the residual's norm, relative to the norm of the forces in play.
@@ -54,7 +47,7 @@ class NewtonSettings:
     floor [N]: the norm that counts as zero, for round-off of a scene whose forces all vanish.
     reuse: an iteration that leaves less than this share of the residual hands its factorised tangent on to the next of
     the same step (Shamanskii's method), as long as each leaves less than this share: two or three such iterations cost
-    less than one with its own tangent. Only in time steps of a riser alone, which start near their end: contact has
+    less than one with its own tangent. Only in time steps without contact, which start near their end: contact has
     corners, and an equilibrium may be far away.
     """
 
@@ -142,8 +135,8 @@ class Newton:
         Stable means that the tangent there has no negative pivot. Parts that follow the line are left out of it; where
         others lack symmetry too, such as moments in space, nothing is judged. Collective.
         """
-        judged = [part for part in self.system.model.parts if not isinstance(part, Following)]
-        if not all(part.symmetric for part in judged):
+        judged = [part for part in self.system.model.parts if not part.traits.follows]
+        if not all(part.traits.symmetric for part in judged):
             return
         self.system.assemble(solution.state, step.scheme.weights(step.dt), judged)
         negative = negative_pivots(self.system)
@@ -206,8 +199,8 @@ class Newton:
 
     @property
     def _starts_near(self) -> bool:
-        """Whether the guess continues a smooth motion: time steps of a riser alone."""
-        return self.system.riser_alone and self._weights.inertia > 0.0
+        """Whether the guess continues a smooth motion: time steps without contact."""
+        return self.system.smooth and self._weights.inertia > 0.0
 
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
         norm = norms[2]

@@ -67,7 +67,8 @@ class Observer:
     def begin_stage(self, stage: Stage, energy: Energy) -> None:
         """energy: stored at the stage's beginning."""
         self._schedule.begin_stage(stage.kind)
-        self._balance = Balance(energy, isinstance(stage, StaticStage))
+        scene = self._world.scene
+        self._balance = Balance(energy, isinstance(stage, StaticStage), dissipating(scene), working(scene))
         self._relaxed = 0
         if self._recorder is not None:
             self._recorder.begin_stage(stage.name, stage.kind)

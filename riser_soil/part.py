@@ -12,11 +12,13 @@ A residual has no memory: it depends on the trial state alone. History changes o
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Protocol, runtime_checkable
+from typing import Protocol
 
 import numpy as np
 
 from riser_soil.arrays import Array, BoolArray, IntArray
+
+GROUPS = "IFE"  # of forces; see the module's text
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,11 +111,29 @@ class Work:
         )
 
 
+@dataclass(frozen=True)
+class Traits:
+    """What a part is; declared here, never guessed from its name or its blocks.
+
+    groups: letters of those that its forces are in. In E they may jump from step to step, as where the riser lands.
+    symmetric: its tangent.
+    follows: its forces follow the line, but hardly stiffen or soften it, such as the drag of a current.
+    """
+
+    groups: str
+    symmetric: bool
+    follows: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.groups or set(self.groups) - set(GROUPS):
+            raise ValueError(f'groups of a part are letters of "{GROUPS}", not "{self.groups}"')
+
+
 class Part(Protocol):
     """A contribution to the system: riser, inertia, Morison loads, soil, contact, …"""
 
     name: str
-    symmetric: bool
+    traits: Traits
 
     def blocks(self) -> dict[str, Block]:
         """Patterns that the part adds to. Parts that share a key share the very same rows and columns."""
@@ -138,13 +158,6 @@ class Part(Protocol):
     def commit(self, state: State) -> None:
         """Accept the step: keep its configuration and history; increments restart from zero."""
         ...
-
-
-@runtime_checkable
-class Impulsive(Protocol):
-    """A part in group E whose forces on the riser may jump from step to step, as where it lands."""
-
-    impulsive: bool
 
 
 class Field(Protocol):

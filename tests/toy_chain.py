@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.arrays import Array, IntArray
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 
 
 class Chain:
@@ -44,7 +44,7 @@ class Chain:
 
 
 class Inertia:
-    name, symmetric = "inertia", True
+    name, traits = "inertia", Traits("I", symmetric=True)
 
     def __init__(self, chain: Chain, mass: float) -> None:
         self.chain, self.mass = chain, mass / 2.0
@@ -76,7 +76,7 @@ class Inertia:
 class Springs:
     """Forces k e + c e^3 in the stretches e beyond the rest lengths, and weight."""
 
-    name, symmetric = "springs", True
+    name, traits = "springs", Traits("F", symmetric=True)
 
     def __init__(self, chain: Chain, rest: float, k: float, cubic: float = 0.0, weight: float = 0.0) -> None:
         self.chain, self.rest, self.k, self.cubic, self.weight = chain, rest, k, cubic, weight
@@ -113,7 +113,7 @@ class Springs:
 class Floor:
     """Penalty contact with the plane z = 0, fully implicit."""
 
-    name, symmetric = "contact", True
+    name, traits = "contact", Traits("E", symmetric=True)
 
     def __init__(self, chain: Chain, stiffness: float) -> None:
         self.chain, self.stiffness = chain, stiffness

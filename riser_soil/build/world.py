@@ -111,9 +111,9 @@ class World:
         return StaticStage(name="laying", kind="static", move=Move(end=end.position))
 
     def begin_laying(self, stage: StaticStage) -> Model:
-        """Set the end in motion and name the parts: in still water."""
+        """Set the end in motion and name the parts: without a current's drag."""
         model = self.begin(stage)
-        return Model(model.fields, [part for part in model.parts if part.name != "morison"])
+        return Model(model.fields, [part for part in model.parts if not part.traits.follows])
 
     def begin(self, stage: Stage) -> Model:
         """Set the ends in motion and name the parts of a stage."""

@@ -10,7 +10,7 @@ from riser_soil.arrays import Array, IntArray
 from riser_soil.contact.coulomb import traction
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.contact.station_forces import StationForces
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import stations
 from riser_soil.riser.trial import Trial
 
@@ -46,8 +46,7 @@ class Friction:
     """
 
     name = "friction"
-    symmetric = False
-    impulsive = True
+    traits = Traits("E", symmetric=False)
 
     def __init__(self, contact: SeabedContact, axial: float, lateral: float, stiffness: Array) -> None:
         self.contact, self.line = contact, contact.line

@@ -25,7 +25,7 @@ import numpy as np
 
 from riser_soil.arrays import Array
 from riser_soil.compiled import fixed
-from riser_soil.part import Block, Energy, Forces, Part, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, Part, State, Traits, Weights, Work
 from riser_soil.riser import hermite
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
@@ -40,7 +40,7 @@ class MidpointInertia:
     instant: the same mass as it acts at an instant, which is asked for at accepted states.
     """
 
-    name, symmetric = "inertia", False
+    name, traits = "inertia", Traits("I", symmetric=False)
 
     def __init__(self, instant: Inertia) -> None:
         self.instant, self.line = instant, instant.line
@@ -120,7 +120,7 @@ class MidpointRotaryInertia:
     instant: the same inertia as it acts at an instant, which is asked for at accepted states.
     """
 
-    name, symmetric = "rotary inertia", False
+    name, traits = "rotary inertia", Traits("I", symmetric=False)
 
     def __init__(self, instant: RotaryInertia) -> None:
         self.instant, self.line = instant, instant.line

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.arrays import Array
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import spinning
 from riser_soil.riser.directors import PlanarFrames, SpatialFrames
 from riser_soil.riser.line import Line
@@ -63,7 +63,7 @@ class RotaryInertia:
     name = "rotary inertia"
 
     def __init__(self, line: Line, inertia: Array) -> None:
-        self.line, self.symmetric = line, line.dimension == 2
+        self.line, self.traits = line, Traits("I", symmetric=line.dimension == 2)
         self.of_ends = 0.5 * line.length * inertia  # kg m2
         self._sections = _sections(line, self.of_ends)
 

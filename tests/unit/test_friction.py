@@ -200,7 +200,7 @@ def test_tangent_is_the_derivative_of_the_residual(dimension: int, ground: str, 
     assert error(K, difference_tangent(friction, state, WEIGHTS)) < 1e-7
     symmetric = bool(np.abs(K - K.T).max() <= 1e-11 * np.abs(K).max())
     assert symmetric == (stiffness < 1.0e6)
-    assert not friction.symmetric
+    assert not friction.traits.symmetric
 
 
 @both_dimensions

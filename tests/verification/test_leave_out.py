@@ -144,6 +144,15 @@ def test_without_water_nothing_of_the_sea() -> None:
     assert world.contacts == []
 
 
+def test_motion_is_smooth_unless_something_may_jump() -> None:
+    """Then steps continue the motion before them and hand tangents on: springs at the ends don't change that."""
+    stages, sprung = (LAY, heave(0.2)), hanging(LAY, heave(0.2))
+    sprung["riser"]["start"]["rotation"] = {"stiffness": 1.0e4}
+    assert system(built(sprung), 1).smooth
+    assert not system(built(over_springs(*stages)), 1).smooth
+    assert not system(built(touchdown(*stages)), 1).smooth
+
+
 def test_symmetric_where_nothing_makes_it_unsymmetric() -> None:
     world = built(touchdown(LAY, heave(0.2)))
     assert system(world, 0).symmetric
