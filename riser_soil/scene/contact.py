@@ -16,9 +16,10 @@ class Friction(BaseModel):
     lateral: Positive | None = Field(
         default=None, description="friction coefficient across the pipe [-]; that along it by default"
     )
-    mobilisation: Positive = Field(
-        default=0.01,
-        description="slide after which friction is fully mobilised under the pipe's submerged weight [m]",
+    mobilisation: AutoOrPositive = Field(
+        default="auto",
+        description="slide after which friction is fully mobilised under the pipe's submerged weight [m], or auto: "
+        "1/30 of the outer diameter",
     )
 
 
@@ -49,8 +50,8 @@ class Contact(BaseModel):
     )
     smoothing: AutoOrNonNegative = Field(
         default="auto",
-        description="contact sets in smoothly between this gap and this penetration [m], or auto: 0.001 on soil; on a "
-        "seabed what the riser sinks in by its weight, within 0.0001 and 0.001",
+        description="contact sets in smoothly between this gap and this penetration [m], or auto: 1/300 of the outer "
+        "diameter on soil; on a seabed what the riser sinks in by its weight, within 1/3000 and 1/300 of the diameter",
     )
     friction: Friction | None = Field(default=None, description="friction on the seabed; none by default")
     suction: Suction | None = Field(
