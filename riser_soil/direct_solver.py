@@ -13,6 +13,7 @@ PREFIX = "riser_soil_"
 # MUMPS' controls: room for fill-in in per cent (14); for counting pivots, on several ranks too (13), null pivots (24).
 ROOM = {14: 60}
 COUNTING = {13: 1, 24: 1}
+NO_PIVOT = 1e-200  # whatever the units; by PETSc's default the stiffness of a riser a fingernail long is none
 
 
 @contextmanager
@@ -52,6 +53,7 @@ def _choose(pc: PETSc.PC, system: System, kind: str, controls: Mapping[int, int]
     pc.setType(kind)
     if _is_chain(system):
         pc.setFactorOrdering("natural")
+        pc.setFactorPivot(zeropivot=NO_PIVOT)
         return
     pc.setFactorSolverType("mumps")
     pc.setFactorSetUpSolverType()

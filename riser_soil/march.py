@@ -21,7 +21,6 @@ from riser_soil.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
 
 WRONG_ROOT = 0.2  # of the energy in motion: what a step may make out of nothing
 ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away
-METRE = 1.0  # over which the least force that counts does negligible work, as where a motion starts from rest
 EASY = 6  # Newton iterations up to which a step that was cut may grow again
 
 
@@ -188,7 +187,8 @@ class March:
         was, now = self.energy, step.energy
         appeared = now.total - was.total + step.dissipated - step.work
         in_motion = was.kinetic + was.strain + max(0.0, was.potential - now.potential) + abs(step.work)
-        negligible = ENERGY_ROUND_OFF * abs(was.potential) + self.newton.settings.floor * METRE
+        # Over an element's length the least force that counts does negligible work, as where a motion starts from rest.
+        negligible = ENERGY_ROUND_OFF * abs(was.potential) + self.newton.settings.floor * self.system.lever
         if appeared > self._wrong_root * in_motion + negligible:
             appeared += self._kinetic(step) - now.kinetic
         if appeared > self._wrong_root * in_motion + negligible:

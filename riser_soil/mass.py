@@ -42,11 +42,17 @@ class RiserMass:
         return float(self._system.comm.allreduce(mine))
 
     def _solve(self, t: float, force: Array) -> Array:
+        """With rotations counted by the way of the lever's end, so that all masses are in kg."""
+        levers = self._system.levers[self._riser.offset : self._riser.offset + self._riser.size]
         blocks = self._element_matrices(t)
+        of_element = levers[: blocks.shape[1]]
+        return self._solve_weighed(blocks / np.outer(of_element, of_element), force / levers) / levers
+
+    def _solve_weighed(self, blocks: Array, force: Array) -> Array:
         if self._moving is None:
             self._moving = _moving(blocks, ~self._riser.prescribed)
         banded = _banded(_projected(blocks, self._moving), self._riser.size)
-        _add_nodal(banded, np.eye(self._moving.shape[1]) - self._moving)
+        _add_nodal(banded, (blocks.max() or 1.0) * (np.eye(self._moving.shape[1]) - self._moving))
         nodal = force.reshape(len(self._moving), -1, 1)
         return np.asarray(solveh_banded(banded, (self._moving @ nodal).ravel(), overwrite_ab=True))
 

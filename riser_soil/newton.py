@@ -43,7 +43,8 @@ class Judging(Protocol):
 
 @dataclass(frozen=True)
 class NewtonSettings:
-    """tolerance: of the residual's norm, relative to the norm of the forces in play.
+    """tolerance: of the residual's norm, relative to the norm of the forces in play, moments over the
+    system's lever.
 
     floor [N]: the norm that counts as zero, for round-off of a scene whose forces all vanish.
     reuse: an iteration that leaves less than this share of the residual hands its factorised tangent on to the next of
@@ -94,6 +95,8 @@ class Newton:
         self.iterations = 0
         self._x = system.numbering.vector.duplicate()
         self._f = system.numbering.vector.duplicate()
+        self._levers = system.numbering.vector.duplicate()
+        system.numbering.to_global(system.levers, self._levers)
         self._judging = [owner for owner in system.model.fields if isinstance(owner, Judging)]
         self._snes = self._create()
 
@@ -205,7 +208,7 @@ class Newton:
         return self.system.smooth and self._weights.inertia > 0.0
 
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
-        norm = norms[2]
+        norm = math.sqrt(self.system.sum([float(np.sum(self._weighed() ** 2))])[0])
         self._norms.append(norm)
         if not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
@@ -221,9 +224,10 @@ class Newton:
         """Norm of the forces in play: reactions, inertia, contact on the riser."""
         system = self.system
         riser = system.model.fields[0]
-        contact = forces.end[riser.offset : riser.offset + riser.size]
-        reactions = system.reactions(forces)
-        mine = [float(f @ f) for f in (reactions, forces.inertia, contact)]
+        at = slice(riser.offset, riser.offset + riser.size)
+        reactions, inertia = system.reactions(forces) / system.levers[system.held], forces.inertia / system.levers
+        contact = forces.end[at] / system.levers[at]
+        mine = [float(f @ f) for f in (reactions, inertia, contact)]
         return math.sqrt(max(system.sum(mine)))
 
     def _reason(self) -> str:
@@ -236,9 +240,13 @@ class Newton:
         count = len(self._norms) - 1
         return f"{name.lower()} after {count} iterations (last residual norms {norms} N); {self._where()}"
 
+    def _weighed(self) -> Array:
+        """This rank's residual [N], moments over the lever."""
+        return np.asarray(self._f.array_r / self._levers.array_r)
+
     def _where(self) -> str:
         """The row with the largest residual, in words."""
-        values = np.abs(self._f.array_r)
+        values = np.abs(self._weighed())
         if not self.system.comm.allreduce(bool(np.isfinite(values).all()), MPI.LAND):
             return "the residual is not finite"
         first = self._f.getOwnershipRange()[0]
@@ -248,5 +256,5 @@ class Newton:
         return f"the largest residual, {worst:.3g} N, sits at the {self.system.describe(row)}"
 
     def destroy(self) -> None:
-        for thing in (self._snes, self._x, self._f):
+        for thing in (self._snes, self._x, self._f, self._levers):
             thing.destroy()

@@ -12,7 +12,7 @@ A residual has no memory: it depends on the trial state alone. History changes o
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -158,6 +158,20 @@ class Part(Protocol):
     def commit(self, state: State) -> None:
         """Accept the step: keep its configuration and history; increments restart from zero."""
         ...
+
+
+@runtime_checkable
+class Slender(Protocol):
+    """A field with rotations beside its translations (nn, d), local numbers.
+
+    lever: arm [m] by which a moment is weighed as the forces of a couple, so that nothing hangs on the unit of length.
+    """
+
+    @property
+    def lever(self) -> float: ...
+
+    @property
+    def translation_dofs(self) -> IntArray: ...
 
 
 class Field(Protocol):

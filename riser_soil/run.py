@@ -157,8 +157,9 @@ def steps_of(world: World, stage: Stage, march: March) -> Control:
     solver = world.scene.solver
     if isinstance(stage, StaticStage):
         return StepControl(1.0, 1.0 / solver.load_steps, solver.min_load_step)
+    smallest = world.smallest_step(stage)
     if stage.time_step == "auto":
-        first = first_step(march.system, march.now, stage.error_tolerance)
-        stops = times_to_hit(world.scene, stage)
-        return AutoSteps(stage.duration, stage.error_tolerance, solver.min_time_step, first, stops)
-    return StepControl(stage.duration, stage.time_step, solver.min_time_step)
+        tolerance = world.error_tolerance(stage)
+        first = first_step(march.system, march.now, tolerance)
+        return AutoSteps(stage.duration, tolerance, smallest, first, times_to_hit(world.scene, stage))
+    return StepControl(stage.duration, stage.time_step, smallest)

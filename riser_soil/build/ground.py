@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from riser_soil.soil.soil import Soil
 
 GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within it, three leave ten times the error
-NARROWEST_CORNER, WIDEST_CORNER = 1e-4, 1e-3  # m, of a penalty by default; a sharper one costs Newton iterations
-NOMINAL_DIAMETER = 0.1  # m, for stiffness and footprint of the contact of a line without an outer diameter
+# Of the outer diameter: a penalty's corner, sharper ones cost Newton iterations; the slide that mobilises friction.
+NARROWEST_CORNER, WIDEST_CORNER, MOBILISATION = 1.0 / 3000.0, 1.0 / 300.0, 1.0 / 30.0
 
 
 def soil_of(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Soil:
@@ -67,7 +67,7 @@ def soil_contact_of(scene: Scene, settings: ContactScene, world: World) -> SoilC
     from riser_soil.contact.soil_contact import FOOTPRINT, SoilContact
 
     assert world.soil is not None
-    outer_radius = float(_at_nodes(0.5 * world.elements.outer_diameter).mean()) or 0.5 * NOMINAL_DIAMETER
+    outer_radius = float(_at_nodes(0.5 * world.elements.outer_diameter).mean()) or 0.5 * world.diameter
     return SoilContact(
         world.line,
         _at_nodes(contact_radius(scene, world.elements)),
@@ -103,7 +103,8 @@ def friction_of(settings: ContactScene, world: World) -> Friction | None:
     from riser_soil.contact.friction import Friction, mobilised_within
 
     mu = given.axial, given.axial if given.lateral is None else given.lateral
-    stiffness = mobilised_within(given.mobilisation, *mu, np.abs(world.elements.weight))
+    slide = MOBILISATION * world.diameter if given.mobilisation == "auto" else float(given.mobilisation)
+    stiffness = mobilised_within(slide, *mu, np.abs(world.elements.weight))
     return Friction(world.seabed, *mu, stiffness)
 
 
@@ -162,23 +163,21 @@ def smoothing(settings: ContactScene, world: World, ground: str) -> float:
     if settings.smoothing != "auto":
         return float(settings.smoothing)
     if ground == "soil":
-        return WIDEST_CORNER
+        return WIDEST_CORNER * world.diameter
     at_rest = world.weight / world.contact_stiffness[ground]
-    return float(np.clip(at_rest, NARROWEST_CORNER, WIDEST_CORNER))
+    return float(np.clip(at_rest, NARROWEST_CORNER * world.diameter, WIDEST_CORNER * world.diameter))
 
 
-def stiffnesses(scene: Scene, settings: ContactScene, elements: Elements, weight: float) -> dict[str, float]:
+def stiffnesses(scene: Scene, settings: ContactScene, diameter: float, weight: float) -> dict[str, float]:
     """Force per length and penetration [N/m2] by ground: the scene's own, else the automatic choice.
 
-    weight: typical force per length of the riser [N/m].
+    diameter: of the riser [m]; weight: its typical force per length [N/m].
     """
     from riser_soil.contact.law import automatic_stiffness
 
-    size = float(elements.outer_diameter.max()) or NOMINAL_DIAMETER
-
     def penalty(E: float | None) -> float:
         """Where the pipe must not enter; E: Young's modulus [Pa], None of a rigid ground."""
-        return automatic_stiffness(E, weight, size) if settings.stiffness == "auto" else float(settings.stiffness)
+        return automatic_stiffness(E, weight, diameter) if settings.stiffness == "auto" else float(settings.stiffness)
 
     out = {"soil": penalty(scene.soil.law.surface_modulus)} if scene.soil is not None else {}
     match scene.seabed:

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 FORCE_FLOOR = 1e-14  # of EA: a residual below this is round-off even where all forces vanish
 LEAST_WEIGHT = 1e-6  # of EA/L: stands for the weight of a line that has none
+AUTO_TOLERANCE = 0.02  # of the diameter: local error of automatic steps
+AUTO_SMALLEST, AUTO_SMALLEST_OF_STAGE = 1e-4, 1e-7  # of a given time step; of a stage with automatic ones
 
 
 @dataclass(eq=False)
@@ -87,6 +89,23 @@ class World:
         """Typical force per length [N/m]."""
         least = LEAST_WEIGHT * float(self.elements.EA.max() / self.line.arc[-1])
         return max(float(np.abs(self.elements.weight).max()), least)
+
+    @property
+    def diameter(self) -> float:
+        """Largest outer diameter [m]; of a line without one, that of a solid bar with its stiffnesses."""
+        bar = 4.0 * np.sqrt((self.elements.EI_y / self.elements.EA).max())
+        return float(self.elements.outer_diameter.max()) or float(bar)
+
+    def error_tolerance(self, stage: DynamicStage) -> float:
+        """Largest local error of an automatic step [m]."""
+        return AUTO_TOLERANCE * self.diameter if stage.tolerance is None else stage.tolerance
+
+    def smallest_step(self, stage: DynamicStage) -> float:
+        """Down to which time steps are cut [s]."""
+        given = self.scene.solver.min_time_step
+        if given != "auto":
+            return float(given)
+        return AUTO_SMALLEST_OF_STAGE * stage.duration if stage.time_step == "auto" else AUTO_SMALLEST * stage.time_step
 
     @property
     def slack(self) -> float:
@@ -157,7 +176,7 @@ def _add_ground(world: World) -> None:
 
     scene, settings = world.scene, world.scene.contact
     assert settings is not None
-    world.contact_stiffness = ground.stiffnesses(scene, settings, world.elements, world.weight)
+    world.contact_stiffness = ground.stiffnesses(scene, settings, world.diameter, world.weight)
     if scene.soil is not None:
         world.soil = ground.soil_of(scene, scene.soil, world.line, world.comm)
         world.soil_contact = ground.soil_contact_of(scene, settings, world)

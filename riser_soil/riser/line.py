@@ -160,6 +160,11 @@ class Line:
         return np.asarray(first[:, None] + np.arange(self.dimension), dtype=np.int64)
 
     @cached_property
+    def lever(self) -> float:
+        """Mean length of an element [m]: the arm by which a moment is weighed as the forces of a couple."""
+        return float(self.length.mean())
+
+    @cached_property
     def tributary_length(self) -> Array:
         """Arc length that belongs to each node (nn,): half of each adjoining element."""
         half = 0.5 * self.length

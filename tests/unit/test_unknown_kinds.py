@@ -70,7 +70,7 @@ def test_a_soil_law_tells_the_modulus_that_contact_goes_by() -> None:
     whole, settings = scene(), Contact()
     third = with_parts(whole, soil=with_parts(whole.soil, law=another(VonMises(kind="von-mises", **CLAY))))
     with pytest.raises(AttributeError, match="surface_modulus"):
-        stiffnesses(third, settings, elements_of(third), 700.0)
+        stiffnesses(third, settings, 0.3, 700.0)
 
 
 def test_another_hysteretic_law_is_refused() -> None:
@@ -82,7 +82,7 @@ def test_another_seabed_is_refused() -> None:
     whole = scene()
     other = with_parts(whole, seabed=another(whole.seabed))
     with pytest.raises(AssertionError, match="Another"):
-        stiffnesses(other, Contact(), elements_of(whole), 700.0)
+        stiffnesses(other, Contact(), 0.3, 700.0)
 
 
 def test_another_scheme_is_refused() -> None:
