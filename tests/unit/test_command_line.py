@@ -18,6 +18,7 @@ from riser_soil.scene.scene import Scene
 
 ROOT = Path(__file__).parents[2]
 SCENE = ROOT / "tests/scenes/catenary.yaml"
+SUMMARY = '{"finished": %s, "version": "0.1.0", "parts": {}, "stages": []}'
 
 
 class Calls:
@@ -120,7 +121,7 @@ def test_unexpected_errors_keep_their_traceback(invoke: Invoke) -> None:
 
 def test_finished_run_needs_force(invoke: Invoke, tmp_path: Path) -> None:
     (tmp_path / "catenary").mkdir()
-    (tmp_path / "catenary/summary.json").write_text('{"finished": true}', encoding="utf-8")
+    (tmp_path / "catenary/summary.json").write_text(SUMMARY % "true", encoding="utf-8")
     result, calls = invoke("run", str(SCENE))
     assert result.exit_code == 2
     assert calls.folders == []
@@ -129,7 +130,7 @@ def test_finished_run_needs_force(invoke: Invoke, tmp_path: Path) -> None:
 
 def test_unfinished_run_is_taken_over(invoke: Invoke, tmp_path: Path) -> None:
     (tmp_path / "catenary").mkdir()
-    (tmp_path / "catenary/summary.json").write_text('{"finished": false}', encoding="utf-8")
+    (tmp_path / "catenary/summary.json").write_text(SUMMARY % "false", encoding="utf-8")
     assert invoke("run", str(SCENE))[0].exit_code == 0
 
 

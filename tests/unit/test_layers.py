@@ -11,8 +11,8 @@ import riser_soil
 PACKAGE = Path(riser_soil.__file__).parent
 
 LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one another
-    ("errors", "arrays", "compiled", "smooth_step"),
-    ("part", "snapshot"),
+    ("errors", "arrays", "compiled", "smooth_step", "standard_output"),
+    ("part", "snapshot", "interruption"),
     ("scene", "dolfinx_compat", "time_scheme", "roles"),
     ("riser",),
     ("sea", "soil", "seabed", "motion"),
@@ -26,7 +26,8 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("local_error",),
     ("march", "relax"),
     ("folder", "schedule", "progress", "inventory", "wave_doubts", "motion_doubts"),
-    ("doubts",),
+    ("growing_file",),
+    ("ownership", "doubts"),
     ("netcdf", "xdmf", "summary", "screen", "balance", "touchdown_zone"),
     ("record",),
     ("observe",),

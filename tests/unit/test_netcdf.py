@@ -42,7 +42,7 @@ def test_xarray_reads_what_was_recorded(tmp_path: Path) -> None:
     np.testing.assert_array_equal(data["position"].sel(time=0.0), first.position)
     np.testing.assert_array_equal(data["effective_tension"][0], first.effective_tension)
     np.testing.assert_array_equal(data["end_force"][0], first.end_force)
-    assert float(data["end_force"].sel(component=b"z")[0]) == first.end_force[2]
+    assert float(data["end_force"].sel(component="z")[0]) == first.end_force[2]
     assert data.attrs["finished"] == 1
     assert data.attrs["Conventions"].startswith("CF-")
 
