@@ -138,8 +138,10 @@ def _expected_errors() -> Iterator[None]:
         _end_other_ranks(err.exit_status)
         raise typer.Exit(err.exit_status) from err
     except Interruption as err:
-        _tell_once(str(err), patience=0.5)
-        _end_other_ranks(err.exit_status)
+        if _rank() == 0 or not err.together:
+            _tell_once(str(err))
+        if not err.together:
+            _leave_other_ranks(err.exit_status)
         raise typer.Exit(err.exit_status) from err
     except OSError as err:
         if not is_full(err):
@@ -168,11 +170,11 @@ def _from_environment(*names: str) -> int | None:
     return next((int(os.environ[name]) for name in names if os.environ.get(name, "").isdecimal()), None)
 
 
-def _tell_once(message: str, patience: float | None = None) -> None:
+def _tell_once(message: str) -> None:
     """Print an error. As a rule all ranks meet it: the first tells it and ends the job, the others wait."""
     if _rank() > 0:
         deaf()
-        time.sleep(_PATIENCE if patience is None else patience)
+        time.sleep(_PATIENCE)
     typer.echo(message, err=True)
 
 
@@ -182,6 +184,14 @@ def _end_other_ranks(status: int) -> None:
     if mpi is not None and _size() > 1:
         sys.stderr.flush()
         mpi.COMM_WORLD.Abort(status)
+
+
+def _leave_other_ranks(status: int) -> None:
+    """mpirun ends them, if it is not ending all of them already; an orderly end would wait for them."""
+    if _size() > 1:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
 
 
 def _print_version(wanted: bool) -> None:

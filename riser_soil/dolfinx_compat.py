@@ -103,7 +103,7 @@ def _quiet_compiler_log() -> None:
 
 
 def writable_cache(comm: MPI.Intracomm) -> Path:
-    """Where dolfinx keeps its code, or the kernels' cache where it can't be written; the same on all ranks, collective."""
+    """Where dolfinx keeps its code; the kernels' cache where it can't be written. The same on all ranks; collective."""
     cache = jit_cache()
     if comm.rank == 0:
         try:
