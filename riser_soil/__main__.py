@@ -102,7 +102,10 @@ def schema() -> None:
 def _read(scene: str, overrides: list[str] | None) -> "Scene":
     from riser_soil.scene.reader import read_scene
 
-    return read_scene(scene, overrides or ())
+    try:
+        return read_scene(scene, overrides or ())
+    except OSError as err:
+        raise SceneError(f"{scene}: cannot be read: {err.strerror}") from err
 
 
 def _result_folder(file: str, scene: "Scene", output: Path | None, force: bool) -> Path:
@@ -211,6 +214,7 @@ def _options(
 
 def main() -> None:
     """Entry point of the console script."""
+    os.environ["PETSC_OPTIONS"] = f"-no_signal_handler {os.environ.get('PETSC_OPTIONS', '')}"
     with outlasting() as told:
         status = _status()
     if told.failure is not None:

@@ -30,9 +30,9 @@ def write_atomically(path: Path, content: str | bytes) -> None:
     try:
         draft.write_bytes(content.encode() if isinstance(content, str) else content)
         draft.replace(path)
-    except OSError:
+    except OSError as err:
         draft.unlink(missing_ok=True)
-        raise
+        raise OSError(err.errno, err.strerror, str(path)) from err
 
 
 def draft_of(path: Path) -> Path:

@@ -42,10 +42,10 @@ class GrowingFile:
             self._catch_up(draft)
             _write(draft, changes, size)
             self._lacking = changes if _exchange(draft, self.path) else None
-        except OSError:
+        except OSError as err:
             self._lacking = None
             draft.unlink(missing_ok=True)
-            raise
+            raise OSError(err.errno, err.strerror, str(self.path)) from err
         self.size = size
 
     def close(self) -> None:

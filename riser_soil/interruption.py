@@ -42,7 +42,12 @@ _pending = _Pending()
 
 @contextmanager
 def listening() -> Iterator[None]:
-    """Signals that would end the process raise Interruption in the block; those that somebody else listens to don't."""
+    """Signals that would end the process raise Interruption in the block; those that somebody else listens to don't.
+
+    A pipe that is closed is an error of its writer again, and no signal, which PETSc makes of it.
+    """
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGPIPE, signal.SIG_IGN)
     mine = [number for number in OURS if _is_free(number)]
     if mine:
         _pending.number = 0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -327,10 +326,9 @@ def _told_when_full(folder: Path, then: Callable[[], None] | None = None) -> Ite
     except OSError as err:
         if then is not None:
             then()
-        where = err.filename2 or err.filename or folder
         raise WriteError(
-            f"{folder}: cannot be written ({Path(os.fsdecode(where)).name}: {err.strerror or err}); the run ends here, "
-            "and its files are whole up to what went in before: make room, or choose another folder (-o)"
+            f"{err.filename or folder}: cannot be written: {err.strerror or err}; the run ends here, and its files are "
+            "whole up to what went in before: make room, or choose another folder (-o)"
         ) from err
 
 
