@@ -271,6 +271,8 @@ class Recorder:
 
     def _let_go(self) -> None:
         """Nothing is written any more: what can't be written once is not tried again."""
+        if self._closed:
+            return
         self._closed = True
         for file in (*self._pictures, self._series):
             file.close()
