@@ -94,7 +94,8 @@ class Claim:
 def _locked(folder: Path, path: Path) -> int:
     """The open, locked file. Another run may have removed the one that was opened: then there is a new one to open."""
     while True:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        with suppress(FileExistsError):  # exist_ok=True would ask again, and the folder may have gone by then
+            path.parent.mkdir(parents=True)
         try:
             lock = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
         except FileNotFoundError:
@@ -106,12 +107,19 @@ def _locked(folder: Path, path: Path) -> int:
                 f"{folder}: another run{f' ({owner})' if owner else ''} is writing there; wait for its end, or choose "
                 "another folder (-o)"
             )
-        if path.exists() and path.stat().st_ino == os.fstat(lock).st_ino:
+        if _is_at(path, lock):
             with suppress(OSError):  # a full disk: only the name in a message is missing
                 os.ftruncate(lock, 0)
                 os.write(lock, f"process {os.getpid()} on {socket.gethostname()}".encode())
             return lock
         os.close(lock)
+
+
+def _is_at(path: Path, descriptor: int) -> bool:
+    try:
+        return os.path.samestat(path.stat(), os.fstat(descriptor))
+    except FileNotFoundError:
+        return False
 
 
 def _lock(lock: int) -> bool:

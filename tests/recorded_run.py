@@ -115,6 +115,9 @@ def _ledger(heave: float) -> Ledger:
 CATENARY_ARC = np.concatenate([np.arange(0.0, 50.0, 0.5), np.arange(50.0, 150.0, 2.0)])
 
 
+EVERYWHERE, NOWHERE = Due(series=True, pictures=True), Due(series=False, pictures=False)
+
+
 @contextmanager
 def a_recorder(folder: Path, kind: str = "dynamic", mesh: SoilMesh | None = None) -> Iterator[Recorder]:
     """In its first stage."""
@@ -124,7 +127,7 @@ def a_recorder(folder: Path, kind: str = "dynamic", mesh: SoilMesh | None = None
 
 
 def step(
-    recorder: Recorder, t: float, due: Due = Due(series=True, pictures=True), pictured: SoilSnapshot | None = None
+    recorder: Recorder, t: float, due: Due = EVERYWHERE, pictured: SoilSnapshot | None = None
 ) -> None:
     """Tells the recorder of an accepted step."""
     line, health = Catenary(32.0, 30.0 - 0.01 * t), StepHealth(3, 0.1, 1e-6, 0)
