@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from riser_soil.netcdf import HEALTH, SERIES, SeriesFile
+from riser_soil.results import Run
 from tests.recorded_run import Catenary, record
 
 ARC = np.linspace(0.0, 100.0, 11)
@@ -85,6 +86,14 @@ def test_a_reader_does_not_stop_the_writer(tmp_path: Path) -> None:
         reader.communicate("done\n")
     with h5py.File(tmp_path / "results.nc") as read:
         assert len(read["time"]) == 1
+
+
+def test_xarray_and_the_package_s_reader_hold_the_file_together(tmp_path: Path) -> None:
+    record(tmp_path, duration=0.5)
+    with xr.open_dataset(tmp_path / "results.nc", engine="h5netcdf") as data:
+        run = Run(tmp_path)
+        np.testing.assert_array_equal(run["effective_tension"], data["effective_tension"])
+        assert run["component"].tolist() == data["component"].values.tolist() == ["x", "y", "z"]
 
 
 def test_rows_are_copies(tmp_path: Path) -> None:
