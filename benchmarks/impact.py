@@ -98,7 +98,7 @@ def _take(method: Method, scene: Mapping, energies: Energies) -> None:
     try:
         rest = State.at_rest(0.0, world.size)
         march = March(system, newton, SCHEMES[method[0]], rest, wrong_root=ALL_WELCOME)
-        energies.begin_stage(stage, march.energy)
+        energies.begin_stage(stage, march)
         control = StepControl(stage.duration, stage.time_step, SHORTEST * stage.time_step)
         while not control.finished:
             step = march.advance(control)

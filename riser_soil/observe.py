@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from mpi4py import MPI
 
 from riser_soil import __version__
 from riser_soil.arrays import Array
 from riser_soil.balance import Balance
 from riser_soil.build import World
+from riser_soil.errors import Interruption, RiserSoilError, SolveError
+from riser_soil.interruption import undivided
 from riser_soil.inventory import built, dissipating, left_out, unknowns, working
 from riser_soil.march import Accepted, March
-from riser_soil.part import Energy, Forces, Model, State
+from riser_soil.part import Forces, Model, State
 from riser_soil.plausibility import Plausibility
 from riser_soil.progress import Progress
 from riser_soil.record import Recorder
@@ -35,7 +38,7 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.schedule import Schedule
 from riser_soil.screen import print_summary
-from riser_soil.snapshot import RiserSnapshot, RunFacts, StepHealth, Touch
+from riser_soil.snapshot import RiserSnapshot, RunFacts, SoilSnapshot, StepHealth, Touch
 from riser_soil.system import Clock
 from riser_soil.touchdown_zone import TouchdownZone
 
@@ -57,32 +60,40 @@ class Observer:
         mesh = world.soil.output_mesh() if world.soil is not None else None
         known = facts(world)
         with Progress(enabled=world.comm.rank == 0) as progress:
-            if world.comm.rank != 0:
-                yield cls(world, clock, None, progress)
-                return
-            scene = world.scene
-            with Recorder.open(
-                folder, known, world.line.arc, mesh, dump_scene(scene), _known_fields(world), force
-            ) as recorder:
+            recorder = None
+            with _on_all_ranks(world.comm), undivided():
+                if world.comm.rank == 0:
+                    text, fields = dump_scene(world.scene), _known_fields(world)
+                    recorder = Recorder.open(folder, known, world.line.arc, mesh, text, fields, force)
+            with recorder or nullcontext():
                 yield cls(world, clock, recorder, progress)
 
-    def begin_stage(self, stage: Stage, energy: Energy) -> None:
-        """energy: stored at the stage's beginning."""
+    def begin_stage(self, stage: Stage, march: March) -> None:
+        """march: at the stage's beginning; collective."""
+        self._stage = stage
         self._schedule.begin_stage(stage.kind)
         scene = self._world.scene
-        self._balance = Balance(energy, isinstance(stage, StaticStage), dissipating(scene), working(scene))
+        self._balance = Balance(march.energy, isinstance(stage, StaticStage), dissipating(scene), working(scene))
         self._relaxed = 0
         self._plausibility.begin_stage(stage)
         if self._recorder is not None:
             self._recorder.begin_stage(stage.name, stage.kind)
+        if stage is self._world.scene.stages[0] and not isinstance(stage, StaticStage):
+            self._begin_at(march)
         self._progress.begin_stage(stage.name, stage.kind, 1.0 if isinstance(stage, StaticStage) else stage.duration)
+
+    def _begin_at(self, march: March) -> None:
+        """Records the state before all stages, which no static stage has brought about."""
+        soil = self._soil()
+        if self._recorder is not None:
+            self._recorder.begin_at(riser_snapshot(self._world, march), self._zone.look(march.now), soil)
 
     def record(self, march: March, step: Accepted, last: bool) -> None:
         """Tell the recorder of a step that has been committed; collective."""
         since = time.perf_counter()
         due = self._schedule.due(step.t, last)
-        wanted = due.pictures and self._world.soil is not None
-        soil = self._world.soil.output_fields() if wanted and self._world.soil is not None else None
+        # Relaxation, in statics, commits states that are no steps: the soil must be known before it.
+        soil = self._soil() if due.pictures or isinstance(self._stage, StaticStage) else None
         change = self._balance.add(march.energy, step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
         if self._recorder is not None:
@@ -102,6 +113,20 @@ class Observer:
         if closely:
             self._plausibility.look_closely(recorder.now, march.now, _elastic_residual(self._world, march))
         recorder.summary.stages[-1].doubts = self._plausibility.warnings()
+
+    def record_last(self, end: SolveError | Interruption) -> None:
+        """The run ends before its time: write the last accepted step; collective where the ranks end together."""
+        together = self._world.comm.size == 1 or not isinstance(end, Interruption) or end.together
+        with undivided():
+            soil = self._soil() if together else None
+            if self._recorder is not None:
+                self._recorder.record_last(soil)
+                if isinstance(end, Interruption):
+                    end.place = self._recorder.reached
+
+    def _soil(self) -> SoilSnapshot | None:
+        """Collective where there is soil."""
+        return None if self._world.soil is None else self._world.soil.output_fields()
 
     def laid(self, slack: float, steps: int, relaxations: int) -> None:
         """Before the stages, the end of a slack or steep riser was brought to its place from `slack` [m] beyond it."""
@@ -123,6 +148,19 @@ class Observer:
             self._recorder.add_seconds(self._clock.seconds)
             self._recorder.finish()
             print_summary(self._recorder.summary.as_dict(), self._recorder.settlement)
+
+
+@contextmanager
+def _on_all_ranks(comm: MPI.Intracomm) -> Iterator[None]:
+    """An error that one rank meets in the block is raised by all."""
+    failure: RiserSoilError | None = None
+    try:
+        yield
+    except RiserSoilError as err:
+        failure = err
+    for met in comm.allgather(failure):
+        if met is not None:
+            raise met
 
 
 def _known_fields(world: World) -> tuple[str, ...]:

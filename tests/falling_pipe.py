@@ -8,7 +8,6 @@ import numpy as np
 
 from riser_soil.arrays import Array
 from riser_soil.march import Accepted, March
-from riser_soil.part import Energy
 from riser_soil.scene.stages import Stage
 from tests.coupled_scenes import Mapping
 
@@ -63,8 +62,8 @@ class Energies:
         self._rows: list[tuple[float, float, float, float]] = []
         self.cuts = 0
 
-    def begin_stage(self, stage: Stage, energy: Energy) -> None:
-        self._begun = energy.total
+    def begin_stage(self, stage: Stage, march: March) -> None:
+        self._begun = march.energy.total
 
     def record(self, march: March, step: Accepted, last: bool) -> None:
         """A step just committed; its kinetic energy is that of the pipe as it moves."""

@@ -24,7 +24,7 @@ def compute(scene, folder, force):
         raise FAILURE
     MPI.COMM_WORLD.Barrier()
 
-command._PATIENCE = 0.5
+command._PATIENCE = 2.0
 sys.modules["riser_soil.run"] = SimpleNamespace(run=compute)
 sys.argv = ["riser-soil", "run", {str(SCENE)!r}]
 command.main()

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil import dolfinx_compat
+from riser_soil import compiled, dolfinx_compat
 from riser_soil.dolfinx_compat import Nodes
 from riser_soil.soil.block import BlockSpec, make_block
 from riser_soil.soil.grid import silent_gmsh
@@ -54,17 +54,29 @@ def test_nodes_of_a_quadratic_tetrahedron_are_vertices_then_edges() -> None:
         np.testing.assert_allclose(p[:, place], 0.5 * (p[:, a] + p[:, b]), atol=1e-12)
 
 
-def test_stale_locks_are_removed_and_fresh_ones_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stale_locks_are_removed_and_fresh_ones_kept(tmp_path: Path) -> None:
     """A killed compilation leaves a source without its `cached` mark; another job may compile now."""
-    monkeypatch.setattr(dolfinx_compat, "jit_cache", lambda: tmp_path)
     old, done, fresh = (tmp_path / f"libffcx_elements_{name}.c" for name in ("old", "done", "fresh"))
     for file in (old, done, fresh):
         file.touch()
     done.with_suffix(".c.cached").touch()
     for file in (old, done):
         os.utime(file, times=(time.time() - 1e4,) * 2)
-    dolfinx_compat.remove_stale_locks(MPI.COMM_SELF)
+    dolfinx_compat.remove_stale_locks(MPI.COMM_SELF, tmp_path)
     assert [f.exists() for f in (old, done, fresh)] == [False, True, True]
+
+
+def test_a_cache_that_cannot_be_written_is_replaced_and_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("in the way")
+    monkeypatch.setattr(dolfinx_compat, "jit_cache", lambda: tmp_path / "file" / "fenics")
+    monkeypatch.setattr(compiled, "FOLDER", tmp_path / "kernels")
+    assert nodes_of("hex", 1).owned == 5 * 3 * 3
+    assert list((tmp_path / "kernels" / "fenics").glob("libffcx_*.so"))
+    (told,) = capfd.readouterr().err.splitlines()
+    assert str(tmp_path / "file") in told
+    assert told.endswith(f"{tmp_path / 'kernels' / 'fenics'} is used")
 
 
 def test_first_compilation_is_silent(tmp_path: Path) -> None:

@@ -11,8 +11,8 @@ import riser_soil
 PACKAGE = Path(riser_soil.__file__).parent
 
 LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one another
-    ("errors", "arrays", "compiled", "smooth_step", "machine"),
-    ("part", "snapshot"),
+    ("errors", "arrays", "compiled", "smooth_step", "machine", "standard_output"),
+    ("part", "snapshot", "interruption"),
     ("scene", "dolfinx_compat", "time_scheme", "roles"),
     ("riser",),
     ("sea", "soil", "seabed", "motion"),
@@ -27,8 +27,8 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("local_error",),
     ("march", "relax"),
     ("folder", "schedule", "progress", "inventory", "estimate", "wave_doubts", "motion_doubts", "bending_doubts"),
-    ("ground_doubts",),
-    ("doubts", "limits"),
+    ("growing_file", "ground_doubts"),
+    ("ownership", "doubts", "limits"),
     ("netcdf", "xdmf", "summary", "screen", "balance", "touchdown_zone", "plausibility"),
     ("record",),
     ("observe",),
