@@ -59,7 +59,7 @@ def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Gr
     if isinstance(given.mesh, MeshFile):
         return file_grid(comm, given.mesh.file)
     assert given.block is not None  # the scene's checks have seen to it
-    first, last = (line.to_global(line.x[node])[:2].tolist() for node in (0, -1))
+    first, last = ((float(x), float(y)) for x, y, _ in (line.to_global(line.x[node]) for node in (0, -1)))
     return block_grid(
         comm,
         BlockSpec(
@@ -70,7 +70,7 @@ def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Gr
             size_far=given.mesh.size_far,
             level=scene.seabed_level,
             kind=given.mesh.kind,
-            riser=((first[0], first[1]), (last[0], last[1])),
+            riser=(first, last),
         ),
     )
 
