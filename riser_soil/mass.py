@@ -58,7 +58,7 @@ class RiserMass:
 
     def _element_matrices(self, t: float) -> Array:
         state = State.at_rest(t, self._system.numbering.size)
-        values = {"riser": np.zeros(self._system.matrix.values["riser"].shape)}
+        values = {"riser": np.zeros_like(self._system.matrix.values["riser"])}
         for part in self._parts:
             part.tangent(state, MASS_ONLY, values)
         return values["riser"]

@@ -62,6 +62,10 @@ class Block:
     def shape(self) -> tuple[int, int, int]:
         return (self.rows.shape[0], self.rows.shape[1], self.cols.shape[1])
 
+    def zeros(self) -> Array:
+        """The matrices themselves, all zero."""
+        return np.zeros(self.shape)
+
 
 @dataclass(eq=False)
 class Forces:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.arrays import Array, IntArray
+from riser_soil.arrays import Array, BoolArray, IntArray
 from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 
 
@@ -14,11 +14,11 @@ class Chain:
     name, space = "chain", "chain"
 
     def __init__(self, z: Array, held: bool = False, owner: bool = True) -> None:
-        self.z = np.asarray(z, dtype=float)
+        self.z: Array = np.asarray(z, dtype=float)
         self.size, self.offset = len(self.z), 0
-        self.global_index = np.arange(self.size)
-        self.owned = np.full(self.size, owner)
-        self.prescribed = np.zeros(self.size, dtype=bool)
+        self.global_index: IntArray = np.arange(self.size)
+        self.owned: BoolArray = np.full(self.size, owner)
+        self.prescribed: BoolArray = np.zeros(self.size, dtype=bool)
         self.prescribed[0] = held
 
     @property

@@ -57,8 +57,8 @@ def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Gr
             pass
         case _:
             assert_never(given.mesh)
-    first, last = (line.to_global(line.x[node])[:2].tolist() for node in (0, -1))
-    return block_grid(comm, block_of(scene, given, ((first[0], first[1]), (last[0], last[1]))))
+    first, last = ((float(x), float(y)) for x, y, _ in (line.to_global(line.x[node]) for node in (0, -1)))
+    return block_grid(comm, block_of(scene, given, (first, last)))
 
 
 def soil_contact_of(scene: Scene, settings: ContactScene, world: World) -> SoilContact:

@@ -78,8 +78,8 @@ class Line:
         self.frames: Frames = (
             _planar_frames(layout, self.direction) if dimension == 2 else _spatial_frames(layout)
         )
-        self.x = (layout.position - self.origin) @ self.basis
-        self.chord = np.diff(self.x, axis=0)
+        self.x: Array = (layout.position - self.origin) @ self.basis
+        self.chord: Array = np.diff(self.x, axis=0)
         unturned = self.frames.turn(np.zeros((self.arc.size, self.frames.dofs)))
         self._supports = self._bases = {node: unturned.at(node).copy() for node in (0, self.arc.size - 1)}
         self.offset = 0
