@@ -37,13 +37,16 @@ class Worst:
 
 
 class Plausibility:
-    """What a stage's results look like at the instants that are recorded; on the rank that holds the riser."""
+    """What a stage's results look like at the instants that are recorded; on the rank that holds the riser.
+
+    EA [N] and radius [m] (nn,): the smaller and the larger of what the two elements beside a node have.
+    """
 
     def __init__(self, world: World) -> None:
         elements = world.elements
         self._world = world
-        self._EA = -at_most(np.repeat(-elements.EA[:, None], 2, axis=1))
-        self._radius = at_most(np.repeat(0.5 * elements.outer_diameter[:, None], 2, axis=1))
+        self.EA = -at_most(np.repeat(-elements.EA[:, None], 2, axis=1))
+        self.radius = at_most(np.repeat(0.5 * elements.outer_diameter[:, None], 2, axis=1))
         self._middle = 0.5 * (world.line.arc[1:] + world.line.arc[:-1])
         self._touched = world.soil_contact is None
 
@@ -55,8 +58,8 @@ class Plausibility:
     def look(self, t: float, state: State, riser: RiserSnapshot, touch: Touch) -> None:
         """t: s of the run (static stages: load factor)."""
         arc = self._world.line.arc
-        self._axial = self._axial.or_larger(np.abs(riser.effective_tension) / self._EA, arc, t)
-        self._bending = self._bending.or_larger(self._radius * riser.curvature, arc, t)
+        self._axial = self._axial.or_larger(np.abs(riser.effective_tension) / self.EA, arc, t)
+        self._bending = self._bending.or_larger(self.radius * riser.curvature, arc, t)
         contact = self._world.soil_contact
         if contact is not None and not self._touched:
             self._touched = bool(contact.force_per_length(state).any())
@@ -109,9 +112,9 @@ class Plausibility:
 
     def _never(self) -> str:
         assert self._world.soil is not None
-        (x0, y0, z0), (x1, y1, z1) = self._world.soil.grid.low, self._world.soil.grid.high
+        (x0, y0, _), (x1, y1, _) = self._world.soil.grid.low, self._world.soil.grid.high
         down = ", ".join(f"{x:.5g}" for x in self._lowest)
         return (
-            f"in no stage did the riser touch the soil, x {x0:.5g} to {x1:.5g} m, y {y0:.5g} to {y1:.5g} m, z {z0:.5g} "
-            f"to {z1:.5g} m: at the end it {self._where} [{down}] m; move the soil below that, or leave it out"
+            f"in no stage did the riser touch the soil, x from {x0:.5g} to {x1:.5g} m and y from {y0:.5g} to {y1:.5g} "
+            f"m: at the end it {self._where} [{down}] m; move the soil there, or leave it out"
         )

@@ -32,8 +32,8 @@ NO_TURN = 1e-5
 class Misfit(NamedTuple):
     """The largest difference between what an element's turn and its end moments say of its bending moment.
 
-    smooth: by the formula with shear, over the line's largest moment; steep: by the trapezoidal rule, without elements
-    at ends where the moment sets in. Each with its element.
+    smooth: by the formula with shear, over the line's largest moment, 1 at most; steep: by the trapezoidal rule,
+    without elements at ends where the moment sets in. Each with its element.
     """
 
     smooth: float
@@ -52,12 +52,16 @@ def misfit(line: Line, elements: Elements, state: State, residual: Array) -> Mis
     trapezoidal = _turns(line, trial, tangent) - 0.5 * L * (k[:, 0] + k[:, 1])
     corrected = trapezoidal + L * L / 12.0 * (slope[:, 1] - slope[:, 0])
     size = np.linalg.norm(bending, axis=2)
-    scale = np.maximum(elements.EI_y, elements.EI_z) / line.length / max(float(size.max()), np.finfo(float).tiny)
-    smooth, steep = (scale * _beyond_round_off(turn) for turn in (corrected, trapezoidal))
+    EI = np.maximum(elements.EI_y, elements.EI_z)
+    smooth, steep = (EI / line.length * _beyond_round_off(turn) for turn in (corrected, trapezoidal))
     for end, other in ((0, 1), (-1, 0)):
         steep[end] *= size[end, 1 - other] > size[end, other]
     i, j = int(smooth.argmax()), int(steep.argmax())
-    return Misfit(float(smooth[i]), i, float(steep[j]), j)
+    return Misfit(_share(smooth[i], size.max()), i, _share(steep[j], size.max()), j)
+
+
+def _share(difference: float, largest: float) -> float:
+    return float(difference / max(difference, largest)) if difference > 0.0 else 0.0
 
 
 def _beyond_round_off(turn: Array) -> Array:
