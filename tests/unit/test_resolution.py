@@ -35,8 +35,8 @@ def found(scene: Mapping) -> tuple[Misfit, float]:
     return told[-1]
 
 
-def too_long(told: Misfit) -> bool:
-    return told.smooth > SMOOTH_MISFIT or told.steep > STEEP_MISFIT
+def too_long(told: Misfit, largest: float) -> bool:
+    return told.smooth > SMOOTH_MISFIT * largest or told.steep > STEEP_MISFIT * largest
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -52,8 +52,8 @@ def test_a_cantilever_under_its_weight(elements: int, dimension: int) -> None:
     )
     told, largest = found(scene)
     assert largest == pytest.approx(50.0, rel=1e-5)
-    assert told.steep == pytest.approx(1.0 / (6.0 * elements**2), rel=1e-4)
-    assert told.smooth < 1e-5
+    assert told.steep == pytest.approx(50.0 / (6.0 * elements**2), rel=1e-4)
+    assert told.smooth < 1e-4
 
 
 def test_two_bending_stiffnesses_have_each_their_curvature() -> None:
@@ -83,7 +83,7 @@ def test_moments_of_a_long_riser(elements: int, least: float, most: float, told:
     """The error of its largest moment lies between two bounds, and is told where it is large."""
     seen, largest = found(hanging(elements, dimension=dimension))
     assert least < abs(largest / 264.42 - 1.0) < most
-    assert too_long(seen) == told
+    assert too_long(seen, largest) == told
 
 
 @pytest.mark.parametrize(("elements", "most", "told"), [(20, 0.4, True), (40, 0.09, True), (80, 0.02, False)])
@@ -95,13 +95,12 @@ def test_moments_at_a_clamp(elements: int, most: float, told: bool) -> None:
     options: Mapping = {"pipe": pipe, "length": 150.0, "elements": elements, "start": ends[0], "end": ends[1]}
     seen, largest = found(riser_scene(*stages, **options, gravity=9.81))
     assert 0.2 * most < largest / 3207.4 - 1.0 < most
-    assert too_long(seen) == told
+    assert too_long(seen, largest) == told
 
 
-def test_a_straight_riser_has_no_misfit() -> None:
-    """Neither its moments nor the turns of its elements are more than round-off."""
+def test_a_straight_riser_bends_by_round_off_only() -> None:
     pipe: Mapping = {"EA": 1.0e8, "EI": 1.0e4, "mass": 50.0}
     pull = static(loads=[{"at": "end", "force": [1.0e5, 0.0, 0.0]}])
     start = held(0.0, 0.0, 0.0, rotation="fixed")
     told, _ = found(riser_scene(pull, pipe=pipe, length=30.0, elements=6, start=start, end="free"))
-    assert told == Misfit(0.0, 0, 0.0, 0)
+    assert max(told.smooth, told.steep) < 1e-6
