@@ -106,7 +106,8 @@ class Plausibility:
 
     def _blurred(self) -> Iterator[str]:
         for found, allowed in ((self._smooth, SMOOTH_MISFIT), (self._steep, STEEP_MISFIT)):
-            share = found.value / max(found.value, self._largest, np.finfo(float).tiny)
+            largest = max(found.value, self._largest)
+            share = found.value / largest if largest > 0.0 else 0.0
             if share > allowed:
                 length = float(self._world.line.length[np.abs(self._middle - found.arc).argmin()])
                 yield (
