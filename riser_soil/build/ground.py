@@ -9,6 +9,7 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.arrays import Array
+from riser_soil.errors import SceneError
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.contact import Contact as ContactScene
@@ -119,7 +120,13 @@ def _law(seabed: Seabed, settings: ContactScene, world: World) -> NormalLaw:
         return penalty
     from riser_soil.contact.suction import Sticking
 
-    return Sticking(penalty, settings.suction.cap, settings.suction.reach)
+    cap, reach = settings.suction.cap, settings.suction.reach
+    if reach <= cap / penalty.stiffness:
+        raise SceneError(
+            f"contact.suction.reach = {reach:g} m: suction reaches its cap of {cap:g} N/m at {cap / penalty.stiffness:g} m "
+            f"on a seabed of {penalty.stiffness:g} N/m2, and must reach farther; raise reach or lower cap"
+        )
+    return Sticking(penalty, cap, reach)
 
 
 def _hysteretic(given: HystereticLaw, elements: Elements) -> NormalLaw:

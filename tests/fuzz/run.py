@@ -48,7 +48,7 @@ def endings(cases: Iterable[Case], folder: Path, workers: int) -> Iterator[Endin
     """Run all cases, each in a folder of its own."""
     import_all()
     with ThreadPoolExecutor(workers) as pool:
-        yield from pool.map(lambda case: _ending(*case, folder), enumerate(cases))
+        yield from pool.map(lambda numbered: _ending(numbered[0], numbered[1], folder), enumerate(cases))
 
 
 def import_all() -> None:

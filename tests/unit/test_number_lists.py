@@ -12,14 +12,17 @@ from riser_soil.scene import document
 from riser_soil.scene.document import Document, parse, read_text
 from riser_soil.scene.number_lists import cut_out
 
-N = 600
+N = 250
 PAIRS = ", ".join(f"[{n}, -{n}.5e-3]" for n in range(N))
 LISTS = {
     "flow": f"a: {{b: [{PAIRS}], c: 3}}\nd: 4\n",
     "flow over lines": "a: {b: [\n" + "".join(f"    [{n}, 0.5],\n" for n in range(N)) + "    [1]\n  ], c: 3}\nd: 4\n",
     "rows of lists": "a:\n" + "".join(f"  - [{n}, 0.5]\n" for n in range(N)) + "d: 4\n",
     "rows of numbers": "a:\n" + "".join(f"- {n}.25\n" for n in range(N)) + "d: 4\n",
-    "deep": "a:\n  b:\n    - {c: 1}\n    - {c: [" + "1, " * N * 2 + "2]}\n    - 3\n",
+    "open points": "a: [" + "1., 2.e3, " * N + "2]\nb: 1\n",
+    "rows with remarks": "a:\n" + "".join(f"- [{n}, 2.]  # [{n}]\n" for n in range(N)) + "- [1, 2]",
+    "lines of Windows": "a:\r\n" + "".join(f"- [{n}]\r\n" for n in range(N)) + "b: [" + "1,\r\n" * N * 4 + "2]\r\n",
+    "deep": "a:\n  b:\n    - {c: 1}\n    - {c: [" + "1, " * N * 4 + "2]}\n    - 3\n",
     "two": f"a: [{PAIRS}]\nb: [{PAIRS}]\n",
     "shared": f"a: &x [{PAIRS}]\nb: *x\n",
     "quoted": f"a: '[{PAIRS}]'\nb: 1\n",
@@ -47,7 +50,8 @@ def test_values_and_lines_are_those_of_the_yaml_reader(name: str, monkeypatch: p
     assert fast.lines == slow.lines
 
 
-SHORTENED = ("flow", "flow over lines", "rows of lists", "rows of numbers", "deep", "two", "shared")
+SHORTENED = ("flow", "flow over lines", "rows of lists", "rows of numbers", "open points", "rows with remarks")
+SHORTENED += ("lines of Windows", "deep", "two", "shared")
 
 
 @pytest.mark.parametrize("name", SHORTENED)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mpi4py import MPI
 
 from riser_soil.build import build
 from riser_soil.errors import SceneError
@@ -75,6 +76,13 @@ def test_tables_keep_within_as_well(table: str, tmp_path: Path) -> None:
     assert len(str(caught.value)) < 1000
 
 
+def test_suction_reaches_beyond_its_peak() -> None:
+    scene = {key: value for key, value in touchdown(LAY).items() if key != "soil"}
+    scene["contact"] = {"suction": {"cap": 50.0, "reach": 5e-4}}
+    with pytest.raises(SceneError, match=r"^contact\.suction\.reach = 0\.0005 m: suction reaches its cap .* raise reach"):
+        build(scene_from_mapping(scene), MPI.COMM_SELF)
+
+
 POWERS = {  # of the length, by Froude's law
     "outer_diameter": 1, "inner_diameter": 1, "mass": 2, "EA": 3, "EI": 5, "GJ": 5, "length": 1, "position": 1,
     "stiffness": 1, "amplitude": 1, "period": 0.5, "ramp": 0.5, "duration": 0.5, "time_step": 0.5, "x": 1, "y": 1,
@@ -96,11 +104,5 @@ def test_a_riser_scaled_by_a_million_is_read_and_built(s: float) -> None:
     scene: Mapping = scaled(deepcopy(touchdown(LAY, heave(1.0))), s)
     scene["solver"]["min_time_step"] = 1e-5 * math.sqrt(s)
     scene["contact"] = {"smoothing": 1e-3 * s}
-    world = build(scene_from_mapping(scene), _alone())
+    world = build(scene_from_mapping(scene), MPI.COMM_SELF)
     assert world.line.arc[-1] == pytest.approx(30.0 * s)
-
-
-def _alone() -> Any:
-    from mpi4py import MPI
-
-    return MPI.COMM_SELF
