@@ -120,11 +120,11 @@ def _law(seabed: Seabed, settings: ContactScene, world: World) -> NormalLaw:
         return penalty
     from riser_soil.contact.suction import Sticking
 
-    cap, reach = settings.suction.cap, settings.suction.reach
-    if reach <= cap / penalty.stiffness:
+    cap, reach, peak = settings.suction.cap, settings.suction.reach, settings.suction.cap / penalty.stiffness
+    if reach <= peak:
         raise SceneError(
-            f"contact.suction.reach = {reach:g} m: suction reaches its cap of {cap:g} N/m at {cap / penalty.stiffness:g} m "
-            f"on a seabed of {penalty.stiffness:g} N/m2, and must reach farther; raise reach or lower cap"
+            f"contact.suction.reach = {reach:g} m: suction has its cap of {cap:g} N/m at {peak:g} m on a seabed of "
+            f"{penalty.stiffness:g} N/m2, and must reach farther; raise reach or lower cap"
         )
     return Sticking(penalty, cap, reach)
 
