@@ -5,6 +5,7 @@ On the package's own riser, time loop and contact; see docs/impact.md, whose tab
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -174,5 +175,6 @@ def _print(rows: Iterator[str]) -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     report()
     _print(full_table())

@@ -3,26 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
 from mpi4py import MPI
 
 from riser_soil.build import World, build
 from riser_soil.doubts import physical_warnings
+from riser_soil.estimate import Size, riser_memory, soil_memory
 from riser_soil.inventory import built, left_out, unknowns
+from riser_soil.limits import in_bytes, in_words, size_that_fits, tell, too_long
 from riser_soil.scene.scene import Scene
-
-PROCESS = 0.24e9  # bytes of a process with the packages that every scene needs
-SOIL_PROCESS = 0.1e9  # bytes that dolfinx and gmsh add
-PER_RISER_DOF = 2e3  # bytes: element and matrix arrays
-PER_CELL_ENTRY = 24.0  # bytes: value, place and matrix entry of one entry of a cell's matrix
-FACTOR = 10.0  # entries of the soil's factor: FACTOR n^(4/3), as nested dissection gives them in three dimensions
 
 
 def describe(scene: Scene) -> str:
     """The report of `riser-soil check`; collective. Raises SceneError or MeshError."""
+    size = size_that_fits(scene, Path(), MPI.COMM_WORLD)
+    tell(size, MPI.COMM_WORLD)
     world = build(scene, MPI.COMM_WORLD)
-    lines = [*_parts(world), *_unknowns(world), _memory_line(world)]
-    doubts = list(physical_warnings(world))
+    lines = [*_parts(world), *_unknowns(world), _memory_line(world), *_results(size)]
+    doubts = [*physical_warnings(world), *too_long(size)]
     return "\n".join([*lines, *(f"warning: {doubt}" for doubt in doubts), _verdict(doubts)])
 
 
@@ -61,13 +60,16 @@ def _memory_line(world: World) -> str:
     return f"estimated memory: {memory(world) / 1e6:.0f} MB on {_counted(world.comm.size, 'rank')}"
 
 
+def _results(size: Size) -> Iterator[str]:
+    yield f"estimated results: {_counted(round(size.records), 'record')}, {in_bytes(size.disk)}"
+    yield f"estimated time: {in_words(size.seconds)} on one core, {size.told_steps}"
+
+
 def memory(world: World) -> float:
     """Estimated bytes over all ranks; collective."""
     comm = world.comm
-    total = comm.size * PROCESS + PER_RISER_DOF * unknowns(comm, world.line)
+    total = riser_memory(comm.size, unknowns(comm, world.line))
     if world.soil is not None:
         cells, rows, cols = world.soil.blocks()["soil"].shape
-        n = unknowns(comm, world.soil.field)
-        total += comm.size * SOIL_PROCESS + 8.0 * FACTOR * n ** (4.0 / 3.0)
-        total += PER_CELL_ENTRY * rows * cols * comm.allreduce(cells)
+        total += soil_memory(comm.size, comm.allreduce(cells), rows * cols, unknowns(comm, world.soil.field))
     return total

@@ -59,7 +59,7 @@ SERIES: dict[str, Variable] = {
         ("time", "arc"), "1", "curvature times the smallest bend radius allowed", "above 1 the pipe is bent too much"
     ),
     "contact_force": Variable(
-        ("time", "arc"), "N m-1", "contact force per length of riser", "magnitude, >= 0"
+        ("time", "arc"), "N m-1", "contact force per length of riser", "positive where the ground pushes"
     ),
     "penetration": Variable(
         ("time", "arc"), "m", "penetration of the riser's underside into the ground as it is at the time", ">= 0"

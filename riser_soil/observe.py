@@ -21,6 +21,7 @@ from riser_soil.interruption import undivided
 from riser_soil.inventory import built, dissipating, left_out, unknowns, working
 from riser_soil.march import Accepted, March
 from riser_soil.part import Forces, Model, State
+from riser_soil.plausibility import Plausibility
 from riser_soil.progress import Progress
 from riser_soil.record import Recorder
 from riser_soil.riser.section_forces import (
@@ -37,7 +38,7 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.schedule import Schedule
 from riser_soil.screen import print_summary
-from riser_soil.snapshot import RiserSnapshot, RunFacts, SoilSnapshot, StepHealth
+from riser_soil.snapshot import RiserSnapshot, RunFacts, SoilSnapshot, StepHealth, Touch
 from riser_soil.system import Clock
 from riser_soil.touchdown_zone import TouchdownZone
 
@@ -50,6 +51,7 @@ class Observer:
         output = world.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         self._zone = TouchdownZone(world, _known_fields(world))
+        self._plausibility = Plausibility(world)
 
     @classmethod
     @contextmanager
@@ -70,8 +72,10 @@ class Observer:
         """march: at the stage's beginning; collective."""
         self._stage = stage
         self._schedule.begin_stage(stage.kind)
-        self._balance = Balance(march.energy, isinstance(stage, StaticStage))
+        scene = self._world.scene
+        self._balance = Balance(march.energy, isinstance(stage, StaticStage), dissipating(scene), working(scene))
         self._relaxed = 0
+        self._plausibility.begin_stage(stage)
         if self._recorder is not None:
             self._recorder.begin_stage(stage.name, stage.kind)
         if stage is self._world.scene.stages[0] and not isinstance(stage, StaticStage):
@@ -96,8 +100,19 @@ class Observer:
             health = StepHealth(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
             riser, touching = riser_snapshot(self._world, march), self._zone.look(march.now)
             self._recorder.accept(step.t, due, riser, touching, health, self._balance.ledger, soil)
+            if due.series:
+                self._judge(self._recorder, march, riser, touching, closely=due.pictures)
         self._relaxed = 0
         self._clock.add("output", since)
+
+    def _judge(
+        self, recorder: Recorder, march: March, riser: RiserSnapshot, touching: Touch, closely: bool
+    ) -> None:
+        """Look whether what was recorded is plausible; closely where it costs no more than what is written."""
+        self._plausibility.look(recorder.now, march.now, riser, touching)
+        if closely:
+            self._plausibility.look_closely(recorder.now, march.now, _elastic_residual(self._world, march))
+        recorder.summary.stages[-1].doubts = self._plausibility.warnings()
 
     def record_last(self, end: SolveError | Interruption) -> None:
         """The run ends before its time: write the last accepted step; collective where the ranks end together."""
@@ -114,11 +129,11 @@ class Observer:
         return None if self._world.soil is None else self._world.soil.output_fields()
 
     def laid(self, slack: float, steps: int, relaxations: int) -> None:
-        """Before the stages, the end of a slack riser was brought to its place from `slack` [m] beyond it."""
+        """Before the stages, the end of a slack or steep riser was brought to its place from `slack` [m] beyond it."""
         if self._recorder is not None:
             self._recorder.summary.laying = {"slack": slack, "load_steps": steps, "relaxations": relaxations}
             helped = f" and {relaxations} dynamic relaxation(s)" if relaxations else ""
-            print(f"the riser is slack: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
+            print(f"{self._world.hanging}: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
 
     def relaxed(self, iterations: int) -> None:
         """Dynamic relaxation was needed; its Newton iterations count with the next step."""
@@ -204,6 +219,14 @@ def riser_snapshot(world: World, march: March) -> RiserSnapshot:
         start_tangent=tangent[0, 0],
         end_tangent=tangent[-1, 1],
     )
+
+
+def _elastic_residual(world: World, march: March) -> Array:
+    """Of the elements (ne, 2 ndof), less what follows from strain rates."""
+    parts = _acting(march.system.model)
+    residual = element_residual(world.line, parts.within, march.now)
+    viscous = viscous_residual(world.line, parts.viscous, march.now)
+    return residual if viscous is None else residual - viscous
 
 
 def _bend_utilisation(world: World, curvature: Array) -> Array:

@@ -120,6 +120,7 @@ class Recorder:
         )
         self._soil_frames = _soil_file(folder, soil_mesh)
         self._clock = Clock()
+        self.now = 0.0  # s of the run at the last step; in a static stage its load factor
         self._latest: Array | None = None
         self._last: Last | None = None
         self._settlement: float | None = None
@@ -291,7 +292,7 @@ class Recorder:
         stage.count(health)
         stage.time = self._clock.stage_time
         stage.balance(self._clock.now, ledger)
-        now = t if stage.kind == "static" else self._clock.now
+        self.now = now = t if stage.kind == "static" else self._clock.now
         stage.extremes.update(now, self._latest)
         stage.final = final_state(self._arc, riser, touch)
         stage.bend(now, self._arc, riser)

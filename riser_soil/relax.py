@@ -1,6 +1,7 @@
 """Dynamic relaxation: pseudo-time steps through an artificial drag, until equilibrium needs none.
 
 Used when Newton's method finds no equilibrium from the shape that a static stage starts with, and reported when used.
+The way there is none that the riser takes: the ground remembers nothing of it but its end.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from riser_soil.newton import Newton, NewtonSettings, NotConvergedError, Solutio
 from riser_soil.part import Model, State
 from riser_soil.riser.line import Line
 from riser_soil.riser.relaxation import Relaxation
+from riser_soil.roles import Remembering
 from riser_soil.system import Clock, System
 from riser_soil.time_scheme import Static
 
@@ -109,8 +111,20 @@ def _step(system: System, newton: Newton, part: Relaxation, t: float, drag: floa
         newton.require_stable(step, solution)
     finally:
         part.drag = usual
-    system.commit(solution.state)
+    if drag > 0.0:
+        _pass_through(system, solution.state)
+    else:
+        system.commit(solution.state)
     return solution
+
+
+def _pass_through(system: System, state: State) -> None:
+    """Commit a state that is none of the stage's, so that its forces leave no trace."""
+    remembering = [part for part in system.model.parts if isinstance(part, Remembering)]
+    kept = [part.memory for part in remembering]
+    system.commit(state)
+    for part, memory in zip(remembering, kept, strict=True):
+        part.memory = memory
 
 
 def _nudge(system: System, line: Line, t: float) -> None:
@@ -119,7 +133,7 @@ def _nudge(system: System, line: Line, t: float) -> None:
     moves = np.random.default_rng(1).uniform(-NUDGE, NUDGE, (line.nodes, line.dimension)) * line.length.min()
     line.nodal(state.u)[:, : line.dimension] = moves
     state.u[system.held] = 0.0
-    system.commit(state)
+    _pass_through(system, state)
 
 
 def _largest_increment(system: System, line: Line, solution: Solution) -> float:

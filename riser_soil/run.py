@@ -15,6 +15,7 @@ from riser_soil.build.stage import scheme_of, times_to_hit
 from riser_soil.doubts import physical_warnings
 from riser_soil.errors import Interruption, SceneError, SolveError, WriteError
 from riser_soil.interruption import agreeing, check, listening, undivided
+from riser_soil.limits import size_that_fits, tell, too_long
 from riser_soil.local_error import first_step
 from riser_soil.march import Accepted, March
 from riser_soil.newton import Newton, NewtonSettings
@@ -41,9 +42,11 @@ def run(scene: Scene, folder: Path | str, force: bool = False) -> None:
     with listening():
         _refuse(folder, force)
         comm, clock, since = MPI.COMM_WORLD, Clock.new(), time.perf_counter()
+        size = size_that_fits(scene, folder, comm)
+        tell(size, comm)
         world = build(scene, comm)
         clock.add("build", since)
-        for doubt in physical_warnings(world):
+        for doubt in (*physical_warnings(world), *too_long(size)):
             if comm.rank == 0:
                 print(f"warning: {doubt}")
         with agreeing(comm), Observer.open(world, clock, folder, force) as observer:
@@ -182,8 +185,9 @@ def steps_of(world: World, stage: Stage, march: March) -> Control:
     solver = world.scene.solver
     if isinstance(stage, StaticStage):
         return StepControl(1.0, 1.0 / solver.load_steps, solver.min_load_step)
+    smallest = world.smallest_step(stage)
     if stage.time_step == "auto":
-        first = first_step(march.system, march.now, stage.error_tolerance)
-        stops = times_to_hit(world.scene, stage)
-        return AutoSteps(stage.duration, stage.error_tolerance, solver.min_time_step, first, stops)
-    return StepControl(stage.duration, stage.time_step, solver.min_time_step)
+        tolerance = world.error_tolerance(stage)
+        first = first_step(march.system, march.now, tolerance)
+        return AutoSteps(stage.duration, tolerance, smallest, first, times_to_hit(world.scene, stage))
+    return StepControl(stage.duration, stage.time_step, smallest)

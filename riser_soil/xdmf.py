@@ -13,13 +13,11 @@ from xml.sax.saxutils import quoteattr
 
 import h5py
 import numpy as np
-import numpy.typing as npt
 
 from riser_soil.arrays import Array, IntArray
 from riser_soil.growing_file import GrowingFile, appending
 from riser_soil.ownership import PROGRAM, XDMF_HEAD
 
-Table = npt.NDArray[np.float64] | npt.NDArray[np.int64]
 _CELLS = {4: "Tetrahedron", 8: "Hexahedron", 10: "Tetrahedron_10"}
 _FOOT = "  </Grid>\n </Domain>\n</Xdmf>\n"
 
@@ -99,7 +97,7 @@ class XdmfFile:
         lines += [_attribute(name, "Cell", v, items[name]) for name, v in frame.on_cells.items()]
         return "".join(f"   {line}\n" for line in [*lines, "</Grid>"])
 
-    def _store(self, store: h5py.File, where: str, values: Table) -> str:
+    def _store(self, store: h5py.File, where: str, values: Array | IntArray) -> str:
         store[where] = values
         dims = " ".join(str(n) for n in values.shape)
         number = "Int" if values.dtype.kind == "i" else "Float"

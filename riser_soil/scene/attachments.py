@@ -4,7 +4,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
-from riser_soil.scene.quantities import FROZEN, NonNegative, wrong
+from riser_soil.scene.quantities import FROZEN, ArcLength, Area, Coefficient, Mass, Volume, wrong
 
 
 def _one_or_more(value: Any) -> str:
@@ -12,7 +12,7 @@ def _one_or_more(value: Any) -> str:
 
 
 Arcs = Annotated[
-    Annotated[tuple[NonNegative, ...], Field(min_length=1), Tag("<list>")] | Annotated[NonNegative, Tag("<number>")],
+    Annotated[tuple[ArcLength, ...], Field(min_length=1), Tag("<list>")] | Annotated[ArcLength, Tag("<number>")],
     Discriminator(_one_or_more),
 ]
 
@@ -23,12 +23,12 @@ class Attachment(BaseModel):
     model_config = FROZEN
 
     at: Arcs = Field(description="arc length [m], or a list of them; anywhere, not only at nodes")
-    mass: NonNegative = Field(default=0.0, description="mass of each in air [kg]")
-    volume: NonNegative = Field(default=0.0, description="volume of water that each displaces [m3]")
-    drag_area: NonNegative = Field(
+    mass: Mass = Field(default=0.0, description="mass of each in air [kg]")
+    volume: Volume = Field(default=0.0, description="volume of water that each displaces [m3]")
+    drag_area: Area = Field(
         default=0.0, description="drag coefficient times area of each, in all directions [m2]"
     )
-    added_mass: NonNegative = Field(
+    added_mass: Coefficient = Field(
         default=0.0, description="added mass coefficient, on the mass of the water displaced, in all directions [-]"
     )
 

@@ -11,8 +11,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from riser_soil.scene.bounded import content
 from riser_soil.scene.files import wrong_file
-from riser_soil.scene.problem import hint
+from riser_soil.scene.problem import hint, shown
+from riser_soil.scene.quantities import FARTHEST
 
 Units = Mapping[str, float]
 """Accepted units of a column, each with its size in SI units."""
@@ -20,6 +22,8 @@ Units = Mapping[str, float]
 TIME: Units = {"s": 1.0, "min": 60.0, "ms": 1e-3}
 LENGTH: Units = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "ft": 0.3048}
 ANGLE: Units = {"deg": math.pi / 180.0, "rad": 1.0}
+
+_MOST_BYTES = 100_000_000  # a million rows or more
 
 Known = Mapping[str, Units]
 _Line = tuple[int, list[str]]
@@ -65,13 +69,20 @@ def _lines(file: Path) -> Iterator[_Line]:
     for number, line in enumerate(_text(file).splitlines(), start=1):
         if line.strip() and not line.lstrip().startswith("#"):
             separator = separator or (";" if ";" in line else ",")
-            (cells,) = csv.reader([line], delimiter=separator, skipinitialspace=True)
-            yield number, [cell.strip() for cell in cells]
+            yield number, _cells(f"{file}:{number}", line, separator)
+
+
+def _cells(place: str, line: str, separator: str) -> list[str]:
+    try:
+        (cells,) = csv.reader([line], delimiter=separator, skipinitialspace=True)
+    except csv.Error as err:
+        raise wrong_file(f"{place}: the row can't be read ({err}); write plain numbers between {separator}") from err
+    return [cell.strip() for cell in cells]
 
 
 def _text(file: Path) -> str:
     try:
-        return file.read_text(encoding="utf-8-sig")
+        return content(file, _MOST_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError as err:
         line = err.object.count(b"\n", 0, err.start) + 1
         raise wrong_file(f"{file}:{line}: not UTF-8 text; save the table as CSV in UTF-8") from err
@@ -95,10 +106,10 @@ def _columns(file: Path, header: _Line, known: Known) -> tuple[list[str], list[f
 def _name_and_unit(place: str, cell: str, known: Known) -> tuple[str, str]:
     match = re.fullmatch(r"(.*\S)\s*\[\s*(.*\S)\s*\]", cell)
     if not match:
-        raise wrong_file(f'{place}: "{cell}" names no column with its unit; write them like {_header(known)}')
+        raise wrong_file(f"{place}: {shown(cell)} names no column with its unit; write them like {_header(known)}")
     name, unit = " ".join(match[1].lower().split()), match[2]
     if name not in known:
-        text = f'no such column as "{name}", known are {", ".join(known)}; correct or remove it{hint(name, known)}'
+        text = f'no such column as {shown(name)}, known are {", ".join(known)}; correct or remove it{hint(name, known)}'
         raise wrong_file(f"{place}: {text}")
     if unit not in known[name]:
         accepted = ", ".join(known[name])
@@ -125,5 +136,8 @@ def _number(place: str, cell: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise wrong_file(f'{place}: "{cell}" is not a finite number; write plain numbers, with a point for decimals')
+        text = f"{shown(cell)} is not a finite number; write plain numbers, with a point for decimals"
+        raise wrong_file(f"{place}: {text}")
+    if abs(value) > FARTHEST:
+        raise wrong_file(f"{place}: {cell} is larger than {FARTHEST:g}; check unit and power of ten")
     return value

@@ -4,7 +4,15 @@ from typing import Literal
 
 from pydantic import BaseModel, Field
 
-from riser_soil.scene.quantities import FROZEN, AutoOrNonNegative, AutoOrPositive, Positive
+from riser_soil.scene.quantities import (
+    FROZEN,
+    AutoOrBedStiffness,
+    AutoOrLength,
+    AutoOrLengthOrNone,
+    Length,
+    PositiveWeightPerLength,
+    Ratio,
+)
 
 
 class Friction(BaseModel):
@@ -12,13 +20,14 @@ class Friction(BaseModel):
 
     model_config = FROZEN
 
-    axial: Positive = Field(description="friction coefficient along the pipe [-]")
-    lateral: Positive | None = Field(
+    axial: Ratio = Field(description="friction coefficient along the pipe [-]")
+    lateral: Ratio | None = Field(
         default=None, description="friction coefficient across the pipe [-]; that along it by default"
     )
-    mobilisation: Positive = Field(
-        default=0.01,
-        description="slide after which friction is fully mobilised under the pipe's submerged weight [m]",
+    mobilisation: AutoOrLength = Field(
+        default="auto",
+        description="slide after which friction is fully mobilised under the pipe's submerged weight [m], or auto: "
+        "1/30 of the outer diameter",
     )
 
 
@@ -27,8 +36,8 @@ class Suction(BaseModel):
 
     model_config = FROZEN
 
-    cap: Positive = Field(description="greatest tension per length of pipe [N/m]")
-    reach: Positive = Field(description="opening over which it breaks away [m]; more than cap/stiffness")
+    cap: PositiveWeightPerLength = Field(description="greatest tension per length of pipe [N/m]")
+    reach: Length = Field(description="opening over which it breaks away [m]; more than cap/stiffness")
 
 
 class Contact(BaseModel):
@@ -41,16 +50,16 @@ class Contact(BaseModel):
         description="where contact with the seabed is evaluated: line (along the elements, five Gauss points each) or "
         "node (at the riser's nodes); contact with soil is evaluated at nodes",
     )
-    stiffness: AutoOrPositive = Field(
+    stiffness: AutoOrBedStiffness = Field(
         default="auto",
         description="force per length of pipe and penetration [N/m2], or auto: the larger of 10 times the "
         "soil's Young's modulus at the surface and (submerged weight)/(0.001 outer diameter); a spring "
         "seabed has its own",
     )
-    smoothing: AutoOrNonNegative = Field(
+    smoothing: AutoOrLengthOrNone = Field(
         default="auto",
-        description="contact sets in smoothly between this gap and this penetration [m], or auto: 0.001 on soil; on a "
-        "seabed what the riser sinks in by its weight, within 0.0001 and 0.001",
+        description="contact sets in smoothly between this gap and this penetration [m], or auto: 1/300 of the outer "
+        "diameter on soil; on a seabed what the riser sinks in by its weight, within 1/3000 and 1/300 of the diameter",
     )
     friction: Friction | None = Field(default=None, description="friction on the seabed; none by default")
     suction: Suction | None = Field(

@@ -10,11 +10,15 @@ from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from riser_soil.errors import SceneError
+from riser_soil.scene.bounded import content
+from riser_soil.scene.number_lists import Numbers, cut_out
 from riser_soil.scene.problem import Path, dotted
 
 _TAG = "tag:yaml.org,2002:"
 _SCALARS = {_TAG + name for name in ("str", "int", "float", "bool", "null", "timestamp")}
 _MOST_VALUES = 1_000_000
+_MOST_BYTES = 64_000_000
+_MOST_LETTERS = 2_000_000  # beside long lists of numbers: some 20 s for the YAML reader
 
 
 @dataclass
@@ -41,7 +45,7 @@ def read_text(file: FilePath) -> str:
     if file.is_dir():
         raise SceneError(f"{file}: is a folder; give the name of a scene file (.yaml)")
     try:
-        return file.read_text(encoding="utf-8-sig")
+        return content(file, _MOST_BYTES).decode("utf-8-sig")
     except FileNotFoundError as err:
         raise SceneError(f"{file}: there is no such file; correct the name of the scene file") from err
     except UnicodeDecodeError as err:
@@ -55,9 +59,14 @@ def read_text(file: FilePath) -> str:
 
 def parse(text: str, name: str) -> Document:
     """The document in a YAML text; SceneError with the line when the text is not plain YAML."""
-    yaml = YAML(typ="safe", pure=True)
+    short, lists = cut_out(text)
+    if len(short) > _MOST_LETTERS:
+        what = f"{len(short)} letters beside lists of plain numbers, more than {_MOST_LETTERS}"
+        raise SceneError(f"{name}: {what}; take tables from CSV files, or write [numbers] without comments")
     try:
-        return _Builder(yaml, name).document(yaml.compose(text))
+        built = _Builder(YAML(typ="safe", pure=True), name, lists)
+        document = built.document(short)
+        return document if built.found_all else _Builder(YAML(typ="safe", pure=True), name, {}).document(text)
     except MarkedYAMLError as err:
         raise SceneError(_broken(err, name)) from err
     except YAMLError as err:
@@ -76,13 +85,21 @@ def _broken(err: MarkedYAMLError, name: str) -> str:
 class _Builder:
     """Turns YAML nodes into plain data; allows no tags, so that no object is ever built from a scene."""
 
-    def __init__(self, yaml: YAML, name: str) -> None:
+    def __init__(self, yaml: YAML, name: str, lists: dict[int, Numbers]) -> None:
+        self._yaml = yaml
         self._constructor = yaml.constructor
+        self._lists, self._found = lists, set[int]()
         self._out = Document(name, None)
         self._open: list[int] = []
         self._count = 0
 
-    def document(self, node: Node | None) -> Document:
+    @property
+    def found_all(self) -> bool:
+        """Whether every long list was where the document has a list."""
+        return len(self._found) == len(self._lists)
+
+    def document(self, text: str) -> Document:
+        node = self._yaml.compose(text)
         if node is None:
             raise SceneError(f"{self._out.name}: the scene is empty; it needs line_types, riser and stages")
         self._out.lines[()] = node.start_mark.line + 1
@@ -96,6 +113,8 @@ class _Builder:
             if isinstance(node, MappingNode) and node.tag == _TAG + "map":
                 return self._mapping(node, path)
             if isinstance(node, SequenceNode) and node.tag == _TAG + "seq":
+                if node.start_mark.index in self._lists:
+                    return self._numbers(node, path)
                 return [self._entry(item, item, (*path, i)) for i, item in enumerate(node.value)]
             if isinstance(node, ScalarNode) and node.tag in _SCALARS:
                 return self._scalar(node, path)
@@ -103,10 +122,22 @@ class _Builder:
             self._open.pop()
         raise self._error(node, path, f"tag {node.tag}: tags are not allowed in a scene; remove the tag")
 
+    def _numbers(self, node: Node, path: Path) -> list[Any]:
+        """A long list that was cut out of the text here."""
+        mark = node.start_mark
+        numbers = self._lists[mark.index]
+        self._found.add(mark.index)
+        self._add(numbers.count, node, path)
+        self._out.lines.update({(*path, *item): mark.line + 1 + line for item, line in numbers.lines()})
+        return numbers.values()
+
     def _guard(self, node: Node, path: Path) -> None:
-        self._count += 1
         if id(node) in self._open:
             raise self._error(node, path, "refers to itself; remove the alias (*name)")
+        self._add(1, node, path)
+
+    def _add(self, values: int, node: Node, path: Path) -> None:
+        self._count += values
         if self._count > _MOST_VALUES:
             raise self._error(node, path, f"more than {_MOST_VALUES} values; use fewer aliases or points")
 

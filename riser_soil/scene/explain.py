@@ -170,7 +170,14 @@ def _bound(relation: str, name: str) -> _Explain:
     return explain
 
 
+def _size(failure: Failure) -> Problem:
+    """Beyond the physical range of its quantity."""
+    remedy = f"a riser of any scale keeps within; check unit and power of ten: {failure.here.description}"
+    return failure.problem(failure.context["text"], remedy)
+
+
 _EXPLAIN: dict[str, _Explain] = {
+    "size": _size,
     "missing": _missing,
     "extra_forbidden": _unknown_key,
     "float_type": _number,

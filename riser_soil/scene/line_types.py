@@ -5,7 +5,20 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
-from riser_soil.scene.quantities import FROZEN, NonNegative, Positive, Real, wrong
+from riser_soil.scene.quantities import (
+    FROZEN,
+    AxialStiffness,
+    BendingStiffness,
+    Coefficient,
+    Frequency,
+    Length,
+    LengthOrNone,
+    MassPerLength,
+    NonNegative,
+    RotaryInertiaPerLength,
+    WeightPerLength,
+    wrong,
+)
 
 
 class Drag(BaseModel):
@@ -13,8 +26,8 @@ class Drag(BaseModel):
 
     model_config = FROZEN
 
-    normal: NonNegative = Field(description="normal drag coefficient, on the outer diameter [-]")
-    tangential: NonNegative = Field(
+    normal: Coefficient = Field(description="normal drag coefficient, on the outer diameter [-]")
+    tangential: Coefficient = Field(
         default=0.0, description="tangential drag coefficient, on the circumference [-]"
     )
 
@@ -24,8 +37,8 @@ class AddedMass(BaseModel):
 
     model_config = FROZEN
 
-    normal: NonNegative = Field(description="added mass coefficient across the pipe [-]")
-    tangential: NonNegative = Field(default=0.0, description="added mass coefficient along the pipe [-]")
+    normal: Coefficient = Field(description="added mass coefficient across the pipe [-]")
+    tangential: Coefficient = Field(default=0.0, description="added mass coefficient along the pipe [-]")
 
 
 class Damping(BaseModel):
@@ -34,7 +47,7 @@ class Damping(BaseModel):
     model_config = FROZEN
 
     ratio: NonNegative = Field(lt=1.0, description="ratio to critical damping at the frequency [-]")
-    frequency: Positive = Field(
+    frequency: Frequency = Field(
         description="frequency at which the ratio holds; it grows in proportion to the frequency [Hz]"
     )
 
@@ -49,7 +62,7 @@ def _switch_or_number(value: Any) -> str:
 
 
 RotaryInertia = Annotated[
-    Annotated[Literal[True, False], Tag("<word>")] | Annotated[NonNegative, Tag("<number>")],
+    Annotated[Literal[True, False], Tag("<word>")] | Annotated[RotaryInertiaPerLength, Tag("<number>")],
     Discriminator(_switch_or_number),
 ]
 
@@ -59,25 +72,25 @@ class LineType(BaseModel):
 
     model_config = FROZEN
 
-    outer_diameter: Positive | None = Field(
+    outer_diameter: Length | None = Field(
         default=None, description="outer diameter [m]; needed for buoyancy, drag, added mass and contact"
     )
-    inner_diameter: NonNegative = Field(default=0.0, description="inner diameter, filled by the contents [m]")
-    mass: Positive | None = Field(
+    inner_diameter: LengthOrNone = Field(default=0.0, description="inner diameter, filled by the contents [m]")
+    mass: MassPerLength | None = Field(
         default=None, description="mass per length in air without contents [kg/m]; needed for dynamics"
     )
-    EA: Positive = Field(description="axial stiffness [N]")
-    EI: Positive | None = Field(default=None, description="bending stiffness [N.m2]; or give EI_y and EI_z")
-    EI_y: Positive | None = Field(
+    EA: AxialStiffness = Field(description="axial stiffness [N]")
+    EI: BendingStiffness | None = Field(default=None, description="bending stiffness [N.m2]; or give EI_y and EI_z")
+    EI_y: BendingStiffness | None = Field(
         default=None, description="bending stiffness about the section's y axis [N.m2]"
     )
-    EI_z: Positive | None = Field(
+    EI_z: BendingStiffness | None = Field(
         default=None, description="bending stiffness about the section's z axis [N.m2]"
     )
-    GJ: Positive | None = Field(
+    GJ: BendingStiffness | None = Field(
         default=None, description="torsional stiffness [N.m2]; needed in three dimensions"
     )
-    submerged_weight: Real | None = Field(
+    submerged_weight: WeightPerLength | None = Field(
         default=None,
         description="weight less buoyancy, contents included [N/m]; "
         "without it, it follows from mass, contents, diameters and water",
@@ -90,10 +103,11 @@ class LineType(BaseModel):
     rotary_inertia: RotaryInertia = Field(
         default=False,
         description="inertia of the cross-section about an axis across the pipe [kg.m], twice that about the pipe's "
-        "axis; true: (m (D^2 + d^2) + m_contents d^2)/16 from masses and diameters; false: none",
+        "axis; true: (m (D^2 + d^2) + m_contents d^2)/16 from masses and diameters; false: none across; that about the "
+        "pipe's axis is always there in three dimensions",
     )
 
-    min_bend_radius: Positive | None = Field(
+    min_bend_radius: Length | None = Field(
         default=None,
         description="smallest bend radius allowed [m]; a run warns where the pipe is bent more; any by default",
     )

@@ -9,7 +9,19 @@ from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
 from riser_soil.scene.columns import ANGLE, LENGTH, TIME, Columns, read_columns
 from riser_soil.scene.files import NamedFile, wrong_file
-from riser_soil.scene.quantities import FROZEN, NonNegative, Positive, Real, Vector, wrong
+from riser_soil.scene.quantities import (
+    FLATTEST,
+    FROZEN,
+    NEAREST,
+    Angle,
+    Angles,
+    Axis,
+    Position,
+    Time,
+    TimeOrNone,
+    Vector,
+    wrong,
+)
 from riser_soil.scene.rao import MODES, Rao, read_rao
 
 PLANES: dict[str, Vector] = {"xz": (0.0, -1.0, 0.0), "yz": (1.0, 0.0, 0.0), "xy": (0.0, 0.0, 1.0)}
@@ -27,7 +39,7 @@ def _number_or_vector(value: Any) -> str:
 
 
 PhaseDeg = Annotated[
-    Annotated[Real, Tag("<number>")] | Annotated[Vector, Tag("<vector>")], Discriminator(_number_or_vector)
+    Annotated[Angle, Tag("<number>")] | Annotated[Angles, Tag("<vector>")], Discriminator(_number_or_vector)
 ]
 
 
@@ -36,9 +48,9 @@ class Harmonic(BaseModel):
 
     model_config = FROZEN
 
-    amplitude: Vector = Field(description="amplitude, [x, y, z] [m]")
-    period: Positive = Field(description="period [s]")
-    ramp: NonNegative = Field(default=0.0, description=_RAMP)
+    amplitude: Position = Field(description="amplitude, [x, y, z] [m]")
+    period: Time = Field(description="period [s]")
+    ramp: TimeOrNone = Field(default=0.0, description=_RAMP)
     phase_deg: PhaseDeg = Field(default=0.0, description=f"{_PHASE}, one for all components or [px, py, pz]")
 
     @property
@@ -57,12 +69,12 @@ class Arc(BaseModel):
 
     model_config = FROZEN
 
-    hub: Vector = Field(description="the hub, [x, y, z] [m]")
-    amplitude_deg: Real = Field(description="amplitude of the angle about the hub [deg]")
-    period: Positive = Field(description="period [s]")
-    ramp: NonNegative = Field(default=0.0, description=_RAMP)
+    hub: Position = Field(description="the hub, [x, y, z] [m]")
+    amplitude_deg: Angle = Field(description="amplitude of the angle about the hub [deg]")
+    period: Time = Field(description="period [s]")
+    ramp: TimeOrNone = Field(default=0.0, description=_RAMP)
     plane: Literal["xz", "yz", "xy"] = Field(default="xz", description="plane of the arc: xz, yz or xy")
-    phase_deg: Real = Field(default=0.0, description=_PHASE)
+    phase_deg: Angle = Field(default=0.0, description=_PHASE)
 
     @property
     def axis(self) -> Vector:
@@ -74,15 +86,15 @@ class Rotation(BaseModel):
 
     model_config = FROZEN
 
-    axis: Vector = Field(description="axis of the rotation, right-handed, [x, y, z] [-]")
-    amplitude_deg: Real = Field(description="amplitude of the rotation [deg]")
-    period: Positive = Field(description="period [s]")
-    ramp: NonNegative = Field(default=0.0, description=_RAMP)
-    phase_deg: Real = Field(default=0.0, description=_PHASE)
+    axis: Axis = Field(description="axis of the rotation, right-handed, [x, y, z] [-]")
+    amplitude_deg: Angle = Field(description="amplitude of the rotation [deg]")
+    period: Time = Field(description="period [s]")
+    ramp: TimeOrNone = Field(default=0.0, description=_RAMP)
+    phase_deg: Angle = Field(default=0.0, description=_PHASE)
 
     @model_validator(mode="after")
     def _has_an_axis(self) -> Self:
-        if not any(self.axis):
+        if math.hypot(*self.axis) < FLATTEST:
             raise wrong("axis", "must not be zero", "give the direction of the axis, such as [0, 1, 0]")
         return self
 
@@ -99,7 +111,7 @@ class Table(BaseModel):
         description="CSV file with a header such as t [s], x [m], y [m], z [m], rx [deg], ry [deg], rz [deg] (or "
         "min, ms; mm, cm, ft; rad); a relative name is sought beside the scene file"
     )
-    ramp: NonNegative = Field(default=0.0, description=_RAMP)
+    ramp: TimeOrNone = Field(default=0.0, description=_RAMP)
 
     @model_validator(mode="before")
     @classmethod
@@ -112,8 +124,9 @@ class Table(BaseModel):
         if rows.rows < _LEAST_ROWS:
             raise wrong_file(f"{self.file}: a table of {rows.rows} rows; cubic splines need at least {_LEAST_ROWS}")
         for line, (a, b) in zip(rows.lines[1:], pairwise(time), strict=True):
-            if b <= a:
-                raise wrong_file(f"{self.file}:{line}: times must increase, but {b:g} s follows {a:g} s; sort the rows")
+            if b - a < NEAREST:
+                how = f"times must increase, by {NEAREST:g} s at least, but {b:g} s follows {a:g} s"
+                raise wrong_file(f"{self.file}:{line}: {how}; sort the rows")
         return self
 
     @cached_property
@@ -148,9 +161,9 @@ class Vessel(BaseModel):
         "mode that responds its amplitude and phase: surge [m/m], surge phase [deg], ..., yaw [deg/m or rad/m], yaw "
         "phase [deg]; a relative name is sought beside the scene file"
     )
-    reference: Vector = Field(description="point that the RAOs belong to, the vessel at rest, [x, y, z] [m]")
-    heading_deg: Real = Field(default=0.0, description="direction of the vessel's bow, from x towards y [deg]")
-    ramp: Positive | None = Field(
+    reference: Position = Field(description="point that the RAOs belong to, the vessel at rest, [x, y, z] [m]")
+    heading_deg: Angle = Field(default=0.0, description="direction of the vessel's bow, from x towards y [deg]")
+    ramp: Time | None = Field(
         default=None,
         description=f"{_RAMP}; by default that of the waves; at least one (peak) period where the vessel moves the end "
         "again after a stage in which it rested",
@@ -171,6 +184,9 @@ class Vessel(BaseModel):
         heading = math.radians(self.heading_deg)
         forward, across = math.cos(heading), math.sin(heading)
         return ((forward, across, 0.0), (-across, forward, 0.0), (0.0, 0.0, 1.0))[MODES.index(mode) % 3]
+
+
+Way = Harmonic | Arc | Table | Vessel | Rotation
 
 
 class EndMotion(BaseModel):
@@ -208,6 +224,11 @@ class EndMotion(BaseModel):
         if self.rotation and self.vessel:
             raise wrong("rotation", "the vessel turns the end already", "leave one of the two out")
         return self
+
+    @property
+    def ways(self) -> dict[str, Way]:
+        """What is given, by its key."""
+        return {key: way for key, way in self if way is not None}
 
     @property
     def turns(self) -> bool:

@@ -4,7 +4,7 @@ from typing import Literal, get_args
 
 from pydantic import BaseModel, Field
 
-from riser_soil.scene.quantities import FROZEN, Positive, Text
+from riser_soil.scene.quantities import FROZEN, Text, Time
 
 FieldName = Literal[
     "effective_tension",
@@ -29,10 +29,10 @@ class Output(BaseModel):
 
     model_config = FROZEN
 
-    interval: Positive | None = Field(
+    interval: Time | None = Field(
         default=None, description="time between records in results.nc [s]; every accepted step by default"
     )
-    xdmf_interval: Positive | None = Field(
+    xdmf_interval: Time | None = Field(
         default=None,
         description="time between records in riser.xdmf and soil.xdmf [s]; as interval by default",
     )

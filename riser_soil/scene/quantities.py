@@ -1,32 +1,131 @@
-"""Number types with their bounds, and the settings shared by every model of the scene language."""
+"""Number types with their bounds, and the settings shared by every model of the scene language.
+
+Every quantity has a physical range. A riser is from a tenth of a metre to some kilometres long; the ranges hold all
+that such a riser has when it is scaled in length by a millionth to a million, by Froude's law (forces by the cube of
+the length, EI by its fifth power) or with the materials kept (gravity by its inverse). What lies beyond is a slip of
+units or of powers of ten, and would end in overflow or round-off somewhere in the middle of the run.
+"""
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
-from pydantic_core import PydanticCustomError
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, GetCoreSchemaHandler, Tag
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 FROZEN = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=False)
+
+MOST_ELEMENTS = 1_000_000
+"""Of a riser: each of them costs some 10 kB, and every step of the run half a minute with so many."""
+
+
+@dataclass(frozen=True)
+class Within:
+    """Least and greatest size of a quantity, whatever its sign. A least size of 0 is none: a component may be as small
+    as it likes. zero: whether there may be nothing of the quantity.
+    """
+
+    least: float
+    most: float
+    unit: str
+    zero: bool = False
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_after_validator_function(self.held, handler(source))
+
+    def held(self, value: float) -> float:
+        """The value, or PydanticCustomError."""
+        if value == 0.0 or self.least <= abs(value) <= self.most:
+            return value
+        raise PydanticCustomError("size", "{text}", {"text": self._told})
+
+    @property
+    def _told(self) -> str:
+        if self.least == 0.0:
+            return f"must be at most {self.most:g} {self.unit} in size"
+        return f"must be {'0, or ' if self.zero else ''}from {self.least:g} to {self.most:g} {self.unit} in size"
+
+
+_LENGTH = Within(1e-12, 1e12, "m")
+_TIME = Within(1e-12, 1e12, "s")
+_STRESS = Within(1e-15, 1e24, "Pa")
+_STRENGTH_GRADIENT = Within(1e-15, 1e18, "Pa/m", zero=True)
+_WEIGHT = Within(1e-24, 1e24, "N/m")
+_RATIO = Within(1e-9, 1e9, "(no unit)")
+
+SHORTEST = _LENGTH.least
+"""Least distance of two points [m]."""
+NEAREST = _TIME.least
+"""Least time between two instants [s]."""
+FARTHEST = 1e12
+"""Greatest number in a table, in SI units."""
+FLATTEST = 1e-12
+"""Least length of a vector that gives a direction."""
 
 Real = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
 NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0)]
 PoissonRatio = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=-1, lt=0.5)]
-Count = Annotated[int, Field(strict=True, ge=1)]
+Count = Annotated[int, Field(strict=True, ge=1, le=1_000_000_000)]
+ElementCount = Annotated[int, Field(strict=True, ge=1, le=MOST_ELEMENTS)]
 Text = Annotated[str, Field(strict=True)]
+
+Length = Annotated[Positive, _LENGTH]
+LengthOrNone = Annotated[NonNegative, replace(_LENGTH, zero=True)]
+ArcLength = Annotated[NonNegative, Within(0.0, 1e12, "m")]
+Coordinate = Annotated[Real, Within(0.0, 1e12, "m")]
+Area = Annotated[NonNegative, Within(1e-24, 1e24, "m2", zero=True)]
+Volume = Annotated[NonNegative, Within(1e-36, 1e36, "m3", zero=True)]
+Angle = Annotated[Real, Within(0.0, 1e6, "deg")]
+Time = Annotated[Positive, _TIME]
+TimeOrNone = Annotated[NonNegative, replace(_TIME, zero=True)]
+Instant = Annotated[NonNegative, Within(0.0, 1e12, "s")]
+Frequency = Annotated[Positive, Within(1e-12, 1e12, "Hz")]
+Velocity = Annotated[Real, Within(0.0, 1e9, "m/s")]
+Gravity = Annotated[NonNegative, Within(1e-9, 1e9, "m/s2", zero=True)]
+Density = Annotated[Positive, Within(1e-9, 1e9, "kg/m3")]
+Mass = Annotated[NonNegative, Within(1e-30, 1e30, "kg", zero=True)]
+MassPerLength = Annotated[Positive, Within(1e-18, 1e18, "kg/m")]
+RotaryInertiaPerLength = Annotated[NonNegative, Within(1e-36, 1e36, "kg.m", zero=True)]
+WeightPerLength = Annotated[Real, replace(_WEIGHT, zero=True)]
+PositiveWeightPerLength = Annotated[Positive, _WEIGHT]
+UnitWeight = Annotated[NonNegative, Within(1e-15, 1e18, "N/m3", zero=True)]
+AxialStiffness = Annotated[Positive, Within(1e-30, 1e36, "N")]
+BendingStiffness = Annotated[Positive, Within(1e-40, 1e45, "N.m2")]
+RotationalStiffness = Annotated[Positive, Within(1e-36, 1e42, "N.m/rad")]
+BedStiffness = Annotated[Positive, Within(1e-15, 1e24, "N/m2")]
+Pressure = Annotated[Real, Within(0.0, 1e24, "Pa")]
+Stress = Annotated[Positive, _STRESS]
+StrengthGradient = Annotated[Real, _STRENGTH_GRADIENT]
+PositiveStrengthGradient = Annotated[NonNegative, _STRENGTH_GRADIENT]
+Ratio = Annotated[Positive, _RATIO]
+Coefficient = Annotated[NonNegative, replace(_RATIO, zero=True)]
+Factor = Annotated[Real, Within(0.0, 1e9, "(no unit)")]
+SolverTolerance = Annotated[Positive, Within(1e-16, 1.0, "(no unit)")]
+_ForceComponent = Annotated[Real, Within(0.0, 1e36, "N")]
+_LineForceComponent = Annotated[Real, Within(0.0, 1e24, "N/m")]
+_MomentComponent = Annotated[Real, Within(0.0, 1e42, "N.m")]
+_AxisComponent = Annotated[Real, Within(0.0, 1e12, "(no unit)")]
+
+Vector = tuple[float, float, float]
+Position = tuple[Coordinate, Coordinate, Coordinate]
+Force = tuple[_ForceComponent, _ForceComponent, _ForceComponent]
+ForcePerLength = tuple[_LineForceComponent, _LineForceComponent, _LineForceComponent]
+Moment = tuple[_MomentComponent, _MomentComponent, _MomentComponent]
+Axis = tuple[_AxisComponent, _AxisComponent, _AxisComponent]
+Angles = tuple[Angle, Angle, Angle]
+Interval = tuple[Coordinate, Coordinate]
+
 _AUTO_OR_NUMBER = Discriminator(
     lambda value: word_or_number(value),
     custom_error_type="choice",
     custom_error_message="must be auto or a number",
 )
-AutoOrPositive = Annotated[
-    Annotated[Literal["auto"], Tag("<word>")] | Annotated[Positive, Tag("<number>")], _AUTO_OR_NUMBER
-]
-AutoOrNonNegative = Annotated[
-    Annotated[Literal["auto"], Tag("<word>")] | Annotated[NonNegative, Tag("<number>")], _AUTO_OR_NUMBER
-]
-Vector = tuple[Real, Real, Real]
-Interval = tuple[Real, Real]
+_Auto = Annotated[Literal["auto"], Tag("<word>")]
+AutoOrTime = Annotated[_Auto | Annotated[Time, Tag("<number>")], _AUTO_OR_NUMBER]
+AutoOrLength = Annotated[_Auto | Annotated[Length, Tag("<number>")], _AUTO_OR_NUMBER]
+AutoOrLengthOrNone = Annotated[_Auto | Annotated[LengthOrNone, Tag("<number>")], _AUTO_OR_NUMBER]
+AutoOrBedStiffness = Annotated[_Auto | Annotated[BedStiffness, Tag("<number>")], _AUTO_OR_NUMBER]
 
 
 def wrong(key: str, allowed: str, remedy: str) -> PydanticCustomError:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from riser_soil.scene.columns import ANGLE, Columns, Known, read_columns
 from riser_soil.scene.files import wrong_file
+from riser_soil.scene.quantities import NEAREST
 
 TURN = 2.0 * math.pi
 TRANSLATIONS, ROTATIONS = ("surge", "sway", "heave"), ("roll", "pitch", "yaw")
@@ -102,8 +103,8 @@ def _frequencies(columns: Columns) -> list[float]:
     """Of each row [rad/s]."""
     name = "frequency" if "frequency" in columns.values else "period"
     for line, value in zip(columns.lines, columns.values[name], strict=True):
-        if value <= 0.0:
-            raise wrong_file(f"{columns.file}:{line}: {name} must be greater than 0; correct it")
+        if value < NEAREST:
+            raise wrong_file(f"{columns.file}:{line}: {name} must be greater than 0, {NEAREST:g} at least; correct it")
     given = columns.values[name]
     return list(given) if name == "frequency" else [TURN / period for period in given]
 

@@ -7,8 +7,21 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
 from riser_soil.scene.attachments import Attachment
-from riser_soil.scene.grading import graded_lengths
-from riser_soil.scene.quantities import FROZEN, Count, Positive, Real, Text, Vector, word_or, wrong
+from riser_soil.scene.grading import graded_count, graded_lengths
+from riser_soil.scene.quantities import (
+    FROZEN,
+    MOST_ELEMENTS,
+    Coordinate,
+    Density,
+    ElementCount,
+    Length,
+    Position,
+    Pressure,
+    RotationalStiffness,
+    Text,
+    word_or,
+    wrong,
+)
 from riser_soil.scene.shapes import Initial, Unstressed
 
 
@@ -17,7 +30,7 @@ def _one_or_two(value: Any) -> str:
 
 
 ElementLength = Annotated[
-    Annotated[tuple[Positive, Positive], Tag("<list>")] | Annotated[Positive, Tag("<number>")],
+    Annotated[tuple[Length, Length], Tag("<list>")] | Annotated[Length, Tag("<number>")],
     Discriminator(_one_or_two),
 ]
 
@@ -28,8 +41,8 @@ class Segment(BaseModel):
     model_config = FROZEN
 
     line_type: Text = Field(description="name of its line type, a key of `line_types`")
-    length: Positive = Field(description="unstressed length [m]")
-    elements: Count | None = Field(default=None, description="number of elements; or give element_length")
+    length: Length = Field(description="unstressed length [m]")
+    elements: ElementCount | None = Field(default=None, description="number of elements; or give element_length")
     element_length: ElementLength | None = Field(
         default=None,
         description="greatest length of an element [m], or [at the segment's start, at its end], between which it "
@@ -46,14 +59,31 @@ class Segment(BaseModel):
             )
         return self
 
+    @model_validator(mode="after")
+    def _not_too_fine(self) -> Self:
+        if self.elements is None and self.element_count > MOST_ELEMENTS:
+            allowed = f"cuts {self.length:g} m into {self.element_count:.4g} elements, more than {MOST_ELEMENTS}"
+            raise wrong("element_length", allowed, "take longer elements, and check the units of both lengths")
+        return self
+
+    @property
+    def element_count(self) -> int:
+        """Number of the elements, whichever way they were given."""
+        return self.elements if self.elements is not None else graded_count(self.length, *self._first_and_last)
+
     @property
     def element_lengths(self) -> tuple[float, ...]:
         """Lengths of the elements from start to end [m], whichever way they were given."""
         if self.elements is not None:
             return (self.length / self.elements,) * self.elements
-        assert self.element_length is not None  # the validator has seen to it
+        return graded_lengths(self.length, *self._first_and_last)
+
+    @property
+    def _first_and_last(self) -> tuple[float, float]:
+        """The lengths asked for at the segment's start and at its end [m]."""
         given = self.element_length
-        return graded_lengths(self.length, *(given if isinstance(given, tuple) else (given, given)))
+        assert given is not None  # the validator has seen to it
+        return given if isinstance(given, tuple) else (given, given)
 
 
 class Contents(BaseModel):
@@ -61,9 +91,9 @@ class Contents(BaseModel):
 
     model_config = FROZEN
 
-    density: Positive = Field(description="density of the contents [kg/m3]")
-    pressure: Real = Field(default=0.0, description="gauge pressure of the contents at pressure_level [Pa]")
-    pressure_level: Real | None = Field(
+    density: Density = Field(description="density of the contents [kg/m3]")
+    pressure: Pressure = Field(default=0.0, description="gauge pressure of the contents at pressure_level [Pa]")
+    pressure_level: Coordinate | None = Field(
         default=None, description="height z at which the contents have that pressure [m]; the higher end by default"
     )
 
@@ -73,7 +103,7 @@ class RotationSpring(BaseModel):
 
     model_config = FROZEN
 
-    stiffness: Positive = Field(description="rotational stiffness [N.m/rad]")
+    stiffness: RotationalStiffness = Field(description="rotational stiffness [N.m/rad]")
 
 
 Rotation = Annotated[
@@ -91,7 +121,7 @@ class Support(BaseModel):
 
     model_config = FROZEN
 
-    position: Vector = Field(description="where the end is held, [x, y, z] [m]")
+    position: Position = Field(description="where the end is held, [x, y, z] [m]")
     rotation: Rotation = Field(
         default="free",
         description="free, fixed (keeps the direction of the initial shape), or {stiffness: N.m/rad}",
@@ -130,6 +160,18 @@ class Riser(BaseModel):
         description="shape at the beginning: straight, catenary, unstressed or {points: ...}; by default "
         "catenary when both ends are held and gravity acts, else unstressed",
     )
+
+    @model_validator(mode="after")
+    def _not_too_fine(self) -> Self:
+        if self.element_count > MOST_ELEMENTS:
+            allowed = f"the segments have {self.element_count} elements together, more than {MOST_ELEMENTS}"
+            raise wrong("segments", allowed, "take longer elements")
+        return self
+
+    @property
+    def element_count(self) -> int:
+        """Number of all elements."""
+        return sum(segment.element_count for segment in self.segments)
 
     @property
     def length(self) -> float:

@@ -8,7 +8,7 @@ from pydantic import BaseModel, Field, model_validator
 from riser_soil.scene.contact import Contact
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.output import Output
-from riser_soil.scene.quantities import FROZEN, NonNegative, Text
+from riser_soil.scene.quantities import FROZEN, Gravity, Text
 from riser_soil.scene.riser import Riser
 from riser_soil.scene.seabed import ContactAt, Seabed
 from riser_soil.scene.soil import Soil
@@ -23,7 +23,7 @@ class Scene(BaseModel):
     model_config = FROZEN
 
     title: Text = Field(default="untitled", description="title of the run")
-    gravity: NonNegative = Field(default=9.81, description="acceleration of gravity along -z [m/s2]")
+    gravity: Gravity = Field(default=9.81, description="acceleration of gravity along -z [m/s2]")
     dimension: Literal["auto", 2, 3] = Field(
         default="auto",
         description="dimension of the riser's motion: 2 (in one vertical plane), 3, or auto: "

@@ -6,7 +6,19 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, BaseModel, Discriminator, Field, Tag
 from pydantic_core import PydanticCustomError
 
-from riser_soil.scene.quantities import FROZEN, NonNegative, Positive, Real, by_kind
+from riser_soil.scene.quantities import (
+    FROZEN,
+    SHORTEST,
+    BedStiffness,
+    Coefficient,
+    Coordinate,
+    NonNegative,
+    PositiveStrengthGradient,
+    Ratio,
+    Stress,
+    UnitWeight,
+    by_kind,
+)
 
 ContactAt = Literal["axis", "outer"]
 
@@ -15,13 +27,13 @@ def _runs_forward(points: tuple[tuple[float, float], ...] | None) -> tuple[tuple
     if points is not None and len(points) < 2:
         text = "must have at least two points; write [[s, z], [s, z]], or give level and slope_deg"
         raise PydanticCustomError("conflict", "{text}", {"text": text})
-    if any(b[0] <= a[0] for a, b in pairwise(points or ())):
-        text = "the distances s must increase; sort the points [s, z] by s"
+    if any(b[0] - a[0] < SHORTEST for a, b in pairwise(points or ())):
+        text = f"the distances s must increase, by {SHORTEST:g} m at least; sort the points [s, z] by s"
         raise PydanticCustomError("conflict", "{text}", {"text": text})
     return points
 
 
-Level = Annotated[Real, Field(description="height z of the seabed and of the soil's top face [m]")]
+Level = Annotated[Coordinate, Field(description="height z of the seabed and of the soil's top face [m]")]
 Toucher = Annotated[ContactAt, Field(description="what touches: the pipe's axis or its outer surface")]
 
 Slope = Annotated[
@@ -35,7 +47,7 @@ Slope = Annotated[
     ),
 ]
 Profile = Annotated[
-    tuple[tuple[Real, Real], ...] | None,
+    tuple[tuple[Coordinate, Coordinate], ...] | None,
     AfterValidator(_runs_forward),
     Field(
         description="heights of the seabed along the riser's plane, [[s, z], ...]: s is the horizontal distance from "
@@ -67,7 +79,7 @@ class SpringSeabed(BaseModel):
     slope_deg: Slope = 0.0
     profile: Profile = None
     contact_at: Toucher = "outer"
-    stiffness: Positive = Field(description="force per length of pipe and penetration [N/m2]")
+    stiffness: BedStiffness = Field(description="force per length of pipe and penetration [N/m2]")
 
 
 class RandolphQuiggin(BaseModel):
@@ -76,16 +88,16 @@ class RandolphQuiggin(BaseModel):
     model_config = FROZEN
 
     kind: Literal["randolph-quiggin"] = Field(description="randolph-quiggin or aubeny-biscontin")
-    su: Positive = Field(description="undrained shear strength at the surface [Pa]")
-    su_gradient: NonNegative = Field(default=0.0, description="its growth with depth [Pa/m]")
-    unit_weight: NonNegative = Field(default=0.0, description="submerged unit weight, for the soil's buoyancy [N/m3]")
-    a: Positive = Field(default=6.0, description="factor of the bearing capacity a (z/D)^b [-]")
+    su: Stress = Field(description="undrained shear strength at the surface [Pa]")
+    su_gradient: PositiveStrengthGradient = Field(default=0.0, description="its growth with depth [Pa/m]")
+    unit_weight: UnitWeight = Field(default=0.0, description="submerged unit weight, for the soil's buoyancy [N/m3]")
+    a: Ratio = Field(default=6.0, description="factor of the bearing capacity a (z/D)^b [-]")
     b: NonNegative = Field(default=0.25, lt=1.0, description="power of the bearing capacity a (z/D)^b [-]")
-    K_max: Positive = Field(default=200.0, description="greatest stiffness, over the ultimate pressure [-]")
+    K_max: Ratio = Field(default=200.0, description="greatest stiffness, over the ultimate pressure [-]")
     f_suc: NonNegative = Field(default=0.6, lt=1.0, description="suction over the ultimate resistance [-]")
-    lambda_suc: Positive = Field(default=1.0, description="decay length of suction over the greatest penetration [-]")
-    lambda_rep: NonNegative = Field(default=0.3, description="softening of repenetration [-]")
-    f_b: NonNegative = Field(default=1.5, description="factor of the soil's buoyancy [-]")
+    lambda_suc: Ratio = Field(default=1.0, description="decay length of suction over the greatest penetration [-]")
+    lambda_rep: Coefficient = Field(default=0.3, description="softening of repenetration [-]")
+    f_b: Coefficient = Field(default=1.5, description="factor of the soil's buoyancy [-]")
 
 
 class AubenyBiscontin(BaseModel):
@@ -94,14 +106,14 @@ class AubenyBiscontin(BaseModel):
     model_config = FROZEN
 
     kind: Literal["aubeny-biscontin"] = Field(description="randolph-quiggin or aubeny-biscontin")
-    su: Positive = Field(description="undrained shear strength at the surface [Pa]")
-    su_gradient: NonNegative = Field(default=0.0, description="its growth with depth [Pa/m]")
-    a: Positive = Field(default=6.73, description="factor of the backbone a (y/D)^b [-]")
+    su: Stress = Field(description="undrained shear strength at the surface [Pa]")
+    su_gradient: PositiveStrengthGradient = Field(default=0.0, description="its growth with depth [Pa/m]")
+    a: Ratio = Field(default=6.73, description="factor of the backbone a (y/D)^b [-]")
     b: NonNegative = Field(default=0.29, lt=1.0, description="power of the backbone a (y/D)^b [-]")
-    k_over_su: Positive = Field(default=660.0, description="initial stiffness over the shear strength [-]")
-    omega: Positive = Field(default=0.433, description="asymptote of the rebound [-]")
+    k_over_su: Ratio = Field(default=660.0, description="initial stiffness over the shear strength [-]")
+    omega: Ratio = Field(default=0.433, description="asymptote of the rebound [-]")
     phi: NonNegative = Field(default=0.203, lt=1.0, description="suction over the resistance before the uplift [-]")
-    psi: Positive = Field(default=0.661, description="length of the separation over that of the rebound [-]")
+    psi: Ratio = Field(default=0.661, description="length of the separation over that of the rebound [-]")
 
 
 Law = Annotated[

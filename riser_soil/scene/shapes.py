@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
-from riser_soil.scene.quantities import FROZEN, Real, Vector, by_key, word_or, wrong
+from riser_soil.scene.quantities import FLATTEST, FROZEN, SHORTEST, Angle, Axis, Position, by_key, word_or, wrong
 
 
 class PointsShape(BaseModel):
@@ -14,14 +14,14 @@ class PointsShape(BaseModel):
 
     model_config = FROZEN
 
-    points: tuple[Vector, ...] = Field(
+    points: tuple[Position, ...] = Field(
         min_length=2, description="points from start to end, [[x, y, z], ...] [m]"
     )
 
     @model_validator(mode="after")
     def _goes_on(self) -> Self:
-        if any(a == b for a, b in pairwise(self.points)):
-            raise wrong("points", "two points in a row must not coincide", "remove one of the two")
+        if any(math.dist(a, b) < SHORTEST for a, b in pairwise(self.points)):
+            raise wrong("points", f"two points in a row must be {SHORTEST:g} m apart or more", "remove one of the two")
         return self
 
 
@@ -30,18 +30,18 @@ class Arc(BaseModel):
 
     model_config = FROZEN
 
-    centre: Vector = Field(description="a point on the circle's axis, [x, y, z] [m]")
-    from_point: Vector = Field(alias="from", description="where the riser starts, [x, y, z] [m]")
-    angle_deg: Real = Field(description="angle from start to end, right-handed about the axis [deg]")
-    axis: Vector = Field(
+    centre: Position = Field(description="a point on the circle's axis, [x, y, z] [m]")
+    from_point: Position = Field(alias="from", description="where the riser starts, [x, y, z] [m]")
+    angle_deg: Angle = Field(description="angle from start to end, right-handed about the axis [deg]")
+    axis: Axis = Field(
         default=(0.0, 0.0, 1.0), description="direction of the circle's axis, of any length [-]"
     )
 
     @model_validator(mode="after")
     def _is_an_arc(self) -> Self:
-        if math.hypot(*self.axis) == 0.0:
+        if math.hypot(*self.axis) < FLATTEST:
             raise wrong("axis", "must not be the zero vector", "give the direction about which the arc turns")
-        if self.radius == 0.0:
+        if self.radius < SHORTEST:
             raise wrong("from", "must not lie on the circle's axis", "move `from` or `centre`")
         if self.angle_deg == 0.0:
             raise wrong("angle_deg", "must not be zero", "use `unstressed: straight` for a straight riser")

@@ -7,11 +7,14 @@ from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 from riser_soil.scene.files import NamedFile
 from riser_soil.scene.quantities import (
     FROZEN,
+    SHORTEST,
     Interval,
-    NonNegative,
+    Length,
     PoissonRatio,
-    Positive,
-    Real,
+    Ratio,
+    StrengthGradient,
+    Stress,
+    UnitWeight,
     by_kind,
     wrong,
 )
@@ -24,12 +27,12 @@ class Block(BaseModel):
 
     x: Interval = Field(description="from and to along x, [x0, x1] [m]")
     y: Interval = Field(description="from and to along y, [y0, y1] [m]")
-    depth: Positive = Field(description="depth below the seabed [m]")
+    depth: Length = Field(description="depth below the seabed [m]")
 
     @model_validator(mode="after")
     def _has_a_size(self) -> Self:
         for key, (low, high) in {"x": self.x, "y": self.y}.items():
-            if low >= high:
+            if high - low < SHORTEST:
                 raise wrong(
                     key, "the first bound must be smaller than the second", "write [from, to] in metres"
                 )
@@ -42,8 +45,8 @@ class GeneratedMesh(BaseModel):
     model_config = FROZEN
 
     kind: Literal["hex", "tet"] = Field(default="hex", description="hex (hexahedra) or tet (tetrahedra)")
-    size_at_riser: Positive = Field(description="size of the cells under the riser [m]")
-    size_far: Positive = Field(description="size of the cells at the block's far sides and bottom [m]")
+    size_at_riser: Length = Field(description="size of the cells under the riser [m]")
+    size_far: Length = Field(description="size of the cells at the block's far sides and bottom [m]")
 
     @model_validator(mode="after")
     def _grows_away_from_the_riser(self) -> Self:
@@ -86,8 +89,13 @@ class LinearElastic(BaseModel):
     model_config = FROZEN
 
     kind: Literal["linear-elastic"] = Field(description="linear-elastic or von-mises")
-    E: Positive = Field(description="Young's modulus [Pa]")
+    E: Stress = Field(description="Young's modulus [Pa]")
     nu: PoissonRatio = Field(description="Poisson's ratio [-]")
+
+    @property
+    def surface_modulus(self) -> float:
+        """Young's modulus at the soil's surface [Pa]."""
+        return self.E
 
 
 class VonMises(BaseModel):
@@ -96,10 +104,15 @@ class VonMises(BaseModel):
     model_config = FROZEN
 
     kind: Literal["von-mises"] = Field(description="linear-elastic or von-mises")
-    su: Positive = Field(description="undrained shear strength at the seabed [Pa]")
-    su_gradient: Real = Field(default=0.0, description="growth of su with depth [Pa/m]")
-    E_over_su: Positive = Field(description="Young's modulus over su, the same at every depth [-]")
+    su: Stress = Field(description="undrained shear strength at the seabed [Pa]")
+    su_gradient: StrengthGradient = Field(default=0.0, description="growth of su with depth [Pa/m]")
+    E_over_su: Ratio = Field(description="Young's modulus over su, the same at every depth [-]")
     nu: PoissonRatio = Field(default=0.49, description="Poisson's ratio [-]")
+
+    @property
+    def surface_modulus(self) -> float:
+        """Young's modulus at the soil's surface [Pa]."""
+        return self.E_over_su * self.su
 
 
 Law = Annotated[
@@ -120,10 +133,10 @@ class Soil(BaseModel):
     block: Block | None = Field(default=None, description="the box of soil to mesh; not with mesh.file")
     mesh: Mesh = Field(description="{kind, size_at_riser, size_far} for a block, or {file: mesh.msh}")
     law: Law = Field(description="constitutive law: linear-elastic or von-mises, with its constants")
-    submerged_unit_weight: NonNegative = Field(
+    submerged_unit_weight: UnitWeight = Field(
         default=0.0, description="submerged unit weight, source of the initial stress [N/m3]"
     )
-    K0: Positive = Field(default=1.0, description="initial horizontal over vertical effective stress [-]")
+    K0: Ratio = Field(default=1.0, description="initial horizontal over vertical effective stress [-]")
     inertia: Literal[False] = Field(
         default=False, description="whether the soil has mass; false: quasi-static"
     )

@@ -2,7 +2,7 @@
 
 from pydantic import BaseModel, Field
 
-from riser_soil.scene.quantities import FROZEN, Count, Positive
+from riser_soil.scene.quantities import FROZEN, AutoOrTime, Count, Ratio, SolverTolerance
 
 
 class Solver(BaseModel):
@@ -10,7 +10,7 @@ class Solver(BaseModel):
 
     model_config = FROZEN
 
-    tolerance: Positive = Field(
+    tolerance: SolverTolerance = Field(
         default=1.0e-7,
         lt=1.0,
         description="norm of the residual at convergence, relative to the largest of the norms of support "
@@ -20,11 +20,13 @@ class Solver(BaseModel):
     load_steps: Count = Field(
         default=1, description="equal load steps that a static stage is divided into; a step that fails is halved [-]"
     )
-    min_load_step: Positive = Field(
+    min_load_step: Ratio = Field(
         default=1.0e-4,
         le=1.0,
         description="smallest part of a static stage's load before the solve fails [-]",
     )
-    min_time_step: Positive = Field(
-        default=1.0e-5, description="smallest time step before the solve fails [s]"
+    min_time_step: AutoOrTime = Field(
+        default="auto",
+        description="smallest time step before the solve fails [s], or auto: 1e-4 of the stage's time step, with "
+        "automatic steps 1e-7 of its duration",
     )

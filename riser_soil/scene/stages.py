@@ -8,22 +8,29 @@ from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 from riser_soil.scene.motions import Motion
 from riser_soil.scene.quantities import (
     FROZEN,
-    AutoOrPositive,
+    NEAREST,
+    ArcLength,
+    AutoOrTime,
+    Factor,
+    Force,
+    ForcePerLength,
+    Instant,
+    Length,
+    Moment,
     NonNegative,
-    Positive,
+    Position,
+    Ratio,
     Real,
     Text,
-    Vector,
+    Time,
     by_key,
     by_kind,
     word_or_number,
     wrong,
 )
 
-TOLERANCE = 0.005  # m, local error of a step
-
 Place = Annotated[
-    Annotated[Literal["start", "end"], Tag("<word>")] | Annotated[NonNegative, Tag("<number>")],
+    Annotated[Literal["start", "end"], Tag("<word>")] | Annotated[ArcLength, Tag("<number>")],
     Discriminator(
         word_or_number, custom_error_type="choice", custom_error_message="must be start, end or an arc [m]"
     ),
@@ -39,14 +46,14 @@ class Load(BaseModel):
         default=None,
         description="where force and moment act: start, end or arc length [m]; not for distributed",
     )
-    force: Vector | None = Field(default=None, description="point force [Fx, Fy, Fz] [N]")
-    moment: Vector | None = Field(
+    force: Force | None = Field(default=None, description="point force [Fx, Fy, Fz] [N]")
+    moment: Moment | None = Field(
         default=None, description="point moment about fixed axes [Mx, My, Mz] [N.m]"
     )
-    distributed: Vector | None = Field(
+    distributed: ForcePerLength | None = Field(
         default=None, description="force per unstressed length along the whole riser [qx, qy, qz] [N/m]"
     )
-    history: tuple[tuple[NonNegative, Real], ...] | None = Field(
+    history: tuple[tuple[Instant, Factor], ...] | None = Field(
         default=None,
         description="factor on the load, linear between [[t, factor], ...]: t in seconds since the stage "
         "began (in a static stage the part of the stage, 0 to 1); by default static loads grow linearly "
@@ -70,8 +77,9 @@ class Load(BaseModel):
         times = [t for t, _ in self.history or ()]
         if self.history is not None and len(times) < 2:
             raise wrong("history", "must have at least two points", "write [[t, factor], [t, factor]]")
-        if any(b <= a for a, b in pairwise(times)):
-            raise wrong("history", "times must increase", "sort the points [t, factor] by t")
+        if any(b - a < NEAREST for a, b in pairwise(times)):
+            allowed = f"times must increase, by {NEAREST:g} at least"
+            raise wrong("history", allowed, "sort the points [t, factor] by t")
         return self
 
 
@@ -80,8 +88,8 @@ class Move(BaseModel):
 
     model_config = FROZEN
 
-    start: Vector | None = Field(default=None, description="new position of the start, [x, y, z] [m]")
-    end: Vector | None = Field(default=None, description="new position of the end, [x, y, z] [m]")
+    start: Position | None = Field(default=None, description="new position of the start, [x, y, z] [m]")
+    end: Position | None = Field(default=None, description="new position of the end, [x, y, z] [m]")
 
 
 class Newmark(BaseModel):
@@ -89,7 +97,7 @@ class Newmark(BaseModel):
 
     model_config = FROZEN
 
-    beta: Positive = Field(default=0.25, le=1.0, description="Newmark's beta [-]")
+    beta: Ratio = Field(default=0.25, le=1.0, description="Newmark's beta [-]")
     gamma: Real = Field(default=0.5, ge=0.5, le=1.0, description="Newmark's gamma [-]")
 
 
@@ -163,15 +171,15 @@ class DynamicStage(BaseModel):
 
     name: Text = Field(min_length=1, description="name of the stage, different from the others")
     kind: Literal["dynamic"] = Field(description="static or dynamic")
-    duration: Positive = Field(description="duration [s]")
-    time_step: AutoOrPositive = Field(
+    duration: Time = Field(description="duration [s]")
+    time_step: AutoOrTime = Field(
         description="time step [s], or auto: as long as each step's local error stays within tolerance; such steps "
         "hit the output times, the ends of ramps and the bends of load histories"
     )
-    tolerance: Positive | None = Field(
+    tolerance: Length | None = Field(
         default=None,
         description="with time_step: auto, the largest local error of a step: an estimate of how far any node of the "
-        f"riser is off its path after this one step [m]; {TOLERANCE:g} by default",
+        "riser is off its path after this one step [m]; by default 0.02 of its outer diameter",
     )
     motion: Motion | None = Field(default=None, description="prescribed motions of held ends, {start, end}")
     loads: tuple[Load, ...] = Field(default=(), description="loads on the riser during this stage")
@@ -196,11 +204,6 @@ class DynamicStage(BaseModel):
             remedy = "write time_step: auto, or leave tolerance out"
             raise wrong("tolerance", "steps of a given size have no tolerance", remedy)
         return self
-
-    @property
-    def error_tolerance(self) -> float:
-        """Largest local error of an automatic step [m]."""
-        return TOLERANCE if self.tolerance is None else self.tolerance
 
 
 Stage = Annotated[

@@ -6,7 +6,20 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Field, model_validator
 
-from riser_soil.scene.quantities import FROZEN, Count, NonNegative, Positive, Real, Vector, wrong
+from riser_soil.scene.quantities import (
+    FROZEN,
+    SHORTEST,
+    Angle,
+    Coordinate,
+    Count,
+    Density,
+    Length,
+    Real,
+    Time,
+    TimeOrNone,
+    Velocity,
+    wrong,
+)
 
 # A sea of more components is no better, and each costs time at every point in every iteration.
 _MOST_COMPONENTS = 10000
@@ -17,7 +30,7 @@ class Current(BaseModel):
 
     model_config = FROZEN
 
-    profile: tuple[Vector, ...] = Field(
+    profile: tuple[tuple[Coordinate, Velocity, Velocity], ...] = Field(
         min_length=1,
         description="velocity by height, [[z, ux, uy], ...] [m, m/s, m/s], z increasing; linear between the heights, "
         "constant beyond",
@@ -25,8 +38,9 @@ class Current(BaseModel):
 
     @model_validator(mode="after")
     def _rises(self) -> Self:
-        if any(b[0] <= a[0] for a, b in pairwise(self.profile)):
-            raise wrong("profile", "the heights z must increase", "sort the points [z, ux, uy] by z")
+        if any(b[0] - a[0] < SHORTEST for a, b in pairwise(self.profile)):
+            allowed = f"the heights z must increase, by {SHORTEST:g} m at least"
+            raise wrong("profile", allowed, "sort the points [z, ux, uy] by z")
         return self
 
 
@@ -35,10 +49,12 @@ class Airy(BaseModel):
 
     model_config = FROZEN
 
-    height: Positive = Field(description="height from trough to crest [m]")
-    period: Positive = Field(description="period [s]")
-    direction_deg: Real = Field(default=0.0, description="direction towards which it travels, from x towards y [deg]")
-    phase_deg: Real = Field(default=0.0, description="phase of the crest at x = y = 0 as the waves' clock starts [deg]")
+    height: Length = Field(description="height from trough to crest [m]")
+    period: Time = Field(description="period [s]")
+    direction_deg: Angle = Field(default=0.0, description="direction towards which it travels, from x towards y [deg]")
+    phase_deg: Angle = Field(
+        default=0.0, description="phase of the crest at x = y = 0 as the waves' clock starts [deg]"
+    )
 
 
 class Jonswap(BaseModel):
@@ -46,8 +62,8 @@ class Jonswap(BaseModel):
 
     model_config = FROZEN
 
-    Hs: Positive = Field(description="significant wave height [m]")
-    Tp: Positive = Field(description="period of the spectrum's peak [s]")
+    Hs: Length = Field(description="significant wave height [m]")
+    Tp: Time = Field(description="period of the spectrum's peak [s]")
     gamma: Annotated[Real, Field(ge=1.0, le=7.0)] = Field(default=3.3, description="peak enhancement factor [-]")
     seed: Annotated[int, Field(strict=True, ge=0)] = Field(
         default=1, description="which of all seas with this spectrum; the same seed gives the same sea [-]"
@@ -55,7 +71,7 @@ class Jonswap(BaseModel):
     components: Annotated[Count, Field(le=_MOST_COMPONENTS)] = Field(
         default=100, description="number of linear waves that make up the sea [-]"
     )
-    direction_deg: Real = Field(default=0.0, description="direction towards which it travels, from x towards y [deg]")
+    direction_deg: Angle = Field(default=0.0, description="direction towards which it travels, from x towards y [deg]")
 
 
 class Waves(BaseModel):
@@ -72,7 +88,7 @@ class Waves(BaseModel):
         description="motion up to the surface: wheeler (heights are stretched with the surface) or vertical (above the "
         "mean level as at that level)",
     )
-    ramp: NonNegative = Field(
+    ramp: TimeOrNone = Field(
         default=0.0,
         description="time over which the waves grow smoothly from nothing, in the first dynamic stage and anew in one "
         "after a static stage [s]; by default one (peak) period",
@@ -132,11 +148,11 @@ class Water(BaseModel):
 
     model_config = FROZEN
 
-    density: Positive = Field(default=1025.0, description="density of the water [kg/m3]")
-    surface_level: Real | None = Field(
+    density: Density = Field(default=1025.0, description="density of the water [kg/m3]")
+    surface_level: Coordinate | None = Field(
         default=None, description="height z of the mean surface [m]; without it everything is submerged"
     )
-    depth: Positive | None = Field(
+    depth: Length | None = Field(
         default=None,
         description="depth for the waves [m]; by default down to the seabed, or deep water in a scene without one",
     )

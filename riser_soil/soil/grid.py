@@ -18,10 +18,9 @@ from riser_soil.dolfinx_compat import Nodes
 from riser_soil.errors import MeshError
 from riser_soil.soil.block import BlockSpec, make_block
 from riser_soil.soil.families import HEX8, TET10, Family
+from riser_soil.soil.mesh_file import HEXAHEDRON, cell_type, read_mesh
 
 T = TypeVar("T")
-
-_TETRAHEDRON, _HEXAHEDRON = 4, 5  # gmsh's numbers of the first-order cells
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +48,7 @@ def block_grid(comm: MPI.Intracomm, spec: BlockSpec) -> Grid:
 
 def file_grid(comm: MPI.Intracomm, path: Path) -> Grid:
     """Read a gmsh .msh file of first-order tetrahedra or hexahedra (collective); MeshError if it won't do."""
-    return _grid(comm, lambda: _read(path))
+    return _grid(comm, lambda: read_mesh(path))
 
 
 def on_all_ranks(comm: MPI.Intracomm, make: Callable[[], T]) -> T:
@@ -116,33 +115,8 @@ def _outcome(make: Callable[[], None]) -> tuple[bool, str]:
     """Whether the cells are hexahedra, and why the model can't be used ("" if it can)."""
     try:
         make()
-        return _cell_type() == _HEXAHEDRON, ""
+        return cell_type() == HEXAHEDRON, ""
     except MeshError as err:
         return False, str(err)
     except Exception as err:  # gmsh raises nothing more specific, and the other ranks wait
         return False, f"soil mesh: gmsh failed ({err})"
-
-
-def _cell_type() -> int:
-    types = [int(t) for t in gmsh.model.mesh.getElementTypes(3)]
-    if len(types) == 1 and types[0] in (_TETRAHEDRON, _HEXAHEDRON):
-        return types[0]
-    found = ", ".join(gmsh.model.mesh.getElementProperties(t)[0] for t in types) or "no volume cells"
-    raise MeshError(
-        f"soil mesh: found {found}; it must hold first-order tetrahedra only or hexahedra only "
-        "(in gmsh: mesh in 3 dimensions, element order 1)"
-    )
-
-
-def _read(path: Path) -> None:
-    if not path.is_file():
-        raise MeshError(f"soil mesh {path}: there is no such file")
-    try:
-        gmsh.merge(str(path))
-    except Exception as err:  # gmsh raises nothing more specific
-        raise MeshError(f"soil mesh {path}: gmsh can't read it ({err}); save it as .msh") from err
-    volumes = [tag for _, tag in gmsh.model.getEntities(3)]
-    if not volumes:
-        raise MeshError(f"soil mesh {path}: no volume in it; save a 3-dimensional mesh as .msh")
-    gmsh.model.removePhysicalGroups()
-    gmsh.model.addPhysicalGroup(3, volumes)

@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -204,7 +203,7 @@ def test_wrong_usage_is_bad_input(invoke: Invoke, arguments: list[str]) -> None:
 
 
 @pytest.mark.parametrize("option", ["--help", "--version"])
-def test_help_is_fast_and_imports_nothing_heavy(option: str) -> None:
+def test_help_imports_nothing_heavy(option: str) -> None:
     code = (
         "import sys\n"
         f"sys.argv = ['riser-soil', '{option}']\n"
@@ -214,12 +213,10 @@ def test_help_is_fast_and_imports_nothing_heavy(option: str) -> None:
         "heavy = {'numpy', 'scipy', 'numba', 'petsc4py', 'mpi4py', 'dolfinx', 'pydantic', 'ruamel.yaml'}\n"
         "assert not heavy & set(sys.modules), heavy & set(sys.modules)\n"
     )
-    began = time.perf_counter()
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
     )
     assert done.returncode == 0, done.stderr
-    assert time.perf_counter() - began < 5.0
 
 
 def test_a_scene_is_read_without_numerics() -> None:

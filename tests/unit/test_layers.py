@@ -11,7 +11,7 @@ import riser_soil
 PACKAGE = Path(riser_soil.__file__).parent
 
 LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one another
-    ("errors", "arrays", "compiled", "smooth_step", "standard_output"),
+    ("errors", "arrays", "compiled", "smooth_step", "machine", "standard_output"),
     ("part", "snapshot", "interruption"),
     ("scene", "dolfinx_compat", "time_scheme", "roles"),
     ("riser",),
@@ -22,13 +22,14 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("matrix",),
     ("system",),
     ("direct_solver",),
+    ("stability",),
     ("mass", "newton"),
     ("local_error",),
     ("march", "relax"),
-    ("folder", "schedule", "progress", "inventory", "wave_doubts", "motion_doubts"),
-    ("growing_file",),
-    ("ownership", "doubts"),
-    ("netcdf", "xdmf", "summary", "screen", "balance", "touchdown_zone"),
+    ("folder", "schedule", "progress", "inventory", "estimate", "wave_doubts", "motion_doubts", "bending_doubts"),
+    ("growing_file", "ground_doubts"),
+    ("ownership", "doubts", "limits"),
+    ("netcdf", "xdmf", "summary", "screen", "balance", "touchdown_zone", "plausibility"),
     ("record",),
     ("observe",),
     ("run", "check"),

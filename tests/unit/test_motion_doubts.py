@@ -51,10 +51,10 @@ def test_a_start_at_full_speed_is_told_and_a_ramp_heals_it(motion: Mapping, spee
 
 
 def test_a_table_that_starts_moving(tmp_path: Path) -> None:
-    (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + "".join(f"{t},{3 * t},0,0\n" for t in range(8)))
+    (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + "".join(f"{t},{-3 * t},0,0\n" for t in range(8)))
     (told,) = doubts(moved(table="t.csv"), folder=tmp_path)
     assert "the end starts at 3 m/s" in told
-    rows = "".join(f"{t},{0.1 * t**3},0,0\n" for t in range(8))
+    rows = "".join(f"{t},{-0.1 * t**3},0,0\n" for t in range(8))
     (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + rows)
     assert not doubts(moved(table="t.csv"), folder=tmp_path)
 

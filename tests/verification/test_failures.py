@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import signal
 import subprocess
 import sys
 import time
@@ -16,7 +14,7 @@ import pytest
 
 from riser_soil.results import Run
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.on_ranks import environment, mpirun
+from tests.on_ranks import Job, mpirun
 from tests.vtk_reading import read_by_vtk
 
 RANKS = pytest.mark.parametrize("ranks", [1, 2])
@@ -103,14 +101,9 @@ def test_killed_run_leaves_what_it_has_accepted(ranks: int, tmp_path: Path) -> N
     launch = ["mpirun", "-n", str(ranks), "--bind-to", "none"] if ranks > 1 else []
     call = [*launch, sys.executable, "-m", "riser_soil", "run", "scene.yaml", "-o", "out"]
     quiet = subprocess.DEVNULL
-    process = subprocess.Popen(
-        call, cwd=tmp_path, env=environment(), stdout=quiet, stderr=quiet, start_new_session=True
-    )
-    try:
+    with Job(call, tmp_path, stdout=quiet, stderr=quiet) as job:
         wait_for_steps(tmp_path / "out", 20)
-    finally:
-        os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
+        job.kill()
     run = Run(tmp_path / "out")
     assert not run.finished
     steps = run.time.size

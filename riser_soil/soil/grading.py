@@ -1,0 +1,116 @@
+"""A plain block of soil and how its cells grow away from the riser; needs no mesh."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from riser_soil.arrays import Array
+
+_PIECES = 16  # on either side of the riser, to count cells by
+_EQUAL = 1e-9  # difference of two sizes, over either, that is none
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class BlockSpec:
+    """A block with a level top [m].
+
+    x, y: range in plan. level: z of the top face. depth: thickness. kind: element family. size_at_riser: cell
+    size under the riser; size_far: the size that it grows to at the block's far faces. riser: two points of
+    the riser's straight line in plan; a cell's middle, not its edge, lies under a line along x or y, so that
+    the surface under the riser is smooth. None: fine in the whole plan.
+    """
+
+    x: Point
+    y: Point
+    depth: float
+    size_at_riser: float
+    size_far: float
+    level: float = 0.0
+    kind: Literal["hex", "tet"] = "hex"
+    riser: tuple[Point, Point] | None = None
+
+    def fine_range(self, axis: int) -> Point:
+        """Range of x (axis 0) or y (axis 1) that the riser takes up in plan, with half a cell around."""
+        low, high = (self.x, self.y)[axis]
+        if self.riser is None:
+            return low, high
+        ends = sorted(point[axis] for point in self.riser)
+        half = 0.5 * self.size_at_riser
+        first, last = np.clip((ends[0] - half, ends[1] + half), low, high)
+        return float(first), float(last)
+
+    def layers(self) -> tuple[int, int, int]:
+        """How many layers of hexahedra there are along x, y and z."""
+        x, y = (
+            cells_along(*(self.x, self.y)[axis], self.fine_range(axis), self.size_at_riser, self.size_far)
+            for axis in (0, 1)
+        )
+        return x, y, steps(self.depth, self.size_at_riser, self.size_far)
+
+    @property
+    def reach(self) -> float:
+        """Greatest distance along an axis from the riser's strip to the block's faces [m]."""
+        (x0, x1), (y0, y1) = self.fine_range(0), self.fine_range(1)
+        return max(x0 - self.x[0], self.x[1] - x1, y0 - self.y[0], self.y[1] - y1, self.depth)
+
+    def cubes(self) -> float:
+        """Integral of 1/size^3, about the number of cubes; the size grows linearly away from the riser's strip."""
+        (x, dx), (y, dy), (z, dz) = self._around(0), self._around(1), _outwards(self.depth, self.size_at_riser)
+        away = np.sqrt(x[:, None, None] ** 2 + y[:, None] ** 2 + z**2)
+        size = self.size_at_riser + (self.size_far - self.size_at_riser) * np.minimum(away / self.reach, 1.0)
+        return float(np.einsum("i,j,k,ijk->", dx, dy, dz, size**-3.0))
+
+    def _around(self, axis: int) -> tuple[Array, Array]:
+        """Distances of pieces of the block along x or y from the riser's strip, and their lengths [m]."""
+        (low, high), (first, last) = (self.x, self.y)[axis], self.fine_range(axis)
+        below, above = (_outwards(length, self.size_at_riser) for length in (first - low, high - last))
+        return np.concatenate((below[0], [0.0], above[0])), np.concatenate((below[1], [last - first], above[1]))
+
+
+def graded(low: float, high: float, fine: Point, size: float, size_far: float) -> Array:
+    """Coordinates from low to high: cells of `size` in the fine range, growing to `size_far` at the ends."""
+    count = max(1, round((fine[1] - fine[0]) / size))
+    middle = np.linspace(fine[0], fine[1], count + 1) if fine[1] > fine[0] else np.array([fine[0]])
+    below = fine[0] - growing(fine[0] - low, size, size_far)[:0:-1]
+    above = fine[1] + growing(high - fine[1], size, size_far)[1:]
+    return np.concatenate((below, middle, above))
+
+
+def _outwards(length: float, size: float) -> tuple[Array, Array]:
+    """Middles and lengths of pieces from 0 to `length`, the longer the farther out."""
+    if length <= 0.0:
+        return np.zeros(0), np.zeros(0)
+    edges = np.concatenate(([0.0], np.geomspace(min(0.5 * size, 0.5 * length), length, _PIECES)))
+    return 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+
+
+def growing(length: float, size: float, size_far: float) -> Array:
+    """Distances 0..length whose steps grow geometrically from about `size` to about `size_far`."""
+    count, ratio = steps(length, size, size_far), size_far / size
+    if count == 0:
+        return np.zeros(1)
+    if abs(ratio - 1.0) < _EQUAL:
+        return np.linspace(0.0, length, count + 1)
+    distances: Array = length * (ratio ** (np.arange(count + 1) / count) - 1.0) / (ratio - 1.0)
+    return distances
+
+
+def steps(length: float, size: float, size_far: float) -> int:
+    """How many steps `growing` takes."""
+    if length <= 1e-9 * size:
+        return 0
+    if abs(size_far / size - 1.0) < _EQUAL:
+        return max(1, round(length / size))
+    return max(1, math.ceil(length * math.log(size_far / size) / (size_far - size) - 1e-9))
+
+
+def cells_along(low: float, high: float, fine: Point, size: float, size_far: float) -> int:
+    """How many cells `graded` has between its coordinates."""
+    middle = max(1, round((fine[1] - fine[0]) / size)) if fine[1] > fine[0] else 0
+    return steps(fine[0] - low, size, size_far) + middle + steps(high - fine[1], size, size_far)
