@@ -17,7 +17,7 @@ from tests.vtk_reading import times_by_vtk
 
 SCENE = ROOT / "demos" / "first_scene.yaml"
 # Every step is recorded, and the files grow all the time.
-ENDLESS = ("--set", "stages.1.duration=1e6", "--set", "output.interval=0.1")
+ENDLESS = ("--set", "stages.1.duration=1e4", "--set", "output.interval=0.1")
 # The command, in a process that may write no file longer than so many bytes. MPI needs some when it starts.
 ON_A_SMALL_DISK = """
 import resource, sys

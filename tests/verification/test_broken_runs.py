@@ -5,8 +5,9 @@ from __future__ import annotations
 import random
 import signal
 import time
-from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
@@ -15,43 +16,65 @@ from tests.broken_runs import ON_A_SMALL_DISK, look, start
 AT_ONCE = 4
 
 
-def end_by(number: signal.Signals, folder: Path, delays: Sequence[float]) -> list[tuple[Path, int, list[str]]]:
-    """Folder, status and lines on standard error of runs that get a signal after so many seconds."""
-    found = []
-    for first in range(0, len(delays), AT_ONCE):
-        begun = time.monotonic()
-        some = list(enumerate(delays))[first : first + AT_ONCE]
-        running = [(delay, folder / f"{number.name}{i}", start(folder / f"{number.name}{i}")) for i, delay in some]
-        for delay, out, process in sorted(running, key=lambda run: run[0]):
-            time.sleep(max(0.0, begun + delay - time.monotonic()))
-            process.send_signal(number)
-            _, told = process.communicate(timeout=120)
-            found.append((out, process.returncode, told.splitlines()))
-    return found
+class Ended(NamedTuple):
+    """A run that a signal has ended, and its lines on standard error."""
+
+    folder: Path
+    status: int
+    told: list[str]
+
+
+def end_by(number: signal.Signals, folder: Path, runs: int) -> list[Ended]:
+    """Half of the runs get the signal within seconds of their start, the others of their first frame; all by chance.
+
+    Before its own first line is read the program can't listen: Python then answers.
+    """
+    chance = random.Random(int(number))
+
+    def end(run: int, seconds: float) -> Ended:
+        out = folder / f"{run}"
+        process = start(out)
+        while number != signal.SIGKILL and process.poll() is None and not listens(process.pid):
+            time.sleep(0.02)
+        while run % 2 and process.poll() is None and not (out / "riser.xdmf").exists():
+            time.sleep(0.02)
+        time.sleep(seconds)
+        process.send_signal(number)
+        _, told = process.communicate(timeout=300)
+        return Ended(out, process.returncode, told.splitlines())
+
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        return list(pool.map(end, range(runs), [chance.uniform(0.0, 5.0) for _ in range(runs)]))
+
+
+def listens(process: int) -> bool:
+    """Whether SIGTERM has a handler."""
+    status = Path(f"/proc/{process}/status").read_text(encoding="ascii")
+    caught = next(line for line in status.splitlines() if line.startswith("SigCgt:"))
+    return bool(int(caught.split()[1], 16) >> (signal.SIGTERM - 1) & 1)
 
 
 @pytest.mark.verify
 def test_a_hundred_kills(tmp_path: Path) -> None:
-    chance = random.Random(1)
-    runs = end_by(signal.SIGKILL, tmp_path, [chance.uniform(2.0, 14.0) for _ in range(100)])
-    left = look([folder for folder, _, _ in runs])
-    print(f"nothing yet: {sum(x.rows is None for x in left)}; most rows: {max(x.rows or 0 for x in left)}")
-    assert {status for _, status, _ in runs} == {-signal.SIGKILL}
-    assert sum((x.rows or 0) > 1 for x in left) > 20, "too few have come to motion: wait longer"
+    runs = end_by(signal.SIGKILL, tmp_path, 100)
+    left = look([run.folder for run in runs])
+    print(f"nothing yet: {sum(x.rows is None for x in left)}; rows: {sorted(x.rows or 0 for x in left)}")
+    assert {run.status for run in runs} == {-signal.SIGKILL}
+    assert sum((x.frames or 0) > 0 for x in left) >= 50
 
 
 @pytest.mark.verify
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_ten_signals(number: signal.Signals, tmp_path: Path) -> None:
-    chance = random.Random(int(number))
-    runs = end_by(number, tmp_path, [chance.uniform(3.0, 14.0) for _ in range(10)])
-    left = look([folder for folder, _, _ in runs])
-    for (_, status, lines), found in zip(runs, left, strict=True):
-        assert status == 128 + number
-        assert lines[-1].startswith(f"ended by {number.name} ")
-        assert len(lines) == 1
-        assert found.rows == found.frames
-    assert sum((x.rows or 0) > 1 for x in left) > 3, "too few have come to motion: wait longer"
+    runs = end_by(number, tmp_path, 10)
+    left = look([run.folder for run in runs])
+    print(f"rows: {[x.rows for x in left]}")
+    for run, found in zip(runs, left, strict=True):
+        assert run.status == 128 + number
+        (line,) = run.told
+        assert line.startswith(f"ended by {number.name} ")
+        assert (found.rows or 0) == (found.frames or 0)
+    assert sum((x.rows or 0) > 1 for x in left) >= 5
 
 
 @pytest.mark.verify
