@@ -47,7 +47,7 @@ def mesh_from_gmsh(model: Any, comm: MPI.Intracomm) -> Any:
 
 
 def lagrange_nodes(mesh: Any, degree: int, comm: MPI.Intracomm) -> Nodes:
-    """Nodes of the continuous Lagrange space of this degree (collective; compiles code the first time).
+    """Nodes of the continuous Lagrange space of this degree (collective; 0.5 compiles code the first time).
 
     The arrays outlive the mesh; `comm` is the caller's, since the mesh frees its own copy.
     """

@@ -29,6 +29,7 @@ ENVIRONMENT = {
 OF_ANOTHER_JOB = ("PMIX_", "OMPI_", "ORTE_", "PRTE_")
 MARK = "RISER_SOIL_TEST_JOB"
 PATIENCE = 10.0  # s for mpirun to end its ranks and remove its files
+HANGS = 900.0  # s: more than anything here takes on a machine busy with other things
 
 
 def environment() -> dict[str, str]:
@@ -89,17 +90,15 @@ def _kill(pid: int) -> None:
 
 
 def finished(
-    command: Sequence[str], folder: Path, seconds: float, given: dict[str, str] | None = None
+    command: Sequence[str], folder: Path, given: dict[str, str] | None = None
 ) -> subprocess.CompletedProcess[str]:
-    """What a command has said and its exit status; an error, and nothing left of it, after this many seconds."""
+    """What a command has said and its exit status; an error, and nothing left of it, if it hangs."""
     with Job(command, folder, given, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as job:
-        out, err = job.process.communicate(timeout=seconds)
+        out, err = job.process.communicate(timeout=HANGS)
     return subprocess.CompletedProcess(command, job.process.returncode, out, err)
 
 
-def mpirun(
-    ranks: int, *command: str, folder: Path = ROOT, seconds: float = 120.0
-) -> subprocess.CompletedProcess[str]:
+def mpirun(ranks: int, *command: str, folder: Path = ROOT) -> subprocess.CompletedProcess[str]:
     """Run `python COMMAND` on this many ranks from a folder."""
     launch = ["mpirun", "-n", str(ranks), "--bind-to", "none", sys.executable, *command]
-    return finished(launch, folder, seconds)
+    return finished(launch, folder)

@@ -36,7 +36,7 @@ RUNNABLE = [c for c in COMMANDS if not c.startswith(("make ", "docker "))]
 
 def bash(command: str, folder: Path) -> subprocess.CompletedProcess[str]:
     readers = {name: value for name, value in environment().items() if name not in SHARED_CORES}
-    return finished(["bash", "-c", command], folder, 120.0, readers)
+    return finished(["bash", "-c", command], folder, readers)
 
 
 @pytest.fixture(scope="module")
@@ -87,6 +87,7 @@ def test_docker_commands_fit_the_image() -> None:
     image = (ROOT / "docker/Dockerfile").read_text()
     assert 'ENTRYPOINT ["riser-soil"]' in image
     assert "WORKDIR /results" in image
+    assert image.index("scripts/setup.sh dependencies") < image.index("COPY . .")  # a layer of their own
     assert run.startswith(
         'docker run --rm --user "$(id -u):$(id -g)" -v "$PWD:/results" riser_soil run demos/first_scene.yaml'
     )

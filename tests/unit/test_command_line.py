@@ -17,6 +17,7 @@ from typer.testing import CliRunner, Result
 from riser_soil.__main__ import app
 from riser_soil.errors import Interruption, MeshError, ResultsError, RiserSoilError, SceneError, SolveError
 from riser_soil.scene.scene import Scene
+from tests.on_ranks import HANGS
 
 ROOT = Path(__file__).parents[2]
 SCENE = ROOT / "tests/scenes/catenary.yaml"
@@ -214,7 +215,7 @@ def test_help_imports_nothing_heavy(option: str) -> None:
         "assert not heavy & set(sys.modules), heavy & set(sys.modules)\n"
     )
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=HANGS, check=False
     )
     assert done.returncode == 0, done.stderr
 
@@ -227,6 +228,6 @@ def test_a_scene_is_read_without_numerics() -> None:
         "assert not {'numpy', 'petsc4py', 'mpi4py', 'dolfinx'} & set(sys.modules)\n"
     )
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=HANGS, check=False
     )
     assert done.returncode == 0, done.stderr

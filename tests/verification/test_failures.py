@@ -14,7 +14,7 @@ import pytest
 
 from riser_soil.results import Run
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.on_ranks import Job, mpirun
+from tests.on_ranks import HANGS, Job, mpirun
 from tests.vtk_reading import read_by_vtk
 
 RANKS = pytest.mark.parametrize("ranks", [1, 2])
@@ -26,7 +26,7 @@ def command(folder: Path, ranks: int, scene: Mapping, *options: str) -> subproce
     """riser-soil run on a scene, results in folder/out."""
     (folder / "scene.yaml").write_text(json.dumps(scene), encoding="utf-8")
     call = ["-m", "riser_soil", "run", "scene.yaml", "-o", "out", *options]
-    return mpirun(ranks, *call, folder=folder, seconds=200)
+    return mpirun(ranks, *call, folder=folder)
 
 
 def struck() -> Mapping:
@@ -118,9 +118,9 @@ def test_killed_run_leaves_what_it_has_accepted(ranks: int, tmp_path: Path) -> N
     assert Run(tmp_path / "out").finished
 
 
-def wait_for_steps(folder: Path, steps: int, seconds: float = 90.0) -> None:
+def wait_for_steps(folder: Path, steps: int) -> None:
     """Until results.nc holds this many output times."""
-    ends = time.monotonic() + seconds
+    ends = time.monotonic() + HANGS
     while time.monotonic() < ends:
         time.sleep(0.2)
         if (folder / "results.nc").is_file() and Run(folder).time.size > steps:

@@ -15,7 +15,7 @@ from riser_soil.build import World
 from riser_soil.system import Clock, System
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.driven_stage import built
-from tests.on_ranks import environment
+from tests.on_ranks import HANGS, environment
 
 FOR_SOIL = {"dolfinx", "dolfinx_cpp", "ufl", "ffcx", "basix", "gmsh"}
 FOR_PICTURES = {"pyvista", "vtk", "vtkmodules", "matplotlib"}
@@ -53,7 +53,7 @@ def ran(name: str, folder: Path) -> dict[str, Any]:
     (folder / "scene.yaml").write_text(json.dumps(scenes[name]), encoding="utf-8")
     script = Path(__file__).with_name("imports_of_run.py")
     call = [sys.executable, str(script), str(folder / "scene.yaml"), str(folder)]
-    subprocess.run(call, env=environment(), check=True, capture_output=True, timeout=120)
+    subprocess.run(call, env=environment(), check=True, capture_output=True, timeout=HANGS)
     found: dict[str, Any] = json.loads((folder / "found.json").read_text(encoding="utf-8"))
     return found
 

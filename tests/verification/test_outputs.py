@@ -17,7 +17,7 @@ from riser_soil import __version__
 from riser_soil.arrays import Array
 from riser_soil.results import Run
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.on_ranks import environment, mpirun
+from tests.on_ranks import HANGS, environment, mpirun
 from tests.vtk_reading import read_by_vtk
 from tests.watched_run import WatchedRun
 
@@ -191,7 +191,7 @@ def resident_memory(scene: Mapping, folder: Path) -> Array:
     (folder / "scene.yaml").write_text(json.dumps(scene), encoding="utf-8")
     script = Path(__file__).with_name("memory_of_run.py")
     call = [sys.executable, str(script), str(folder / "scene.yaml"), str(folder / "out")]
-    done = subprocess.run(call, env=environment(), capture_output=True, text=True, timeout=400, check=False)
+    done = subprocess.run(call, env=environment(), capture_output=True, text=True, timeout=HANGS, check=False)
     assert done.returncode == 0, done.stderr
     return np.array(json.loads((folder / "out" / "memory.json").read_text(encoding="utf-8")))
 
