@@ -16,12 +16,13 @@ from riser_soil.direct_solver import PREFIX, defaults, factorise_directly
 from riser_soil.part import Forces, State
 from riser_soil.stability import unstable_modes
 from riser_soil.system import System
-from riser_soil.time_scheme import Scheme
+from riser_soil.time_scheme import Scheme, Static
 
 CONVERGED = PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
 DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_DTOL
 ITERATING = PETSc.SNES.ConvergedReason.ITERATING
 REUSE = 0.1
+STATIC = Static().weights(0.0)
 
 
 class NotConvergedError(Exception):
@@ -29,7 +30,11 @@ class NotConvergedError(Exception):
 
 
 class UnstableError(NotConvergedError):
-    """A balance of forces from which the riser would buckle or swing away."""
+    """A balance of forces from which the riser would buckle or swing away: `solution`."""
+
+    def __init__(self, text: str, solution: Solution) -> None:
+        super().__init__(text)
+        self.solution = solution
 
 
 @runtime_checkable
@@ -130,23 +135,24 @@ class Newton:
             if fault := owner.fault(state):
                 raise NotConvergedError(fault)
 
-    def require_stable(self, step: Step, solution: Solution) -> None:
+    def require_stable(self, solution: Solution) -> None:
         """Raise UnstableError where a static solution is an unstable equilibrium, such as an unbuckled strut.
 
         Stable means that the tangent there has no negative pivot, see `stability`. Parts that follow the line are left
         out of it; where others lack symmetry too, such as moments in space, nothing is judged. Collective.
         """
-        negative = self.unstable_modes(step, solution)
+        negative = self.unstable_modes(solution.state, solution.forces)
         if negative > 0:
             raise UnstableError(
                 f"the equilibrium found is unstable (its tangent has {negative} negative pivot(s)): the riser would "
-                "buckle or swing away from it; start from a shape nearer to the one that it takes"
+                "buckle or swing away from it; start from a shape nearer to the one that it takes",
+                solution,
             )
 
-    def unstable_modes(self, step: Step, solution: Solution) -> int:
-        """Negative pivots at a static solution; collective."""
-        weights = step.scheme.weights(step.dt)
-        return unstable_modes(self.system, solution.state, weights, self._scale(solution.forces))
+    def unstable_modes(self, state: State, forces: Forces | None = None) -> int:
+        """Negative pivots at a static state, whose forces may be known; collective."""
+        found = self.system.forces(state) if forces is None else forces
+        return unstable_modes(self.system, state, STATIC, self._scale(found))
 
     def renew(self) -> None:
         """Take over a new matrix after the system's pattern has changed."""
@@ -211,11 +217,15 @@ class Newton:
             return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
         if iteration == 0 and self._starts_near:  # a motion that its guess alone carries on would keep its errors
             return ITERATING
-        if norm <= max(self.settings.tolerance * self._scale(self._forces), self.settings.floor):
+        if norm <= self.balance(self._forces):
             return CONVERGED
         if iteration >= 4 and norm > 1e6 * self._norms[0]:
             return DIVERGED
         return ITERATING
+
+    def balance(self, forces: Forces) -> float:
+        """The residual norm [N] that counts as balance of these forces; collective."""
+        return max(self.settings.tolerance * self._scale(forces), self.settings.floor)
 
     def _scale(self, forces: Forces) -> float:
         """Norm of the forces in play: reactions, inertia, contact on the riser."""
