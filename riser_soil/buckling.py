@@ -9,7 +9,6 @@ makes the largest displacement positive, so that no round-off decides which way 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 from petsc4py import PETSc
@@ -39,15 +38,8 @@ def stabilising_drag(drag: float, stable: Callable[[float], bool]) -> float:
     return drag
 
 
-class Mode(NamedTuple):
-    """Increments (size,), the line's largest displacement +1 m, and the norm of the forces [N] that they set free."""
-
-    increments: Array
-    forces: float
-
-
-def buckling_mode(system: System, part: Relaxation, line: Line, state: State, weights: Weights) -> Mode:
-    """The mode at an unstable equilibrium; `part` has the drag s. Collective."""
+def buckling_mode(system: System, part: Relaxation, line: Line, state: State, weights: Weights) -> Array:
+    """Increments (size,) of the mode, its largest displacement of the line +1 m; `part` has the drag s. Collective."""
     parts = judged_parts(system)
     assert parts is not None
     system.assemble(state, weights, [part])
@@ -56,15 +48,12 @@ def buckling_mode(system: System, part: Relaxation, line: Line, state: State, we
     solver = PETSc.PC().create(system.comm)
     factorise_directly(solver, system)
     solver.setUp()
-    mode, of_drag = _iterate(solver, drag, _start(system, line))
+    mode = _iterate(solver, drag, _start(system, line))
     found = np.zeros(system.numbering.size)
     system.numbering.to_local(mode, found)
-    largest = _largest(line.nodal(found)[:, : line.dimension])
-    mode.pointwiseMult(drag, mode)
-    forces = (1.0 - of_drag) * mode.norm() / abs(largest)
     for thing in (solver, drag, mode):
         thing.destroy()
-    return Mode(found / largest, forces)
+    return np.asarray(found / _largest(line.nodal(found)[:, : line.dimension]))
 
 
 def _start(system: System, line: Line) -> PETSc.Vec:
@@ -76,8 +65,8 @@ def _start(system: System, line: Line) -> PETSc.Vec:
     return x
 
 
-def _iterate(solver: PETSc.PC, drag: PETSc.Vec, x: PETSc.Vec) -> tuple[PETSc.Vec, float]:
-    """Inverse iteration from x, which becomes the mode, of unit size in the drag's norm, and 1 + w/s."""
+def _iterate(solver: PETSc.PC, drag: PETSc.Vec, x: PETSc.Vec) -> PETSc.Vec:
+    """Inverse iteration from x, which becomes the mode, of unit size in the drag's norm."""
     load, image = x.duplicate(), x.duplicate()
     for _ in range(MOST_ITERATIONS):
         load.pointwiseMult(drag, x)
@@ -94,7 +83,7 @@ def _iterate(solver: PETSc.PC, drag: PETSc.Vec, x: PETSc.Vec) -> tuple[PETSc.Vec
             break
     for vector in (load, image):
         vector.destroy()
-    return x, 1.0 / float(along)
+    return x
 
 
 def _largest(displacements: Array) -> float:

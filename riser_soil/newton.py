@@ -55,12 +55,14 @@ class NewtonSettings:
     the same step (Shamanskii's method), as long as each leaves less than this share: two or three such iterations cost
     less than one with its own tangent. Only in time steps of a riser alone, which start near their end: contact has
     corners, and an equilibrium may be far away.
+    least_iterations: before a residual counts as small.
     """
 
     tolerance: float
     max_iterations: int
     floor: float
     reuse: float = REUSE
+    least_iterations: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,6 +208,11 @@ class Newton:
         return self._norms[-1] < self.settings.reuse * self._norms[-2]
 
     @property
+    def _least_iterations(self) -> int:
+        """A motion that its guess alone carries on would keep its errors."""
+        return max(self.settings.least_iterations, int(self._starts_near))
+
+    @property
     def _starts_near(self) -> bool:
         """Whether the guess continues a smooth motion: time steps of a riser alone."""
         return self.system.riser_alone and self._weights.inertia > 0.0
@@ -215,17 +222,13 @@ class Newton:
         self._norms.append(norm)
         if not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
-        if iteration == 0 and self._starts_near:  # a motion that its guess alone carries on would keep its errors
+        if iteration < self._least_iterations:
             return ITERATING
-        if norm <= self.balance(self._forces):
+        if norm <= max(self.settings.tolerance * self._scale(self._forces), self.settings.floor):
             return CONVERGED
         if iteration >= 4 and norm > 1e6 * self._norms[0]:
             return DIVERGED
         return ITERATING
-
-    def balance(self, forces: Forces) -> float:
-        """The residual norm [N] that counts as balance of these forces; collective."""
-        return max(self.settings.tolerance * self._scale(forces), self.settings.floor)
 
     def _scale(self, forces: Forces) -> float:
         """Norm of the forces in play: reactions, inertia, contact on the riser."""

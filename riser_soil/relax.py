@@ -7,7 +7,7 @@ small, and the drag is that in which the mode grows to a multiple in each step, 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from mpi4py import MPI
@@ -24,8 +24,7 @@ from riser_soil.time_scheme import Static
 FREE_FALL = 0.1  # the first step lets the riser fall by about this many element lengths
 STIFFEST = 1e8  # drag over the first
 MOST_STEPS = 2000
-NUDGE = 1e-4  # element lengths: the first move away from an unstable equilibrium, at least
-UNBALANCE = 100.0  # of what counts as balance: forces that the first move sets free, at least
+NUDGE = 1e-4  # element lengths: the first move away from an unstable equilibrium
 NEAR = 1.0  # element lengths to an unstable equilibrium that is left
 MOST_ATTEMPTS = 50  # at an equilibrium without drag
 QUICK = 6  # Newton iterations up to which the drag is lowered
@@ -49,7 +48,7 @@ def relax(
     """
     part = Relaxation(line, weight / (FREE_FALL * line.length.min()))
     system = System(comm, Model(model.fields, [*model.parts, part]), clock)
-    newton = Newton(system, settings)
+    newton = Newton(system, replace(settings, least_iterations=1))  # a slow move's forces may pass for balance
     try:
         return _descend(system, newton, part, line, t)
     finally:
@@ -161,9 +160,8 @@ def _leave(system: System, newton: Newton, part: Relaxation, line: Line, unstabl
     t = unstable.state.t
     part.drag = stabilising_drag(part.drag, lambda drag: _stable(newton, part, t, drag))
     mode = buckling_mode(system, part, line, _still(system, t), Static().weights(0.0))
-    far = max(NUDGE * line.length.min(), UNBALANCE * newton.balance(unstable.forces) / mode.forces)
     moved = _still(system, t)
-    moved.u[:] = far * mode.increments
+    moved.u[:] = NUDGE * line.length.min() * mode
     system.commit(moved)
 
 
