@@ -14,7 +14,7 @@ from petsc4py import PETSc
 from riser_soil.arrays import Array
 from riser_soil.direct_solver import PREFIX, defaults, factorise_directly
 from riser_soil.part import Forces, State
-from riser_soil.stability import unstable_modes
+from riser_soil.stability import hold_free_turns, unstable_modes
 from riser_soil.system import System
 from riser_soil.time_scheme import Scheme, Static
 
@@ -200,6 +200,8 @@ class Newton:
         if not self._reusable():
             self._trial(x)
             self.system.assemble(self._balanced, self._weights)
+            if self._weights.inertia == 0.0:
+                hold_free_turns(self.system, self._balanced, self.settings.tolerance * self._scale(self._forces))
 
     def _reusable(self) -> bool:
         """Whether the tangent of the iteration before will do."""
