@@ -87,6 +87,8 @@ def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: fl
             if found is not None:
                 done.iterations += found.iterations
                 return done
+        if attempts.leaving:
+            _stabilise(newton, part, t)
         try:
             solution = _step(system, newton, part, t, part.drag)
         except NotConvergedError as failure:
@@ -129,6 +131,14 @@ def _stable(newton: Newton, part: Relaxation, t: float, drag: float) -> bool:
         part.drag = usual
 
 
+def _stabilise(newton: Newton, part: Relaxation, t: float, least: bool = False) -> None:
+    """Raise the drag, if need be, to where a step grows in the mode and does not turn to its other side; or to the least
+    such drag.
+    """
+    if least or not _stable(newton, part, t, part.drag):
+        part.drag = stabilising_drag(part.drag, lambda drag: _stable(newton, part, t, drag))
+
+
 def _still(system: System, t: float) -> State:
     return State.at_rest(t, system.numbering.size)
 
@@ -158,7 +168,7 @@ def _leave(system: System, newton: Newton, part: Relaxation, line: Line, unstabl
     """Commit an unstable equilibrium, and a small move from there in the mode in which it is left fastest."""
     system.commit(unstable.state)
     t = unstable.state.t
-    part.drag = stabilising_drag(part.drag, lambda drag: _stable(newton, part, t, drag))
+    _stabilise(newton, part, t, least=True)
     mode = buckling_mode(system, part, line, _still(system, t), Static().weights(0.0))
     moved = _still(system, t)
     moved.u[:] = NUDGE * line.length.min() * mode
