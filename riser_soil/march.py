@@ -143,7 +143,7 @@ class March:
                 raise
             solution = self.newton.solve(step)
         if isinstance(self.scheme, Static):
-            self.newton.require_stable(step, solution)
+            self.newton.require_stable(solution)
         return solution
 
     def _guess(self, t: float, dt: float) -> Array:

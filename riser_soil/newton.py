@@ -14,14 +14,15 @@ from petsc4py import PETSc
 from riser_soil.arrays import Array
 from riser_soil.direct_solver import PREFIX, defaults, factorise_directly
 from riser_soil.part import Forces, State
-from riser_soil.stability import unstable_modes
+from riser_soil.stability import hold_free_turns, unstable_modes
 from riser_soil.system import System
-from riser_soil.time_scheme import Scheme
+from riser_soil.time_scheme import Scheme, Static
 
 CONVERGED = PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
 DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_DTOL
 ITERATING = PETSc.SNES.ConvergedReason.ITERATING
 REUSE = 0.1
+STATIC = Static().weights(0.0)
 
 
 class NotConvergedError(Exception):
@@ -29,7 +30,11 @@ class NotConvergedError(Exception):
 
 
 class UnstableError(NotConvergedError):
-    """A balance of forces from which the riser would buckle or swing away."""
+    """A balance of forces from which the riser would buckle or swing away: `solution`."""
+
+    def __init__(self, text: str, solution: Solution) -> None:
+        super().__init__(text)
+        self.solution = solution
 
 
 @runtime_checkable
@@ -51,12 +56,14 @@ class NewtonSettings:
     the same step (Shamanskii's method), as long as each leaves less than this share: two or three such iterations cost
     less than one with its own tangent. Only in time steps without contact, which start near their end: contact has
     corners, and an equilibrium may be far away.
+    least_iterations: before a residual counts as small.
     """
 
     tolerance: float
     max_iterations: int
     floor: float
     reuse: float = REUSE
+    least_iterations: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,23 +140,24 @@ class Newton:
             if fault := owner.fault(state):
                 raise NotConvergedError(fault)
 
-    def require_stable(self, step: Step, solution: Solution) -> None:
+    def require_stable(self, solution: Solution) -> None:
         """Raise UnstableError where a static solution is an unstable equilibrium, such as an unbuckled strut.
 
         Stable means that the tangent there has no negative pivot, see `stability`. Parts that follow the line are left
         out of it; where others lack symmetry too, such as moments in space, nothing is judged. Collective.
         """
-        negative = self.unstable_modes(step, solution)
+        negative = self.unstable_modes(solution.state, solution.forces)
         if negative > 0:
             raise UnstableError(
                 f"the equilibrium found is unstable (its tangent has {negative} negative pivot(s)): the riser would "
-                "buckle or swing away from it; start from a shape nearer to the one that it takes"
+                "buckle or swing away from it; start from a shape nearer to the one that it takes",
+                solution,
             )
 
-    def unstable_modes(self, step: Step, solution: Solution) -> int:
-        """Negative pivots at a static solution; collective."""
-        weights = step.scheme.weights(step.dt)
-        return unstable_modes(self.system, solution.state, weights, self._scale(solution.forces))
+    def unstable_modes(self, state: State, forces: Forces | None = None) -> int:
+        """Negative pivots at a static state, whose forces may be known; collective."""
+        found = self.system.forces(state) if forces is None else forces
+        return unstable_modes(self.system, state, STATIC, self._scale(found))
 
     def renew(self) -> None:
         """Take over a new matrix after the system's pattern has changed."""
@@ -195,12 +203,19 @@ class Newton:
         if not self._reusable():
             self._trial(x)
             self.system.assemble(self._balanced, self._weights)
+            if self._weights.inertia == 0.0:
+                hold_free_turns(self.system, self._balanced, self.settings.tolerance * self._scale(self._forces))
 
     def _reusable(self) -> bool:
         """Whether the tangent of the iteration before will do."""
         if not self._starts_near or len(self._norms) < 2:
             return False
         return self._norms[-1] < self.settings.reuse * self._norms[-2]
+
+    @property
+    def _least_iterations(self) -> int:
+        """A motion that its guess alone carries on would keep its errors."""
+        return max(self.settings.least_iterations, int(self._starts_near))
 
     @property
     def _starts_near(self) -> bool:
@@ -212,7 +227,7 @@ class Newton:
         self._norms.append(norm)
         if not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
-        if iteration == 0 and self._starts_near:  # a motion that its guess alone carries on would keep its errors
+        if iteration < self._least_iterations:
             return ITERATING
         if norm <= max(self.settings.tolerance * self._scale(self._forces), self.settings.floor):
             return CONVERGED

@@ -24,6 +24,7 @@ from riser_soil.part import Forces, Model, State
 from riser_soil.plausibility import Plausibility
 from riser_soil.progress import Progress
 from riser_soil.record import Recorder
+from riser_soil.relax import Relaxed
 from riser_soil.riser.section_forces import (
     HasElementForces,
     HasNodalForces,
@@ -135,13 +136,17 @@ class Observer:
             helped = f" and {relaxations} dynamic relaxation(s)" if relaxations else ""
             print(f"{self._world.hanging}: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
 
-    def relaxed(self, iterations: int) -> None:
+    def relaxed(self, relaxed: Relaxed) -> None:
         """Dynamic relaxation was needed; its Newton iterations count with the next step."""
-        self._relaxed += iterations
+        self._relaxed += relaxed.iterations
         if self._recorder is not None:
-            self._recorder.summary.stages[-1].relaxations += 1
-            text = f"dynamic relaxation was needed; it took {iterations} Newton iterations, counted with the next step"
-            print(text)
+            tally = self._recorder.summary.stages[-1]
+            tally.relaxations += 1
+            tally.branch_switches += relaxed.branch_switches
+            took = f"it took {relaxed.iterations} Newton iterations, counted with the next step"
+            print(f"dynamic relaxation was needed; {took}")
+            if relaxed.branch_switches:
+                print(f"it left {relaxed.branch_switches} unstable equilibrium(s) in the mode of buckling")
 
     def finish(self) -> None:
         if self._recorder is not None:

@@ -22,7 +22,7 @@ from riser_soil.newton import Newton, NewtonSettings
 from riser_soil.observe import Observer
 from riser_soil.ownership import refuse
 from riser_soil.part import Model, State
-from riser_soil.relax import relax
+from riser_soil.relax import Relaxed, relax
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.stepping import Control, StepControl
@@ -98,7 +98,7 @@ class Follower(Protocol):
 
     def record(self, march: March, step: Accepted, last: bool) -> None: ...
 
-    def relaxed(self, iterations: int) -> None: ...
+    def relaxed(self, relaxed: Relaxed) -> None: ...
 
 
 @dataclass
@@ -114,7 +114,7 @@ class Laying:
     def record(self, march: March, step: Accepted, last: bool) -> None:
         self.steps += 1
 
-    def relaxed(self, iterations: int) -> None:
+    def relaxed(self, relaxed: Relaxed) -> None:
         self.relaxations += 1
 
 
@@ -165,12 +165,12 @@ def _relaxed(world: World, march: March, control: Control, observer: Follower) -
     """Whether an equilibrium was found at the load factor that Newton's method missed; else the step is halved."""
     system, settings = march.system, _settings(world)
     try:
-        iterations = relax(world.comm, system.model, world.line, world.weight, settings, system.clock, control.target)
+        relaxed = relax(world.comm, system.model, world.line, world.weight, settings, system.clock, control.target)
     except SolveError:
         if not march.depends_on(control) or not control.cut():
             raise
         return False
-    observer.relaxed(iterations)
+    observer.relaxed(relaxed)
     march.restart()
     return True
 

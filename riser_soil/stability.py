@@ -59,17 +59,34 @@ def unstable_modes(system: System, state: State, weights: Weights, forces: float
     if judged is None:
         return 0
     system.assemble(state, weights, judged)
-    matrix = system.matrix.mat
-    lifted = matrix.getDiagonal()
-    bounds = _row_bounds(system, lifted.array)
-    lifted.array_w[:] += EPS * bounds
     held = _one_dof_each(system, _neutral(system, state, NO_STIFFNESS * forces))
-    first, last = matrix.getOwnershipRange()
-    mine = held[(held >= first) & (held < last)] - first
-    lifted.array_w[mine] += bounds[mine]
-    matrix.setDiagonal(lifted)
-    lifted.destroy()
+    diagonal = system.matrix.mat.getDiagonal()
+    bounds = _row_bounds(system, diagonal.array)
+    mine = _of_this_rank(system, held)
+    diagonal.array_w[:] += EPS * bounds
+    diagonal.array_w[mine] += bounds[mine]
+    system.matrix.mat.setDiagonal(diagonal)
+    diagonal.destroy()
     return negative_pivots(system)
+
+
+def hold_free_turns(system: System, state: State, least: float) -> None:
+    """Hold free turns of the riser that meet less than `least` [N] in the assembled matrix, each at a dof; collective.
+
+    It is singular there, so that round-off would decide where a step ends among equilibria that differ by a turn.
+    """
+    held = _one_dof_each(system, _neutral(system, state, least))
+    if held.size:
+        diagonal, mine = system.matrix.mat.getDiagonal(), _of_this_rank(system, held)
+        diagonal.array_w[mine] += np.abs(diagonal.array_r[mine])
+        system.matrix.mat.setDiagonal(diagonal)
+        diagonal.destroy()
+
+
+def _of_this_rank(system: System, rows: IntArray) -> IntArray:
+    """Which of this rank's rows are among some of the system's."""
+    first, last = system.matrix.mat.getOwnershipRange()
+    return np.asarray(rows[(rows >= first) & (rows < last)] - first)
 
 
 def _row_bounds(system: System, diagonal: Array) -> Array:
@@ -87,6 +104,8 @@ def _neutral(system: System, state: State, least: float) -> Array:
     if not isinstance(riser, TurningFreely):
         return np.zeros((0, 0))
     turns = riser.free_turns(state)
+    if not turns.size:
+        return turns
     met = np.array([riser.in_newtons(force) for force in _products(system, turns)]).reshape(turns.shape)
     _, sizes, combined = np.linalg.svd(met.T, full_matrices=False)
     return np.asarray(combined[sizes < least] @ turns)

@@ -171,6 +171,7 @@ class StageTally:
     most_newton_iterations: int = 0
     step_cuts: int = 0
     relaxations: int = 0
+    branch_switches: int = 0
     final: dict[str, Any] | None = None
     extremes: Extremes = field(default_factory=Extremes)
     energy: Ledger = field(default_factory=Ledger)

@@ -18,6 +18,7 @@ from riser_soil.march import Accepted, March
 from riser_soil.newton import Newton, NewtonSettings
 from riser_soil.observe import Observer
 from riser_soil.part import State
+from riser_soil.relax import Relaxed
 from riser_soil.run import run_stage
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage, Stage
@@ -63,7 +64,7 @@ class Watcher(Observer):
         if self._after is not None:
             self._after(march, step)
 
-    def relaxed(self, iterations: int) -> None:
+    def relaxed(self, relaxed: Relaxed) -> None:
         self.relaxations += 1
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from riser_soil.arrays import Array
 from riser_soil.march import Accepted, March
+from riser_soil.relax import Relaxed
 from riser_soil.scene.stages import Stage
 from tests.coupled_scenes import Mapping
 
@@ -71,7 +72,7 @@ class Energies:
         self._rows.append((march.energy.total, step.work, step.dissipated, by_contact))
         self.cuts += step.cuts
 
-    def relaxed(self, iterations: int) -> None:
+    def relaxed(self, relaxed: Relaxed) -> None:
         """Dynamic stages know no relaxation."""
 
     @property

@@ -24,7 +24,7 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("direct_solver",),
     ("stability",),
     ("mass", "newton"),
-    ("local_error",),
+    ("local_error", "buckling"),
     ("march", "relax"),
     ("folder", "schedule", "progress", "inventory", "estimate", "wave_doubts", "motion_doubts", "bending_doubts"),
     ("growing_file", "ground_doubts"),
