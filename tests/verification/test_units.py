@@ -64,7 +64,7 @@ def hose(s: float, seabed: str, dimension: int, time_step: float | str) -> Mappi
 
 
 def told(s: float, seabed: str, dimension: int = 2, time_step: float | str = 0.1) -> Array:
-    """By step, without units: time; H and top tension, largest moment, touchdown arc, lowest node; Newton iterations."""
+    """By step, without units: time; H and top tension, largest moment, touchdown arc, lowest node; iterations."""
     world, rows = build(scene_from_mapping(hose(s, seabed, dimension, time_step)), MPI.COMM_SELF), list[list[float]]()
 
     def watch(march: March, step: Accepted) -> None:
