@@ -20,7 +20,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test lint verify bench verify-fresh docker pins clean
+.PHONY: help setup demo demos test lint verify fuzz bench verify-fresh docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -45,6 +45,9 @@ lint: setup
 
 verify: setup ## the long comparisons with closed forms, references and finer meshes
 	$(PYTHON) -m pytest -m verify
+
+fuzz: setup ## 600 mutated scenes, each in a process with limits: how they end; also among those of verify
+	$(PYTHON) -m tests.fuzz.run --count 600 --seed 1
 
 bench: setup ## seconds by part of the demo, Newton iterations against the bare work in them, energy of an impact by scheme
 	$(PYTHON) -m benchmarks

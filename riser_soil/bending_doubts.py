@@ -76,7 +76,7 @@ def _long_in_the_bend(world: World) -> Iterator[str]:
     share = error / float((_hanging(world) * moment).max(initial=np.finfo(float).tiny))
     e = int(share.argmax())
     if share[e] > MOMENT_ERROR:
-        longest = line.length[e] * (MOMENT_ERROR / share[e]) ** 0.25
+        longest = line.length[e] * (0.9 * MOMENT_ERROR / share[e]) ** 0.25
         yield (
             f"elements of {line.length[e]:.4g} m at arc {0.5 * (line.arc[e] + line.arc[e + 1]):.5g} m are too long for "
             f"the riser's bend: under {middle[e]:.4g} N the moment would be off by some T L^4 k''/384 = {error[e]:.3g} "

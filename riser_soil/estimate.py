@@ -16,8 +16,9 @@ from riser_soil.scene.soil import Soil as SoilScene
 from riser_soil.scene.stages import DynamicStage, Stage
 
 # Bytes of: a process with the packages that every scene needs, what dolfinx and gmsh add, element and matrix arrays of
-# an unknown of the riser, value, place and matrix entry of one entry of a cell's matrix, a time at which output is due.
-PROCESS, SOIL_PROCESS, PER_RISER_DOF, PER_CELL_ENTRY, PER_STOP = 0.24e9, 0.1e9, 2e3, 24.0, 150.0
+# an unknown of the riser, value, place and matrix entry of one entry of a cell's matrix, a time at which output is
+# due, an element in a wave component.
+PROCESS, SOIL_PROCESS, PER_RISER_DOF, PER_CELL_ENTRY, PER_STOP, PER_WAVE = 0.24e9, 0.1e9, 2e3, 24.0, 150.0, 150.0
 FACTOR = 10.0  # entries of the soil's factor: FACTOR n^(4/3), as nested dissection gives them in three dimensions
 
 # Doubles of a record: by node, by step; of a picture: by node of the riser, by cell of the soil with its nodes.
@@ -35,13 +36,14 @@ TETRAHEDRA, NODES_OF_TETRAHEDRA = 6.0, 1.8  # in a cube of the size asked for; q
 
 @dataclass(frozen=True)
 class Size:
-    """What a scene makes: elements and cells, their unknowns, steps of all stages, records in results.nc, pictures.
+    """What a scene makes: elements and cells, unknowns, steps of all stages, records in results.nc, pictures.
 
-    entries: of a cell's matrix. auto: whether some steps are automatic, so that there are more than told.
+    components: of the waves. entries: of a cell's matrix. auto: whether there are more steps, as some are automatic.
     stops: times that they have to hit. seconds: on one core.
     """
 
     elements: int
+    components: int
     riser_unknowns: int
     cells: float
     soil_unknowns: float
@@ -60,12 +62,17 @@ class Size:
     def memory(self, ranks: int) -> float:
         """Bytes over all ranks."""
         soil = soil_memory(ranks, self.cells, self.entries, self.soil_unknowns) if self.cells else 0.0
-        return riser_memory(ranks, self.riser_unknowns) + soil + self.memory_of_stops
+        return riser_memory(ranks, self.riser_unknowns) + soil + self.memory_of_stops + self.memory_of_waves
 
     @property
     def memory_of_stops(self) -> float:
         """Bytes of the times that automatic steps have to hit."""
         return PER_STOP * self.stops
+
+    @property
+    def memory_of_waves(self) -> float:
+        """Bytes of the phases of all components along the riser."""
+        return PER_WAVE * self.elements * self.components
 
     @property
     def disk(self) -> float:
@@ -93,13 +100,14 @@ def size_of(scene: Scene) -> Size:
     stages = [_stage(scene, stage) for stage in scene.stages]
     steps, stops, records, pictures = (math.fsum(column) for column in zip(*stages, strict=True))
     waves = scene.water.waves if scene.water else None
-    components = waves.jonswap.components if waves and waves.jonswap else 1
+    components = waves.jonswap.components if waves and waves.jonswap else int(waves is not None)
     of_riser = STEP + elements * (ELEMENT + WAVE * components)
     seconds = BUILD * elements + steps * (of_riser + cells * CELL + FACTORED * unknowns**2)
     dofs = 3 if resolved_dimension(scene) == 2 else 6
     auto = any(isinstance(stage, DynamicStage) and stage.time_step == "auto" for stage in scene.stages)
     return Size(
         elements=elements,
+        components=components,
         riser_unknowns=dofs * (elements + 1),
         cells=cells,
         soil_unknowns=unknowns,

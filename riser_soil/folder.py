@@ -60,7 +60,7 @@ class Claim:
 
     def __init__(self, folder: Path) -> None:
         self._workshop = folder / _WORKSHOP
-        self._lock = _locked(folder, self._workshop / _LOCK)
+        self._lock: int | None = _locked(folder, self._workshop / _LOCK)
 
     @classmethod
     def try_out(cls, folder: Path) -> None:

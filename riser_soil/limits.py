@@ -13,6 +13,12 @@ from riser_soil.machine import available_memory, free_disk
 from riser_soil.scene.scene import Scene
 
 NOTED, LONG = 20.0, 3600.0  # s: a run tells its estimate; a run is warned of
+_REMEDIES = {
+    "riser.segments": "take longer elements",
+    "output.interval": "take a longer interval",
+    "water.waves.jonswap.components": "take fewer components or longer elements",
+    "soil.mesh": "take larger cells or a smaller block",
+}
 _UNITS = ((365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "h"), (60.0, "min"), (0.0, "s"))
 
 
@@ -24,7 +30,7 @@ def size_that_fits(scene: Scene, folder: Path, comm: MPI.Intracomm) -> Size:
     most = comm.allreduce(available_memory() * _nodes(comm), MPI.MIN)
     free = comm.allreduce(free_disk(folder), MPI.MIN)
     if size.memory(comm.size) > most:
-        raise SceneError(_too_much_memory(scene, size, comm.size, most))
+        raise SceneError(_too_much_memory(size, comm.size, most))
     if size.disk > free:
         raise SceneError(_too_much_disk(size, free))
     return size
@@ -68,22 +74,23 @@ def _parts(size: Size) -> str:
     return f"{size.elements} elements{soil}"
 
 
-def _too_much_memory(scene: Scene, size: Size, ranks: int, most: float) -> str:
-    path, remedy = _largest(scene, size)
+def _too_much_memory(size: Size, ranks: int, most: float) -> str:
+    path = _largest(size)
     need = f"{_parts(size)} need about {in_bytes(size.memory(ranks))} of memory"
     if path == "output.interval":
         need = f"automatic steps that hit {size.stops:.4g} output times need {in_bytes(size.memory(ranks))} of memory"
-    return f"{path}: {need}, and {in_bytes(most)} are available; {remedy}"
+    return f"{path}: {need}, and {in_bytes(most)} are available; {_REMEDIES[path]}"
 
 
-def _largest(scene: Scene, size: Size) -> tuple[str, str]:
-    """Path of the part that takes most of the memory, and what to do about it."""
-    riser, stops, whole = riser_memory(1, size.riser_unknowns), size.memory_of_stops, size.memory(1)
-    if scene.soil is not None and whole - riser - stops > max(riser, stops):
-        return "soil.mesh", "take larger cells or a smaller block"
-    if stops > riser:
-        return "output.interval", "take a longer interval"
-    return "riser.segments", "take longer elements"
+def _largest(size: Size) -> str:
+    """Path of what takes most of the memory."""
+    parts = {
+        "riser.segments": riser_memory(1, size.riser_unknowns),
+        "output.interval": size.memory_of_stops,
+        "water.waves.jonswap.components": size.memory_of_waves,
+    }
+    parts["soil.mesh"] = size.memory(1) - sum(parts.values())
+    return max(parts, key=lambda path: parts[path])
 
 
 def _too_much_disk(size: Size, free: float) -> str:

@@ -111,7 +111,7 @@ class Observer:
         """Look whether what was recorded is plausible; closely where it costs no more than what is written."""
         self._plausibility.look(recorder.now, march.now, riser, touching)
         if closely:
-            self._plausibility.look_closely(recorder.now, march.now, _elastic_residual(self._world, march))
+            self._plausibility.look_closely(recorder.now, march.now, elastic_residual(self._world, march))
         recorder.summary.stages[-1].doubts = self._plausibility.warnings()
 
     def record_last(self, end: SolveError | Interruption) -> None:
@@ -221,7 +221,7 @@ def riser_snapshot(world: World, march: March) -> RiserSnapshot:
     )
 
 
-def _elastic_residual(world: World, march: March) -> Array:
+def elastic_residual(world: World, march: March) -> Array:
     """Of the elements (ne, 2 ndof), less what follows from strain rates."""
     parts = _acting(march.system.model)
     residual = element_residual(world.line, parts.within, march.now)

@@ -275,8 +275,9 @@ class Recorder:
         if self._closed:
             return
         self._closed = True
-        for file in (*self._pictures, self._series):
-            file.close()
+        for frames in self._pictures:
+            frames.close()
+        self._series.close()
         self._claim.release()
 
     @property

@@ -77,7 +77,7 @@ class Run:
 
     @property
     def has_soil(self) -> bool:
-        return (self.folder / run_folder.SOIL_XDMF).is_file()
+        return (self.folder / run_folder.SOIL_NUMBERS).is_file()
 
     @cached_property
     def soil_times(self) -> Array:
@@ -96,6 +96,8 @@ class Run:
     @cached_property
     def _soil_grids(self) -> list[Any]:
         path = self.folder / run_folder.SOIL_XDMF
+        if self.has_soil and not path.exists():
+            return []  # it comes with the first frame
         try:
             return ElementTree.parse(path).findall("Domain/Grid/Grid")
         except (OSError, ElementTree.ParseError) as err:

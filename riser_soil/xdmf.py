@@ -36,7 +36,8 @@ class Frame:
 
 
 class XdmfFile:
-    """Writer of PATH.xdmf and the HDF5 file of the same name beside it.
+    """Writer of PATH.xdmf and the HDF5 file of the same name beside it. The former comes with the first frame: VTK's
+    reader, and ParaView with it, dies of a collection without any.
 
     cells: (nc, k) point numbers in VTK's order: k = 4, 8 or 10; or (1, np) with `polyline`.
     points: (np, 3) m for a mesh that stays; None when each frame brings its own geometry.
@@ -57,7 +58,8 @@ class XdmfFile:
         self._heavy = GrowingFile(heavy, content.getvalue())
         kind = _polyline_of(cells) if polyline else f'TopologyType="{_CELLS[cells.shape[1]]}"'
         self._topology = f'<Topology {kind} NumberOfElements="{len(cells)}">{item}</Topology>'
-        self._text = GrowingFile(path, (XDMF_HEAD.format(name=quoteattr(name)) + _FOOT).encode())
+        self._path, self._head = path, XDMF_HEAD.format(name=quoteattr(name))
+        self._text: GrowingFile | None = None
 
     def add(self, frame: Frame) -> None:
         """Takes a copy of one frame, later than the ones before; it lives in memory until `flush`."""
@@ -77,7 +79,8 @@ class XdmfFile:
 
     def close(self) -> None:
         self._heavy.close()
-        self._text.close()
+        if self._text is not None:
+            self._text.close()
 
     def _grid(self, store: h5py.File, number: int, frame: Frame) -> str:
         group = f"frame_{number:06d}"
@@ -105,8 +108,11 @@ class XdmfFile:
 
     def _append(self, grids: str) -> None:
         """Put grids behind the last one; the text itself stays on disk, so that memory doesn't grow with the run."""
-        end = self._text.size - len(_FOOT)
         added = (grids + _FOOT).encode()
+        if self._text is None:
+            self._text = GrowingFile(self._path, self._head.encode() + added)
+            return
+        end = self._text.size - len(_FOOT)
         self._text.update({end: added}, end + len(added))
 
 

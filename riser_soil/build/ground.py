@@ -9,6 +9,7 @@ from mpi4py import MPI
 
 from riser_soil.arrays import Array
 from riser_soil.build.laws import hysteretic_law, soil_law
+from riser_soil.errors import SceneError
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.contact import Contact as ContactScene
@@ -127,7 +128,13 @@ def _penalty(settings: ContactScene, world: World) -> NormalLaw:
         return penalty
     from riser_soil.contact.suction import Sticking
 
-    return Sticking(penalty, settings.suction.cap, settings.suction.reach)
+    cap, reach, peak = settings.suction.cap, settings.suction.reach, settings.suction.cap / penalty.stiffness
+    if reach <= peak:
+        raise SceneError(
+            f"contact.suction.reach = {reach:g} m: suction has its cap of {cap:g} N/m at {peak:g} m on a seabed of "
+            f"{penalty.stiffness:g} N/m2, and must reach farther; raise reach or lower cap"
+        )
+    return Sticking(penalty, cap, reach)
 
 
 def _ground(scene: Scene, seabed: Seabed) -> Ground:

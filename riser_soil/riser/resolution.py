@@ -25,15 +25,12 @@ from riser_soil.riser.section_forces import end_forces
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.trial import Trial
 
-# Turn of an element [rad] below which differences are round-off, or what the solver's tolerance leaves.
-NO_TURN = 1e-5
-
 
 class Misfit(NamedTuple):
-    """The largest difference between what an element's turn and its end moments say of its bending moment.
+    """The largest difference [N m] between what an element's turn and its end moments say of its bending moment.
 
-    smooth: by the formula with shear, over the line's largest moment; steep: by the trapezoidal rule, without elements
-    at ends where the moment sets in. Each with its element.
+    smooth: by the formula with shear; steep: by the trapezoidal rule, without elements at ends where the moment sets
+    in. Each with its element.
     """
 
     smooth: float
@@ -52,17 +49,12 @@ def misfit(line: Line, elements: Elements, state: State, residual: Array) -> Mis
     trapezoidal = _turns(line, trial, tangent) - 0.5 * L * (k[:, 0] + k[:, 1])
     corrected = trapezoidal + L * L / 12.0 * (slope[:, 1] - slope[:, 0])
     size = np.linalg.norm(bending, axis=2)
-    scale = np.maximum(elements.EI_y, elements.EI_z) / line.length / max(float(size.max()), np.finfo(float).tiny)
-    smooth, steep = (scale * _beyond_round_off(turn) for turn in (corrected, trapezoidal))
+    EI = np.maximum(elements.EI_y, elements.EI_z)
+    smooth, steep = (EI / line.length * np.linalg.norm(turn, axis=1) for turn in (corrected, trapezoidal))
     for end, other in ((0, 1), (-1, 0)):
         steep[end] *= size[end, 1 - other] > size[end, other]
     i, j = int(smooth.argmax()), int(steep.argmax())
     return Misfit(float(smooth[i]), i, float(steep[j]), j)
-
-
-def _beyond_round_off(turn: Array) -> Array:
-    size = np.linalg.norm(turn, axis=1)
-    return np.where(size > NO_TURN, size, 0.0)
 
 
 def _sections(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]:

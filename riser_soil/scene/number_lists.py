@@ -12,9 +12,10 @@ from typing import Any
 
 _LONG = 2000  # characters; shorter lists are left to the YAML reader
 _NUMBER = r"-?[0-9][0-9.eE+-]*"
-_ROW = rf"- +(?:{_NUMBER}|\[ *{_NUMBER}(?: *, *{_NUMBER})* *\]) *\n"
+_ROW = rf"- +(?:{_NUMBER}|\[ *{_NUMBER}(?: *, *{_NUMBER})* *\])(?: +#.*)?[ \r]*(?:\n|\Z)"
 _ROWS = rf"(?P<indent>^ *){_ROW}(?:(?P=indent){_ROW}){{49,}}"
 _LIST = re.compile(rf"{_ROWS}|\[[\[\s]*{_NUMBER}[-+.,\[\]\s0-9eE]{{{_LONG},}}", re.MULTILINE)
+_OPEN_POINT = re.compile(r"(?<=[0-9])\.(?![0-9])")
 _TOKEN = re.compile(r"[\[\],\n]|[^\[\],\s]+")
 
 
@@ -69,7 +70,7 @@ def cut_out(text: str) -> tuple[str, dict[int, Numbers]]:
 
 def _rows(match: re.Match[str]) -> tuple[Numbers | None, int]:
     """A list with an item a line, after dashes."""
-    items = [row.strip()[1:] for row in match[0].splitlines()]
+    items = [row.partition("#")[0].strip()[1:] for row in match[0].splitlines()]
     return _plain("[" + ",\n".join(items) + "\n]"), match.end()
 
 
@@ -86,6 +87,7 @@ def _brackets(match: re.Match[str]) -> tuple[Numbers | None, int]:
 
 def _plain(text: str) -> Numbers | None:
     """None for what isn't JSON, or has a number too large for Python: the YAML reader tells what it is."""
+    text = _OPEN_POINT.sub(".0", text)
     try:
         json.loads(text)
     except ValueError:
@@ -95,8 +97,8 @@ def _plain(text: str) -> Numbers | None:
 
 def _emptied(match: re.Match[str], numbers: Numbers) -> str:
     """An empty list with as many lines, its last one as far indented."""
-    lines = numbers.text.count("\n")
     if match["indent"] is not None:
-        return f"{match['indent']} []" + "\n" * lines
+        return f"{match['indent']} []" + "\n" * match[0].count("\n")
+    lines = numbers.text.count("\n")
     last = numbers.text.rpartition("\n")[2]
     return "[" + "\n" * lines + " " * (len(last) - len(last.lstrip())) * bool(lines) + "]"

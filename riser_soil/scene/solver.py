@@ -1,5 +1,7 @@
 """Settings of the nonlinear solver."""
 
+from typing import Annotated
+
 from pydantic import BaseModel, Field
 
 from riser_soil.scene.quantities import FROZEN, AutoOrTime, Count, Ratio, SolverTolerance
@@ -16,7 +18,9 @@ class Solver(BaseModel):
         description="norm of the residual at convergence, relative to the largest of the norms of support "
         "reactions, inertia and contact forces [-]",
     )
-    max_iterations: Count = Field(default=25, description="Newton iterations before a step is cut [-]")
+    max_iterations: Annotated[Count, Field(le=10_000)] = Field(
+        default=25, description="Newton iterations before a step is cut [-]"
+    )
     load_steps: Count = Field(
         default=1, description="equal load steps that a static stage is divided into; a step that fails is halved [-]"
     )

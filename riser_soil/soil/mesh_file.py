@@ -133,7 +133,7 @@ def _check_hanging_nodes(mesh: Mesh, faces: IntArray) -> None:
     nodes = np.unique(faces)
     middle = mesh.points[corners].mean(axis=1)
     radius = np.linalg.norm(mesh.points[corners] - middle[:, None], axis=2).max(axis=1)
-    near = cKDTree(mesh.points[nodes]).query_ball_point(middle, radius)
+    near = cKDTree(mesh.points[nodes]).query_ball_point(middle, 1.001 * radius)
     triangle = np.repeat(np.arange(len(corners)), [len(found) for found in near])
     node = nodes[np.concatenate(near).astype(np.int64)]
     other = (corners[triangle] != node[:, None]).all(axis=1)

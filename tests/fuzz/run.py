@@ -26,6 +26,7 @@ from pathlib import Path
 from tests.fuzz.mutations import SCENE, Case, cases
 
 CPU_SECONDS = 60
+WALL_SECONDS = 900  # of one that waits for ever, on a machine with much else to do
 TOLD_LONG_SECONDS = 5  # of a scene whose computation is long, as the program says
 MEMORY = 6 * 2**30
 STATUSES = {0: "done", 2: "bad input", 3: "solve failed", 4: "results not written"}
@@ -48,7 +49,7 @@ def endings(cases: Iterable[Case], folder: Path, workers: int) -> Iterator[Endin
     """Run all cases, each in a folder of its own."""
     import_all()
     with ThreadPoolExecutor(workers) as pool:
-        yield from pool.map(lambda case: _ending(*case, folder), enumerate(cases))
+        yield from pool.map(lambda numbered: _ending(numbered[0], numbered[1], folder), enumerate(cases))
 
 
 def import_all() -> None:
@@ -105,7 +106,7 @@ def _run() -> int:
 
 def _waited(process: int, output: Path) -> tuple[int, float, bool]:
     """Wait status, CPU seconds, and whether the process was told to be long and so got less time."""
-    long = False
+    long, begun = False, time.monotonic()
     while True:
         done, status, usage = os.wait4(process, os.WNOHANG)
         if done:
@@ -113,6 +114,8 @@ def _waited(process: int, output: Path) -> tuple[int, float, bool]:
         if not long and output.exists() and LONG in output.read_text(errors="replace"):
             long = True
             resource.prlimit(process, resource.RLIMIT_CPU, (TOLD_LONG_SECONDS, TOLD_LONG_SECONDS + 5))
+        if time.monotonic() - begun > WALL_SECONDS:
+            os.kill(process, signal.SIGKILL)
         time.sleep(0.02)
 
 

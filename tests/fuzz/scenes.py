@@ -71,7 +71,7 @@ def _others() -> Iterator[Mapping]:
     yield in_waves(0.1, 22.0)
     yield _with(_dry(LAY, heave(0.2)), **_laden())
     yield _dry(LAY, dynamic(0.3, 0.1, motion={"end": {"table": "motion.csv"}}))
-    yield _dry(LAY, dynamic(0.3, "auto", motion={"end": {"harmonic": {"amplitude": [0, 0, 0.1], "period": 2.0}}}))
+    yield _dry(LAY, heave(0.3) | {"time_step": "auto"})
     law = {"kind": "aubeny-biscontin", "su": 2.0e3, "su_gradient": 1.5e3}
     yield _with(_dry(LAY, heave(0.2)), seabed={"kind": "hysteretic", "law": law, "slope_deg": 2.0})
     yield _with(_dry(LAY), seabed={"kind": "rigid", "profile": [[-9.0, 0.0], [9.0, 0.0], [40.0, -1.0]]})

@@ -32,7 +32,7 @@ def record(self, march, step, last):
         os.kill(os.getpid(), signal.SIGNAL)
 
 Observer.record = record
-sys.argv = ["riser-soil", "run", "demos/first_scene.yaml", "-o", sys.argv[1], "--set", "stages.1.duration=1e6"]
+sys.argv = ["riser-soil", "run", "demos/first_scene.yaml", "-o", sys.argv[1], "--set", "stages.1.duration=1e4"]
 main()
 """
 

@@ -180,6 +180,18 @@ def test_a_run_that_fails_keeps_its_last_accepted_step(tmp_path: Path) -> None:
     assert run["touchdown_arc"][-1] == run.summary["stages"][0]["final"]["touchdown_arc"]
 
 
+def test_before_the_first_frame_there_is_nothing_to_draw(tmp_path: Path) -> None:
+    """VTK's reader dies of a file without frames."""
+    with a_recorder(tmp_path, mesh=block(4, 3, 2)):
+        pass
+    run = Run(tmp_path)
+    assert run.time.size == run.soil_times.size == 0
+    assert run.has_soil
+    assert not list(tmp_path.glob("*.xdmf"))
+    with pytest.raises(ResultsError, match="holds no frame yet"):
+        run.soil_frame()
+
+
 def test_load_steps_of_a_static_stage_that_fails(tmp_path: Path) -> None:
     with a_recorder(tmp_path, "static") as recorder:
         for load in (0.1, 0.2):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from riser_soil.part import Forces, State, Weights
 from riser_soil.soil.block import BlockSpec
 from riser_soil.soil.grid import block_grid, file_grid
 from riser_soil.soil.soil import Soil
+from tests.mesh_drawings import LEFT, RIGHT, Drawing, msh
 from tests.soil_cases import CLAY
 
 COMM = MPI.COMM_WORLD
@@ -95,10 +97,21 @@ def output_figures(soil: Soil) -> dict[str, float]:
     }
 
 
+def check_mesh_file(file: Path) -> None:
+    """Rank 0 alone reads and judges a file: any numbers will do, cells that come apart will not."""
+    file.write_text(msh(Drawing(LEFT, RIGHT), lambda n: 900 - 7 * n))
+    assert COMM.allreduce(len(file_grid(COMM, file).nodes.cells)) == 2
+    file.write_text(msh(Drawing(LEFT, RIGHT).torn(1.0)))
+    with pytest.raises(MeshError, match="4 pairs of nodes share a place"):
+        file_grid(COMM, file)
+
+
 def check_refusals() -> None:
     """Every rank raises the error that one rank meets: none is left waiting."""
     with pytest.raises(MeshError, match="there is no such file"):
         file_grid(COMM, Path("absent.msh"))
+    with tempfile.TemporaryDirectory() as folder:
+        check_mesh_file(Path(folder) / "mesh.msh")
     grid = block_grid(COMM, BlockSpec((0.0, 4.0), (0.0, 4.0), 4.0, 1.0, 1.0))
     if COMM.rank == COMM.size - 1:
         grid.nodes.points[grid.nodes.cells[0]] = 0.0

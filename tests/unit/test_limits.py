@@ -1,0 +1,143 @@
+"""A scene's size is told before anything is built; what exceeds the machine is refused with the numbers."""
+
+from __future__ import annotations
+
+import resource
+from pathlib import Path
+
+import pytest
+from mpi4py import MPI
+from typer.testing import CliRunner
+
+from riser_soil import limits, machine
+from riser_soil.__main__ import app
+from riser_soil.build import build
+from riser_soil.check import describe, memory
+from riser_soil.errors import SceneError
+from riser_soil.estimate import size_of
+from riser_soil.inventory import unknowns
+from riser_soil.scene.reader import scene_from_mapping
+from tests.bad_scenes import GOOD
+from tests.coupled_scenes import LAY, Mapping, heave, touchdown
+
+COMM = MPI.COMM_SELF
+
+
+def with_mesh(**mesh: object) -> Mapping:
+    scene = touchdown(LAY, heave(1.0))
+    scene["soil"]["mesh"] = mesh
+    return scene
+
+
+@pytest.mark.parametrize(
+    ("scene", "within"),
+    [
+        (touchdown(LAY), 0.0),
+        (with_mesh(kind="hex", size_at_riser=0.2, size_far=0.7), 0.0),
+        (with_mesh(kind="tet", size_at_riser=0.4, size_far=0.4), 0.5),
+        (with_mesh(kind="tet", size_at_riser=0.2, size_far=0.9), 0.5),
+    ],
+)
+def test_numbers_are_those_of_what_is_built(scene: Mapping, within: float) -> None:
+    read = scene_from_mapping(scene)
+    size, world = size_of(read), build(read, COMM)
+    assert world.soil is not None
+    assert size.elements == world.line.length.size
+    assert size.cells == pytest.approx(world.soil.blocks()["soil"].shape[0], rel=within or 1e-15)
+    assert size.soil_unknowns == pytest.approx(unknowns(COMM, world.soil.field), rel=within or 0.3)
+    assert size.memory(1) == pytest.approx(memory(world), rel=0.1)
+
+
+def timed(**changes: object) -> Mapping:
+    scene = {key: value for key, value in touchdown(LAY, heave(4.0)).items() if key != "soil"}
+    scene["stages"][1] |= {key: value for key, value in changes.items() if key != "output"}
+    return {**scene, "output": changes.get("output", {})}
+
+
+@pytest.mark.parametrize(
+    ("scene", "steps", "records", "pictures"),
+    [
+        (timed(time_step=0.1), 41, 41, 41),
+        (timed(time_step=0.1, output={"interval": 0.5}), 41, 10, 10),
+        (timed(time_step=0.1, output={"interval": 0.5, "xdmf_interval": 2.0}), 41, 10, 4),
+        (timed(time_step="auto", output={"interval": 0.5}), 21, 10, 10),
+        (timed(time_step="auto", output={"interval": 0.01}), 401, 402, 402),
+    ],
+)
+def test_steps_and_records(scene: Mapping, steps: float, records: float, pictures: float) -> None:
+    size = size_of(scene_from_mapping(scene))
+    assert (size.steps, size.records, size.pictures) == pytest.approx((steps, records, pictures), abs=1.0)
+
+
+TOO_LARGE = {
+    "soil.mesh": ("soil.mesh.size_at_riser=1.0e-3", "cells of soil need about", "take larger cells or a smaller block"),
+    "riser.segments": ("riser.segments.0.elements=1000000", "1000000 elements", "take longer elements"),
+    "output.interval": ("output.interval=1.0e-9", "automatic steps that hit 1.5e+10 output times", "a longer interval"),
+}
+
+
+@pytest.mark.parametrize("command", [["check"], ["run", "-o", "out"]])
+@pytest.mark.parametrize("path", TOO_LARGE)
+def test_what_exceeds_the_memory_is_refused_with_the_numbers(
+    path: str, command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(limits, "available_memory", lambda: 3e9)
+    change, what, remedy = TOO_LARGE[path]
+    text = GOOD if path == "soil.mesh" else GOOD.partition("soil:")[0] + "stages:" + GOOD.partition("stages:")[2]
+    (tmp_path / "case.yaml").write_text(text.replace("time_step: 0.1", "time_step: auto"))
+    done = CliRunner().invoke(app, [*command, "case.yaml", "--set", change])
+    assert done.exit_code == 2
+    assert f": {path}: " in done.stderr
+    for part in (what, " GB of memory, and 3 GB are available; ", remedy):
+        assert part in done.stderr
+    assert [file.name for file in tmp_path.iterdir()] == ["case.yaml"]
+
+
+def test_what_exceeds_the_disk_is_refused_with_the_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = scene_from_mapping(timed(time_step=1e-4))
+    need = size_of(scene).disk
+    monkeypatch.setattr(limits, "free_disk", lambda folder: 1.01 * need)
+    limits.size_that_fits(scene, tmp_path, COMM)
+    monkeypatch.setattr(limits, "free_disk", lambda folder: 0.99 * need)
+    with pytest.raises(SceneError, match=r"^output\.interval: 4e\+04 records .*: about .* on disk, and .* are free"):
+        limits.size_that_fits(scene, tmp_path, COMM)
+
+
+def test_a_long_run_is_warned_of_with_its_time(capsys: pytest.CaptureFixture[str]) -> None:
+    patient = scene_from_mapping(timed(duration=4.0e6, output={"interval": 1.0e4}))
+    report = describe(patient)
+    (line,) = [line for line in report.splitlines() if "the run takes about" in line]
+    assert line.startswith("warning: the run takes about ")
+    assert " h, for 4e+07 steps of 36 elements: check duration" in line
+    assert "this takes about" in capsys.readouterr().out
+    assert "the run takes about" not in describe(scene_from_mapping(timed()))
+    assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"), [(0.5, "0.5 s"), (90.0, "90 s"), (600.0, "10 min"), (1e5, "28 h"), (1e9, "32 years")]
+)
+def test_times_in_words(seconds: float, words: str) -> None:
+    assert limits.in_words(seconds) == words
+
+
+def test_the_least_of_the_limits_holds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "meminfo").write_text("MemTotal: 9000 kB\nMemAvailable:  5000 kB\n")
+    (tmp_path / "memory.max").write_text("4000000\n")
+    (tmp_path / "memory.current").write_text("1000000\n")
+    (tmp_path / "memory.stat").write_text("anon 5\ninactive_file 200000\n")
+    monkeypatch.setattr(machine, "_MEMORY", tmp_path / "meminfo")
+    monkeypatch.setattr(machine, "_GROUPS", ((tmp_path, "memory.max", "memory.current"),))
+    monkeypatch.setattr(resource, "getrlimit", lambda kind: (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+    assert machine.available_memory() == 3_200_000
+    (tmp_path / "memory.max").write_text("max\n")
+    assert machine.available_memory() == 5_120_000
+    (tmp_path / "status").write_text("VmSize:\t 1000 kB\n")
+    monkeypatch.setattr(machine, "_STATUS", tmp_path / "status")
+    monkeypatch.setattr(resource, "getrlimit", lambda kind: (2_048_000, resource.RLIM_INFINITY))
+    assert machine.available_memory() == 1_024_000
+
+
+def test_the_disk_is_that_of_the_folder_to_be(tmp_path: Path) -> None:
+    assert machine.free_disk(tmp_path / "not" / "yet") == pytest.approx(machine.free_disk(tmp_path), rel=0.01)
