@@ -131,9 +131,20 @@ def _take(world: World, model: Model, stage: Stage, before: State, observer: Fol
         with undivided():
             observer.begin_stage(stage, march)
         return _walk(world, stage, march, observer)
+    except SolveError as err:
+        raise SolveError(f"{err}{_overload(world)}") from err
     finally:
         newton.destroy()
         system.destroy()
+
+
+def _overload(world: World) -> str:
+    """What the ground has to do with a failure."""
+    if not world.contacts:
+        return ""
+    from riser_soil.overload import overload
+
+    return overload(world)
 
 
 def _walk(world: World, stage: Stage, march: March, observer: Follower) -> State:

@@ -29,7 +29,7 @@ LAYERS: list[tuple[str, ...]] = [  # modules of one layer do not import one anot
     ("folder", "schedule", "progress", "inventory", "estimate", "wave_doubts", "motion_doubts", "bending_doubts"),
     ("growing_file", "ground_doubts"),
     ("ownership", "doubts", "limits"),
-    ("netcdf", "xdmf", "summary", "screen", "balance", "touchdown_zone", "plausibility"),
+    ("netcdf", "xdmf", "summary", "screen", "balance", "touchdown_zone", "plausibility", "overload"),
     ("record",),
     ("observe",),
     ("run", "check"),

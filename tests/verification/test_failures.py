@@ -82,7 +82,14 @@ def test_soil_loaded_beyond_its_capacity_is_an_error(ranks: int, tmp_path: Path)
     """717 N/m lie on clay that bears some 250 N/m: no answer is right."""
     done = command(tmp_path, ranks, resting(su=100.0))
     assert done.returncode == FAILED
-    assert PLACE.search(told(done)), done.stderr
+    line = told(done)
+    assert PLACE.search(line), line
+    bearing = re.search(r"bearing capacity is exceeded: at arc ([\d.]+) m, .* puts (\S+) N/m .* about (\S+) N/m,", line)
+    assert bearing, line
+    arc, load, capacity = (float(each) for each in bearing.groups())
+    assert 0.0 < arc <= 8.0
+    assert load >= 717.0
+    assert capacity == pytest.approx((2.0 + np.pi) * 100.0 * 0.3, rel=1e-3)
     run = Run(tmp_path / "out")
     assert not run.finished
     assert run.summary["stages"][0]["steps"] == 0
