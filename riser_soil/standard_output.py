@@ -64,8 +64,11 @@ def outlasting() -> Iterator[Told]:
 
 
 def _outlet(stream: TextIO | None) -> _Outlet | None:
-    """None for a stream that is closed from the beginning."""
-    return None if stream is None else _Outlet(stream.fileno())
+    """None for a stream that is closed from the beginning, or that is no file, as of a program that listens in."""
+    try:
+        return None if stream is None else _Outlet(stream.fileno())
+    except io.UnsupportedOperation:
+        return None
 
 
 def _text(outlet: _Outlet | None, like: TextIO) -> TextIO:

@@ -442,7 +442,7 @@ CONFLICTS = [
         19,
         "riser.initial.points",
         "[[0, 0",
-        "coincide",
+        "1e-12 m apart or more",
     ),
     Bad(
         "initial: catenary",
