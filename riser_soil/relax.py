@@ -134,8 +134,9 @@ def _stable(newton: Newton, part: Relaxation, t: float, drag: float) -> bool:
 
 
 def _stabilise(newton: Newton, part: Relaxation, t: float, least: bool = False) -> None:
-    """Raise the drag, if need be, to where a step grows in the mode and does not turn to its other side, or to the
-    least such drag.
+    """Raise the drag, if need be, to where a step grows in the mode and does not turn to its other side.
+
+    least: lower it, too, to the least such drag.
     """
     if least or not _stable(newton, part, t, part.drag):
         part.drag = stabilising_drag(part.drag, lambda drag: _stable(newton, part, t, drag))

@@ -188,3 +188,24 @@ def test_the_sign_of_a_mode_hangs_on_no_round_off() -> None:
         noisy[6] += scatter
         assert _largest(noisy) == 1.0
         assert _largest(-noisy) == -1.0
+
+
+@pytest.mark.verify
+def test_two_ranks_take_the_same_branch(tmp_path: Path) -> None:
+    found = []
+    for ranks in (1, 2):
+        folder = tmp_path / str(ranks)
+        script = (
+            "from pathlib import Path\n"
+            "from riser_soil.run import run\n"
+            "from riser_soil.scene.reader import scene_from_mapping\n"
+            "from tests.verification.test_buckled_branches import blade\n"
+            f"run(scene_from_mapping(blade(20, 3.0)), Path({str(folder)!r}))\n"
+        )
+        done = mpirun(ranks, "-c", script)
+        assert done.returncode == 0, done.stderr
+        found.append(Run(folder).summary["stages"][0])
+    assert [stage["branch_switches"] for stage in found] == [1, 1]
+    one, two = (stage["final"]["end"]["position"] for stage in found)
+    assert one[1] > 0.1
+    assert two == pytest.approx(one, abs=1e-6)

@@ -1,0 +1,116 @@
+"""Turns that the supports leave free: they move no support, are rigid, and are told from modes of buckling."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+
+from riser_soil import stability
+from riser_soil.build import World
+from riser_soil.newton import Newton, NewtonSettings
+from riser_soil.part import State
+from riser_soil.riser.ends import End
+from riser_soil.system import Clock, System
+from riser_soil.time_scheme import Static
+from tests.coupled_scenes import Mapping
+from tests.driven_stage import built, take
+from tests.riser_scenes import held, riser_scene, static
+from tests.sample_line import sample
+
+FREE, HINGED, CLAMPED = End(False), End(True), End(True, rotation_fixed=True)
+
+
+@pytest.mark.parametrize(
+    ("dimension", "start", "end", "count"),
+    [
+        (2, HINGED, HINGED, 0),
+        (2, HINGED, FREE, 1),
+        (2, CLAMPED, FREE, 0),
+        (2, FREE, FREE, 3),
+        (3, HINGED, HINGED, 1),
+        (3, HINGED, FREE, 3),
+        (3, CLAMPED, CLAMPED, 0),
+        (3, FREE, FREE, 6),
+    ],
+)
+def test_what_the_supports_leave_free(dimension: int, start: End, end: End, count: int) -> None:
+    """In space the spin of the start about its axis is held, as always in statics."""
+    line = sample(dimension, (start, end)).line
+    line.hold_spin(True)
+    turns, x = line.free_turns(State.at_rest(0.0, line.size)), line.x
+    assert len(turns) == count
+    assert np.abs(turns[:, line.prescribed]).max(initial=0.0) < 1e-8 * line.arc[-1]
+    for turn in turns.reshape(count, line.nodes, line.ndof):
+        moved = turn[:, :dimension]
+        assert np.abs(moved).max() == pytest.approx(line.arc[-1])
+        stretch = np.sum((x[:, None] - x) * (moved[:, None] - moved), axis=2)
+        assert np.abs(stretch).max() < 1e-9 * line.arc[-1] ** 2
+
+
+def hinged(x: float, z: float, given: Mapping, **pipe: float) -> Mapping:
+    """A line in space between balls, 12 m long."""
+    made: Mapping = {"EA": 1e8, "EI": 1e3, "GJ": 1e3} | pipe
+    ends: Mapping = {"start": held(0.0, 0.0, 0.0), "end": held(x, 0.0, z)}
+    return riser_scene(static(), pipe=made, length=12.0, elements=24, **ends, dimension=3, **given)
+
+
+@contextmanager
+def started(world: World) -> Iterator[tuple[System, Newton]]:
+    system = System(world.comm, world.begin(world.scene.stages[-1]), Clock.new())
+    newton = Newton(system, NewtonSettings(1e-8, 25, world.force_floor))
+    yield system, newton
+    newton.destroy()
+    system.destroy()
+
+
+def judged(world: World, forces: float) -> tuple[int, int]:
+    """Free turns that meet no force where the riser is, and its unstable modes."""
+    with started(world) as (system, newton):
+        state = State.at_rest(1.0, world.size)
+        system.assemble(state, Static().weights(0.0))
+        neutral = stability._neutral(system, state, stability.NO_STIFFNESS * forces)
+        return len(neutral), newton.unstable_modes(state)
+
+
+def hanging(x: float) -> World:
+    """A slack riser at rest, its end 11 m above the start and x aside."""
+    scene = hinged(4.0, 9.0, {"gravity": 9.81}, submerged_weight=500.0)
+    scene["stages"] = [static("hang"), static("move", move={"end": [x, 0.0, 11.0]})]
+    world = built(scene)
+    before = take(world, world.scene.stages[0])
+    take(world, world.scene.stages[1], before)
+    return world
+
+
+@pytest.mark.parametrize(("x", "neutral"), [(0.0, 1), (0.1, 0), (4.0, 0)])
+def test_a_riser_turns_freely_about_the_vertical_only(x: float, neutral: int) -> None:
+    assert judged(hanging(x), 6e3) == (neutral, 0)
+
+
+@pytest.mark.parametrize("bow", [0.0, 1e-9, 1e-3])
+def test_a_mode_of_buckling_is_no_free_turn(bow: float) -> None:
+    """However small the bow is that a turn about the chord would move: the strut buckles both ways aside."""
+    points = [[0.5 * k, 0.0, bow * np.sin(np.pi * k / 24.0)] for k in range(25)]
+    thrust = 2.0 * np.pi**2 * 1e3 / 12.0**2
+    squeezed = np.array(points) * (1.0 - thrust / 1e8, 1.0, 1.0)
+    shapes: Mapping = {"unstressed": {"points": points}, "initial": {"points": squeezed.tolist()}}
+    world = built(hinged(12.0 * (1.0 - thrust / 1e8), 0.0, {"riser": shapes}))
+    assert judged(world, thrust) == (0, 2)
+
+
+def test_a_held_turn_leaves_newton_a_regular_matrix() -> None:
+    """The smallest eigenvalue of the scaled tangent is one of bending, and not that of the turn."""
+    world = hanging(0.0)
+    with started(world) as (system, _):
+        state, found = State.at_rest(1.0, world.size), list[float]()
+        for least in (0.0, 1e-4 * 6e3):
+            system.assemble(state, Static().weights(0.0))
+            stability.hold_free_turns(system, state, least)
+            K = system.matrix.mat.convert("dense").getDenseArray()
+            d = np.sqrt(np.diag(K))
+            found.append(float(np.linalg.eigvalsh(K / np.outer(d, d))[0]))
+    assert found[1] > 0.0
+    assert abs(found[0]) < 1e-3 * found[1]
