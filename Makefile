@@ -2,18 +2,25 @@
 
 PYTHON := .venv/bin/python
 WORKERS ?= 2
+SUITES ?= bookworm trixie
+DOCKER ?= docker
 
 export OMP_NUM_THREADS := 1
 export OMPI_ALLOW_RUN_AS_ROOT := 1
 export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
+# More ranks than cores, and free to move between them, in the words of OpenMPI 4 and of OpenMPI 5.
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 export OMPI_MCA_hwloc_base_binding_policy := none
+export PRTE_MCA_rmaps_default_mapping_policy := :oversubscribe
+export PRTE_MCA_hwloc_default_binding_policy := none
+# OpenMPI 5 complains of network interfaces, which ranks of one machine don't use.
+export OMPI_MCA_btl := ^tcp
 export OMPI_MCA_mpi_yield_when_idle := 1
 export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test lint verify fuzz bench verify-fresh docker clean
+.PHONY: help setup demo demos test lint verify fuzz bench verify-fresh docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -45,11 +52,14 @@ fuzz: setup ## 600 mutated scenes, each in a process with limits: how they end; 
 bench: setup ## seconds by part of the demo, Newton iterations against the bare work in them, energy of an impact by scheme
 	$(PYTHON) -m benchmarks
 
-verify-fresh: ## both commands of the README on a bare Debian 12 made for it (needs root and debootstrap)
-	@scripts/verify_fresh.sh
+verify-fresh: ## both commands of the README on bare Debians 12 and 13 made for it (needs root and debootstrap)
+	@set -e; for suite in $(SUITES); do FRESH_SUITE=$$suite scripts/verify_fresh.sh; done
 
-docker: ## the image riser_soil
-	docker build -t riser_soil -f docker/Dockerfile .
+docker: ## the image riser_soil, on Debian 12 or on BASE=debian:trixie
+	$(DOCKER) build$(if $(BASE), --build-arg BASE=$(BASE)) -t riser_soil -f docker/Dockerfile .
+
+pins: ## the versions of requirements/*-pins.txt resolved anew for requirements/run.txt and dev.txt
+	@scripts/pin.sh
 
 clean: ## what set-up, tests and runs have left here
 	rm -rf .venv build results demos/*/results .pytest_cache .mypy_cache .ruff_cache .hypothesis riser_soil.egg-info

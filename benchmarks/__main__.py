@@ -1,7 +1,10 @@
 """Run all benchmarks and print their figures."""
 
+import argparse
+
 from benchmarks import adaptive, coupled, impact, riser_only, tank
 
+argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__).parse_args()
 riser_only.report()
 coupled.report()
 adaptive.report()

@@ -12,7 +12,8 @@ from riser_soil.arrays import Array
 from riser_soil.build import World, build
 from riser_soil.march import Accepted, March
 from riser_soil.observe import riser_snapshot
-from riser_soil.part import Energy, State
+from riser_soil.part import State
+from riser_soil.relax import Relaxed
 from riser_soil.run import run_stage
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
@@ -38,10 +39,10 @@ class Course:
     cuts: int = 0
     iterations: int = 0
 
-    def begin_stage(self, stage: Stage, energy: Energy) -> None:
+    def begin_stage(self, stage: Stage, march: March) -> None:
         self._zone = TouchdownZone(self.world)
 
-    def relaxed(self, iterations: int) -> None:
+    def relaxed(self, relaxed: Relaxed) -> None:
         pass
 
     def record(self, march: March, step: Accepted, last: bool) -> None:

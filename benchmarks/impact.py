@@ -5,6 +5,7 @@ On the package's own riser, time loop and contact; see docs/impact.md, whose tab
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -97,7 +98,7 @@ def _take(method: Method, scene: Mapping, energies: Energies) -> None:
     try:
         rest = State.at_rest(0.0, world.size)
         march = March(system, newton, SCHEMES[method[0]], rest, wrong_root=ALL_WELCOME)
-        energies.begin_stage(stage, march.energy)
+        energies.begin_stage(stage, march)
         control = StepControl(stage.duration, stage.time_step, SHORTEST * stage.time_step)
         while not control.finished:
             step = march.advance(control)
@@ -174,5 +175,6 @@ def _print(rows: Iterator[str]) -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     report()
     _print(full_table())

@@ -12,7 +12,7 @@ import numpy as np
 from riser_soil.arrays import Array, BoolArray
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 
 NEAR = 1e-8  # m: below it a difference quotient of the potential is round-off
 
@@ -20,8 +20,7 @@ NEAR = 1e-8  # m: below it a difference quotient of the potential is round-off
 class Averaged:
     """Contact in group F: its force counts as the time scheme weighs those of the riser, not at the step's end."""
 
-    symmetric = True
-    impulsive = True
+    traits = Traits("FE", symmetric=True)  # E, as the force may jump
 
     def __init__(self, contact: SeabedContact) -> None:
         self._contact, self.name = contact, contact.name

@@ -50,7 +50,7 @@ def measure(dimension: int, elements: int) -> dict[str, float]:
     bench = Bench(stage)
     taken = defaultdict[str, list[float]](list)
     with tempfile.TemporaryDirectory() as folder, Observer.open(stage.world, Clock.new(), Path(folder), True) as seen:
-        seen.begin_stage(stage.stage, stage.march.energy)
+        seen.begin_stage(stage.stage, stage.march)
         for _ in range(STEPS):
             for name, action in bench.actions().items():
                 taken[name].append(1e6 * timed(action))

@@ -1,7 +1,11 @@
-"""The command line: riser-soil run | check | schema. Exit status 0 done, 2 bad input, 3 the solve failed."""
+"""The command line: riser-soil run | check | schema.
+
+Exit status 0 done, 2 bad input, 3 the solve failed, 4 the disk or standard output took no more, 128 + n for signal n.
+"""
 
 import os
 import sys
+import tempfile
 import time
 import traceback
 from collections.abc import Iterator
@@ -12,7 +16,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from riser_soil import __version__
-from riser_soil.errors import MeshError, RiserSoilError, SceneError
+from riser_soil.errors import Interruption, MeshError, RiserSoilError, SceneError, WriteError, is_full
+from riser_soil.interruption import deaf, listening
+from riser_soil.standard_output import outlasting
 
 if TYPE_CHECKING:
     from riser_soil.scene.scene import Scene
@@ -22,7 +28,8 @@ _PATIENCE = 5.0
 
 app = typer.Typer(
     help="Static and dynamic analysis of a riser on the seabed.",
-    epilog="Exit status: 0 done, 2 bad input, 3 the solve failed (what was computed until then is kept).",
+    epilog="Exit status: 0 done, 2 bad input, 3 the solve failed, 4 the disk or standard output took no more, "
+    "130 Ctrl-C, 143 SIGTERM (what was computed until then is kept).",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -95,17 +102,21 @@ def schema() -> None:
 def _read(scene: str, overrides: list[str] | None) -> "Scene":
     from riser_soil.scene.reader import read_scene
 
-    return read_scene(scene, overrides or ())
+    try:
+        return read_scene(scene, overrides or ())
+    except OSError as err:
+        raise SceneError(f"{scene}: cannot be read: {err.strerror}") from err
 
 
 def _result_folder(file: str, scene: "Scene", output: Path | None, force: bool) -> Path:
     """The folder for the results; a finished run in it is only overwritten by force."""
-    from riser_soil.folder import refuse_finished
+    from riser_soil.ownership import refuse
 
     folder = output or Path(scene.output.directory or Path(file).stem)
-    if folder.exists() and not folder.is_dir():
+    if os.path.lexists(folder) and not folder.is_dir():
         raise SceneError(f"{folder}: is a file, not a folder; choose another result folder with -o FOLDER")
-    refuse_finished(folder, force)
+    if _rank() == 0:
+        refuse(folder, force)
     return folder
 
 
@@ -129,6 +140,18 @@ def _expected_errors() -> Iterator[None]:
         _tell_once(str(err))
         _end_other_ranks(err.exit_status)
         raise typer.Exit(err.exit_status) from err
+    except Interruption as err:
+        if _rank() == 0 or not err.together:
+            _tell_once(str(err))
+        if not err.together:
+            _leave_other_ranks(err.exit_status)
+        raise typer.Exit(err.exit_status) from err
+    except OSError as err:
+        if not is_full(err):
+            raise
+        _tell_once(f"{err.filename or 'a file'}: cannot be written: {err.strerror}")
+        _end_other_ranks(WriteError.exit_status)
+        raise typer.Exit(WriteError.exit_status) from err
     except Exception:
         if _size() > 1:
             traceback.print_exc()
@@ -153,6 +176,7 @@ def _from_environment(*names: str) -> int | None:
 def _tell_once(message: str) -> None:
     """Print an error. As a rule all ranks meet it: the first tells it and ends the job, the others wait."""
     if _rank() > 0:
+        deaf()
         time.sleep(_PATIENCE)
     typer.echo(message, err=True)
 
@@ -163,6 +187,14 @@ def _end_other_ranks(status: int) -> None:
     if mpi is not None and _size() > 1:
         sys.stderr.flush()
         mpi.COMM_WORLD.Abort(status)
+
+
+def _leave_other_ranks(status: int) -> None:
+    """mpirun ends them, if it is not ending all of them already; an orderly end would wait for them."""
+    if _size() > 1:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
 
 
 def _print_version(wanted: bool) -> None:
@@ -182,7 +214,36 @@ def _options(
 
 def main() -> None:
     """Entry point of the console script."""
-    app()
+    os.environ["PETSC_OPTIONS"] = f"-no_signal_handler {os.environ.get('PETSC_OPTIONS', '')}"
+    with outlasting() as told:
+        status = _status()
+    if told.failure is not None:
+        with outlasting():
+            print(f"standard output: cannot be written: {told.failure.strerror}", file=sys.stderr)
+        status = status or WriteError.exit_status
+    sys.exit(status)
+
+
+def _status() -> int:
+    try:
+        with listening():
+            _replace_missing_tmpdir()
+            app()
+    except Interruption as err:
+        print(err, file=sys.stderr)
+        return err.exit_status
+    except SystemExit as leave:
+        return int(leave.code or 0)
+    return 0
+
+
+def _replace_missing_tmpdir() -> None:
+    """MPI and compilers end with pages of text where TMPDIR is no folder that can be written."""
+    given = os.environ.get("TMPDIR")
+    if given is not None and not os.access(given, os.W_OK | os.X_OK):
+        del os.environ["TMPDIR"]
+        if _rank() == 0:
+            print(f"TMPDIR={given}: is no folder that can be written; {tempfile.gettempdir()} is used", file=sys.stderr)
 
 
 if __name__ == "__main__":

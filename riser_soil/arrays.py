@@ -1,8 +1,14 @@
-"""Names for the array types that signatures use."""
+"""Names for the array types that signatures use.
+
+Arrays are of double precision and of 64-bit integers. Their types leave the width open: numpy 2 tells of many of its
+functions only that they return a floating or an integer type, and one annotation has to hold for numpy 1 and 2.
+"""
+
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+Array = npt.NDArray[np.floating[Any]]
+IntArray = npt.NDArray[np.signedinteger[Any]]
 BoolArray = npt.NDArray[np.bool_]

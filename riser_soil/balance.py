@@ -14,7 +14,8 @@ ones and else of second order. Inertia that turns adds its own such error to the
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -26,18 +27,26 @@ SPRINGS = ("start spring", "end spring")  # a spring works only as its support t
 
 
 class Balance:
-    """Ledger of a stage that begins with some energy [J]. A static stage's does not balance."""
+    """Ledger of a stage that begins with some energy [J]. A static stage's does not balance.
 
-    def __init__(self, begun: Energy, static: bool) -> None:
+    dissipating, working: names of what may dissipate and put in, as the scene has it. They are the ledger's accounts,
+    booked on or not.
+    """
+
+    def __init__(self, begun: Energy, static: bool, dissipating: Sequence[str], working: Sequence[str]) -> None:
         self._begun, self._static = begun.total, static
-        self.ledger = Ledger(begun.kinetic, begun.strain, begun.potential)
+        self.ledger = Ledger(
+            *(begun.kinetic, begun.strain, begun.potential),
+            dissipated_by=dict.fromkeys(dissipating, 0.0),
+            work_by=dict.fromkeys(working, 0.0),
+        )
 
     def add(self, energy: Energy, step: Accepted) -> float:
         """Book a step; energy: stored after it. The step's own residual [J]."""
         before, turned = self.ledger, _by_kind(step.turned)
         dissipated_by = _added(before.dissipated_by, ((name, work.dissipated) for name, work in turned))
         work_by = _added(before.work_by, ((name, work.external) for name, work in turned))
-        dissipated, work = sum(dissipated_by.values()), sum(work_by.values())
+        dissipated, work = (math.fsum(accounts.values()) for accounts in (dissipated_by, work_by))
         numerical = 0.0 if self._static else before.numerical + before.kinetic - energy.kinetic - step.braking
         self.ledger = Ledger(
             *(energy.kinetic, energy.strain, energy.potential),
@@ -57,9 +66,9 @@ def _by_kind(turned: Mapping[str, Work]) -> list[tuple[str, Work]]:
 
 
 def _added(before: Mapping[str, float], more: Iterable[tuple[str, float]]) -> dict[str, float]:
-    """Sums by name; names that never had anything are left out."""
+    """Sums by name; KeyError for a part that turns energy over and has no account."""
     after = dict(before)
     for name, value in more:
-        if value != 0.0:
-            after[name] = after.get(name, 0.0) + value
+        if name in after or value != 0.0:
+            after[name] += value
     return after

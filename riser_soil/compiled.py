@@ -2,13 +2,14 @@
 
 numba's own cache doesn't notice an edit in another file whose functions it has inlined, and runs stale code. So each
 version of the kernels has a cache folder of its own, under NUMBA_CACHE_DIR, XDG_CACHE_HOME or ~/.cache, or a private
-temporary folder where that can't be written. Division by zero gives inf or nan, as in numpy. Multiply-adds may be fused
-and divisions by constants become products, which changes the last digit only. Kernels are inlined where others call
-them: tuples then stay in registers, which halves the time of the elements in space.
+temporary folder where that can't be written or is full, which is told. Division by zero gives inf or nan, as in numpy.
+Multiply-adds may be fused and divisions by constants become products, which changes the last digit only. Kernels are
+inlined where others call them: tuples then stay in registers, which halves the time of the elements in space.
 """
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import math
 import os
@@ -19,6 +20,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +31,7 @@ PACKAGE = Path(__file__).parent
 NAME = PACKAGE.name
 KEPT = 4  # cache folders of other versions, the latest ones, for those who go back and forth
 IN_USE = 3600.0  # s since its last start within which a run of another version may still need its folder
+ROOM = 1 << 25  # bytes that all kernels need, and some more
 ANNOUNCEMENT = "compiling kernels (once, about 20 s)"
 
 
@@ -78,8 +81,10 @@ def choose_folder(version: str) -> Path:
     try:
         root = (Path(given) if given else Path.home() / ".cache") / NAME
         return _make(root, version)
-    except (OSError, RuntimeError):  # RuntimeError: no home
-        return _temporary(version)
+    except (OSError, RuntimeError) as err:  # RuntimeError: no home
+        folder = _temporary(version)
+        tell(f"the cache of compiled kernels can't be written ({err}); {folder} is used")
+        return folder
 
 
 def _temporary(version: str) -> Path:
@@ -98,12 +103,39 @@ def _temporary(version: str) -> Path:
 def _make(root: Path, version: str) -> Path:
     folder = root / version
     new = not folder.exists()
-    folder.mkdir(parents=True, exist_ok=True)
-    tempfile.TemporaryFile(dir=folder).close()
+    require_room(folder, ROOM)
     _mark_used(folder)
     if new:
         remove_old(root, keep=folder)
     return folder
+
+
+def require_room(folder: Path, room: int) -> None:
+    """Make the folder if it isn't there; OSError where it can't hold so many bytes, those that are there included."""
+    folder.mkdir(parents=True, exist_ok=True)
+    tempfile.TemporaryFile(dir=folder).close()
+    disk = os.statvfs(folder)
+    if disk.f_bavail * disk.f_frsize < room and _taken(folder) + disk.f_bavail * disk.f_frsize < room:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(folder))
+
+
+def _taken(folder: Path) -> int:
+    """Another process may remove files meanwhile."""
+    sizes = 0
+    for path in folder.iterdir():
+        with suppress(OSError):
+            sizes += path.stat().st_size if path.is_file() else _taken(path)
+    return sizes
+
+
+def tell(message: str) -> None:
+    """Say something on the first rank, without MPI."""
+    if _on_first_rank():
+        print(message, file=sys.stderr, flush=True)
+
+
+def _on_first_rank() -> bool:
+    return os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK", "0")) == "0"
 
 
 def _mark_used(folder: Path) -> None:
@@ -135,9 +167,8 @@ class _Announcer(event.Listener):
     """Tells on the first rank that kernels are being compiled, once for a cache folder."""
 
     def on_start(self, event: Any) -> None:
-        rank = os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK", "0"))
-        if rank == "0" and _first(FOLDER / "announced"):
-            print(ANNOUNCEMENT, file=sys.stderr, flush=True)
+        if _on_first_rank() and _first(FOLDER / "announced"):
+            tell(ANNOUNCEMENT)
 
     def on_end(self, event: Any) -> None:
         pass

@@ -13,7 +13,7 @@ PREFIX = "riser_soil_"
 # MUMPS' controls: room for fill-in in per cent (14); for counting pivots, on several ranks too (13), null pivots (24).
 ROOM = {14: 60}
 COUNTING = {13: 1, 24: 1}
-ROUND_OFF = 1e-13  # of the largest entry on the diagonal
+NO_PIVOT = 1e-200  # whatever the units; by PETSc's default the stiffness of a riser a fingernail long is none
 
 
 @contextmanager
@@ -37,14 +37,7 @@ def factorise_directly(pc: PETSc.PC, system: System) -> None:
 
 
 def negative_pivots(system: System) -> int:
-    """Negative pivots of the system's symmetric matrix: its number of negative eigenvalues; collective.
-
-    The matrix is shifted by what round-off makes of an eigenvalue that is zero, as where a riser may turn freely about
-    the line between its ends.
-    """
-    diagonal = system.matrix.mat.getDiagonal()
-    system.matrix.mat.shift(ROUND_OFF * diagonal.max()[1])
-    diagonal.destroy()
+    """Negative pivots of the system's symmetric matrix: its number of negative eigenvalues; collective."""
     pc = PETSc.PC().create(system.comm)
     try:
         _choose(pc, system, "cholesky", ROOM | COUNTING)
@@ -60,6 +53,7 @@ def _choose(pc: PETSc.PC, system: System, kind: str, controls: Mapping[int, int]
     pc.setType(kind)
     if _is_chain(system):
         pc.setFactorOrdering("natural")
+        pc.setFactorPivot(zeropivot=NO_PIVOT)
         return
     pc.setFactorSolverType("mumps")
     pc.setFactorSetUpSolverType()

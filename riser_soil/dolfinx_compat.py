@@ -18,8 +18,10 @@ import numpy as np
 from dolfinx import fem, jit
 from mpi4py import MPI
 
+from riser_soil import compiled
 from riser_soil.arrays import Array, IntArray
 
+ROOM = 1 << 22  # bytes that the code of one element needs, and more
 STALE_AFTER = 120.0  # s; the code compiled for one element takes a few seconds
 
 
@@ -45,13 +47,14 @@ def mesh_from_gmsh(model: Any, comm: MPI.Intracomm) -> Any:
 
 
 def lagrange_nodes(mesh: Any, degree: int, comm: MPI.Intracomm) -> Nodes:
-    """Nodes of the continuous Lagrange space of this degree (collective; compiles code the first time).
+    """Nodes of the continuous Lagrange space of this degree (collective; 0.5 compiles code the first time).
 
     The arrays outlive the mesh; `comm` is the caller's, since the mesh frees its own copy.
     """
     _quiet_compiler_log()
-    remove_stale_locks(comm)
-    space = _function_space(mesh, degree)
+    cache = writable_cache(comm)
+    remove_stale_locks(comm, cache)
+    space = _function_space(mesh, degree, cache)
     index_map = space.dofmap.index_map
     owned_cells = mesh.topology.index_map(mesh.topology.dim).size_local
     local = np.arange(index_map.size_local + index_map.num_ghosts, dtype=np.int32)
@@ -80,9 +83,11 @@ def _release() -> tuple[int, int]:
     return int(major), int(minor)
 
 
-def _function_space(mesh: Any, degree: int) -> Any:
-    make = fem.functionspace if hasattr(fem, "functionspace") else fem.FunctionSpace
-    return make(mesh, ("Lagrange", degree))
+def _function_space(mesh: Any, degree: int, cache: Path) -> Any:
+    options = {"cache_dir": str(cache)}
+    if hasattr(fem, "functionspace"):
+        return fem.functionspace(mesh, ("Lagrange", degree), jit_options=options)
+    return fem.FunctionSpace(mesh, ("Lagrange", degree), jit_params=options)
 
 
 def _table(dofmap: Any) -> Any:
@@ -97,10 +102,22 @@ def _quiet_compiler_log() -> None:
         handler.setLevel(max(handler.level, logging.WARNING))
 
 
-def remove_stale_locks(comm: MPI.Intracomm) -> None:
+def writable_cache(comm: MPI.Intracomm) -> Path:
+    """Where dolfinx keeps its code; the kernels' cache where it can't be written. The same on all ranks; collective."""
+    cache = jit_cache()
+    if comm.rank == 0:
+        try:
+            compiled.require_room(cache, ROOM)
+        except OSError as err:
+            cache = compiled.FOLDER / "fenics"
+            compiled.tell(f"the cache of compiled elements can't be written ({err}); {cache} is used")
+    return Path(comm.bcast(str(cache)))
+
+
+def remove_stale_locks(comm: MPI.Intracomm, cache: Path) -> None:
     """A process killed while it compiled leaves a lock on which every later run waits and then fails."""
     if comm.rank == 0:
-        for source in jit_cache().glob("libffcx_*.c"):
+        for source in cache.glob("libffcx_*.c"):
             if not source.with_suffix(".c.cached").exists() and _age(source) > STALE_AFTER:
                 source.unlink(missing_ok=True)
     comm.barrier()

@@ -1,5 +1,8 @@
 """The errors that a user can meet; each carries the exit status that the command line returns for it."""
 
+import errno
+import signal
+
 
 class RiserSoilError(Exception):
     """Base of the errors that end a run with a message of one line per problem and no traceback."""
@@ -29,3 +32,34 @@ class SolveError(RiserSoilError):
     """The solve failed; everything up to the last accepted step is kept and marked unfinished."""
 
     exit_status = 3
+
+
+class WriteError(RiserSoilError):
+    """Results, or what the program prints, can't be written; the files are whole up to the last frame that went in."""
+
+    exit_status = 4
+
+
+class Interruption(KeyboardInterrupt):
+    """A signal that asks the program to end; as KeyboardInterrupt passes all that catches errors.
+
+    place: where the run was, and what is in its folder. together: whether all ranks stopped at the same place.
+    """
+
+    def __init__(self, number: int, together: bool = False) -> None:
+        super().__init__(number, together)
+        self.number, self.together = number, together
+        self.place = "before the first stage; nothing was computed"
+
+    @property
+    def exit_status(self) -> int:
+        """As shells have it."""
+        return 128 + self.number
+
+    def __str__(self) -> str:
+        return f"ended by {signal.Signals(self.number).name} {self.place}"
+
+
+def is_full(err: OSError) -> bool:
+    """Whether a write failed for what the disk, or a limit on it, can't take."""
+    return err.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
-import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
+import os
+import socket
+from contextlib import suppress
 from pathlib import Path
+from typing import Self
 
 from riser_soil.errors import SceneError
 
@@ -15,27 +17,29 @@ SUMMARY = "summary.json"
 SERIES = "results.nc"
 RISER_XDMF = "riser.xdmf"
 SOIL_XDMF = "soil.xdmf"
-_OWN = (SERIES, RISER_XDMF, "riser.h5", SOIL_XDMF, "soil.h5", SCENE, SUMMARY)
+RISER_NUMBERS = "riser.h5"
+SOIL_NUMBERS = "soil.h5"
+NAMES = (SUMMARY, SERIES, RISER_XDMF, RISER_NUMBERS, SOIL_XDMF, SOIL_NUMBERS, SCENE)
+_WORKSHOP = ".riser_soil"  # in the run's folder, while it is written: drafts of its files, and the lock
+_LOCK = "lock"
 
 
-def write_atomically(path: Path, text: str) -> None:
-    """Replaces the file at once: a reader, or a kill, meets the old text or the new one."""
-    draft = _draft(path)
-    draft.write_text(text, encoding="utf-8")
-    draft.replace(path)
+def write_atomically(path: Path, content: str | bytes) -> None:
+    """Replaces the file at once: a reader, or a kill, meets the old content or the new one."""
+    draft = draft_of(path)
+    try:
+        draft.write_bytes(content.encode() if isinstance(content, str) else content)
+        draft.replace(path)
+    except OSError as err:
+        draft.unlink(missing_ok=True)
+        raise OSError(err.errno, err.strerror, str(path)) from err
 
 
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """Gives a copy of the file to change, or a name for a new one; it takes the file's place when the block ends well.
-
-    An HDF5 file torn in mid-write cannot be opened at all: a kill must meet it as it was or as it is to be.
-    """
-    draft = _draft(path)
-    if path.exists():
-        shutil.copyfile(path, draft)
-    yield draft
-    draft.replace(path)
+def draft_of(path: Path) -> Path:
+    """Where a file of the folder is written before it takes its place."""
+    workshop = path.parent / _WORKSHOP
+    workshop.mkdir(exist_ok=True)
+    return workshop / path.name
 
 
 def is_finished(folder: Path) -> bool:
@@ -47,27 +51,82 @@ def is_finished(folder: Path) -> bool:
     return isinstance(summary, dict) and summary.get("finished") is True
 
 
-def refuse_finished(folder: Path, force: bool) -> None:
-    """Raises SceneError when the folder holds a finished run and `force` is not given. Touches nothing."""
-    if not force and is_finished(folder):
-        raise SceneError(f"{folder}: holds a finished run; choose another folder (-o) or add --force")
+class Claim:
+    """One run's hold on its folder, from its beginning to `release` or the process's end, however that comes.
 
-
-def prepare_folder(folder: Path, force: bool) -> None:
-    """Makes the folder, or clears a previous run's files (and no others) out of it.
-
-    The old summary goes first, so that a kill in between cannot leave a folder that looks finished.
+    Raises SceneError where another run has it. On NFS the lock is the server's, so that runs on several machines see
+    one another; where a file system has no locks at all, nobody is refused.
     """
-    refuse_finished(folder, force)
+
+    def __init__(self, folder: Path) -> None:
+        self._workshop = folder / _WORKSHOP
+        self._lock: int | None = _locked(folder, self._workshop / _LOCK)
+
+    @classmethod
+    def try_out(cls, folder: Path) -> None:
+        """Raises SceneError where another run has the folder."""
+        if (folder / _WORKSHOP / _LOCK).exists():
+            cls(folder).release()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.release()
+
+    def clear(self) -> None:
+        """Removes the drafts that a killed run has left."""
+        for path in self._workshop.iterdir():
+            if path.name != _LOCK:
+                path.unlink()
+
+    def release(self) -> None:
+        """The lock goes before its file is free, so that nobody can lock a file that has no name any more."""
+        if self._lock is not None:
+            with suppress(OSError):  # what stays is a few bytes, as after a kill
+                self.clear()
+                (self._workshop / _LOCK).unlink(missing_ok=True)
+                self._workshop.rmdir()
+            os.close(self._lock)
+            self._lock = None
+
+
+def _locked(folder: Path, path: Path) -> int:
+    """The open, locked file. Another run may have removed the one that was opened: then there is a new one to open."""
+    while True:
+        with suppress(FileExistsError):  # exist_ok=True would ask again, and the folder may have gone by then
+            path.parent.mkdir(parents=True)
+        try:
+            lock = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        except FileNotFoundError:
+            continue
+        if not _lock(lock):
+            owner = os.read(lock, 200).decode(errors="replace").strip()
+            os.close(lock)
+            raise SceneError(
+                f"{folder}: another run{f' ({owner})' if owner else ''} is writing there; wait for its end, or choose "
+                "another folder (-o)"
+            )
+        if _is_at(path, lock):
+            with suppress(OSError):  # a full disk: only the name in a message is missing
+                os.ftruncate(lock, 0)
+                os.write(lock, f"process {os.getpid()} on {socket.gethostname()}".encode())
+            return lock
+        os.close(lock)
+
+
+def _is_at(path: Path, descriptor: int) -> bool:
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / SUMMARY).unlink(missing_ok=True)
-        for name in _OWN:
-            (folder / name).unlink(missing_ok=True)
-            _draft(folder / name).unlink(missing_ok=True)
-    except OSError as err:
-        raise SceneError(f"{folder}: cannot be used as the output folder: {err.strerror or err}") from err
+        return os.path.samestat(path.stat(), os.fstat(descriptor))
+    except FileNotFoundError:
+        return False
 
 
-def _draft(path: Path) -> Path:
-    return path.with_name(f".{path.name}.draft")
+def _lock(lock: int) -> bool:
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:  # a file system without locks
+        return True
+    return True

@@ -7,6 +7,7 @@ from mpi4py import MPI
 
 from riser_soil.build.pressures import no_wall_tension
 from riser_soil.part import Field
+from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.riser import RotationSpring, Support
 from riser_soil.scene.scene import Scene
 
@@ -71,7 +72,7 @@ def _no_rotary_inertia(scene: Scene) -> str:
     if not has_dynamics(scene):
         return "all stages are static"
     given = any(t.rotary_inertia for t in scene.used_line_types.values())
-    return "" if given else "no line type has rotary inertia"
+    return "" if given or resolved_dimension(scene) == 3 else "no line type has rotary inertia"
 
 
 def _no_structural_damping(scene: Scene) -> str:

@@ -79,7 +79,7 @@ class LocalError:
     def _missed(self, start: State, moving: State, solution: Solution) -> Array:
         """Local error of the displacements, relative to dt^2 [m/s2]."""
         scheme, end = self._scheme, solution.state
-        if self._system.riser_alone or not isinstance(scheme, GeneralizedAlpha):
+        if self._system.smooth or not isinstance(scheme, GeneralizedAlpha):
             return scheme.error_constant * (end.a - start.a)
         contact = self._mass.accelerations(start.t, -solution.forces.end)
         bulk = end.a - contact / (2.0 * scheme.beta)

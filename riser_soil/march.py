@@ -21,7 +21,6 @@ from riser_soil.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
 
 WRONG_ROOT = 0.2  # of the energy in motion: what a step may make out of nothing
 ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away
-METRE = 1.0  # over which the least force that counts does negligible work, as where a motion starts from rest
 EASY = 6  # Newton iterations up to which a step that was cut may grow again
 
 
@@ -81,7 +80,7 @@ class March:
     def restart(self) -> None:
         """Start anew from the configuration that the parts hold now."""
         self._forces = self.system.forces(self.before)
-        self._past = Extrapolation(self.system.numbering.size, smooth=self.system.riser_alone)
+        self._past = Extrapolation(self.system.numbering.size, smooth=self.system.smooth)
 
     def _start_rates(self, before: State) -> None:
         """Accelerations in balance with the forces at the start of a dynamic stage; prescribed rates."""
@@ -144,7 +143,7 @@ class March:
                 raise
             solution = self.newton.solve(step)
         if isinstance(self.scheme, Static):
-            self.newton.require_stable(step, solution)
+            self.newton.require_stable(solution)
         return solution
 
     def _guess(self, t: float, dt: float) -> Array:
@@ -188,7 +187,8 @@ class March:
         was, now = self.energy, step.energy
         appeared = now.total - was.total + step.dissipated - step.work
         in_motion = was.kinetic + was.strain + max(0.0, was.potential - now.potential) + abs(step.work)
-        negligible = ENERGY_ROUND_OFF * abs(was.potential) + self.newton.settings.floor * METRE
+        # Over an element's length the least force that counts does negligible work, as where a motion starts from rest.
+        negligible = ENERGY_ROUND_OFF * abs(was.potential) + self.newton.settings.floor * self.system.lever
         if appeared > self._wrong_root * in_motion + negligible:
             appeared += self._kinetic(step) - now.kinetic
         if appeared > self._wrong_root * in_motion + negligible:
@@ -200,7 +200,7 @@ class March:
         """Kinetic energy [J] after a step, not yet committed, as the riser moves: in the step's own energy contact has
         accelerated it as the bulk's forces do, so that it speeds up where it rests.
         """
-        if self.system.riser_alone or self._mass is None or not isinstance(self.scheme, GeneralizedAlpha):
+        if self.system.smooth or self._mass is None or not isinstance(self.scheme, GeneralizedAlpha):
             return step.energy.kinetic
         contact = self._mass.accelerations(self.before.t, -step.solution.forces.end)
         return self._mass.kinetic_energy(self.scheme.split_contact(step.solution.state, contact, step.dt))
@@ -235,7 +235,7 @@ class March:
         if isinstance(self.scheme, Midpoint):
             now = self._in_balance(self._with_momentum(state))
             return now, now
-        if self.system.riser_alone or self._mass is None or not isinstance(self.scheme, GeneralizedAlpha):
+        if self.system.smooth or self._mass is None or not isinstance(self.scheme, GeneralizedAlpha):
             return state, state
         contact = self._mass.accelerations(state.t, -forces.end)
         bulk = self.scheme.split_contact(state, contact, step.dt)
@@ -262,7 +262,7 @@ class March:
 
     def _energy_after(self, step: Accepted) -> Energy:
         """Stored energy of the accepted state: the step's, but kinetic as the riser moves."""
-        as_solved = self.system.riser_alone and not isinstance(self.scheme, Midpoint)
+        as_solved = self.system.smooth and not isinstance(self.scheme, Midpoint)
         if as_solved or self._mass is None:
             return step.energy
         return replace(step.energy, kinetic=self._mass.kinetic_energy(self.now))
@@ -272,11 +272,11 @@ class March:
         """Whether the scheme weighs the forces at the start, or contact has changed the rates since they were found."""
         if not isinstance(self.scheme, GeneralizedAlpha):
             return False
-        return self.scheme.needs_history or not self.system.riser_alone
+        return self.scheme.needs_history or not self.system.smooth
 
     def _forces_after(self, step: Accepted) -> Forces:
         """Bulk forces at the state just accepted, in its own axes: the step's, unless contact has changed the rates."""
-        if not self.system.riser_alone:
+        if not self.system.smooth:
             return self.system.forces(self.before)
         forces, u = step.solution.forces, step.solution.state.u
         return Forces(*(self._in_new_axes(f, u) for f in (forces.inertia, forces.force, forces.end)))

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import solveh_banded
 
 from riser_soil.arrays import Array, BoolArray
-from riser_soil.part import Field, Impulsive, Part, State, Weights
+from riser_soil.part import Field, Part, State, Weights
 from riser_soil.system import System
 
 MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
@@ -22,15 +22,13 @@ class RiserMass:
     def __init__(self, system: System) -> None:
         self._system = system
         self._riser: Field = system.model.fields[0]
-        self._parts: list[Part] = [
-            p for p in system.model.parts if set(p.blocks()) == {"riser"} and not isinstance(p, Impulsive)
-        ]
+        self._parts: list[Part] = [part for part in system.model.parts if "I" in part.traits.groups]
         self._moving: Array | None = None
 
     def accelerations(self, t: float, force: Array) -> Array:
         """a with M a = force, in the accepted configuration at time t; local arrays, zero outside the riser.
 
-        What has no mass (twist of a line without rotary inertia) and prescribed dofs get none.
+        What has no mass (as the twist of a line without inertia about its axis) and prescribed dofs get none.
         """
         at = slice(self._riser.offset, self._riser.offset + self._riser.size)
         mine = self._solve(t, force[at]) if self._system.comm.rank == 0 else None
@@ -44,17 +42,23 @@ class RiserMass:
         return float(self._system.comm.allreduce(mine))
 
     def _solve(self, t: float, force: Array) -> Array:
+        """With rotations counted by the way of the lever's end, so that all masses are in kg."""
+        levers = self._system.levers[self._riser.offset : self._riser.offset + self._riser.size]
         blocks = self._element_matrices(t)
+        of_element = levers[: blocks.shape[1]]
+        return self._solve_weighed(blocks / np.outer(of_element, of_element), force / levers) / levers
+
+    def _solve_weighed(self, blocks: Array, force: Array) -> Array:
         if self._moving is None:
             self._moving = _moving(blocks, ~self._riser.prescribed)
         banded = _banded(_projected(blocks, self._moving), self._riser.size)
-        _add_nodal(banded, np.eye(self._moving.shape[1]) - self._moving)
+        _add_nodal(banded, (blocks.max() or 1.0) * (np.eye(self._moving.shape[1]) - self._moving))
         nodal = force.reshape(len(self._moving), -1, 1)
         return np.asarray(solveh_banded(banded, (self._moving @ nodal).ravel(), overwrite_ab=True))
 
     def _element_matrices(self, t: float) -> Array:
         state = State.at_rest(t, self._system.numbering.size)
-        values = {"riser": np.zeros(self._system.matrix.values["riser"].shape)}
+        values = {"riser": np.zeros_like(self._system.matrix.values["riser"])}
         for part in self._parts:
             part.tangent(state, MASS_ONLY, values)
         return values["riser"]

@@ -22,7 +22,7 @@ class Matrix:
     """PETSc matrix over the numbering's rows, with one value array of shape (m, nr, nc) for each block."""
 
     def __init__(self, numbering: Numbering, blocks: Mapping[str, Block], symmetric: bool) -> None:
-        self.values = {key: np.zeros(block.shape) for key, block in blocks.items()}
+        self.values = {key: block.zeros() for key, block in blocks.items()}
         self._rows = {key: _in_system(numbering, block.rows) for key, block in blocks.items()}
         self._cols = {key: _in_system(numbering, block.cols) for key, block in blocks.items()}
         keys = _merge(_keys(self._rows[k], self._cols[k], numbering.free) for k in blocks)
@@ -95,7 +95,7 @@ def _keys(rows: IntArray, cols: IntArray, n: int) -> IntArray:
 
 
 def _merge(parts: Iterable[IntArray]) -> IntArray:
-    merged = np.empty(0, dtype=np.int64)
+    merged: IntArray = np.empty(0, dtype=np.int64)
     for keys in parts:
         merged = np.union1d(merged, keys)
     return merged

@@ -1,11 +1,12 @@
 """results.nc: time series of one run (netCDF-4), readable at any moment, also after a kill.
 
-The file is laid out once by h5netcdf. Rows are gathered in memory; `flush` appends them to a
-copy that takes the file's place, so that the file on disk is whole at every moment.
+The file is laid out once by h5netcdf. Rows are gathered in memory; `flush` appends them in one update, so that the
+file on disk is whole at every moment.
 """
 
 from __future__ import annotations
 
+import io
 from collections import defaultdict
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -16,7 +17,7 @@ import h5py
 import numpy as np
 
 from riser_soil.arrays import Array
-from riser_soil.folder import replacing
+from riser_soil.growing_file import GrowingFile, appending
 
 _ON_RISER = "exerted by the support on the riser; global axes, z up"
 _FROM_NOWHERE = "positive when energy appears from nowhere"
@@ -58,7 +59,7 @@ SERIES: dict[str, Variable] = {
         ("time", "arc"), "1", "curvature times the smallest bend radius allowed", "above 1 the pipe is bent too much"
     ),
     "contact_force": Variable(
-        ("time", "arc"), "N m-1", "contact force per length of riser", "magnitude, >= 0"
+        ("time", "arc"), "N m-1", "contact force per length of riser", "positive where the ground pushes"
     ),
     "penetration": Variable(
         ("time", "arc"), "m", "penetration of the riser's underside into the ground as it is at the time", ">= 0"
@@ -167,13 +168,12 @@ class SeriesFile:
         left_out: Collection[str] = (),
         ledger: Mapping[str, Variable] | None = None,
     ) -> None:
-        self._path = path
         self._of_step = HEALTH | dict(ledger or {})
         self._variables = {name: v for name, v in SERIES.items() if name not in left_out} | self._of_step
         self._rows: defaultdict[str, list[object]] = defaultdict(list)
         self._steps = 0
         self._stages: list[str] = []
-        self._create(arc, title, version)
+        self._file = GrowingFile(path, self._layout(arc, title, version))
 
     def begin_stage(self, name: str) -> None:
         self._stages.append(name)
@@ -182,26 +182,30 @@ class SeriesFile:
         """Adds one output time. values: by the names of SERIES except `stage`; those left out are ignored."""
         row = dict(values, stage=len(self._stages) - 1)
         for name in self._variables.keys() & SERIES.keys():
-            self._rows[name].append(np.array(row[name]))
+            self._rows[name].append(_kept(row[name]))
 
     def step(self, values: Mapping[str, object]) -> None:
         """Adds one accepted step. values: by the names of HEALTH and the ledger, without `step` and `step_stage`."""
         row = dict(values, step=self._steps, step_stage=len(self._stages) - 1)
         self._steps += 1
         for name in self._of_step:
-            self._rows[name].append(np.array(row[name]))
+            self._rows[name].append(row[name])
 
     def flush(self, finished: bool = False) -> None:
         """Appends the gathered rows to the file."""
-        with replacing(self._path) as draft, h5py.File(draft, "r+") as file:
+        with appending(self._file) as file:
             for name, rows in self._rows.items():
                 _append(file[name], rows)
             file.attrs["finished"] = np.int8(finished)
             _name_stages(file, self._stages)
         self._rows.clear()
 
-    def _create(self, arc: Array, title: str, version: str) -> None:
-        with replacing(self._path) as draft, h5netcdf.File(draft, "w") as file:
+    def close(self) -> None:
+        self._file.close()
+
+    def _layout(self, arc: Array, title: str, version: str) -> bytes:
+        content = io.BytesIO()
+        with h5netcdf.File(content, "w") as file:
             file.dimensions = {"time": None, "step": None, "arc": arc.size, "component": 3}
             file.attrs["title"] = title
             file.attrs["version"] = version
@@ -209,11 +213,17 @@ class SeriesFile:
             file.attrs["Conventions"] = "CF-1.11"
             file.attrs["finished"] = np.int8(0)
             _describe(file, "arc", _ARC)[...] = arc
-            axes = np.array([b"x", b"y", b"z"])
-            component = file.create_variable("component", ("component",), "S1", data=axes)
+            component = file.create_variable("component", ("component",), h5py.string_dtype())
+            component[...] = np.array(["x", "y", "z"], dtype=object)
             component.attrs["long_name"] = "global axis"
             for name, variable in self._variables.items():
                 _describe(file, name, variable, arc.size)
+        return content.getvalue()
+
+
+def _kept(value: object) -> object:
+    """A copy of what the solver goes on with; numbers stay as they are."""
+    return value.copy() if isinstance(value, np.ndarray) else value
 
 
 def _describe(file: h5netcdf.File, name: str, variable: Variable, nodes: int = 0) -> h5netcdf.Variable:

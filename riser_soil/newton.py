@@ -12,15 +12,17 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from riser_soil.arrays import Array
-from riser_soil.direct_solver import PREFIX, defaults, factorise_directly, negative_pivots
+from riser_soil.direct_solver import PREFIX, defaults, factorise_directly
 from riser_soil.part import Forces, State
+from riser_soil.stability import hold_free_turns, unstable_modes
 from riser_soil.system import System
-from riser_soil.time_scheme import Scheme
+from riser_soil.time_scheme import Scheme, Static
 
 CONVERGED = PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
 DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_DTOL
 ITERATING = PETSc.SNES.ConvergedReason.ITERATING
 REUSE = 0.1
+STATIC = Static().weights(0.0)
 
 
 class NotConvergedError(Exception):
@@ -28,7 +30,11 @@ class NotConvergedError(Exception):
 
 
 class UnstableError(NotConvergedError):
-    """A balance of forces from which the riser would buckle or swing away."""
+    """A balance of forces from which the riser would buckle or swing away: `solution`."""
+
+    def __init__(self, text: str, solution: Solution) -> None:
+        super().__init__(text)
+        self.solution = solution
 
 
 @runtime_checkable
@@ -40,28 +46,24 @@ class Judging(Protocol):
         ...
 
 
-@runtime_checkable
-class Following(Protocol):
-    """A part whose forces follow the line, but hardly stiffen or soften it, such as the drag of a current."""
-
-    follows: bool
-
-
 @dataclass(frozen=True)
 class NewtonSettings:
-    """tolerance: of the residual's norm, relative to the norm of the forces in play.
+    """tolerance: of the residual's norm, relative to the norm of the forces in play, moments over the
+    system's lever.
 
     floor [N]: the norm that counts as zero, for round-off of a scene whose forces all vanish.
     reuse: an iteration that leaves less than this share of the residual hands its factorised tangent on to the next of
     the same step (Shamanskii's method), as long as each leaves less than this share: two or three such iterations cost
-    less than one with its own tangent. Only in time steps of a riser alone, which start near their end: contact has
+    less than one with its own tangent. Only in time steps without contact, which start near their end: contact has
     corners, and an equilibrium may be far away.
+    least_iterations: before a residual counts as small.
     """
 
     tolerance: float
     max_iterations: int
     floor: float
     reuse: float = REUSE
+    least_iterations: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +102,8 @@ class Newton:
         self.iterations = 0
         self._x = system.numbering.vector.duplicate()
         self._f = system.numbering.vector.duplicate()
+        self._levers = system.numbering.vector.duplicate()
+        system.numbering.to_global(system.levers, self._levers)
         self._judging = [owner for owner in system.model.fields if isinstance(owner, Judging)]
         self._snes = self._create()
 
@@ -136,22 +140,24 @@ class Newton:
             if fault := owner.fault(state):
                 raise NotConvergedError(fault)
 
-    def require_stable(self, step: Step, solution: Solution) -> None:
+    def require_stable(self, solution: Solution) -> None:
         """Raise UnstableError where a static solution is an unstable equilibrium, such as an unbuckled strut.
 
-        Stable means that the tangent there has no negative pivot. Parts that follow the line are left out of it; where
-        others lack symmetry too, such as moments in space, nothing is judged. Collective.
+        Stable means that the tangent there has no negative pivot, see `stability`. Parts that follow the line are left
+        out of it; where others lack symmetry too, such as moments in space, nothing is judged. Collective.
         """
-        judged = [part for part in self.system.model.parts if not isinstance(part, Following)]
-        if not all(part.symmetric for part in judged):
-            return
-        self.system.assemble(solution.state, step.scheme.weights(step.dt), judged)
-        negative = negative_pivots(self.system)
+        negative = self.unstable_modes(solution.state, solution.forces)
         if negative > 0:
             raise UnstableError(
                 f"the equilibrium found is unstable (its tangent has {negative} negative pivot(s)): the riser would "
-                "buckle or swing away from it; start from a shape nearer to the one that it takes"
+                "buckle or swing away from it; start from a shape nearer to the one that it takes",
+                solution,
             )
+
+    def unstable_modes(self, state: State, forces: Forces | None = None) -> int:
+        """Negative pivots at a static state, whose forces may be known; collective."""
+        found = self.system.forces(state) if forces is None else forces
+        return unstable_modes(self.system, state, STATIC, self._scale(found))
 
     def renew(self) -> None:
         """Take over a new matrix after the system's pattern has changed."""
@@ -197,6 +203,8 @@ class Newton:
         if not self._reusable():
             self._trial(x)
             self.system.assemble(self._balanced, self._weights)
+            if self._weights.inertia == 0.0:
+                hold_free_turns(self.system, self._balanced, self.settings.tolerance * self._scale(self._forces))
 
     def _reusable(self) -> bool:
         """Whether the tangent of the iteration before will do."""
@@ -205,30 +213,36 @@ class Newton:
         return self._norms[-1] < self.settings.reuse * self._norms[-2]
 
     @property
+    def _least_iterations(self) -> int:
+        """A motion that its guess alone carries on would keep its errors."""
+        return max(self.settings.least_iterations, int(self._starts_near))
+
+    @property
     def _starts_near(self) -> bool:
-        """Whether the guess continues a smooth motion: time steps of a riser alone."""
-        return self.system.riser_alone and self._weights.inertia > 0.0
+        """Whether the guess continues a smooth motion: time steps without contact."""
+        return self.system.smooth and self._weights.inertia > 0.0
 
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
-        norm = norms[2]
+        norm = math.sqrt(self.system.sum([float(np.sum(self._weighed() ** 2))])[0])
         self._norms.append(norm)
         if not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
-        if iteration == 0 and self._starts_near:  # a motion that its guess alone carries on would keep its errors
+        if iteration < self._least_iterations:
             return ITERATING
-        if norm <= max(self.settings.tolerance * self._scale(), self.settings.floor):
+        if norm <= max(self.settings.tolerance * self._scale(self._forces), self.settings.floor):
             return CONVERGED
         if iteration >= 4 and norm > 1e6 * self._norms[0]:
             return DIVERGED
         return ITERATING
 
-    def _scale(self) -> float:
+    def _scale(self, forces: Forces) -> float:
         """Norm of the forces in play: reactions, inertia, contact on the riser."""
-        forces, system = self._forces, self.system
+        system = self.system
         riser = system.model.fields[0]
-        contact = forces.end[riser.offset : riser.offset + riser.size]
-        reactions = system.reactions(forces)
-        mine = [float(f @ f) for f in (reactions, forces.inertia, contact)]
+        at = slice(riser.offset, riser.offset + riser.size)
+        reactions, inertia = system.reactions(forces) / system.levers[system.held], forces.inertia / system.levers
+        contact = forces.end[at] / system.levers[at]
+        mine = [float(f @ f) for f in (reactions, inertia, contact)]
         return math.sqrt(max(system.sum(mine)))
 
     def _reason(self) -> str:
@@ -241,9 +255,13 @@ class Newton:
         count = len(self._norms) - 1
         return f"{name.lower()} after {count} iterations (last residual norms {norms} N); {self._where()}"
 
+    def _weighed(self) -> Array:
+        """This rank's residual [N], moments over the lever."""
+        return np.asarray(self._f.array_r / self._levers.array_r)
+
     def _where(self) -> str:
         """The row with the largest residual, in words."""
-        values = np.abs(self._f.array_r)
+        values = np.abs(self._weighed())
         if not self.system.comm.allreduce(bool(np.isfinite(values).all()), MPI.LAND):
             return "the residual is not finite"
         first = self._f.getOwnershipRange()[0]
@@ -253,5 +271,5 @@ class Newton:
         return f"the largest residual, {worst:.3g} N, sits at the {self.system.describe(row)}"
 
     def destroy(self) -> None:
-        for thing in (self._snes, self._x, self._f):
+        for thing in (self._snes, self._x, self._f, self._levers):
             thing.destroy()

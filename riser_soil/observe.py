@@ -4,22 +4,27 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from mpi4py import MPI
 
 from riser_soil import __version__
 from riser_soil.arrays import Array
 from riser_soil.balance import Balance
 from riser_soil.build import World
+from riser_soil.errors import Interruption, RiserSoilError, SolveError
+from riser_soil.interruption import undivided
 from riser_soil.inventory import built, dissipating, left_out, unknowns, working
 from riser_soil.march import Accepted, March
-from riser_soil.part import Energy, Forces, Model, State
+from riser_soil.part import Forces, Model, State
+from riser_soil.plausibility import Plausibility
 from riser_soil.progress import Progress
 from riser_soil.record import Recorder
+from riser_soil.relax import Relaxed
 from riser_soil.riser.section_forces import (
     HasElementForces,
     HasNodalForces,
@@ -34,7 +39,7 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.schedule import Schedule
 from riser_soil.screen import print_summary
-from riser_soil.snapshot import RiserSnapshot, RunFacts, StepHealth
+from riser_soil.snapshot import RiserSnapshot, RunFacts, SoilSnapshot, StepHealth, Touch
 from riser_soil.system import Clock
 from riser_soil.touchdown_zone import TouchdownZone
 
@@ -47,6 +52,7 @@ class Observer:
         output = world.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         self._zone = TouchdownZone(world, _known_fields(world))
+        self._plausibility = Plausibility(world)
 
     @classmethod
     @contextmanager
@@ -55,59 +61,111 @@ class Observer:
         mesh = world.soil.output_mesh() if world.soil is not None else None
         known = facts(world)
         with Progress(enabled=world.comm.rank == 0) as progress:
-            if world.comm.rank != 0:
-                yield cls(world, clock, None, progress)
-                return
-            scene = world.scene
-            with Recorder.open(
-                folder, known, world.line.arc, mesh, dump_scene(scene), _known_fields(world), force
-            ) as recorder:
+            recorder = None
+            with _on_all_ranks(world.comm), undivided():
+                if world.comm.rank == 0:
+                    text, fields = dump_scene(world.scene), _known_fields(world)
+                    recorder = Recorder.open(folder, known, world.line.arc, mesh, text, fields, force)
+            with recorder or nullcontext():
                 yield cls(world, clock, recorder, progress)
 
-    def begin_stage(self, stage: Stage, energy: Energy) -> None:
-        """energy: stored at the stage's beginning."""
+    def begin_stage(self, stage: Stage, march: March) -> None:
+        """march: at the stage's beginning; collective."""
+        self._stage = stage
         self._schedule.begin_stage(stage.kind)
-        self._balance = Balance(energy, isinstance(stage, StaticStage))
+        scene = self._world.scene
+        self._balance = Balance(march.energy, isinstance(stage, StaticStage), dissipating(scene), working(scene))
         self._relaxed = 0
+        self._plausibility.begin_stage(stage)
         if self._recorder is not None:
             self._recorder.begin_stage(stage.name, stage.kind)
+        if stage is self._world.scene.stages[0] and not isinstance(stage, StaticStage):
+            self._begin_at(march)
         self._progress.begin_stage(stage.name, stage.kind, 1.0 if isinstance(stage, StaticStage) else stage.duration)
+
+    def _begin_at(self, march: March) -> None:
+        """Records the state before all stages, which no static stage has brought about."""
+        soil = self._soil()
+        if self._recorder is not None:
+            self._recorder.begin_at(riser_snapshot(self._world, march), self._zone.look(march.now), soil)
 
     def record(self, march: March, step: Accepted, last: bool) -> None:
         """Tell the recorder of a step that has been committed; collective."""
         since = time.perf_counter()
         due = self._schedule.due(step.t, last)
-        wanted = due.pictures and self._world.soil is not None
-        soil = self._world.soil.output_fields() if wanted and self._world.soil is not None else None
+        # Relaxation, in statics, commits states that are no steps: the soil must be known before it.
+        soil = self._soil() if due.pictures or isinstance(self._stage, StaticStage) else None
         change = self._balance.add(march.energy, step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
         if self._recorder is not None:
             health = StepHealth(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
             riser, touching = riser_snapshot(self._world, march), self._zone.look(march.now)
             self._recorder.accept(step.t, due, riser, touching, health, self._balance.ledger, soil)
+            if due.series:
+                self._judge(self._recorder, march, riser, touching, closely=due.pictures)
         self._relaxed = 0
         self._clock.add("output", since)
 
+    def _judge(
+        self, recorder: Recorder, march: March, riser: RiserSnapshot, touching: Touch, closely: bool
+    ) -> None:
+        """Look whether what was recorded is plausible; closely where it costs no more than what is written."""
+        self._plausibility.look(recorder.now, march.now, riser, touching)
+        if closely:
+            self._plausibility.look_closely(recorder.now, march.now, elastic_residual(self._world, march))
+        recorder.summary.stages[-1].doubts = self._plausibility.warnings()
+
+    def record_last(self, end: SolveError | Interruption) -> None:
+        """The run ends before its time: write the last accepted step; collective where the ranks end together."""
+        together = self._world.comm.size == 1 or not isinstance(end, Interruption) or end.together
+        with undivided():
+            soil = self._soil() if together else None
+            if self._recorder is not None:
+                self._recorder.record_last(soil)
+                if isinstance(end, Interruption):
+                    end.place = self._recorder.reached
+
+    def _soil(self) -> SoilSnapshot | None:
+        """Collective where there is soil."""
+        return None if self._world.soil is None else self._world.soil.output_fields()
+
     def laid(self, slack: float, steps: int, relaxations: int) -> None:
-        """Before the stages, the end of a slack riser was brought to its place from `slack` [m] beyond it."""
+        """Before the stages, the end of a slack or steep riser was brought to its place from `slack` [m] beyond it."""
         if self._recorder is not None:
             self._recorder.summary.laying = {"slack": slack, "load_steps": steps, "relaxations": relaxations}
             helped = f" and {relaxations} dynamic relaxation(s)" if relaxations else ""
-            print(f"the riser is slack: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
+            print(f"{self._world.hanging}: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
 
-    def relaxed(self, iterations: int) -> None:
+    def relaxed(self, relaxed: Relaxed) -> None:
         """Dynamic relaxation was needed; its Newton iterations count with the next step."""
-        self._relaxed += iterations
+        self._relaxed += relaxed.iterations
         if self._recorder is not None:
-            self._recorder.summary.stages[-1].relaxations += 1
-            text = f"dynamic relaxation was needed; it took {iterations} Newton iterations, counted with the next step"
-            print(text)
+            tally = self._recorder.summary.stages[-1]
+            tally.relaxations += 1
+            tally.branch_switches += relaxed.branch_switches
+            took = f"it took {relaxed.iterations} Newton iterations, counted with the next step"
+            print(f"dynamic relaxation was needed; {took}")
+            if relaxed.branch_switches:
+                print(f"it left {relaxed.branch_switches} unstable equilibrium(s) in the mode of buckling")
 
     def finish(self) -> None:
         if self._recorder is not None:
             self._recorder.add_seconds(self._clock.seconds)
             self._recorder.finish()
             print_summary(self._recorder.summary.as_dict(), self._recorder.settlement)
+
+
+@contextmanager
+def _on_all_ranks(comm: MPI.Intracomm) -> Iterator[None]:
+    """An error that one rank meets in the block is raised by all."""
+    failure: RiserSoilError | None = None
+    try:
+        yield
+    except RiserSoilError as err:
+        failure = err
+    for met in comm.allgather(failure):
+        if met is not None:
+            raise met
 
 
 def _known_fields(world: World) -> tuple[str, ...]:
@@ -166,6 +224,14 @@ def riser_snapshot(world: World, march: March) -> RiserSnapshot:
         start_tangent=tangent[0, 0],
         end_tangent=tangent[-1, 1],
     )
+
+
+def elastic_residual(world: World, march: March) -> Array:
+    """Of the elements (ne, 2 ndof), less what follows from strain rates."""
+    parts = _acting(march.system.model)
+    residual = element_residual(world.line, parts.within, march.now)
+    viscous = viscous_residual(world.line, parts.viscous, march.now)
+    return residual if viscous is None else residual - viscous
 
 
 def _bend_utilisation(world: World, curvature: Array) -> Array:

@@ -18,6 +18,8 @@ import numpy as np
 
 from riser_soil.arrays import Array, BoolArray, IntArray
 
+GROUPS = "IFE"  # of forces; see the module's text
+
 
 @dataclass(frozen=True, eq=False)
 class State:
@@ -59,6 +61,10 @@ class Block:
     @property
     def shape(self) -> tuple[int, int, int]:
         return (self.rows.shape[0], self.rows.shape[1], self.cols.shape[1])
+
+    def zeros(self) -> Array:
+        """The matrices themselves, all zero."""
+        return np.zeros(self.shape)
 
 
 @dataclass(eq=False)
@@ -109,11 +115,29 @@ class Work:
         )
 
 
+@dataclass(frozen=True)
+class Traits:
+    """What a part is; declared here, never guessed from its name or its blocks.
+
+    groups: letters of those that its forces are in. In E they may jump from step to step, as where the riser lands.
+    symmetric: its tangent.
+    follows: its forces follow the line, but hardly stiffen or soften it, such as the drag of a current.
+    """
+
+    groups: str
+    symmetric: bool
+    follows: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.groups or set(self.groups) - set(GROUPS):
+            raise ValueError(f'groups of a part are letters of "{GROUPS}", not "{self.groups}"')
+
+
 class Part(Protocol):
     """A contribution to the system: riser, inertia, Morison loads, soil, contact, …"""
 
     name: str
-    symmetric: bool
+    traits: Traits
 
     def blocks(self) -> dict[str, Block]:
         """Patterns that the part adds to. Parts that share a key share the very same rows and columns."""
@@ -141,10 +165,17 @@ class Part(Protocol):
 
 
 @runtime_checkable
-class Impulsive(Protocol):
-    """A part in group E whose forces on the riser may jump from step to step, as where it lands."""
+class Slender(Protocol):
+    """A field with rotations beside its translations (nn, d), local numbers.
 
-    impulsive: bool
+    lever: arm [m] by which a moment is weighed as the forces of a couple, so that nothing hangs on the unit of length.
+    """
+
+    @property
+    def lever(self) -> float: ...
+
+    @property
+    def translation_dofs(self) -> IntArray: ...
 
 
 class Field(Protocol):

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+import numpy as np
+
 from riser_soil import folder as run_folder
 from riser_soil.arrays import Array
-from riser_soil.errors import SceneError
+from riser_soil.errors import SceneError, WriteError
+from riser_soil.folder import Claim
 from riser_soil.netcdf import SeriesFile, ledger_variables
+from riser_soil.ownership import prepare, sealed
 from riser_soil.schedule import Due
 from riser_soil.snapshot import Ledger, RiserSnapshot, RunFacts, SoilMesh, SoilSnapshot, StepHealth, Touch
 from riser_soil.summary import StageTally, Summary, bend_radius, final_state, pack
@@ -37,6 +43,8 @@ FIELDS = RISER_FIELDS + SOIL_FIELDS
 TICK = 1e-6
 # A killed run loses this much wall time of results [s]; more where flushing would take more than this share.
 _FLUSH_EVERY, _FLUSH_SHARE = 1.0, 0.05
+# What waits in memory for its turn on disk [bytes]: at most so much, whatever the share; about so much for each step.
+_MOST_WAITING, _STEP = 1 << 24, 2000
 
 
 class Clock:
@@ -73,14 +81,27 @@ class Clock:
         return self._last_record
 
 
+@dataclass
+class Last:
+    """The state told last, and what it has been written to."""
+
+    riser: RiserSnapshot
+    touch: Touch
+    soil: SoilSnapshot | None
+    written: Due
+    stamp: float = 0.0  # s, of its record in the series
+
+
 class Recorder:
     """Owner of everything in the run's folder. Use `open`, in a `with` statement, and `finish` at the end.
 
-    A run that leaves the `with` statement without `finish`, or is killed, keeps its results as unfinished.
+    A run that leaves the `with` statement without `finish`, or is killed, keeps its results as unfinished; in the first
+    case up to the last accepted step. Raises WriteError where the disk takes no more.
     """
 
     def __init__(
         self,
+        claim: Claim,
         folder: Path,
         facts: RunFacts,
         arc: Array,
@@ -88,7 +109,7 @@ class Recorder:
         fields: tuple[str, ...],
     ) -> None:
         self.summary = Summary(facts)
-        self._folder = folder
+        self._claim, self._folder = claim, folder
         self._arc = arc
         self._fields = fields
         left_out = set(RISER_FIELDS) - set(fields)
@@ -99,9 +120,12 @@ class Recorder:
         )
         self._soil_frames = _soil_file(folder, soil_mesh)
         self._clock = Clock()
+        self.now = 0.0  # s of the run at the last step; in a static stage its load factor
         self._latest: Array | None = None
+        self._last: Last | None = None
         self._settlement: float | None = None
         self._next_flush = 0.0
+        self._waiting = 0
         self._closed = False
 
     @classmethod
@@ -115,17 +139,34 @@ class Recorder:
         fields: tuple[str, ...] | None = None,
         force: bool = False,
     ) -> Self:
-        """Takes the folder over and lays the files out.
+        """Takes the folder over, until it is closed, and lays the files out.
 
         arc: (nn,) m. scene_text: the resolved scene, kept as scene.yaml. fields: of FIELDS; None for all.
-        Raises SceneError for an unknown field and for a finished run's folder without `force`.
+        Raises SceneError for an unknown field and for a folder that the run may not have (see `ownership`).
         """
         wanted = _check_fields(FIELDS if fields is None else fields)
-        run_folder.prepare_folder(folder, force)
-        run_folder.write_atomically(folder / run_folder.SCENE, scene_text)
-        recorder = cls(folder, facts, arc, soil_mesh, wanted)
-        recorder.flush()
+        claim = prepare(folder, force)
+        try:
+            with _told_when_full(folder):
+                run_folder.write_atomically(folder / run_folder.SCENE, sealed(scene_text))
+                recorder = cls(claim, folder, facts, arc, soil_mesh, wanted)
+                recorder.flush()
+        except BaseException:
+            claim.release()
+            raise
         return recorder
+
+    @property
+    def reached(self) -> str:
+        """How far the run has come, to be told when it ends before its time."""
+        if self.summary.finished:
+            return f"after the last stage; {self._folder} has the whole run"
+        stages = [stage for stage in self.summary.stages if stage.steps]
+        if not stages:
+            return f"before the first step; {self._folder} holds no results yet"
+        last = stages[-1]
+        time = f" at t = {last.time:.6g} s" if last.kind == "dynamic" else f" after {last.steps} load step(s)"
+        return f"in stage {last.name}{time}; {self._folder} has the results up to there, marked unfinished"
 
     @property
     def settlement(self) -> float | None:
@@ -151,6 +192,12 @@ class Recorder:
         self.summary.stages.append(stage)
         self._series.begin_stage(name)
 
+    def begin_at(self, riser: RiserSnapshot, touch: Touch, soil: SoilSnapshot | None = None) -> None:
+        """The state that the run begins with, where its first stage is dynamic: recorded at time zero."""
+        self._latest = pack(riser, touch)
+        self.summary.stages[-1].extremes.update(self._clock.now, self._latest)
+        self._record(riser, touch, Due(series=True, pictures=True), soil)
+
     def accept(
         self,
         t: float,
@@ -170,14 +217,26 @@ class Recorder:
         self._tally(t, riser, touch, health, ledger)
         row = {"step_time": self._clock.now} | vars(health) | _ledger_row(ledger)
         self._series.step(dict.fromkeys(self._ledger, 0.0) | row)
-        if due.series:
-            stamp = self._clock.stamp()
-            row = _series_row(stamp, self._arc, riser, touch)
-            self._series.record(row)
-            if due.pictures:
-                self._picture(stamp, row, soil)
-        if time.monotonic() > self._next_flush:
+        self._waiting += _STEP
+        self._record(riser, touch, due, soil)
+        if time.monotonic() > self._next_flush or self._waiting > _MOST_WAITING:
             self.flush()
+
+    def record_last(self, soil: SoilSnapshot | None = None) -> None:
+        """Writes the last accepted step to all that it has not been written to: the run ends before its time.
+
+        soil: at that step; where it is missing, and there is a soil mesh, there is no picture.
+        """
+        last = self._last
+        if last is None or self._closed:
+            return
+        soil = last.soil or soil
+        drawable = self._soil_frames is None or soil is not None
+        if not last.written.series:
+            self._record(last.riser, last.touch, Due(series=True, pictures=drawable), soil)
+        elif drawable and not last.written.pictures:
+            self._picture(last.stamp, _series_row(last.stamp, self._arc, last.riser, last.touch), soil)
+            last.written = Due(series=True, pictures=True)
 
     def add_seconds(self, seconds: Mapping[str, float]) -> None:
         """Adds wall time [s] to the named parts of the run."""
@@ -186,11 +245,12 @@ class Recorder:
     def flush(self) -> None:
         """Brings everything told so far to disk: the frames, the series that tells how far they go, the summary."""
         begun = time.monotonic()
-        self._riser_frames.flush()
-        if self._soil_frames is not None:
-            self._soil_frames.flush()
-        self._series.flush(self.summary.finished)
-        self.summary.write(self._folder / run_folder.SUMMARY)
+        with _told_when_full(self._folder, self._let_go):
+            for frames in self._pictures:
+                frames.flush()
+            self._series.flush(self.summary.finished)
+            self.summary.write(self._folder / run_folder.SUMMARY)
+        self._waiting = 0
         now = time.monotonic()
         self._next_flush = now + max(_FLUSH_EVERY, (now - begun) / _FLUSH_SHARE)
 
@@ -200,10 +260,29 @@ class Recorder:
         self.close()
 
     def close(self) -> None:
-        """Brings the rest to disk. Does nothing the second time."""
-        if not self._closed:
-            self._closed = True
+        """Brings the rest to disk and gives the folder free. Does nothing the second time."""
+        if self._closed:
+            return
+        try:
+            if not self.summary.finished:
+                self.record_last()
             self.flush()
+        finally:
+            self._let_go()
+
+    def _let_go(self) -> None:
+        """Nothing is written any more: what can't be written once is not tried again."""
+        if self._closed:
+            return
+        self._closed = True
+        for frames in self._pictures:
+            frames.close()
+        self._series.close()
+        self._claim.release()
+
+    @property
+    def _pictures(self) -> list[XdmfFile]:
+        return [frames for frames in (self._riser_frames, self._soil_frames) if frames is not None]
 
     def _tally(
         self, t: float, riser: RiserSnapshot, touch: Touch, health: StepHealth, ledger: Ledger
@@ -213,22 +292,53 @@ class Recorder:
         stage.count(health)
         stage.time = self._clock.stage_time
         stage.balance(self._clock.now, ledger)
-        now = t if stage.kind == "static" else self._clock.now
+        self.now = now = t if stage.kind == "static" else self._clock.now
         stage.extremes.update(now, self._latest)
         stage.final = final_state(self._arc, riser, touch)
         stage.bend(now, self._arc, riser)
 
+    def _record(self, riser: RiserSnapshot, touch: Touch, due: Due, soil: SoilSnapshot | None) -> None:
+        self._last = Last(riser, touch, soil, due)
+        if due.series:
+            self._last.stamp = self._clock.stamp()
+            row = _series_row(self._last.stamp, self._arc, riser, touch)
+            self._waiting += _size(row)
+            self._series.record(row)
+            if due.pictures:
+                self._picture(self._last.stamp, row, soil)
+
     def _picture(self, stamp: float, row: Mapping[str, Array], soil: SoilSnapshot | None) -> None:
         wanted = [name for name in RISER_FIELDS if name in self._fields]
         on_points = {name: row[name] for name in (*wanted, "position")}
+        self._waiting += _size(on_points)
         self._riser_frames.add(Frame(stamp, on_points, geometry="position"))
         if self._soil_frames is not None:
             if soil is None:
                 raise ValueError(
                     "pictures are due, so the soil's snapshot is needed too: both files share one time axis"
                 )
+            self._waiting += _size(vars(soil))
             self._soil_frames.add(_soil_frame(stamp, soil, self._fields))
             self._settlement = max(0.0, -float(soil.displacement[:, 2].min()))
+
+
+@contextmanager
+def _told_when_full(folder: Path, then: Callable[[], None] | None = None) -> Iterator[None]:
+    """Raises WriteError for what the disk did not take, when `then` is done."""
+    try:
+        yield
+    except OSError as err:
+        if then is not None:
+            then()
+        raise WriteError(
+            f"{err.filename or folder}: cannot be written: {err.strerror or err}; the run ends here, and its files are "
+            "whole up to what went in before: make room, or choose another folder (-o)"
+        ) from err
+
+
+def _size(values: Mapping[str, Any]) -> int:
+    """Bytes of the arrays among the values."""
+    return sum(value.nbytes for value in values.values() if isinstance(value, np.ndarray))
 
 
 def _check_fields(fields: tuple[str, ...]) -> tuple[str, ...]:

@@ -1,42 +1,56 @@
 """Dynamic relaxation: pseudo-time steps through an artificial drag, until equilibrium needs none.
 
 Used when Newton's method finds no equilibrium from the shape that a static stage starts with, and reported when used.
+The way there is none that the riser takes: the ground remembers nothing of it but its end.
+Where the equilibrium that it comes to is unstable, the riser leaves it in its mode of buckling: the first move is
+small, and the drag is that in which the mode grows to a multiple in each step, until the tangent is stable without it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from mpi4py import MPI
 
+from riser_soil.buckling import buckling_mode, stabilising_drag
 from riser_soil.errors import SolveError
 from riser_soil.newton import Newton, NewtonSettings, NotConvergedError, Solution, Step, UnstableError
 from riser_soil.part import Model, State
 from riser_soil.riser.line import Line
 from riser_soil.riser.relaxation import Relaxation
+from riser_soil.roles import Remembering
 from riser_soil.system import Clock, System
 from riser_soil.time_scheme import Static
 
 FREE_FALL = 0.1  # the first step lets the riser fall by about this many element lengths
 STIFFEST = 1e8  # drag over the first
 MOST_STEPS = 2000
-NUDGE = 1e-4  # element lengths
+NUDGE = 1e-4  # element lengths: the first move away from an unstable equilibrium
+NEAR = 1.0  # element lengths to an unstable equilibrium that is left
 MOST_ATTEMPTS = 50  # at an equilibrium without drag
 QUICK = 6  # Newton iterations up to which the drag is lowered
 NEARLY_THERE = 1e-2  # largest increment, in element lengths, from which equilibrium without drag is tried
 
 
+@dataclass
+class Relaxed:
+    """What it took: Newton iterations, and unstable equilibria that were left on the way."""
+
+    iterations: int = 0
+    branch_switches: int = 0
+
+
 def relax(
     comm: MPI.Intracomm, model: Model, line: Line, weight: float, settings: NewtonSettings, clock: Clock, t: float
-) -> int:
-    """Bring the line to equilibrium at the load factor t and commit it; the number of Newton iterations spent.
+) -> Relaxed:
+    """Bring the line to a stable equilibrium at the load factor t and commit it.
 
     weight: typical force per length [N/m]. Raises SolveError when no equilibrium is found.
     """
     part = Relaxation(line, weight / (FREE_FALL * line.length.min()))
     system = System(comm, Model(model.fields, [*model.parts, part]), clock)
-    newton = Newton(system, settings)
+    newton = Newton(system, replace(settings, least_iterations=1))  # a slow move's forces may pass for balance
     try:
         return _descend(system, newton, part, line, t)
     finally:
@@ -46,10 +60,13 @@ def relax(
 
 @dataclass
 class Attempts:
-    """At an equilibrium without drag. After n failures for want of stability the next comes n steps later."""
+    """At an equilibrium without drag. After n failures for want of stability the next comes n steps later, and after an
+    unstable equilibrium was left not before the tangent is stable.
+    """
 
     failures: int = 0
     wait: int = 0
+    leaving: bool = False
 
     def due(self) -> bool:
         self.wait -= 1
@@ -62,13 +79,18 @@ class Attempts:
             raise SolveError(f"dynamic relaxation ends in no stable equilibrium: {failure}") from failure
 
 
-def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: float) -> int:
-    stiffest, iterations, moved, attempts = part.drag * STIFFEST, 0, np.inf, Attempts()
+def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: float) -> Relaxed:
+    stiffest, done, moved, attempts = part.drag * STIFFEST, Relaxed(), np.inf, Attempts()
     for _ in range(MOST_STEPS):
-        if moved < NEARLY_THERE * line.length.min() and attempts.due():
+        slow = moved < NEARLY_THERE * line.length.min()
+        if slow and attempts.due() and not _still_leaving(newton, part, t, attempts):
             found = _without_drag(system, newton, part, line, t, attempts)
+            done.branch_switches += attempts.leaving
             if found is not None:
-                return iterations + found.iterations
+                done.iterations += found.iterations
+                return done
+        if attempts.leaving:
+            _stabilise(newton, part, t)
         try:
             solution = _step(system, newton, part, t, part.drag)
         except NotConvergedError as failure:
@@ -76,7 +98,7 @@ def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: fl
             if part.drag > stiffest:
                 raise SolveError(f"dynamic relaxation fails even in tiny pseudo-time steps: {failure}") from failure
             continue
-        iterations += solution.iterations
+        done.iterations += solution.iterations
         moved = _largest_increment(system, line, solution)
         part.drag *= 0.4 if solution.iterations <= QUICK else 1.0
     raise SolveError(f"dynamic relaxation finds no equilibrium in {MOST_STEPS} pseudo-time steps")
@@ -85,14 +107,42 @@ def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: fl
 def _without_drag(
     system: System, newton: Newton, part: Relaxation, line: Line, t: float, attempts: Attempts
 ) -> Solution | None:
-    """An equilibrium where there is a stable one; nudged off where it is not."""
+    """An equilibrium where there is a stable one; one that is not is left where it is near."""
     try:
         return _step(system, newton, part, t, drag=0.0)
     except NotConvergedError as failure:
         attempts.count(failure)
-        if isinstance(failure, UnstableError):
-            _nudge(system, line, t)
+        if isinstance(failure, UnstableError) and _is_near(system, line, failure.solution):
+            _leave(system, newton, part, line, failure.solution)
+            attempts.leaving, attempts.wait = True, 0
     return None
+
+
+def _still_leaving(newton: Newton, part: Relaxation, t: float, attempts: Attempts) -> bool:
+    """Whether the tangent is unstable where the riser is since it left an unstable equilibrium."""
+    attempts.leaving = attempts.leaving and not _stable(newton, part, t, 0.0)
+    return attempts.leaving
+
+
+def _stable(newton: Newton, part: Relaxation, t: float, drag: float) -> bool:
+    """Whether the tangent at the accepted state is stable with a drag."""
+    usual, part.drag = part.drag, drag
+    try:
+        return newton.unstable_modes(_still(newton.system, t)) == 0
+    finally:
+        part.drag = usual
+
+
+def _stabilise(newton: Newton, part: Relaxation, t: float, least: bool = False) -> None:
+    """Raise the drag, if need be, to where a step grows in the mode and does not turn to its other side, or to the
+    least such drag.
+    """
+    if least or not _stable(newton, part, t, part.drag):
+        part.drag = stabilising_drag(part.drag, lambda drag: _stable(newton, part, t, drag))
+
+
+def _still(system: System, t: float) -> State:
+    return State.at_rest(t, system.numbering.size)
 
 
 def _step(system: System, newton: Newton, part: Relaxation, t: float, drag: float) -> Solution:
@@ -102,24 +152,41 @@ def _step(system: System, newton: Newton, part: Relaxation, t: float, drag: floa
     riser that falls away from an unstable one, but return to it.
     """
     usual, part.drag = part.drag, drag
-    size = system.numbering.size
-    step = Step(Static(), State.at_rest(t, size), t, 0.0, None, np.zeros(size))
+    step = Step(Static(), _still(system, t), t, 0.0, None, np.zeros(system.numbering.size))
     try:
         solution = newton.solve(step)
-        newton.require_stable(step, solution)
+        newton.require_stable(solution)
     finally:
         part.drag = usual
-    system.commit(solution.state)
+    if drag > 0.0:
+        _pass_through(system, solution.state)
+    else:
+        system.commit(solution.state)
     return solution
 
 
-def _nudge(system: System, line: Line, t: float) -> None:
-    """Move the free nodes off a symmetric shape, by little and always in the same way, and commit."""
-    state = State.at_rest(t, system.numbering.size)
-    moves = np.random.default_rng(1).uniform(-NUDGE, NUDGE, (line.nodes, line.dimension)) * line.length.min()
-    line.nodal(state.u)[:, : line.dimension] = moves
-    state.u[system.held] = 0.0
+def _pass_through(system: System, state: State) -> None:
+    """Commit a state that is none of the stage's, so that its forces leave no trace."""
+    remembering = [part for part in system.model.parts if isinstance(part, Remembering)]
+    kept = [part.memory for part in remembering]
     system.commit(state)
+    for part, memory in zip(remembering, kept, strict=True):
+        part.memory = memory
+
+
+def _is_near(system: System, line: Line, solution: Solution) -> bool:
+    return _largest_increment(system, line, solution) < NEAR * float(line.length.min())
+
+
+def _leave(system: System, newton: Newton, part: Relaxation, line: Line, unstable: Solution) -> None:
+    """Commit an unstable equilibrium, and a small move from there in the mode in which it is left fastest."""
+    _pass_through(system, unstable.state)
+    t = unstable.state.t
+    _stabilise(newton, part, t, least=True)
+    mode = buckling_mode(system, part, line, _still(system, t), Static().weights(0.0))
+    moved = _still(system, t)
+    moved.u[:] = NUDGE * line.length.min() * mode
+    _pass_through(system, moved)
 
 
 def _largest_increment(system: System, line: Line, solution: Solution) -> float:

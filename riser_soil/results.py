@@ -15,6 +15,7 @@ import numpy as np
 from riser_soil import folder as run_folder
 from riser_soil.arrays import Array, IntArray
 from riser_soil.errors import ResultsError
+from riser_soil.growing_file import reading
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +45,8 @@ class Run:
             if name not in file:
                 known = ", ".join(sorted(file))
                 raise ResultsError(f"{self.folder}: results.nc has no {name}; it has {known}")
-            values: Array = file[name][...]
+            stored = file[name]
+            values: Array = (stored.asstr() if h5py.check_string_dtype(stored.dtype) else stored)[...]
         return values
 
     @cached_property
@@ -75,7 +77,7 @@ class Run:
 
     @property
     def has_soil(self) -> bool:
-        return (self.folder / run_folder.SOIL_XDMF).is_file()
+        return (self.folder / run_folder.SOIL_NUMBERS).is_file()
 
     @cached_property
     def soil_times(self) -> Array:
@@ -94,6 +96,8 @@ class Run:
     @cached_property
     def _soil_grids(self) -> list[Any]:
         path = self.folder / run_folder.SOIL_XDMF
+        if self.has_soil and not path.exists():
+            return []  # it comes with the first frame
         try:
             return ElementTree.parse(path).findall("Domain/Grid/Grid")
         except (OSError, ElementTree.ParseError) as err:
@@ -102,12 +106,12 @@ class Run:
     def _heavy(self, element: Any) -> Any:
         """The array in the HDF5 file that the element's data item names."""
         file, where = element.find("DataItem").text.strip().split(":")
-        with h5py.File(self.folder / file, "r", locking=False) as store:
+        with reading(self.folder / file) as store:
             return store[where][...]
 
     def _open_series(self) -> h5py.File:
         path = self.folder / run_folder.SERIES
         try:
-            return h5py.File(path, "r", locking=False)
+            return reading(path)
         except OSError as err:
             raise ResultsError(f"{path}: cannot be read: {err}") from err

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 from riser_soil.arrays import Array
 from riser_soil.part import State
@@ -22,6 +22,13 @@ class Foreseeing(Protocol):
     """A part or field that knows a better first guess of a step than the last increment."""
 
     def improve(self, guess: State) -> Array: ...
+
+
+@runtime_checkable
+class Remembering(Protocol):
+    """A part whose forces depend on the way there; `memory` is what it keeps of that way, replaced by each commit."""
+
+    memory: Any
 
 
 @runtime_checkable

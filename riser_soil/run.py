@@ -13,15 +13,16 @@ from riser_soil.auto_steps import AutoSteps
 from riser_soil.build import World, build
 from riser_soil.build.stage import scheme_of, times_to_hit
 from riser_soil.doubts import physical_warnings
-from riser_soil.errors import SolveError
-from riser_soil.folder import refuse_finished
+from riser_soil.errors import Interruption, SceneError, SolveError, WriteError
+from riser_soil.interruption import agreeing, check, listening, undivided
 from riser_soil.limits import size_that_fits, tell, too_long
 from riser_soil.local_error import first_step
 from riser_soil.march import Accepted, March
 from riser_soil.newton import Newton, NewtonSettings
 from riser_soil.observe import Observer
-from riser_soil.part import Energy, Model, State
-from riser_soil.relax import relax
+from riser_soil.ownership import refuse
+from riser_soil.part import Model, State
+from riser_soil.relax import Relaxed, relax
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.stepping import Control, StepControl
@@ -30,26 +31,50 @@ from riser_soil.system import Clock, System
 MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
 
 
-def run(scene: Scene, folder: Path, force: bool = False) -> None:
+def run(scene: Scene, folder: Path | str, force: bool = False) -> None:
     """Run a scene and leave its results in a folder; collective over all ranks.
 
-    force: overwrite a finished run. Raises SceneError, MeshError or SolveError; after the last the folder keeps
-    everything up to the last accepted step, marked unfinished.
+    force: overwrite a finished run. Raises SceneError or MeshError before anything is computed. After SolveError, and
+    Interruption at Ctrl-C or SIGTERM, the folder keeps everything up to the last accepted step, after WriteError what
+    went in; it is marked unfinished.
     """
-    refuse_finished(folder, force)
-    comm, clock, since = MPI.COMM_WORLD, Clock.new(), time.perf_counter()
-    size = size_that_fits(scene, folder, comm)
-    tell(size, comm)
-    world = build(scene, comm)
-    clock.add("build", since)
-    for doubt in (*physical_warnings(world), *too_long(size)):
-        if comm.rank == 0:
-            print(f"warning: {doubt}")
-    with Observer.open(world, clock, folder, force) as observer:
+    folder = Path(folder)
+    with listening():
+        _refuse(folder, force)
+        comm, clock, since = MPI.COMM_WORLD, Clock.new(), time.perf_counter()
+        size = size_that_fits(scene, folder, comm)
+        tell(size, comm)
+        world = build(scene, comm)
+        clock.add("build", since)
+        for doubt in (*physical_warnings(world), *too_long(size)):
+            if comm.rank == 0:
+                print(f"warning: {doubt}")
+        with agreeing(comm), Observer.open(world, clock, folder, force) as observer:
+            _take_all(world, observer, clock)
+
+
+def _refuse(folder: Path, force: bool) -> None:
+    """On all ranks by what the first one sees."""
+    comm, failure = MPI.COMM_WORLD, None
+    if comm.rank == 0:
+        try:
+            refuse(folder, force)
+        except (SceneError, WriteError) as err:
+            failure = err
+    if failure := comm.bcast(failure):
+        raise failure
+
+
+def _take_all(world: World, observer: Observer, clock: Clock) -> None:
+    try:
         before = lay(world, observer, clock)
-        for stage in scene.stages:
+        for stage in world.scene.stages:
             before = run_stage(world, stage, before, observer, clock)
-        observer.finish()
+        with undivided():
+            observer.finish()
+    except (SolveError, Interruption) as end:
+        observer.record_last(end)
+        raise
 
 
 def lay(world: World, observer: Observer, clock: Clock) -> State:
@@ -69,11 +94,11 @@ def lay(world: World, observer: Observer, clock: Clock) -> State:
 class Follower(Protocol):
     """Who is told how a stage goes on."""
 
-    def begin_stage(self, stage: Stage, energy: Energy) -> None: ...
+    def begin_stage(self, stage: Stage, march: March) -> None: ...
 
     def record(self, march: March, step: Accepted, last: bool) -> None: ...
 
-    def relaxed(self, iterations: int) -> None: ...
+    def relaxed(self, relaxed: Relaxed) -> None: ...
 
 
 @dataclass
@@ -83,13 +108,13 @@ class Laying:
     steps: int = 0
     relaxations: int = 0
 
-    def begin_stage(self, stage: Stage, energy: Energy) -> None:
+    def begin_stage(self, stage: Stage, march: March) -> None:
         pass
 
     def record(self, march: March, step: Accepted, last: bool) -> None:
         self.steps += 1
 
-    def relaxed(self, iterations: int) -> None:
+    def relaxed(self, relaxed: Relaxed) -> None:
         self.relaxations += 1
 
 
@@ -103,11 +128,23 @@ def _take(world: World, model: Model, stage: Stage, before: State, observer: Fol
     newton = Newton(system, _settings(world))
     try:
         march = March(system, newton, scheme_of(stage), replace(before, t=0.0))
-        observer.begin_stage(stage, march.energy)
+        with undivided():
+            observer.begin_stage(stage, march)
         return _walk(world, stage, march, observer)
+    except SolveError as err:
+        raise SolveError(f"{err}{_overload(world)}") from err
     finally:
         newton.destroy()
         system.destroy()
+
+
+def _overload(world: World) -> str:
+    """What the ground has to do with a failure."""
+    if not world.contacts:
+        return ""
+    from riser_soil.overload import overload
+
+    return overload(world)
 
 
 def _walk(world: World, stage: Stage, march: March, observer: Follower) -> State:
@@ -115,8 +152,10 @@ def _walk(world: World, stage: Stage, march: March, observer: Follower) -> State
     while not control.finished:
         static = isinstance(stage, StaticStage)
         step = _static_step(world, march, control, observer) if static else march.advance(control)
-        march.commit(step, control)
-        observer.record(march, step, last=control.finished)
+        with undivided():
+            march.commit(step, control)
+            observer.record(march, step, last=control.finished)
+        check(world.comm)
     return march.before
 
 
@@ -137,12 +176,12 @@ def _relaxed(world: World, march: March, control: Control, observer: Follower) -
     """Whether an equilibrium was found at the load factor that Newton's method missed; else the step is halved."""
     system, settings = march.system, _settings(world)
     try:
-        iterations = relax(world.comm, system.model, world.line, world.weight, settings, system.clock, control.target)
+        relaxed = relax(world.comm, system.model, world.line, world.weight, settings, system.clock, control.target)
     except SolveError:
         if not march.depends_on(control) or not control.cut():
             raise
         return False
-    observer.relaxed(iterations)
+    observer.relaxed(relaxed)
     march.restart()
     return True
 
@@ -157,8 +196,9 @@ def steps_of(world: World, stage: Stage, march: March) -> Control:
     solver = world.scene.solver
     if isinstance(stage, StaticStage):
         return StepControl(1.0, 1.0 / solver.load_steps, solver.min_load_step)
+    smallest = world.smallest_step(stage)
     if stage.time_step == "auto":
-        first = first_step(march.system, march.now, stage.error_tolerance)
-        stops = times_to_hit(world.scene, stage)
-        return AutoSteps(stage.duration, stage.error_tolerance, solver.min_time_step, first, stops)
-    return StepControl(stage.duration, stage.time_step, solver.min_time_step)
+        tolerance = world.error_tolerance(stage)
+        first = first_step(march.system, march.now, tolerance)
+        return AutoSteps(stage.duration, tolerance, smallest, first, times_to_hit(world.scene, stage))
+    return StepControl(stage.duration, stage.time_step, smallest)

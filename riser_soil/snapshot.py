@@ -24,7 +24,7 @@ class RiserSnapshot:
     bending_moment: Array  # (nn,) N.m, magnitude >= 0
     curvature: Array  # (nn,) 1/m, magnitude >= 0
     bend_utilisation: Array  # (nn,) curvature times the least bend radius allowed; nan where none is given
-    contact_force: Array  # (nn,) N/m, magnitude >= 0
+    contact_force: Array  # (nn,) N/m, positive where the ground pushes, negative where it holds the riser by suction
     moment_vector: Array  # (nn, 3) N.m, exerted by the part towards `end` on the part towards `start`
     start_force: Array  # (3,) N
     end_force: Array  # (3,) N

@@ -40,7 +40,7 @@ _PLACES: tuple[tuple[tuple[str, ...], int], ...] = (
     *((("end", name), size) for name, size in _END),
     *(((name,), size) for name, size in _WHOLE),
 )
-_NOT_PLAIN = ("extremes", "energy", "worst_residual", "tightest")
+_NOT_PLAIN = ("extremes", "energy", "worst_residual", "tightest", "doubts")
 DOUBTFUL = 0.01  # share of the energy turned over above which what is wrong in its balance is a warning
 
 
@@ -171,11 +171,13 @@ class StageTally:
     most_newton_iterations: int = 0
     step_cuts: int = 0
     relaxations: int = 0
+    branch_switches: int = 0
     final: dict[str, Any] | None = None
     extremes: Extremes = field(default_factory=Extremes)
     energy: Ledger = field(default_factory=Ledger)
     tightest: Bend = Bend()
     worst_residual: tuple[float, float] = (0.0, math.nan)  # of the energy balance [J], and its time [s]
+    doubts: tuple[str, ...] = ()  # what is not plausible about the riser's shape, forces and surroundings
 
     def balance(self, t: float, ledger: Ledger) -> None:
         """t: s, total simulated time."""
@@ -221,7 +223,7 @@ class StageTally:
     def warnings(self) -> list[str]:
         """What is doubtful about the stage's results, with numbers and a remedy."""
         off = energy_warnings(self.energy, *self.worst_residual) if self.kind == "dynamic" else ()
-        return [*self.tightest.warnings("s" if self.kind == "dynamic" else "of the load"), *off]
+        return [*self.tightest.warnings("s" if self.kind == "dynamic" else "of the load"), *self.doubts, *off]
 
 
 class Summary:

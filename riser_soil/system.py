@@ -13,7 +13,7 @@ from mpi4py import MPI
 from riser_soil.arrays import Array, BoolArray, IntArray
 from riser_soil.matrix import Matrix
 from riser_soil.numbering import Numbering
-from riser_soil.part import Block, Energy, Field, Forces, Impulsive, Model, Part, State, Weights, Work
+from riser_soil.part import Block, Energy, Field, Forces, Model, Part, Slender, State, Weights, Work
 
 
 @dataclass
@@ -37,20 +37,32 @@ class Clock:
 
 
 class System:
-    """Residual and matrix over the free dofs of the model's fields; collective over `comm`."""
+    """Residual and matrix over the free dofs of the model's fields; collective over `comm`.
+
+    smooth: whether no forces are taken at the end of the step alone, so that none may jump, as contact's do.
+    lever: see `Slender`; levers (size,): that of each local dof, 1 for translations.
+    """
 
     def __init__(self, comm: MPI.Intracomm, model: Model, clock: Clock) -> None:
         self.comm, self.model, self.clock = comm, model, clock
         self.numbering = Numbering(comm, model.fields)
         self.prescribed: BoolArray = self._gather_prescribed()
         self.held: IntArray = np.flatnonzero(self.prescribed)
-        self.symmetric: bool = comm.allreduce(all(p.symmetric for p in model.parts), MPI.LAND)
-        meets = any(set(part.blocks()) - {"riser"} or isinstance(part, Impulsive) for part in model.parts)
-        self.riser_alone: bool = not comm.allreduce(meets, MPI.LOR)
+        self.lever, self.levers = self._weigh_moments()
+        self.symmetric: bool = comm.allreduce(all(p.traits.symmetric for p in model.parts), MPI.LAND)
+        self.smooth: bool = not comm.allreduce(any("E" in p.traits.groups for p in model.parts), MPI.LOR)
         self.matrix = self._new_matrix()
 
     def _gather_prescribed(self) -> BoolArray:
         return np.concatenate([f.prescribed for f in self.model.fields])
+
+    def _weigh_moments(self) -> tuple[float, Array]:
+        riser, levers = self.model.fields[0], np.ones(self.numbering.size)
+        if not isinstance(riser, Slender):
+            return 1.0, levers
+        levers[riser.offset : riser.offset + riser.size] = riser.lever
+        levers[riser.translation_dofs] = 1.0
+        return riser.lever, levers
 
     def _new_matrix(self) -> Matrix:
         blocks: dict[str, Block] = {}

@@ -25,7 +25,10 @@ def wave_doubts(scene: Scene) -> Iterator[str]:
     assert scene.water.waves is not None
     waves, h = scene.water.waves, scene.water_depth
     k = float(wave_number(np.array([2.0 * np.pi / waves.period]), scene.gravity, h)[0])
-    yield from (_steep(waves, k, h) if waves.airy else _steep_sea(scene.gravity, waves))
+    if waves.airy is not None:
+        yield from _steep(waves, k, h)
+    if waves.jonswap is not None:
+        yield from _steep_sea(scene.gravity, waves)
     yield from _shallow(waves, k, h)
     yield from _other_depth(scene)
     if all(isinstance(stage, StaticStage) for stage in scene.stages):

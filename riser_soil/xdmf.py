@@ -1,30 +1,24 @@
 """XDMF time series for ParaView and VTK: numbers in HDF5, structure in XML, readable at any moment.
 
-One temporal collection of uniform grids. The HDF5 file is written and closed before the XML that points into
-it is replaced, so that the XML never names what is not there.
+One temporal collection of uniform grids. The HDF5 file gets its numbers before the XML that points into it, so that the
+XML never names what is not there.
 """
 
 from __future__ import annotations
 
-import os
+import io
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 import h5py
 import numpy as np
-import numpy.typing as npt
 
 from riser_soil.arrays import Array, IntArray
-from riser_soil.folder import replacing, write_atomically
+from riser_soil.growing_file import GrowingFile, appending
+from riser_soil.ownership import PROGRAM, XDMF_HEAD
 
-Table = npt.NDArray[np.float64] | npt.NDArray[np.int64]
 _CELLS = {4: "Tetrahedron", 8: "Hexahedron", 10: "Tetrahedron_10"}
-_HEAD = """<?xml version="1.0"?>
-<Xdmf Version="3.0">
- <Domain>
-  <Grid Name={name} GridType="Collection" CollectionType="Temporal">
-"""
 _FOOT = "  </Grid>\n </Domain>\n</Xdmf>\n"
 
 
@@ -42,7 +36,8 @@ class Frame:
 
 
 class XdmfFile:
-    """Writer of PATH.xdmf and the HDF5 file of the same name beside it.
+    """Writer of PATH.xdmf and the HDF5 file of the same name beside it. The former comes with the first frame: VTK's
+    reader, and ParaView with it, dies of a collection without any.
 
     cells: (nc, k) point numbers in VTK's order: k = 4, 8 or 10; or (1, np) with `polyline`.
     points: (np, 3) m for a mesh that stays; None when each frame brings its own geometry.
@@ -51,17 +46,20 @@ class XdmfFile:
     def __init__(
         self, path: Path, name: str, cells: IntArray, points: Array | None = None, *, polyline: bool = False
     ) -> None:
-        self._path = path
-        self._heavy = path.with_suffix(".h5")
-        self._head = _HEAD.format(name=quoteattr(name))
+        heavy = path.with_suffix(".h5")
+        self._heavy_name = heavy.name
         self._frames = 0
         self._waiting: list[Frame] = []
-        with replacing(self._heavy) as draft, h5py.File(draft, "w") as store:
+        content = io.BytesIO()
+        with h5py.File(content, "w") as store:
+            store.attrs["source"] = PROGRAM
             item = self._store(store, "cells", np.asarray(cells, dtype=np.int64))
             self._points = None if points is None else self._store(store, "points", points)
+        self._heavy = GrowingFile(heavy, content.getvalue())
         kind = _polyline_of(cells) if polyline else f'TopologyType="{_CELLS[cells.shape[1]]}"'
         self._topology = f'<Topology {kind} NumberOfElements="{len(cells)}">{item}</Topology>'
-        write_atomically(path, self._head + _FOOT)
+        self._path, self._head = path, XDMF_HEAD.format(name=quoteattr(name))
+        self._text: GrowingFile | None = None
 
     def add(self, frame: Frame) -> None:
         """Takes a copy of one frame, later than the ones before; it lives in memory until `flush`."""
@@ -73,11 +71,16 @@ class XdmfFile:
         """Writes the waiting frames: first the numbers, then the XML."""
         if not self._waiting:
             return
-        with replacing(self._heavy) as draft, h5py.File(draft, "r+") as store:
+        with appending(self._heavy) as store:
             grids = [self._grid(store, self._frames + i, frame) for i, frame in enumerate(self._waiting)]
         self._frames += len(grids)
         self._waiting.clear()
         self._append("".join(grids))
+
+    def close(self) -> None:
+        self._heavy.close()
+        if self._text is not None:
+            self._text.close()
 
     def _grid(self, store: h5py.File, number: int, frame: Frame) -> str:
         group = f"frame_{number:06d}"
@@ -94,20 +97,23 @@ class XdmfFile:
         lines += [_attribute(name, "Cell", v, items[name]) for name, v in frame.on_cells.items()]
         return "".join(f"   {line}\n" for line in [*lines, "</Grid>"])
 
-    def _store(self, store: h5py.File, where: str, values: Table) -> str:
+    def _store(self, store: h5py.File, where: str, values: Array | IntArray) -> str:
         store[where] = values
         dims = " ".join(str(n) for n in values.shape)
         number = "Int" if values.dtype.kind == "i" else "Float"
         return (
             f'<DataItem Dimensions="{dims}" NumberType="{number}" Precision="8" Format="HDF">'
-            f"{self._heavy.name}:/{where}</DataItem>"
+            f"{self._heavy_name}:/{where}</DataItem>"
         )
 
     def _append(self, grids: str) -> None:
         """Put grids behind the last one; the text itself stays on disk, so that memory doesn't grow with the run."""
-        with replacing(self._path) as draft, draft.open("r+b") as text:
-            text.seek(-len(_FOOT), os.SEEK_END)
-            text.write((grids + _FOOT).encode())
+        added = (grids + _FOOT).encode()
+        if self._text is None:
+            self._text = GrowingFile(self._path, self._head.encode() + added)
+            return
+        end = self._text.size - len(_FOOT)
+        self._text.update({end: added}, end + len(added))
 
 
 def polyline(nodes: int) -> IntArray:

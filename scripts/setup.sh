@@ -1,6 +1,10 @@
 #!/bin/bash
 # Makes everything riser_soil needs: Debian packages, the environment .venv, and riser_soil itself in it.
 # A second call finds the stamp of the first, looks whether all modules are still there, and does nothing.
+#
+#   scripts/setup.sh                 all that is needed to run riser_soil, to test it and to work on it
+#   scripts/setup.sh dependencies    what a run needs, without riser_soil itself; this file and requirements/ are enough
+#   scripts/setup.sh project         riser_soil itself, where its dependencies are
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
@@ -16,10 +20,10 @@ debian_packages=(
     libopenblas0-serial # without it MUMPS falls back to the reference BLAS, seven times slower
     libegl1 libegl-mesa0 libgl1-mesa-dri # pictures without a display
 )
-modules=(
+run_modules=(
     dolfinx petsc4py mpi4py gmsh numpy scipy h5py numba pydantic typer rich ruamel.yaml h5netcdf pyvista matplotlib
-    pytest xdist hypothesis xarray riser_soil
 )
+dev_modules=(pytest xdist hypothesis xarray ruff mypy)
 
 main() {
     export LC_ALL=C.UTF-8
@@ -31,23 +35,43 @@ main() {
     fi
     mkdir -p "$logs" && exec 9>"$logs/lock" || exit 1
     flock 9 # two set-ups at once would break each other's environment
+    case ${1:-all} in
+        all) set_up_all ;;
+        dependencies) set_up_dependencies run ;;
+        project) set_up_project "${run_modules[@]}" ;;
+        *)
+            echo "set-up: \"$1\" is unknown; give dependencies, project or nothing, for both and what tests need" >&2
+            exit 2
+            ;;
+    esac
+}
+
+set_up_all() {
     if is_complete; then
         echo "set-up: nothing to do"
         return
     fi
-    step debian "Debian packages" install_debian_packages
-    step venv "environment .venv on $python" make_venv
-    step packages "Python packages at pinned versions" install_python_packages
-    step project "riser_soil itself" install_project
-    step check "check that everything imports" check_imports
+    set_up_dependencies run dev
+    set_up_project "${run_modules[@]}" "${dev_modules[@]}"
     fingerprint >"$venv/stamp"
     echo "set-up: done in $SECONDS s"
 }
 
-step() { # name, title, function: runs it with its output in a log, of which a failure shows the end
+set_up_dependencies() { # lists of pins
+    step debian "Debian packages" install_debian_packages
+    step venv "environment .venv on $python" make_venv
+    step packages "Python packages at pinned versions" install_python_packages "$@"
+}
+
+set_up_project() { # modules that must be there
+    step project "riser_soil itself" install_project
+    step check "check that everything imports" check_imports "$@" riser_soil
+}
+
+step() { # name, title, function and its arguments: runs it with its output in a log, of which a failure shows the end
     local log=$logs/$1.log started=$SECONDS
     echo "set-up: $2 ..."
-    ( set -e; "$3" ) >"$log" 2>&1 9>&-
+    ( set -e; "${@:3}" ) >"$log" 2>&1 9>&-
     local status=$?
     if [ $status -ne 0 ]; then
         echo "set-up: FAILED at the step \"$2\" after $((SECONDS - started)) s. Last lines of $log:" >&2
@@ -78,7 +102,7 @@ origin() { # an environment serves one place (scripts in .venv/bin hold the path
 
 modules_present() {
     "$venv/bin/python" -c 'import sys; from importlib.util import find_spec
-sys.exit(not all(find_spec(name) for name in sys.argv[1:]))' "${modules[@]}" 2>/dev/null
+sys.exit(not all(find_spec(name) for name in sys.argv[1:]))' "${run_modules[@]}" "${dev_modules[@]}" riser_soil 2>/dev/null
 }
 
 missing_debian_packages() {
@@ -116,17 +140,13 @@ venv_usable() { # not when its set-up was interrupted, when it was moved, made w
     "$venv/bin/python" -m pip --version
 }
 
-install_python_packages() {
+install_python_packages() { # lists of pins
+    local name files=()
+    for name in "$@"; do files+=(-r "$root/requirements/$name-pins.txt"); done
     rm -f "$venv/origin" "$venv/stamp"
-    "$venv/bin/python" - >"$venv/system-versions.txt" <<'PYTHON'
-from importlib.metadata import version
-
-for name in ("numpy", "scipy"):  # another numpy than the one Debian's PETSc was compiled with does not load
-    print(f"{name}=={version(name)}")
-PYTHON
-    "$venv/bin/python" -m pip install --disable-pip-version-check \
-        -c "$venv/system-versions.txt" -c "$root/requirements/pins.txt" \
-        -r "$root/requirements/run.txt" -r "$root/requirements/dev.txt"
+    # Nothing beyond the lists: another numpy than the one Debian's PETSc was compiled with does not load.
+    "$venv/bin/python" -m pip install --disable-pip-version-check --no-deps --only-binary :all: --require-hashes \
+        "${files[@]}"
     origin >"$venv/origin"
 }
 
@@ -134,9 +154,9 @@ install_project() {
     "$venv/bin/python" -m pip install --disable-pip-version-check --no-deps --no-index --no-build-isolation -e "$root"
 }
 
-check_imports() {
+check_imports() { # modules
     cd / && MPLBACKEND=Agg "$venv/bin/python" -c 'import importlib, sys
-for name in sys.argv[1:]: importlib.import_module(name)' "${modules[@]}" && return
+for name in sys.argv[1:]: importlib.import_module(name)' "$@" && return
     rm -f "$venv/origin"
     echo "The next set-up makes .venv afresh."
     return 1

@@ -1,18 +1,21 @@
 #!/bin/bash
-# Makes a bare Debian 12 in a temporary folder, clones the committed tree into it, runs the README's two commands there,
+# Makes a bare Debian in a temporary folder, clones the committed tree into it, runs the README's two commands there,
 # and proves that a second set-up does nothing and needs no network. Takes root and debootstrap.
 #
+#   FRESH_SUITE     Debian's release                                   (bookworm)
 #   FRESH_COMMANDS  commands to run instead, separated by semicolons   (make demo; make test)
 #   FRESH_MIRROR    where debootstrap fetches Debian from              (http://deb.debian.org/debian)
-#   FRESH_BIND      folders of this host to show read-only inside, e.g. a local package index that pip is configured for
+#   FRESH_BIND      more folders of this host to show read-only inside
 #   FRESH_KEEP      set: leave the folder there
-# This host's name resolution, certificates, and configuration of apt and pip (files and PIP_* variables) are copied.
+# This host's name resolution, certificates, and configuration of apt and pip (files and PIP_* variables) are copied, and
+# folders that pip is told to look into, such as a local index, are shown inside.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 inside=/home/riser_soil
-suite=bookworm
+suite=${FRESH_SUITE:-bookworm}
 commands=${FRESH_COMMANDS:-make demo; make test}
+config=${XDG_CONFIG_HOME:-$HOME/.config}
 
 main() {
     if [ "${1:-}" = --inside ]; then
@@ -29,7 +32,7 @@ main() {
     echo "verify-fresh: $(git -C "$fresh$inside" log -1 --format='commit %h, %s')"
     # All mounts live in a mount namespace of their own and vanish with it: clean_up can't reach through one of them.
     unshare --mount --pid --fork --kill-child "$0" --inside "$fresh"
-    echo "verify-fresh: passed"
+    echo "verify-fresh: passed on $suite"
 }
 
 fail() {
@@ -54,23 +57,27 @@ make_bare_debian() {
 }
 
 copy_host_configuration() {
-    local file
+    local path
     cp -L /etc/resolv.conf /etc/hosts "$fresh/etc/"
-    if grep -q "VERSION_CODENAME=$suite" /etc/os-release; then
+    cp -a /etc/apt/apt.conf.d/. "$fresh/etc/apt/apt.conf.d/"
+    cp -a /etc/apt/auth.conf.d/. "$fresh/etc/apt/auth.conf.d/"
+    if grep -q "VERSION_CODENAME=$suite" /etc/os-release; then # another release has other sources than this host
         rm -f "$fresh/etc/apt/sources.list"
         cp -a /etc/apt/. "$fresh/etc/apt/"
         cp -a /usr/share/keyrings/. "$fresh/usr/share/keyrings/"
     fi
     cp -a /usr/local/share/ca-certificates/. "$fresh/usr/local/share/ca-certificates/"
     chroot "$fresh" update-ca-certificates >/dev/null 2>&1
-    for file in /etc/pip.conf /etc/xdg/pip/pip.conf "$HOME/.pip/pip.conf" "${XDG_CONFIG_HOME:-$HOME/.config}/pip/pip.conf"; do
-        [ -f "$file" ] || continue
-        case $file in
-            "$HOME"/.pip/*) install -D -m 644 "$file" "$fresh/root/.pip/pip.conf" ;;
-            /etc/*) install -D -m 644 "$file" "$fresh$file" ;;
-            *) install -D -m 644 "$file" "$fresh/root/.config/pip/pip.conf" ;;
-        esac
-    done
+    for path in /etc/pip.conf /etc/xdg/pip; do copy "$path" "$path"; done
+    copy "$HOME/.pip" /root/.pip
+    copy "$config/pip" /root/.config/pip
+    [ -z "${PIP_CONFIG_FILE:-}" ] || copy "$PIP_CONFIG_FILE" "$PIP_CONFIG_FILE"
+}
+
+copy() { # a file or folder of this host, where it is there, to a place inside
+    [ -f "$1" ] || [ -d "$1" ] || return 0
+    mkdir -p "$fresh$(dirname "$2")"
+    cp -aLT "$1" "$fresh$2"
 }
 
 mount_and_run() { # the new root; runs in its own mount and process namespace
@@ -79,7 +86,7 @@ mount_and_run() { # the new root; runs in its own mount and process namespace
     mount --rbind /sys "$fresh/sys"
     mount --rbind /dev "$fresh/dev"
     local folder
-    for folder in ${FRESH_BIND:-}; do
+    for folder in $(pip_folders) ${FRESH_BIND:-}; do
         mkdir -p "$fresh$folder"
         mount --bind -o ro "$folder" "$fresh$folder"
     done
@@ -90,6 +97,13 @@ mount_and_run() { # the new root; runs in its own mount and process namespace
         timed "$command" in_fresh bash -c "cd $inside && $command"
     done
     timed "make setup again, without a network" second_setup
+}
+
+pip_folders() { # of this host, named in pip's configuration or in a PIP_* variable, outside of what is copied
+    local named
+    { cat /etc/pip.conf /etc/xdg/pip/* "$HOME"/.pip/* "$config"/pip/* ${PIP_CONFIG_FILE:-} 2>/dev/null || true; env | grep '^PIP_'; } \
+        | sed 's/^[^=]*=//; s#file://##g' | tr -s ' \t' '\n' | grep '^/' | sort -u \
+        | while read -r named; do [ ! -d "$named" ] || echo "$named"; done
 }
 
 in_fresh() { # runs a command in the new root with nothing of this host's environment but what pip and proxies need

@@ -462,14 +462,22 @@ CONFLICTS = [
     ),
 ]
 
-DURATION = "duration: 15.0\n    time_step: 0.1"
+TIME_STEP = "    time_step: 0.1"
+MOTION = "\n    motion:\n      end: {harmonic: {amplitude: [0.0, 0.0, 1.5], period: 10.0, ramp: 5.0}}\n"
 TOLERANCE = "stages.1.tolerance"
 AUTO_STEPS = [
     Bad("time_step: 0.1", "time_step: atuo", 32, "stages.1.time_step", '"atuo"', 'did you mean "auto"?'),
     Bad("time_step: 0.1", "time_step: 0.1\n    tolerance: 0.1", 33, TOLERANCE, "0.1", "of a given size have no"),
     Bad("time_step: 0.1", "time_step: auto\n    tolerance: 0", 33, TOLERANCE, "0", "must be greater than 0"),
     Bad("time_step: 0.1", "time_step: auto\n    tolerance: small", 33, TOLERANCE, '"small"', "must be a number"),
-    Bad(DURATION, "duration: 9e-6\n    time_step: auto", 31, "stages.1.duration", "9e-06", "min_time_step (1e-05 s)"),
+    Bad(
+        TIME_STEP + MOTION + "solver: {max_iterations: 20}",
+        "    time_step: auto" + MOTION + "solver: {min_time_step: 20.0}",
+        31,
+        "stages.1.duration",
+        "15.0",
+        "min_time_step (20 s)",
+    ),
 ]
 
 NOT_YET = [

@@ -27,7 +27,7 @@ def tangent(parts: Sequence[Part], state: State, weights: Weights = STATIC) -> A
     K = np.zeros((size, size))
     for part in parts:
         blocks = part.blocks()
-        values = {key: np.zeros(block.shape) for key, block in blocks.items()}
+        values = {key: block.zeros() for key, block in blocks.items()}
         part.tangent(state, weights, values)
         for key, block in blocks.items():
             np.add.at(K, (block.rows[:, :, None], block.cols[:, None, :]), values[key])

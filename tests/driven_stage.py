@@ -17,7 +17,8 @@ from riser_soil.build.stage import scheme_of
 from riser_soil.march import Accepted, March
 from riser_soil.newton import Newton, NewtonSettings
 from riser_soil.observe import Observer
-from riser_soil.part import Energy, State
+from riser_soil.part import State
+from riser_soil.relax import Relaxed
 from riser_soil.run import run_stage
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage, Stage
@@ -56,14 +57,14 @@ class Watcher(Observer):
         self._after = after
         self.relaxations = 0
 
-    def begin_stage(self, stage: Stage, energy: Energy) -> None:
-        self.energy_at_start = energy
+    def begin_stage(self, stage: Stage, march: March) -> None:
+        self.energy_at_start = march.energy
 
     def record(self, march: March, step: Accepted, last: bool) -> None:
         if self._after is not None:
             self._after(march, step)
 
-    def relaxed(self, iterations: int) -> None:
+    def relaxed(self, relaxed: Relaxed) -> None:
         self.relaxations += 1
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.arrays import Array
 from riser_soil.march import Accepted, March
-from riser_soil.part import Energy
+from riser_soil.relax import Relaxed
 from riser_soil.scene.stages import Stage
 from tests.coupled_scenes import Mapping
 
@@ -63,8 +63,8 @@ class Energies:
         self._rows: list[tuple[float, float, float, float]] = []
         self.cuts = 0
 
-    def begin_stage(self, stage: Stage, energy: Energy) -> None:
-        self._begun = energy.total
+    def begin_stage(self, stage: Stage, march: March) -> None:
+        self._begun = march.energy.total
 
     def record(self, march: March, step: Accepted, last: bool) -> None:
         """A step just committed; its kinetic energy is that of the pipe as it moves."""
@@ -72,7 +72,7 @@ class Energies:
         self._rows.append((march.energy.total, step.work, step.dissipated, by_contact))
         self.cuts += step.cuts
 
-    def relaxed(self, iterations: int) -> None:
+    def relaxed(self, relaxed: Relaxed) -> None:
         """Dynamic stages know no relaxation."""
 
     @property

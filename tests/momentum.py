@@ -34,15 +34,14 @@ def momentum(world: World, march: March) -> tuple[Array, Array]:
 
 
 def _of_sections(world: World, march: March, part: RotaryInertia | MidpointRotaryInertia) -> Array:
-    """Angular momentum of the sections about their centres: their mass on their normals d, sum of d x m d'."""
+    """Angular momentum of the sections about their centres: their mass on their directors d, sum of d x m d'."""
     line, trial = world.line, world.line.trial(march.now)
     still = np.zeros((line.nodes, line.frames.dofs))
-    normals = [directors(line.frames, k) for k in range(1, line.dimension)]
+    on = (part if isinstance(part, RotaryInertia) else part.instant).on_directors()
+    moving = [directors(line.frames, k) for k in on]
     W = line.nodal(march.now.v)[:, line.dimension :]
-    rates = [n.rates(W) for n in normals] if isinstance(part, RotaryInertia) else part.rates(march.now)
-    mass = (part if isinstance(part, RotaryInertia) else part.instant).of_ends[:, None, None]
+    rates = [d.rates(W) for d in moving] if isinstance(part, RotaryInertia) else part.rates(march.now)
+    impulses = [mass[:, None, None] * rate @ line.basis.T for mass, rate in zip(on.values(), rates, strict=True)]
     assert isinstance(trial.turn, SpatialTurn) == (line.dimension == 3)
-    pairs = zip(normals, rates, strict=True)
-    return np.asarray(
-        sum(np.cross(n.secant(still).mean @ line.basis.T, mass * r @ line.basis.T).sum(axis=(0, 1)) for n, r in pairs)
-    )
+    pairs = zip(moving, impulses, strict=True)
+    return np.asarray(sum(np.cross(d.secant(still).mean @ line.basis.T, p).sum(axis=(0, 1)) for d, p in pairs))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -10,7 +12,7 @@ import numpy as np
 
 from riser_soil.arrays import Array, IntArray
 from riser_soil.record import Recorder
-from riser_soil.schedule import Schedule
+from riser_soil.schedule import Due, Schedule
 from riser_soil.snapshot import (
     Ledger,
     RiserSnapshot,
@@ -110,6 +112,28 @@ def _ledger(heave: float) -> Ledger:
     return Ledger(kinetic=heave, work=heave + 1.0, residual=residual, turned_over=heave + 1.0)
 
 
+CATENARY_ARC = np.concatenate([np.arange(0.0, 50.0, 0.5), np.arange(50.0, 150.0, 2.0)])
+
+
+EVERYWHERE, NOWHERE = Due(series=True, pictures=True), Due(series=False, pictures=False)
+
+
+@contextmanager
+def a_recorder(folder: Path, kind: str = "dynamic", mesh: SoilMesh | None = None) -> Iterator[Recorder]:
+    """In its first stage."""
+    with Recorder.open(folder, FACTS, CATENARY_ARC, mesh, SCENE) as recorder:
+        recorder.begin_stage("only", kind)
+        yield recorder
+
+
+def step(
+    recorder: Recorder, t: float, due: Due = EVERYWHERE, pictured: SoilSnapshot | None = None
+) -> None:
+    """Tells the recorder of an accepted step."""
+    line, health = Catenary(32.0, 30.0 - 0.01 * t), StepHealth(3, 0.1, 1e-6, 0)
+    recorder.accept(t, due, line.riser(CATENARY_ARC), line.touch(CATENARY_ARC), health, _ledger(t), pictured)
+
+
 def record(
     folder: Path,
     *,
@@ -122,7 +146,7 @@ def record(
     finish: bool = True,
 ) -> Array:
     """Records a static stage and a dynamic stage of steps of 0.1 s. Returns the arc lengths."""
-    arc = np.concatenate([np.arange(0.0, 50.0, 0.5), np.arange(50.0, 150.0, 2.0)])
+    arc = CATENARY_ARC
     schedule = Schedule(interval, picture_interval)
     with Recorder.open(folder, FACTS, arc, mesh, SCENE, fields, force) as recorder:
         for name, kind, times in (

@@ -75,7 +75,9 @@ class Sample:
         return Inertia(self.line, self.elements.mass, masses(self.line, self.attached()))
 
     def rotary(self) -> RotaryInertia:
-        return RotaryInertia(self.line, self.elements.rotary_inertia)
+        """More about the pipe's axis than a round section has."""
+        across = self.elements.rotary_inertia
+        return RotaryInertia(self.line, across, 3.0 * across)
 
     def damping(self) -> StructuralDamping:
         return StructuralDamping(self.line, self.elements)

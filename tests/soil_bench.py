@@ -80,7 +80,7 @@ class Bench:
 def assemble(soil: Soil, state: State) -> sp.csr_matrix:
     """The soil's tangent as one matrix."""
     block = soil.blocks()["soil"]
-    values = {"soil": np.zeros(block.shape)}
+    values = {"soil": block.zeros()}
     soil.tangent(state, WEIGHTS, values)
     rows = np.broadcast_to(block.rows[:, :, None], block.shape).ravel()
     cols = np.broadcast_to(block.cols[:, None, :], block.shape).ravel()

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.arrays import Array, IntArray
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.arrays import Array, BoolArray, IntArray
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 
 
 class Chain:
@@ -14,11 +14,11 @@ class Chain:
     name, space = "chain", "chain"
 
     def __init__(self, z: Array, held: bool = False, owner: bool = True) -> None:
-        self.z = np.asarray(z, dtype=float)
+        self.z: Array = np.asarray(z, dtype=float)
         self.size, self.offset = len(self.z), 0
-        self.global_index = np.arange(self.size)
-        self.owned = np.full(self.size, owner)
-        self.prescribed = np.zeros(self.size, dtype=bool)
+        self.global_index: IntArray = np.arange(self.size)
+        self.owned: BoolArray = np.full(self.size, owner)
+        self.prescribed: BoolArray = np.zeros(self.size, dtype=bool)
         self.prescribed[0] = held
 
     @property
@@ -44,7 +44,7 @@ class Chain:
 
 
 class Inertia:
-    name, symmetric = "inertia", True
+    name, traits = "inertia", Traits("I", symmetric=True)
 
     def __init__(self, chain: Chain, mass: float) -> None:
         self.chain, self.mass = chain, mass / 2.0
@@ -76,7 +76,7 @@ class Inertia:
 class Springs:
     """Forces k e + c e^3 in the stretches e beyond the rest lengths, and weight."""
 
-    name, symmetric = "springs", True
+    name, traits = "springs", Traits("F", symmetric=True)
 
     def __init__(self, chain: Chain, rest: float, k: float, cubic: float = 0.0, weight: float = 0.0) -> None:
         self.chain, self.rest, self.k, self.cubic, self.weight = chain, rest, k, cubic, weight
@@ -113,7 +113,7 @@ class Springs:
 class Floor:
     """Penalty contact with the plane z = 0, fully implicit."""
 
-    name, symmetric = "contact", True
+    name, traits = "contact", Traits("E", symmetric=True)
 
     def __init__(self, chain: Chain, stiffness: float) -> None:
         self.chain, self.stiffness = chain, stiffness

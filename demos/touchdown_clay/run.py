@@ -5,7 +5,7 @@ Usage: python run.py [FOLDER], by default `results` beside this file. Leaves the
 
 from __future__ import annotations
 
-import sys
+import argparse
 from pathlib import Path
 
 from riser_soil.plots import picture
@@ -22,4 +22,6 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "results")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, nargs="?", default=HERE / "results", help="folder for the results")
+    main(parser.parse_args().folder)

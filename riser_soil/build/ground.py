@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 from mpi4py import MPI
 
 from riser_soil.arrays import Array
+from riser_soil.build.laws import hysteretic_law, soil_law
 from riser_soil.errors import SceneError
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
@@ -16,8 +16,7 @@ from riser_soil.scene.contact import Contact as ContactScene
 from riser_soil.scene.plane import vertical_plane
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed, Seabed, SpringSeabed
-from riser_soil.scene.seabed import Law as HystereticLaw
-from riser_soil.scene.soil import LinearElastic, MeshFile
+from riser_soil.scene.soil import GeneratedMesh, MeshFile
 from riser_soil.scene.soil import Soil as SoilScene
 
 if TYPE_CHECKING:
@@ -31,22 +30,17 @@ if TYPE_CHECKING:
     from riser_soil.soil.soil import Soil
 
 GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within it, three leave ten times the error
-NARROWEST_CORNER, WIDEST_CORNER = 1e-4, 1e-3  # m, of a penalty by default; a sharper one costs Newton iterations
-NOMINAL_DIAMETER = 0.1  # m, for stiffness and footprint of the contact of a line without an outer diameter
+# Of the outer diameter: a penalty's corner, sharper ones cost Newton iterations; the slide that mobilises friction.
+NARROWEST_CORNER, WIDEST_CORNER, MOBILISATION = 1.0 / 3000.0, 1.0 / 300.0, 1.0 / 30.0
 
 
 def soil_of(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Soil:
     """The continuum; meshed finely under the straight line between the riser's ends. Collective."""
-    from riser_soil.soil.linear_elastic import LinearElastic as Elastic
     from riser_soil.soil.soil import Soil
-    from riser_soil.soil.von_mises import VonMises
 
-    law = given.law
-    constants = law.model_dump(exclude={"kind"})
-    make = Elastic.at_depth if isinstance(law, LinearElastic) else VonMises.at_depth
     return Soil(
         _grid(scene, given, line, comm),
-        lambda depth: make(depth, **constants),
+        soil_law(given.law),
         level=scene.seabed_level,
         unit_weight=given.submerged_unit_weight,
         K0=given.K0,
@@ -57,10 +51,15 @@ def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Gr
     from riser_soil.build.soil_block import block_of
     from riser_soil.soil.grid import block_grid, file_grid
 
-    if isinstance(given.mesh, MeshFile):
-        return file_grid(comm, given.mesh.file)
-    first, last = (line.to_global(line.x[node])[:2].tolist() for node in (0, -1))
-    return block_grid(comm, block_of(scene, given, ((first[0], first[1]), (last[0], last[1]))))
+    match given.mesh:
+        case MeshFile():
+            return file_grid(comm, given.mesh.file)
+        case GeneratedMesh():
+            pass
+        case _:
+            assert_never(given.mesh)
+    first, last = ((float(x), float(y)) for x, y, _ in (line.to_global(line.x[node]) for node in (0, -1)))
+    return block_grid(comm, block_of(scene, given, (first, last)))
 
 
 def soil_contact_of(scene: Scene, settings: ContactScene, world: World) -> SoilContact:
@@ -69,7 +68,7 @@ def soil_contact_of(scene: Scene, settings: ContactScene, world: World) -> SoilC
     from riser_soil.contact.soil_contact import FOOTPRINT, SoilContact
 
     assert world.soil is not None
-    outer_radius = float(_at_nodes(0.5 * world.elements.outer_diameter).mean()) or 0.5 * NOMINAL_DIAMETER
+    outer_radius = float(_at_nodes(0.5 * world.elements.outer_diameter).mean()) or 0.5 * world.diameter
     return SoilContact(
         world.line,
         _at_nodes(contact_radius(scene, world.elements)),
@@ -92,7 +91,7 @@ def seabed_contact_of(scene: Scene, settings: ContactScene, world: World) -> Sea
         contact_radius(scene, world.elements),
         _ground(scene, scene.seabed),
         _law(scene.seabed, settings, world),
-        ENDS if settings.method == "node" else gauss(GAUSS_POINTS),
+        {"node": ENDS, "line": gauss(GAUSS_POINTS)}[settings.method],
         covered=world.soil_contact.covers if world.soil_contact is not None else None,
     )
 
@@ -105,14 +104,23 @@ def friction_of(settings: ContactScene, world: World) -> Friction | None:
     from riser_soil.contact.friction import Friction, mobilised_within
 
     mu = given.axial, given.axial if given.lateral is None else given.lateral
-    stiffness = mobilised_within(given.mobilisation, *mu, np.abs(world.elements.weight))
+    slide = MOBILISATION * world.diameter if given.mobilisation == "auto" else float(given.mobilisation)
+    stiffness = mobilised_within(slide, *mu, np.abs(world.elements.weight))
     return Friction(world.seabed, *mu, stiffness)
 
 
 def _law(seabed: Seabed, settings: ContactScene, world: World) -> NormalLaw:
     """How the seabed answers to penetration."""
-    if isinstance(seabed, HystereticSeabed):
-        return _hysteretic(seabed.law, world.elements)
+    match seabed:
+        case HystereticSeabed():
+            return hysteretic_law(seabed.law, world.elements)
+        case RigidSeabed() | SpringSeabed():
+            return _penalty(settings, world)
+        case _:
+            assert_never(seabed)
+
+
+def _penalty(settings: ContactScene, world: World) -> NormalLaw:
     from riser_soil.contact.law import Penalty
 
     penalty = Penalty(world.contact_stiffness["seabed"], smoothing(settings, world, "seabed"))
@@ -127,19 +135,6 @@ def _law(seabed: Seabed, settings: ContactScene, world: World) -> NormalLaw:
             f"{penalty.stiffness:g} N/m2, and must reach farther; raise reach or lower cap"
         )
     return Sticking(penalty, cap, reach)
-
-
-def _hysteretic(given: HystereticLaw, elements: Elements) -> NormalLaw:
-    """The law for the mean diameter of the line."""
-    diameter = float(np.average(elements.outer_diameter, weights=elements.length))
-    constants = given.model_dump(exclude={"kind"})
-    if given.kind == "randolph-quiggin":
-        from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
-
-        return RandolphQuiggin(diameter, **constants)
-    from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
-
-    return AubenyBiscontin(diameter, **constants)
 
 
 def _ground(scene: Scene, seabed: Seabed) -> Ground:
@@ -175,37 +170,31 @@ def smoothing(settings: ContactScene, world: World, ground: str) -> float:
     if settings.smoothing != "auto":
         return float(settings.smoothing)
     if ground == "soil":
-        return WIDEST_CORNER
+        return WIDEST_CORNER * world.diameter
     at_rest = world.weight / world.contact_stiffness[ground]
-    return float(np.clip(at_rest, NARROWEST_CORNER, WIDEST_CORNER))
+    return float(np.clip(at_rest, NARROWEST_CORNER * world.diameter, WIDEST_CORNER * world.diameter))
 
 
-def stiffnesses(scene: Scene, settings: ContactScene, elements: Elements, weight: float) -> dict[str, float]:
+def stiffnesses(scene: Scene, settings: ContactScene, diameter: float, weight: float) -> dict[str, float]:
     """Force per length and penetration [N/m2] by ground: the scene's own, else the automatic choice.
 
-    weight: typical force per length of the riser [N/m].
+    diameter: of the riser [m]; weight: its typical force per length [N/m].
     """
     from riser_soil.contact.law import automatic_stiffness
 
-    size = float(elements.outer_diameter.max()) or NOMINAL_DIAMETER
-    out = {}
-    for ground, E in _penalty_grounds(scene):
-        automatic = settings.stiffness == "auto"
-        out[ground] = automatic_stiffness(E, weight, size) if automatic else float(settings.stiffness)
-    if isinstance(scene.seabed, SpringSeabed):
-        out["seabed"] = scene.seabed.stiffness
+    def penalty(E: float | None) -> float:
+        """Where the pipe must not enter; E: Young's modulus [Pa], None of a rigid ground."""
+        return automatic_stiffness(E, weight, diameter) if settings.stiffness == "auto" else float(settings.stiffness)
+
+    out = {"soil": penalty(scene.soil.law.surface_modulus)} if scene.soil is not None else {}
+    match scene.seabed:
+        case RigidSeabed():
+            out["seabed"] = penalty(None)
+        case SpringSeabed():
+            out["seabed"] = scene.seabed.stiffness
+        case HystereticSeabed() | None:
+            pass
+        case _:
+            assert_never(scene.seabed)
     return out
-
-
-def _penalty_grounds(scene: Scene) -> Iterator[tuple[str, float | None]]:
-    """Grounds that the pipe must not enter, each with its Young's modulus [Pa] (None: rigid)."""
-    if scene.soil is not None:
-        yield "soil", surface_modulus(scene.soil)
-    if isinstance(scene.seabed, RigidSeabed):
-        yield "seabed", None
-
-
-def surface_modulus(soil: SoilScene) -> float:
-    """Young's modulus at the soil's surface [Pa]."""
-    return soil.law.E if isinstance(soil.law, LinearElastic) else soil.law.E_over_su * soil.law.su
 

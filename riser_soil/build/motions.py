@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
 from riser_soil.arrays import Array
 from riser_soil.riser.ends import End, Motion, Turning
 from riser_soil.riser.line import Line
-from riser_soil.scene.motions import Arc, EndMotion, Harmonic, Rotation, Table
+from riser_soil.scene.motions import Arc, Harmonic, Rotation, Table, Vessel, Way
 from riser_soil.scene.quantities import Vector
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
@@ -47,11 +47,8 @@ def set_motion(end: End, name: str, origin: Array, stage: Stage, vessels: Vessel
         if target is not None and vessels is not None:
             vessels.move(name, np.asarray(target) - origin)
     elif stage.motion is not None and name in stage.motion.by_end:
-        given = stage.motion.by_end[name]
-        _set(end, origin, given)
-        if given.vessel is not None and vessels is not None:
-            vessel = vessels.motion(stage, name, origin)
-            _carry(end, vessel.berth.mean, vessel)
+        for way in stage.motion.by_end[name].ways.values():  # rotation last: a table beside it has none of its own
+            _set(end, name, origin, stage, way, vessels)
 
 
 def _move(end: End, origin: Array, target: Vector | None) -> None:
@@ -61,15 +58,23 @@ def _move(end: End, origin: Array, target: Vector | None) -> None:
         end.motion = Move(origin, np.asarray(target))
 
 
-def _set(end: End, origin: Array, given: EndMotion) -> None:
-    if given.harmonic is not None:
-        end.motion = _harmonic(origin, given.harmonic)
-    if given.arc is not None:
-        end.motion = _arc(origin, given.arc)
-    if given.rotation is not None:
-        end.turning = _rocking(given.rotation)
-    if given.table is not None:
-        _carry(end, origin, _table(given.table))
+def _set(end: End, name: str, origin: Array, stage: Stage, way: Way, vessels: Vessels | None) -> None:
+    """One way of moving an end, or of turning it."""
+    match way:
+        case Harmonic():
+            end.motion = _harmonic(origin, way)
+        case Arc():
+            end.motion = _arc(origin, way)
+        case Rotation():
+            end.turning = _rocking(way)
+        case Table():
+            _carry(end, origin, _table(way))
+        case Vessel():
+            assert vessels is not None
+            vessel = vessels.motion(stage, name, origin)
+            _carry(end, vessel.berth.mean, vessel)
+        case _:
+            assert_never(way)
 
 
 def _harmonic(origin: Array, given: Harmonic) -> Motion:

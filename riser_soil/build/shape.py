@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
@@ -29,11 +29,19 @@ def _ends(riser: Riser) -> tuple[Array | None, Array | None]:
 
 
 def unstressed_shape(riser: Riser, arc: Array) -> shapes.Curve:
-    if isinstance(riser.unstressed, ArcShape):
-        given = riser.unstressed.arc
-        return shapes.circle(arc, given.centre, given.from_point, np.radians(given.angle_deg), given.axis)
-    if isinstance(riser.unstressed, PointsShape):
-        return shapes.through(arc, riser.unstressed.points)
+    match riser.unstressed:
+        case ArcShape(arc=given):
+            return shapes.circle(arc, given.centre, given.from_point, np.radians(given.angle_deg), given.axis)
+        case PointsShape(points=points):
+            return shapes.through(arc, points)
+        case "straight":
+            return _straight(riser, arc)
+        case _:
+            assert_never(riser.unstressed)
+
+
+def _straight(riser: Riser, arc: Array) -> shapes.Curve:
+    """From start to end; along x where an end is free."""
     start, end = _ends(riser)
     if start is None or end is None or np.array_equal(start, end):
         return shapes.straight(arc, np.zeros(3) if start is None else start)
@@ -45,17 +53,26 @@ def initial_shape(
 ) -> tuple[Catenary | None, shapes.Curve]:
     """The first shape, and the catenary where it is one."""
     given = scene.riser.initial
-    start, end = _ends(scene.riser)
-    if given == "catenary":
-        catenary = _catenary(scene, elements, attachments)
-        return catenary, catenary.curve
-    if isinstance(given, PointsShape):
-        return None, shapes.through(elements.arc, given.points)
-    if given == "straight" and start is not None and end is not None:
-        return None, shapes.between(elements.arc, start, end)
-    if given == "straight":
-        return None, shapes.straight(elements.arc, np.zeros(3) if start is None else start)
-    return None, unstressed
+    match given:
+        case "catenary":
+            catenary = _catenary(scene, elements, attachments)
+            return catenary, catenary.curve
+        case PointsShape(points=points):
+            return None, shapes.through(elements.arc, points)
+        case "straight":
+            return None, _laid_straight(scene.riser, elements.arc)
+        case "unstressed":
+            return None, unstressed
+        case _:
+            assert_never(given)
+
+
+def _laid_straight(riser: Riser, arc: Array) -> shapes.Curve:
+    """Straight between the ends, as long as they are apart; along x where one is free."""
+    start, end = _ends(riser)
+    if start is not None and end is not None:
+        return shapes.between(arc, start, end)
+    return shapes.straight(arc, np.zeros(3) if start is None else start)
 
 
 def _catenary(scene: Scene, elements: sections.Elements, attachments: Sequence[Attachment]) -> Catenary:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
@@ -12,7 +12,14 @@ from riser_soil.part import Part
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, MidpointScheme, NewmarkScheme, Stage, StaticStage
+from riser_soil.scene.stages import (
+    DynamicStage,
+    GeneralizedAlphaScheme,
+    MidpointScheme,
+    NewmarkScheme,
+    Stage,
+    StaticStage,
+)
 from riser_soil.scene.stages import Load as LoadScene
 from riser_soil.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
 
@@ -25,18 +32,21 @@ def scheme_of(stage: Stage) -> Scheme:
     """How the stage goes from one step to the next."""
     if isinstance(stage, StaticStage):
         return Static()
-    if isinstance(stage.scheme, MidpointScheme):
-        return Midpoint()
-    if isinstance(stage.scheme, NewmarkScheme):
-        return GeneralizedAlpha.newmark(stage.scheme.newmark.beta, stage.scheme.newmark.gamma)
-    return GeneralizedAlpha.from_rho_inf(stage.scheme.generalized_alpha.rho_inf)
+    match stage.scheme:
+        case MidpointScheme():
+            return Midpoint()
+        case NewmarkScheme(newmark=given):
+            return GeneralizedAlpha.newmark(given.beta, given.gamma)
+        case GeneralizedAlphaScheme(generalized_alpha=given):
+            return GeneralizedAlpha.from_rho_inf(given.rho_inf)
+        case _:
+            assert_never(stage.scheme)
 
 
 def times_to_hit(scene: Scene, stage: DynamicStage) -> list[float]:
     """Times [s] in a stage where output is due, a motion's ramp ends or a load's history bends."""
     motions = stage.motion.by_end.values() if stage.motion else ()
-    ways = [way for m in motions for way in (m.harmonic, m.arc, m.table, m.vessel, m.rotation) if way]
-    ramps = [way.ramp for way in ways if way.ramp]
+    ramps = [way.ramp for motion in motions for way in motion.ways.values() if way.ramp]
     bends = [t for load in stage.loads for t, _ in load.history or ()]
     paces = {scene.output.interval, scene.output.xdmf_interval} - {None}
     return [*ramps, *bends, *(t for pace in paces if pace for t in _multiples(pace, stage.duration))]
@@ -46,10 +56,9 @@ def _multiples(interval: float, end: float) -> list[float]:
     return [n * interval for n in range(1, int(end / interval) + 1)]
 
 
-def hold_spin(scene: Scene, line: Line, stage: Stage, elements: Elements) -> None:
-    """Hold the start's spin about the pipe's axis in stages where neither an end nor rotary inertia resists it."""
-    resisted = isinstance(stage, DynamicStage) and elements.rotary_inertia.any()
-    line.hold_spin(spins_freely(scene.riser) and not resisted)
+def hold_spin(scene: Scene, line: Line, stage: Stage) -> None:
+    """Hold the start's spin about the pipe's axis in stages where neither an end nor inertia resists it."""
+    line.hold_spin(spins_freely(scene.riser) and isinstance(stage, StaticStage))
 
 
 def loads_of(line: Line, stage: Stage) -> list[Part]:
@@ -100,10 +109,10 @@ def _inertia(line: Line, elements: Elements, attachments: Sequence[Attachment]) 
     from riser_soil.riser.inertia import Inertia
 
     parts: list[Part] = [Inertia(line, elements.mass, _attached_mass(line, attachments))]
-    if elements.rotary_inertia.any():
+    if line.dimension == 3 or elements.rotary_inertia.any():
         from riser_soil.riser.rotary_inertia import RotaryInertia
 
-        parts.append(RotaryInertia(line, elements.rotary_inertia))
+        parts.append(RotaryInertia(line, elements.rotary_inertia, elements.polar_inertia))
     return parts
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 
 FORCE_FLOOR = 1e-14  # of EA: a residual below this is round-off even where all forces vanish
 LEAST_WEIGHT = 1e-6  # of EA/L: stands for the weight of a line that has none
+AUTO_TOLERANCE = 0.02  # of the diameter: local error of automatic steps
+AUTO_SMALLEST, AUTO_SMALLEST_OF_STAGE = 1e-4, 1e-7  # of a given time step; of a stage with automatic ones
 
 
 @dataclass(eq=False)
@@ -88,16 +91,43 @@ class World:
         return max(float(np.abs(self.elements.weight).max()), least)
 
     @property
+    def diameter(self) -> float:
+        """Largest outer diameter [m]; of a line without one, that of a solid bar with its stiffnesses."""
+        bar = 4.0 * np.sqrt((self.elements.EI_y / self.elements.EA).max())
+        return float(self.elements.outer_diameter.max()) or float(bar)
+
+    def error_tolerance(self, stage: DynamicStage) -> float:
+        """Largest local error of an automatic step [m]."""
+        return AUTO_TOLERANCE * self.diameter if stage.tolerance is None else stage.tolerance
+
+    def smallest_step(self, stage: DynamicStage) -> float:
+        """Down to which time steps are cut [s]."""
+        given = self.scene.solver.min_time_step
+        if given != "auto":
+            return float(given)
+        return AUTO_SMALLEST_OF_STAGE * stage.duration if stage.time_step == "auto" else AUTO_SMALLEST * stage.time_step
+
+    @property
     def slack(self) -> float:
         """How far the end of the first shape lies beyond its place [m]."""
         return self.catenary.slack if self.catenary is not None else 0.0
 
     @property
+    def hanging(self) -> str:
+        """How the riser hangs whose first shape ends beyond its place: in a loop, or stretched and so steep that its
+        horizontal tension is less than a bend takes.
+        """
+        ends = self.scene.riser.start, self.scene.riser.end
+        points = [end.position for end in ends if isinstance(end, Support)]
+        taut = len(points) == 2 and math.dist(*points) >= self.scene.riser.length
+        return "the riser is taut and steep" if taut else "the riser is slack"
+
+    @property
     def too_slack(self) -> str:
-        """What to tell where a slack riser finds no equilibrium."""
+        """What to tell where a riser whose first shape ends beyond its place finds no equilibrium."""
         bend = least_bend(self.elements)
         return (
-            f"the riser is slack: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
+            f"{self.hanging}: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
             "its place, and no way back there was found; take shorter segments, move the ends apart, or take "
             f"elements well below (EI/w)^(1/3) = {bend:.3g} m, the length over which it bends under its own weight"
         )
@@ -111,14 +141,14 @@ class World:
         return StaticStage(name="laying", kind="static", move=Move(end=end.position))
 
     def begin_laying(self, stage: StaticStage) -> Model:
-        """Set the end in motion and name the parts: in still water."""
+        """Set the end in motion and name the parts: without a current's drag."""
         model = self.begin(stage)
-        return Model(model.fields, [part for part in model.parts if part.name != "morison"])
+        return Model(model.fields, [part for part in model.parts if not part.traits.follows])
 
     def begin(self, stage: Stage) -> Model:
         """Set the ends in motion and name the parts of a stage."""
         set_motions(self.line, stage, self.vessels)
-        hold_spin(self.scene, self.line, stage, self.elements)
+        hold_spin(self.scene, self.line, stage)
         parts = [*self.riser_parts, *loads_of(self.line, stage)]
         if isinstance(stage, DynamicStage):
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
@@ -146,7 +176,7 @@ def _add_ground(world: World) -> None:
 
     scene, settings = world.scene, world.scene.contact
     assert settings is not None
-    world.contact_stiffness = ground.stiffnesses(scene, settings, world.elements, world.weight)
+    world.contact_stiffness = ground.stiffnesses(scene, settings, world.diameter, world.weight)
     if scene.soil is not None:
         world.soil = ground.soil_of(scene, scene.soil, world.line, world.comm)
         world.soil_contact = ground.soil_contact_of(scene, settings, world)

@@ -10,7 +10,7 @@ from riser_soil.arrays import Array, IntArray
 from riser_soil.contact.coulomb import traction
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.contact.station_forces import StationForces
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import stations
 from riser_soil.riser.trial import Trial
 
@@ -46,8 +46,7 @@ class Friction:
     """
 
     name = "friction"
-    symmetric = False
-    impulsive = True
+    traits = Traits("E", symmetric=False)
 
     def __init__(self, contact: SeabedContact, axial: float, lateral: float, stiffness: Array) -> None:
         self.contact, self.line = contact, contact.line
@@ -133,8 +132,18 @@ class Friction:
             sliding = self.see(trial)
             traction = np.zeros_like(self.contact.see(trial).position)
             traction[sliding.elements] = -sliding.resistance
-            self._slid[sliding.elements] += self._slide(trial, sliding)
-            self._begun = self._grip_at(trial, traction)
+            slid = np.zeros_like(self._slid)
+            slid[sliding.elements] = self._slide(trial, sliding)
+            self.memory = self._grip_at(trial, traction), self._slid + slid
+
+    @property
+    def memory(self) -> tuple[Grip | None, Array]:
+        """Where the next step begins, and how far the stations have slid."""
+        return self._begun, self._slid
+
+    @memory.setter
+    def memory(self, kept: tuple[Grip | None, Array]) -> None:
+        self._begun, self._slid = kept
 
     def _slide(self, trial: Trial, sliding: Sliding) -> Array:
         """What each station (m, ng) slides in the step beyond what the ground gives elastically [m]."""

@@ -11,7 +11,7 @@ from riser_soil.arrays import Array, BoolArray, IntArray
 from riser_soil.contact.law import NormalLaw
 from riser_soil.contact.station_forces import StationForces
 from riser_soil.contact.touchdown import Stretch, stretches, touchdown
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
 from riser_soil.riser.trial import Trial
@@ -54,11 +54,11 @@ class SeabedContact:
     line: the riser's field. radius (ne,): distance [m] from the axis to the line that touches, 0 for the axis itself.
     rule: the stations of an element, Gauss points by default; its two ends make it the classical contact of nodes.
     covered: where the seabed does not act. at: the stations; share (ne, ng): arc length that each stands for [m].
+    memory (ne, ng, nh): the law's history.
     """
 
     name = "seabed"
-    symmetric = True
-    impulsive = True
+    traits = Traits("E", symmetric=True)
 
     def __init__(
         self,
@@ -76,7 +76,7 @@ class SeabedContact:
         self.share = line.length[:, None] * rule.weights
         self._arc = line.arc[:-1, None] + line.length[:, None] * rule.points
         self._linear = np.stack([1.0 - rule.points, rule.points])
-        self._history = law.fresh((line.length.size, rule.points.size))
+        self.memory = law.fresh((line.length.size, rule.points.size))
 
     def see(self, trial: Trial) -> Seen:
         """The stations over the ground, and what touches."""
@@ -87,9 +87,9 @@ class SeabedContact:
         x = stations.interpolate(self.at, trial.q)
         value, gradient, hessian = self._distance(self.line.to_global(x).reshape(-1, 3))
         penetration = self._radius[:, None] - value.reshape(x.shape[:2])
-        touched = self.law.touched(penetration, self._history).any(axis=1)
+        touched = self.law.touched(penetration, self.memory).any(axis=1)
         at = np.flatnonzero(touched)
-        force, slope = self.law.respond(penetration[at], self._history[at])
+        force, slope = self.law.respond(penetration[at], self.memory[at])
         away = (gradient @ self.line.basis).reshape(x.shape)
         bend = None
         if hessian is not None:
@@ -134,7 +134,7 @@ class SeabedContact:
         if not self.line.active:
             return Energy()
         penetration = self.see(self.line.trial(state)).penetration
-        return Energy(potential=float(np.sum(self.share * self.law.stored(penetration, self._history))))
+        return Energy(potential=float(np.sum(self.share * self.law.stored(penetration, self.memory))))
 
     def work(self, before: State, after: State) -> Work:
         """What the force at the end of the step took out beyond the change of what it stores.
@@ -153,7 +153,7 @@ class SeabedContact:
         """Keep the law's history."""
         if self.line.active:
             penetration = self.see(self.line.trial(state)).penetration
-            self._history = self.law.renewed(penetration, self._history)
+            self.memory = self.law.renewed(penetration, self.memory)
 
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m]: the stations' forces, shared linearly by two nodes."""

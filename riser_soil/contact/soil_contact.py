@@ -13,7 +13,7 @@ from riser_soil.contact.ground import ASPECT, ContactPoints, Soil, SoilSurface
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.patch import Patch, around
 from riser_soil.contact.touchdown import Stretch, stretches, touchdown
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 
 FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
 
@@ -46,8 +46,7 @@ class SoilContact:
     """
 
     name = "contact"
-    symmetric = True
-    impulsive = True
+    traits = Traits("E", symmetric=True)
 
     def __init__(
         self,

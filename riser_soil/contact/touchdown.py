@@ -14,6 +14,16 @@ By statics neither d nor R knows how the force is spread. On a bed of springs un
 lies sqrt(EI/H - H/k) before the place where the catenary of the hanging part touches down, sqrt(EI/H) on a rigid floor:
 an error of the order of 1/k, whereas the contact's end moves with the power -1/4 of k. On beds softer than H²/EI there
 is no such R, and d is that place itself. Quadrature along the line makes the sums as exact as the balance of forces.
+
+How far back the layer goes is told by the forces too, from the free side on: with m(x) the largest of them up to x,
+and x from the end of the contact,
+
+    B(x) = int m/m(x) dx,   A(x) = 4 int m/m(x) (1 - m/m(x)) dx,   depth = B/(DEEP A).
+
+A is the length in which the force rises to its peak, 0.45 l on stiff springs, B the length since the force began. Up to
+a depth of 3/4 all counts in E0 and E1, beyond 1 nothing does; f0 is a mean of what is deep. The depth is at least 3/4
+where half of the stretch's force acts on the free side: of two touchdown points, each has its half of what lies. All
+weights and means are continuous in the forces, and so is d: where a station begins to touch, it does so with none.
 """
 
 from __future__ import annotations
@@ -22,12 +32,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array, IntArray
+from riser_soil.arrays import Array
 
-# In distances from the place where the force ends to its first peak, pi/4 l on a bed of springs: where the force has
-# settled to e^-12 of its peak, how far f0 is looked for, and more than the touchdown point can be away (4/pi).
-LAYER, RESTING, FARTHEST = 16.0, 48.0, 4.0
-LEAST = 20  # stations in a layer that the mesh doesn't resolve
+DEEP = 96.0  # rises of the force within a depth of 1: 43 l on stiff springs, of which f0 is read from the far half
+LEAST = 60.0  # stations within a depth of 1 in a layer that the mesh doesn't resolve
+FADING = 8  # power of the depth with which stations count in f0: 1e-8 at the peak
 
 
 class Stretch(NamedTuple):
@@ -62,68 +71,80 @@ def stretches(arc: Array, share: Array, clearance: Array, force: Array) -> list[
     Gaps no higher than the deepest point is deep part nothing: a stiff bed throws the riser off a little behind the
     touchdown point.
     """
-    length, found = float(np.sum(share)), []
-    for first, last in _runs(clearance):
-        f = np.where((np.arange(len(arc)) >= first) & (np.arange(len(arc)) <= last), force, 0.0)
-        end = _leaving(arc, share, clearance, f, last)
-        start = length - _leaving(length - arc[::-1], share[::-1], clearance[::-1], f[::-1], len(arc) - 1 - first)
-        found.append(Stretch(start if first > 0 else 0.0, end if last < len(arc) - 1 else length, first, last))
+    turned = float(np.sum(share)) - arc[::-1], share[::-1], clearance[::-1]
+    found, n = [], len(arc)
+    for first, last in _runs(clearance, force):
+        f = np.where((np.arange(n) >= first) & (np.arange(n) <= last), force, 0.0)
+        start = float(np.sum(share)) - _leaving(*turned, f[::-1], n - 1 - first) if first > 0 else 0.0
+        end = _leaving(arc, share, clearance, f, last) if last < n - 1 else float(np.sum(share))
+        found.append(Stretch(start, end, first, last))
     return found
 
 
-def _runs(clearance: Array) -> list[tuple[int, int]]:
-    """First and last points of what touches, small gaps within included."""
-    touching = np.flatnonzero(clearance < 0.0)
+def _runs(clearance: Array, force: Array) -> list[tuple[int, int]]:
+    """First and last points of what touches, small gaps within included; none that presses nowhere beside others."""
+    touching = np.flatnonzero((clearance < 0.0) | (force != 0.0))
     if len(touching) == 0:
         return []
     small = -float(clearance.min())
     after = np.flatnonzero(np.diff(touching) > 1)
     parting = [i for i in after if clearance[touching[i] : touching[i + 1] + 1].max() > small]
-    return [(int(part[0]), int(part[-1])) for part in np.split(touching, np.array(parting, dtype=int) + 1)]
+    runs = [(int(part[0]), int(part[-1])) for part in np.split(touching, np.array(parting, dtype=int) + 1)]
+    return [run for run in runs if force[run[0] : run[1] + 1].any()] or runs
 
 
 def _leaving(arc: Array, share: Array, clearance: Array, force: Array, last: int) -> float:
     """Arc length [m] at which the stretch whose last point is given ends."""
     end = _edge(arc, clearance, last)
-    lying = np.flatnonzero(force[: last + 1] > 0.0)
-    if len(lying) < 2:
+    pressing = share * np.maximum(force, 0.0)
+    if not pressing.any():
         return end
-    scale = end - arc[_peak(force, last)]
-    middle = 0.5 * (arc[lying[0]] + end)
-    layer = max(middle, min(end - LAYER * scale, arc[max(last - LEAST, 0)]))
-    resting = max(middle, min(end - RESTING * scale, arc[max(last - 3 * LEAST, 0)]))
-    f0 = _median(force, share, np.flatnonzero((arc >= resting) & (arc <= 0.5 * (resting + end))))
-    found = _equivalent(arc, share, force, f0, arc >= layer) if f0 > 0.0 else end
-    return float(np.clip(found, max(end - FARTHEST * scale, middle), end))
+    depth = _depth(share[::-1], force[::-1])[::-1]
+    near = 1.0 - _rise(4.0 * depth - 3.0)
+    f0 = _resting(share * near * np.minimum(depth, 1.0) ** FADING, force)
+    middle = float(np.average(arc, weights=pressing))
+    return float(np.clip(_equivalent(arc, share, near, force, f0), middle, end))
 
 
 def _edge(arc: Array, clearance: Array, last: int) -> float:
     """Where the clearance vanishes beyond the last point that touches."""
-    if last == len(arc) - 1 or not np.isfinite(clearance[last + 1]):
+    if last == len(arc) - 1 or clearance[last] >= 0.0 or not np.isfinite(clearance[last + 1]):
         return float(arc[last])
     here, there = clearance[last], clearance[last + 1]
     return float(arc[last] + (arc[last + 1] - arc[last]) * here / (here - there))
 
 
-def _peak(force: Array, last: int) -> int:
-    """The first local maximum on the way back from the last point."""
-    i = last
-    while i > 0 and force[i - 1] >= force[i]:
-        i -= 1
-    return i
+def _depth(share: Array, force: Array) -> Array:
+    """Of points (n,) from the free side on: how far behind the touchdown layer; see the module's text."""
+    pressing = np.maximum(force, 0.0)
+    largest = np.maximum.accumulate(pressing)
+    m = np.where(largest > 0.0, largest, 1.0)
+    B = np.cumsum(share * largest) / m
+    A = 4.0 * np.maximum(B - np.cumsum(share * largest**2) / m**2, 0.0)
+    counted = np.cumsum(largest) / (LEAST * m)
+    layers = np.minimum(np.divide(B, DEEP * A, out=counted.copy(), where=A > 0.0), counted)
+    outside = np.cumsum(share * pressing) - 0.5 * share * pressing
+    return np.maximum.accumulate(np.maximum(layers, 1.5 * outside / float(share @ pressing)))
 
 
-def _median(force: Array, share: Array, at: IntArray) -> float:
-    """Force per length that no more than half of the length at some points has less or more than."""
-    order = at[np.argsort(force[at])]
-    half = int(np.searchsorted(np.cumsum(share[order]), 0.5 * float(share[at].sum())))
-    return float(force[order[min(half, len(order) - 1)]]) if len(order) else 0.0
+def _rise(x: Array) -> Array:
+    """From 0 to 1 over 0 < x < 1, twice continuously differentiable."""
+    x = np.clip(x, 0.0, 1.0)
+    return x**3 * (10.0 - 15.0 * x + 6.0 * x**2)
 
 
-def _equivalent(arc: Array, share: Array, force: Array, f0: float, part: Array) -> float:
-    """d: see the module's text; the sums go from where the riser rests to the line's end."""
-    excess = (share * (force - f0))[part]
-    length = float(np.sum(share))
-    E0, E1 = float(excess.sum()), float(excess @ (length - arc)[part])
+def _resting(weight: Array, force: Array) -> float:
+    """Mean of the middle half of forces, by weight: what rests on a clump or bridges a dip does not tell."""
+    order = np.argsort(force)
+    total = float(weight.sum())
+    upto = np.clip(np.cumsum(weight[order]), 0.25 * total, 0.75 * total)
+    counted = np.diff(upto, prepend=0.25 * total)
+    return float(counted @ force[order]) / (0.5 * total) if total > 0.0 else 0.0
+
+
+def _equivalent(arc: Array, share: Array, near: Array, force: Array, f0: float) -> float:
+    """d: see the module's text. The sums go to the line's end; tau = 2 E1/(R + E0) is the same, where that is safe."""
+    excess, length = near * share * (force - f0), float(np.sum(share))
+    E0, E1 = float(excess.sum()), float(excess @ (length - arc))
     R = np.sqrt(max(E0**2 + 2.0 * f0 * E1, 0.0))
-    return length - (R - E0) / f0
+    return length - (2.0 * E1 / (R + E0) if E0 > 0.0 else (R - E0) / f0)

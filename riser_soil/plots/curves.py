@@ -23,7 +23,7 @@ ALONG_ARC: dict[str, tuple[str, float]] = {
     "effective_tension": ("effective tension [kN], + pulls", 1e-3),
     "bending_moment": ("bending moment, magnitude [kN m]", 1e-3),
     "curvature": ("curvature, magnitude [1/m]", 1.0),
-    "contact_force": ("contact force per length [kN/m], ≥ 0", 1e-3),
+    "contact_force": ("contact force per length [kN/m], + pushes", 1e-3),
 }
 _REACTIONS = {
     "H1": "H at the start [kN], + towards start",

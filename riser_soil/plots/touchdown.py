@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import math
 import sys
 from dataclasses import dataclass
@@ -64,13 +65,25 @@ def draw(folder: Path, png: Path, magnify: float | None = None) -> None:
 
 def main(arguments: list[str]) -> int:
     """FOLDER PNG [MAGNIFY]; a failure is one line on standard error."""
-    folder, png, *factor = arguments
+    asked = _parser().parse_args(arguments)
     try:
-        draw(Path(folder), Path(png), float(factor[0]) if factor else None)
+        draw(asked.folder, asked.png, asked.magnify)
     except (ResultsError, OSError) as err:
         print(err, file=sys.stderr)
         return 1
     return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python -m riser_soil.plots.touchdown", description="Draw the touchdown zone at a run's last instant."
+    )
+    parser.add_argument("folder", type=Path, help="folder of the run")
+    parser.add_argument("png", type=Path, help="file to write")
+    parser.add_argument(
+        "magnify", type=float, nargs="?", help="factor on the soil's displacement; one that makes it visible by default"
+    )
+    return parser
 
 
 def _read(run: Run) -> _Still:

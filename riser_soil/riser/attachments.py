@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.arrays import Array, IntArray
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import hermite
 from riser_soil.riser.line import UP, Line
 
@@ -94,7 +94,7 @@ class Attachments:
     """
 
     name = "attachments"
-    symmetric = True
+    traits = Traits("F", symmetric=True)
 
     def __init__(self, line: Line, attachments: Sequence[Attachment]) -> None:
         self.line = line

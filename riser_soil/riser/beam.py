@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from riser_soil.arrays import Array
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import uniform_load
 from riser_soil.riser.elastic import elastic_elements
 from riser_soil.riser.line import Line
@@ -27,7 +27,7 @@ class Beam:
     """
 
     name = "riser"
-    symmetric = True
+    traits = Traits("F", symmetric=True)
 
     def __init__(self, line: Line, elements: Elements, load: Array | None = None) -> None:
         self.line = line

@@ -3,7 +3,7 @@
 import numpy as np
 
 from riser_soil.arrays import Array
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser.attachments import Masses
 from riser_soil.riser.hermite import add_mass, consistent_mass, weigh
 from riser_soil.riser.line import Line
@@ -19,7 +19,7 @@ class Inertia:
     """
 
     name = "inertia"
-    symmetric = False
+    traits = Traits("I", symmetric=False)
 
     def __init__(self, line: Line, mass: Array, attached: Masses | None = None) -> None:
         self.line = line

@@ -19,6 +19,7 @@ from riser_soil.part import Block, State
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames
 from riser_soil.riser.ends import End, Turning
+from riser_soil.riser.free_turns import free_turns, unit_lengths
 from riser_soil.riser.trial import Trial
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -48,7 +49,7 @@ class Line:
 
     dimension: 2 or 3. A planar line needs a layout in one vertical plane (`shapes.vertical_direction`).
     Where no end holds the rotation of a line in space, `hold_spin` keeps the start from spinning about the
-    pipe's axis: nothing else would, as a round pipe spins at no cost (in motion, unless it has rotary inertia).
+    pipe's axis: nothing else would in statics, as a round pipe spins at no cost.
     active: whether this rank evaluates and owns the riser.
     """
 
@@ -77,8 +78,8 @@ class Line:
         self.frames: Frames = (
             _planar_frames(layout, self.direction) if dimension == 2 else _spatial_frames(layout)
         )
-        self.x = (layout.position - self.origin) @ self.basis
-        self.chord = np.diff(self.x, axis=0)
+        self.x: Array = (layout.position - self.origin) @ self.basis
+        self.chord: Array = np.diff(self.x, axis=0)
         unturned = self.frames.turn(np.zeros((self.arc.size, self.frames.dofs)))
         self._supports = self._bases = {node: unturned.at(node).copy() for node in (0, self.arc.size - 1)}
         self.offset = 0
@@ -157,6 +158,11 @@ class Line:
         """Local numbers of the translations (nn, d)."""
         first = self.offset + self.ndof * np.arange(self.nodes, dtype=np.int64)
         return np.asarray(first[:, None] + np.arange(self.dimension), dtype=np.int64)
+
+    @cached_property
+    def lever(self) -> float:
+        """Mean length of an element [m]: the arm by which a moment is weighed as the forces of a couple."""
+        return float(self.length.mean())
 
     @cached_property
     def tributary_length(self) -> Array:
@@ -259,6 +265,15 @@ class Line:
     def _to(self, position: Array, node: int) -> Array:
         """Increment (d,) that brings a node to a position (3,) in global axes."""
         return np.asarray((position - self.origin) @ self.basis - self.x[node])
+
+    def free_turns(self, state: State) -> Array:
+        """Rigid motions (k, size) that the supports leave free, see `free_turns`."""
+        trial, prescribed = self.trial(state), self.prescribed.reshape(self.nodes, self.ndof)
+        return free_turns(trial.x, trial.turn, prescribed, float(self.arc[-1])).reshape(-1, self.size)
+
+    def in_newtons(self, forces: Array) -> Array:
+        """Forces and moments (size,), moments over the line's length."""
+        return forces * (unit_lengths(self.x.shape, self.ndof, float(self.arc[-1])) / self.arc[-1]).ravel()
 
     def fault(self, state: State) -> str:
         """Where an element is folded (an end's tangent points against its chord) or wound up by whole turns.

@@ -9,7 +9,7 @@ import numpy as np
 
 from riser_soil.arrays import Array
 from riser_soil.errors import SceneError
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import SpatialTurn, moment_stiffness
 from riser_soil.riser.line import Line
@@ -46,7 +46,7 @@ class PointLoads:
         self._places = {load: self._place(load) for load in loads}
         self._within = [load for load in loads if self._inside(load)]
         self._moments = [(load, self._node(load)) for load in loads if load.moment is not None]
-        self.symmetric = not (self._moments and line.dimension == 3)
+        self.traits = Traits("F", symmetric=not (self._moments and line.dimension == 3))
 
     def _node(self, load: Load) -> int:
         node = int(np.argmin(np.abs(self.line.arc - load.arc)))

@@ -25,7 +25,7 @@ import numpy as np
 
 from riser_soil.arrays import Array
 from riser_soil.compiled import fixed
-from riser_soil.part import Block, Energy, Forces, Part, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, Part, State, Traits, Weights, Work
 from riser_soil.riser import hermite
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
@@ -40,7 +40,7 @@ class MidpointInertia:
     instant: the same mass as it acts at an instant, which is asked for at accepted states.
     """
 
-    name, symmetric = "inertia", False
+    name, traits = "inertia", Traits("I", symmetric=False)
 
     def __init__(self, instant: Inertia) -> None:
         self.instant, self.line = instant, instant.line
@@ -115,38 +115,40 @@ class MidpointInertia:
 
 
 class MidpointRotaryInertia:
-    """The sections' rotary inertia in steps of the midpoint rule (group I): mass that sits on their normals.
+    """The sections' rotary inertia in steps of the midpoint rule (group I): mass that sits on their directors.
 
-    instant: the same inertia as it acts at an instant, which is asked for at accepted states.
+    instant: the same inertia as it acts at an instant, which is asked for at accepted states. masses: of element ends
+    on each of the directors [kg m2], (ne, 1, 1).
     """
 
-    name, symmetric = "rotary inertia", False
+    name, traits = "rotary inertia", Traits("I", symmetric=False)
 
     def __init__(self, instant: RotaryInertia) -> None:
         self.instant, self.line = instant, instant.line
-        self._mass = instant.of_ends[:, None, None]
-        self._normals = [Carried(directors(self.line.frames, k)) for k in range(1, self.line.dimension)]
+        on = instant.on_directors()
+        self.masses = [mass[:, None, None] for mass in on.values()]
+        self._directors = [Carried(directors(self.line.frames, k)) for k in on]
 
     def begin(self, state: State) -> None:
         """Start from an accepted state."""
-        for normals in self._normals:
-            normals.begin(state.t, _turning(self.line, state.v))
+        for director in self._directors:
+            director.begin(state.t, _turning(self.line, state.v))
 
     def blocks(self) -> dict[str, Block]:
         return self.instant.blocks()
 
     def rates(self, state: State) -> Sequence[Array]:
-        """Of the normals, each (ne, 2, d), at the end of a step, as the midpoint rule has them."""
-        return [normals.rate(state.t, _turning(self.line, state.u)) for normals in self._normals]
+        """Of the directors, each (ne, 2, d), at the end of a step, as the midpoint rule has them."""
+        return [director.rate(state.t, _turning(self.line, state.u)) for director in self._directors]
 
     def _step(self, trial: Trial) -> list[tuple[Secant, Array]]:
-        """The normals through the step, each with its force on their means (ne, 2, d)."""
+        """The directors through the step, each with its force on their means (ne, 2, d)."""
         middle = _turning(self.line, trial.state.u)
-        steps = [normals.accelerate(trial.state.t, middle) for normals in self._normals]
-        return [(secant, self._mass * acceleration) for secant, acceleration in steps]
+        steps = [director.accelerate(trial.state.t, middle) for director in self._directors]
+        return [(secant, mass * a) for (secant, a), mass in zip(steps, self.masses, strict=True)]
 
     def residual(self, state: State, forces: Forces) -> None:
-        if not self._normals[0].within_step(state.t):
+        if not self._directors[0].within_step(state.t):
             self.instant.residual(state, forces)
         elif self.line.active:
             steps = self.line.trial(state).once((self, "step"), self._step)
@@ -162,17 +164,18 @@ class MidpointRotaryInertia:
         """Add P^T M (d' - d'(v)) at an accepted state to a local array [N m s]."""
         if self.line.active:
             v = _turning(self.line, state.v)
-            self._scatter([n.excess(v, self._mass) for n in self._normals], out)
+            excesses = zip(self._directors, self.masses, strict=True)
+            self._scatter([director.excess(v, mass) for director, mass in excesses], out)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        if not self._normals[0].within_step(state.t):
+        if not self._directors[0].within_step(state.t):
             self.instant.tangent(state, weights, values)
         elif self.line.active:
-            middle, mass = _turning(self.line, state.u), 0.5 * weights.shift_a * self._mass[..., None]
+            middle, half = _turning(self.line, state.u), 0.5 * weights.shift_a
             steps = self.line.trial(state).once((self, "step"), self._step)
-            for normals, (secant, F) in zip(self._normals, steps, strict=True):
-                block = np.swapaxes(secant.P, 2, 3) @ (mass * secant.by_end)
-                block += normals.geometric(secant, middle, F)
+            for director, mass, (secant, F) in zip(self._directors, self.masses, steps, strict=True):
+                block = np.swapaxes(secant.P, 2, 3) @ (half * mass[..., None] * secant.by_end)
+                block += director.geometric(secant, middle, F)
                 hermite.add_geometric(values["riser"], weights.inertia, block, self.line.dimension)
 
     def element_forces(self, state: State) -> tuple[Array, None]:
@@ -183,14 +186,15 @@ class MidpointRotaryInertia:
         """Kinetic energy at the start or the end of a step."""
         if not self.line.active:
             return Energy()
-        return Energy(kinetic=0.5 * sum(float(np.sum(self._mass * rate**2)) for rate in self.rates(state)))
+        squares = (mass * rate**2 for mass, rate in zip(self.masses, self.rates(state), strict=True))
+        return Energy(kinetic=0.5 * sum(float(np.sum(square)) for square in squares))
 
     def work(self, before: State, after: State) -> Work:
         return Work()
 
     def commit(self, state: State) -> None:
-        for normals in self._normals:
-            normals.commit(state.t, _turning(self.line, state.u))
+        for director in self._directors:
+            director.commit(state.t, _turning(self.line, state.u))
 
 
 def over_steps(instant: Part) -> Part:

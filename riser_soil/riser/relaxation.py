@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.arrays import Array
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser.line import Line
 
 
@@ -17,7 +17,7 @@ class Relaxation:
     between steps. The forces vanish with the increment, so that what it converges to is an equilibrium without it.
     """
 
-    name, symmetric = "relaxation", True
+    name, traits = "relaxation", Traits("F", symmetric=True)
 
     def __init__(self, line: Line, drag: float) -> None:
         self._line, self.drag = line, drag

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.arrays import Array
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import spinning
 from riser_soil.riser.directors import PlanarFrames, SpatialFrames
 from riser_soil.riser.line import Line
@@ -31,14 +31,14 @@ class PlanarSections:
 
 
 class SpatialSections:
-    """Sections that turn in space; inertia [kg m2] of each element end about an axis across the pipe.
+    """Sections that turn in space; inertia [kg m2] of each element end about an axis across the pipe and about its own.
 
-    They are round, so the polar inertia is twice that. T0 (ne, 2, 3, 3): unstressed frames at element ends.
+    T0 (ne, 2, 3, 3): unstressed frames at element ends.
     """
 
-    def __init__(self, inertia: Array, T0: Array) -> None:
-        of_section = np.diag([2.0, 1.0, 1.0])
-        self._J = np.ascontiguousarray(inertia[:, None, None, None] * (T0 @ of_section @ np.swapaxes(T0, 2, 3)))
+    def __init__(self, across: Array, polar: Array, T0: Array) -> None:
+        about_axes = np.stack([polar, across, across], axis=1)[:, None, None, :]
+        self._J = np.ascontiguousarray(T0 * about_axes @ np.swapaxes(T0, 2, 3))
 
     def forces(self, u: Array, v: Array, a: Array) -> Array:
         """Moments (ne, 2, 3) from the nodes' rotation dofs, increments and rates (nn, 3)."""
@@ -55,17 +55,33 @@ class SpatialSections:
 class RotaryInertia:
     """Rotary inertia of the sections, gathered at the nodes (group I).
 
-    line: the riser's field. inertia: kg m per element (ne,) about an axis across the pipe (rho I of the section);
-    about the pipe's own axis it is twice that. Half of an element's belongs to each of its ends, so that its share
-    in a frequency is second-order accurate.
+    line: the riser's field. across: kg m per element (ne,) about an axis across the pipe (rho I of the section).
+    polar: about the pipe's own axis, by default twice that, as of a round section; it counts in space only. Half of an
+    element's belongs to each of its ends, so that its share in a frequency is second-order accurate.
+
+    In space a line without polar inertia must not move: nothing but GJ would resist its spin, so that the scheme's
+    weighting of moments at both ends of a step, which no inertia slows down, winds a soft pipe up.
     """
 
     name = "rotary inertia"
 
-    def __init__(self, line: Line, inertia: Array) -> None:
-        self.line, self.symmetric = line, line.dimension == 2
-        self.of_ends = 0.5 * line.length * inertia  # kg m2
-        self._sections = _sections(line, self.of_ends)
+    def __init__(self, line: Line, across: Array, polar: Array | None = None) -> None:
+        self.line, self.traits = line, Traits("I", symmetric=line.dimension == 2)
+        self.across = 0.5 * line.length * across  # of ends, kg m2
+        self.polar = 2.0 * self.across if polar is None else 0.5 * line.length * polar
+        self._sections = _sections(line, self.across, self.polar)
+
+    def on_directors(self) -> dict[int, Array]:
+        """Masses [kg m2] of element ends (ne,) on the tangent (0) and the normals (1, 2) that have the same inertia.
+
+        In space half the polar inertia sits on each normal, and on the tangent what the inertia across is more than
+        that: nothing for a round section, less than nothing for one with polar inertia alone.
+        """
+        if self.line.dimension == 2:
+            return {1: self.across}
+        half = 0.5 * self.polar
+        on_tangent = self.across - half
+        return ({0: on_tangent} if on_tangent.any() else {}) | {1: half, 2: half}
 
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}
@@ -101,8 +117,8 @@ class RotaryInertia:
         pass
 
 
-def _sections(line: Line, inertia: Array) -> PlanarSections | SpatialSections:
+def _sections(line: Line, across: Array, polar: Array) -> PlanarSections | SpatialSections:
     if isinstance(line.frames, PlanarFrames):
-        return PlanarSections(inertia)
+        return PlanarSections(across)
     assert isinstance(line.frames, SpatialFrames)
-    return SpatialSections(inertia, line.frames.T0)
+    return SpatialSections(across, polar, line.frames.T0)

@@ -115,7 +115,8 @@ class Carried:
 
     def __init__(self, moving: Directors) -> None:
         self._moving = moving
-        self._t, self._rate = math.inf, np.zeros(0)
+        self._t = math.inf
+        self._rate: Array = np.zeros(0)
 
     def begin(self, t: float, v: Array) -> None:
         """Start from the accepted configuration with angular velocities v (nn, r)."""

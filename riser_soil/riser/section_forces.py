@@ -116,7 +116,7 @@ def section_forces(
 
 def _nodal_section(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]:
     """Force and moment (nn, 3) that the line after a node exerts on the line before it."""
-    force, moment = _end_forces(line, trial, residual)
+    force, moment = end_forces(line, trial, residual)
     return _nodal(-force[:, 0], force[:, 1]), _nodal(-moment[:, 0], moment[:, 1])
 
 
@@ -132,7 +132,7 @@ def end_reactions(
     residual: from `element_residual`. nodal: residual (nn, ndof) of what acts on nodes other than the
     supports: point loads, contact. A spring is a support, so its moment belongs to the reaction.
     """
-    force, moment = _end_forces(line, line.trial(state), residual)
+    force, moment = end_forces(line, line.trial(state), residual)
     at_nodes = np.zeros((line.nodes, line.ndof)) if nodal is None else nodal
     extra_force, extra_moment = _global(line, line.trial(state), at_nodes[[0, -1]], np.array([0, -1]))
     return (
@@ -141,7 +141,7 @@ def end_reactions(
     )
 
 
-def _end_forces(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]:
+def end_forces(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]:
     """Force and moment on the elements' ends, each (ne, 2, 3), global axes."""
     first, second = residual[:, : line.ndof], residual[:, line.ndof :]
     nodes = np.arange(line.nodes, dtype=np.int64)

@@ -21,7 +21,8 @@ class LineType:
     one.
     drag and added_mass: (normal, tangential) coefficients of Morison's formula, see
     `riser_soil.sea.morison_law`.
-    rotary_inertia: kg m about an axis across the pipe; None computes it from masses and diameters.
+    rotary_inertia: kg m about an axis across the pipe; None computes it from masses and diameters. The inertia about
+    the pipe's own axis follows, see `polar_inertia`.
     damping: s, ratio of viscous to elastic stiffness. min_bend_radius: m, the least that is allowed; 0 for any.
     """
 
@@ -65,7 +66,8 @@ class Surroundings:
 @dataclass(frozen=True, eq=False)
 class Elements:
     """Properties per element (ne,); drag and added_mass (ne, 2). mass includes the contents, weight is
-    submerged. rotary_inertia: kg m about an axis across the pipe; damping: s, of viscous over elastic stiffness.
+    submerged. rotary_inertia: kg m about an axis across the pipe, polar_inertia: about its own; damping: s, of viscous
+    over elastic stiffness.
     min_bend_radius: m, the least that is allowed, 0 for any.
     """
 
@@ -81,6 +83,7 @@ class Elements:
     drag: Array
     added_mass: Array
     rotary_inertia: Array
+    polar_inertia: Array
     damping: Array
     min_bend_radius: Array
 
@@ -100,10 +103,24 @@ def rotary_inertia(line: LineType, around: Surroundings) -> float:
 
     The wall's mass m is spread evenly between the diameters; the contents turn with the pipe.
     """
-    if line.rotary_inertia is not None:
-        return line.rotary_inertia
+    return _of_round_section(line, around) if line.rotary_inertia is None else line.rotary_inertia
+
+
+def _of_round_section(line: LineType, around: Surroundings) -> float:
+    """Rotary inertia [kg m] about an axis across a pipe of these diameters."""
     outside, inside = line.outer_diameter**2, line.inner_diameter**2
     return (line.mass * outside + mass_with_contents(line, around) * inside) / 16.0
+
+
+def polar_inertia(line: LineType, around: Surroundings) -> float:
+    """Inertia [kg m] about the pipe's own axis: twice that across it, or, where none is asked for, twice that of the
+    diameters. Without diameters m (EI_y + EI_z)/EA, as for a homogeneous section. Never zero but for a massless pipe.
+    """
+    if across := rotary_inertia(line, around):
+        return 2.0 * across
+    if line.outer_diameter > 0.0:
+        return 2.0 * _of_round_section(line, around)
+    return mass_with_contents(line, around) * (line.EI_y + line.EI_z) / line.EA
 
 
 def submerged_weight(line: LineType, around: Surroundings) -> float:
@@ -137,6 +154,7 @@ def elements(segments: Sequence[Segment], around: Surroundings) -> Elements:
         drag=spread([t.drag for t in types]),
         added_mass=spread([t.added_mass for t in types]),
         rotary_inertia=spread([rotary_inertia(t, around) for t in types]),
+        polar_inertia=spread([polar_inertia(t, around) for t in types]),
         damping=spread([t.damping for t in types]),
         min_bend_radius=spread([t.min_bend_radius for t in types]),
     )

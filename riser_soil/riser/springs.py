@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.arrays import Array
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import rotations
 from riser_soil.riser.directors import SpatialTurn, moment_stiffness
 from riser_soil.riser.line import Line
@@ -19,7 +19,7 @@ class EndSpring:
     counts twist too; in the plane it is unlimited.
     """
 
-    symmetric = True
+    traits = Traits("F", symmetric=True)
 
     def __init__(self, line: Line, node: int, stiffness: float) -> None:
         self.line, self.stiffness = line, stiffness

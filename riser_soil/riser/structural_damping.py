@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.arrays import Array
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import beam2d, beam3d, damping2d, damping3d, increments
 from riser_soil.riser.directors import SpatialTurn
 from riser_soil.riser.elastic import PlanarElements, SpatialElements, elastic_elements
@@ -68,7 +68,7 @@ class StructuralDamping:
     ratio beta w / 2; rigid motions have none.
     """
 
-    name, symmetric = "structural damping", False
+    name, traits = "structural damping", Traits("F", symmetric=False)
 
     def __init__(self, line: Line, elements: Elements) -> None:
         self.line = line

@@ -4,7 +4,15 @@ from typing import Literal
 
 from pydantic import BaseModel, Field
 
-from riser_soil.scene.quantities import FROZEN, AutoOrBedStiffness, AutoOrLength, Length, PositiveWeightPerLength, Ratio
+from riser_soil.scene.quantities import (
+    FROZEN,
+    AutoOrBedStiffness,
+    AutoOrLength,
+    AutoOrLengthOrNone,
+    Length,
+    PositiveWeightPerLength,
+    Ratio,
+)
 
 
 class Friction(BaseModel):
@@ -16,9 +24,10 @@ class Friction(BaseModel):
     lateral: Ratio | None = Field(
         default=None, description="friction coefficient across the pipe [-]; that along it by default"
     )
-    mobilisation: Length = Field(
-        default=0.01,
-        description="slide after which friction is fully mobilised under the pipe's submerged weight [m]",
+    mobilisation: AutoOrLength = Field(
+        default="auto",
+        description="slide after which friction is fully mobilised under the pipe's submerged weight [m], or auto: "
+        "1/30 of the outer diameter",
     )
 
 
@@ -47,10 +56,10 @@ class Contact(BaseModel):
         "soil's Young's modulus at the surface and (submerged weight)/(0.001 outer diameter); a spring "
         "seabed has its own",
     )
-    smoothing: AutoOrLength = Field(
+    smoothing: AutoOrLengthOrNone = Field(
         default="auto",
-        description="contact sets in smoothly between this gap and this penetration [m], or auto: 0.001 on soil; on a "
-        "seabed what the riser sinks in by its weight, within 0.0001 and 0.001",
+        description="contact sets in smoothly between this gap and this penetration [m], or auto: 1/300 of the outer "
+        "diameter on soil; on a seabed what the riser sinks in by its weight, within 1/3000 and 1/300 of the diameter",
     )
     friction: Friction | None = Field(default=None, description="friction on the seabed; none by default")
     suction: Suction | None = Field(

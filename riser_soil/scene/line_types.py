@@ -103,7 +103,8 @@ class LineType(BaseModel):
     rotary_inertia: RotaryInertia = Field(
         default=False,
         description="inertia of the cross-section about an axis across the pipe [kg.m], twice that about the pipe's "
-        "axis; true: (m (D^2 + d^2) + m_contents d^2)/16 from masses and diameters; false: none",
+        "axis; true: (m (D^2 + d^2) + m_contents d^2)/16 from masses and diameters; false: none across; that about the "
+        "pipe's axis is always there in three dimensions",
     )
 
     min_bend_radius: Length | None = Field(

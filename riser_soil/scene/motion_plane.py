@@ -2,8 +2,9 @@
 
 import math
 from collections.abc import Iterator
+from typing import assert_never
 
-from riser_soil.scene.motions import EndMotion
+from riser_soil.scene.motions import Arc, Harmonic, Rotation, Table, Vessel, Way
 from riser_soil.scene.problem import Path
 from riser_soil.scene.quantities import Vector
 from riser_soil.scene.rao import ROTATIONS, TRANSLATIONS
@@ -16,40 +17,53 @@ _NEGLIGIBLE = 1e-9
 
 def displacements(scene: Scene) -> Iterator[tuple[Path, Vector]]:
     """Vectors along which motions displace the ends."""
-    for path, motion in _motions(scene):
-        if motion.harmonic:
-            a, p = motion.harmonic.amplitude, motion.harmonic.phases
-            for part in (math.cos, math.sin):
-                yield (*path, "harmonic", "amplitude"), (a[0] * part(p[0]), a[1] * part(p[1]), a[2] * part(p[2]))
-        if motion.table:
-            yield from (((*path, "table"), row) for row in _felt(motion.table.displacements))
-        yield from _modes(scene, path, motion, TRANSLATIONS)
+    for path, way in _ways(scene):
+        match way:
+            case Harmonic(amplitude=a, phases=p):
+                for part in (math.cos, math.sin):
+                    yield (*path, "amplitude"), (a[0] * part(p[0]), a[1] * part(p[1]), a[2] * part(p[2]))
+            case Table():
+                yield from ((path, row) for row in _felt(way.displacements))
+            case Vessel():
+                yield from _modes(scene, path, way, TRANSLATIONS)
+            case Arc() | Rotation():  # their axes tell
+                pass
+            case _:
+                assert_never(way)
 
 
 def rotation_axes(scene: Scene) -> Iterator[tuple[Path, Vector]]:
     """Axes about which motions turn the ends or their supports."""
-    for path, motion in _motions(scene):
-        if motion.arc:
-            yield (*path, "arc", "plane"), motion.arc.axis
-        if motion.rotation:
-            yield (*path, "rotation", "axis"), motion.rotation.axis
-        if motion.table:
-            yield from (((*path, "table"), row) for row in _felt(motion.table.rotations))
-        yield from _modes(scene, path, motion, ROTATIONS)
+    for path, way in _ways(scene):
+        match way:
+            case Arc():
+                yield (*path, "plane"), way.axis
+            case Rotation():
+                yield (*path, "axis"), way.axis
+            case Table():
+                yield from ((path, row) for row in _felt(way.rotations))
+            case Vessel():
+                yield from _modes(scene, path, way, ROTATIONS)
+            case Harmonic():
+                pass
+            case _:
+                assert_never(way)
 
 
-def _motions(scene: Scene) -> Iterator[tuple[Path, EndMotion]]:
+def _ways(scene: Scene) -> Iterator[tuple[Path, Way]]:
+    """All motions of the ends, stage by stage."""
     for n, stage in enumerate(scene.stages):
         if isinstance(stage, DynamicStage) and stage.motion:
-            yield from ((("stages", n, "motion", key), motion) for key, motion in stage.motion.by_end.items())
+            for end, motion in stage.motion.by_end.items():
+                yield from ((("stages", n, "motion", end, key), way) for key, way in motion.ways.items())
 
 
-def _modes(scene: Scene, path: Path, motion: EndMotion, among: tuple[str, ...]) -> Iterator[tuple[Path, Vector]]:
+def _modes(scene: Scene, path: Path, vessel: Vessel, among: tuple[str, ...]) -> Iterator[tuple[Path, Vector]]:
     """What a vessel does in the scene's waves."""
     waves = scene.water.waves if scene.water else None
-    if motion.vessel and waves:
-        moving = motion.vessel.table.moving(math.radians(waves.direction_deg - motion.vessel.heading_deg))
-        yield from (((*path, "vessel", "rao"), motion.vessel.axes(mode)) for mode in among if mode in moving)
+    if waves:
+        moving = vessel.table.moving(math.radians(waves.direction_deg - vessel.heading_deg))
+        yield from (((*path, "rao"), vessel.axes(mode)) for mode in among if mode in moving)
 
 
 def _felt(rows: list[Vector]) -> Iterator[Vector]:

@@ -186,6 +186,9 @@ class Vessel(BaseModel):
         return ((forward, across, 0.0), (-across, forward, 0.0), (0.0, 0.0, 1.0))[MODES.index(mode) % 3]
 
 
+Way = Harmonic | Arc | Table | Vessel | Rotation
+
+
 class EndMotion(BaseModel):
     """The prescribed motion of one end: one of harmonic, arc, table and vessel; rotation beside the first three or
     alone.
@@ -221,6 +224,11 @@ class EndMotion(BaseModel):
         if self.rotation and self.vessel:
             raise wrong("rotation", "the vessel turns the end already", "leave one of the two out")
         return self
+
+    @property
+    def ways(self) -> dict[str, Way]:
+        """What is given, by its key."""
+        return {key: way for key, way in self if way is not None}
 
     @property
     def turns(self) -> bool:

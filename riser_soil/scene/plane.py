@@ -20,10 +20,11 @@ _FLAT = 1e-9
 
 @dataclass(frozen=True)
 class Plane:
-    """A vertical plane: a point of it [m] and its horizontal unit direction from start to end."""
+    """A vertical plane: a point of it [m], its horizontal unit direction from start to end, the riser's length [m]."""
 
     origin: Vector
     direction: Vector
+    length: float
 
     @property
     def normal(self) -> Vector:
@@ -36,7 +37,7 @@ class Plane:
 
     def holds_point(self, point: Vector) -> bool:
         arm = minus(point, self.origin)
-        return abs(self.offset(arm)) <= _FLAT * max(1.0, math.hypot(*arm))
+        return abs(self.offset(arm)) <= _FLAT * max(self.length, math.hypot(*arm))
 
     def holds_vector(self, vector: Vector) -> bool:
         return abs(self.offset(vector)) <= _FLAT * math.hypot(*vector)
@@ -51,7 +52,7 @@ class Plane:
 def vertical_plane(scene: Scene) -> Plane:
     """The plane through the riser's start and end; along x when they give no direction."""
     points = _ends(scene)
-    return Plane(points[0], _direction(points))
+    return Plane(points[0], _direction(points), scene.riser.length)
 
 
 def resolved_dimension(scene: Scene) -> Literal[2, 3]:

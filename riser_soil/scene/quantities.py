@@ -123,7 +123,8 @@ _AUTO_OR_NUMBER = Discriminator(
 )
 _Auto = Annotated[Literal["auto"], Tag("<word>")]
 AutoOrTime = Annotated[_Auto | Annotated[Time, Tag("<number>")], _AUTO_OR_NUMBER]
-AutoOrLength = Annotated[_Auto | Annotated[LengthOrNone, Tag("<number>")], _AUTO_OR_NUMBER]
+AutoOrLength = Annotated[_Auto | Annotated[Length, Tag("<number>")], _AUTO_OR_NUMBER]
+AutoOrLengthOrNone = Annotated[_Auto | Annotated[LengthOrNone, Tag("<number>")], _AUTO_OR_NUMBER]
 AutoOrBedStiffness = Annotated[_Auto | Annotated[BedStiffness, Tag("<number>")], _AUTO_OR_NUMBER]
 
 

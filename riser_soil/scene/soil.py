@@ -92,6 +92,11 @@ class LinearElastic(BaseModel):
     E: Stress = Field(description="Young's modulus [Pa]")
     nu: PoissonRatio = Field(description="Poisson's ratio [-]")
 
+    @property
+    def surface_modulus(self) -> float:
+        """Young's modulus at the soil's surface [Pa]."""
+        return self.E
+
 
 class VonMises(BaseModel):
     """Undrained clay: elastic, perfectly plastic; su is the strength in simple shear and plane strain."""
@@ -103,6 +108,11 @@ class VonMises(BaseModel):
     su_gradient: StrengthGradient = Field(default=0.0, description="growth of su with depth [Pa/m]")
     E_over_su: Ratio = Field(description="Young's modulus over su, the same at every depth [-]")
     nu: PoissonRatio = Field(default=0.49, description="Poisson's ratio [-]")
+
+    @property
+    def surface_modulus(self) -> float:
+        """Young's modulus at the soil's surface [Pa]."""
+        return self.E_over_su * self.su
 
 
 Law = Annotated[

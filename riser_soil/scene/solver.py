@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, Field
 
-from riser_soil.scene.quantities import FROZEN, Count, Ratio, SolverTolerance, Time
+from riser_soil.scene.quantities import FROZEN, AutoOrTime, Count, Ratio, SolverTolerance
 
 
 class Solver(BaseModel):
@@ -29,6 +29,8 @@ class Solver(BaseModel):
         le=1.0,
         description="smallest part of a static stage's load before the solve fails [-]",
     )
-    min_time_step: Time = Field(
-        default=1.0e-5, description="smallest time step before the solve fails [s]"
+    min_time_step: AutoOrTime = Field(
+        default="auto",
+        description="smallest time step before the solve fails [s], or auto: 1e-4 of the stage's time step, with "
+        "automatic steps 1e-7 of its duration",
     )

@@ -85,8 +85,9 @@ def _dynamic(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
             yield from motion_conflicts(scene, ("stages", n, "motion", key), motion, stage.duration)
     yield from _midpoint(scene, n, stage)
     key = "duration" if stage.time_step == "auto" else "time_step"
-    if scene.solver.min_time_step > getattr(stage, key):
-        allowed = f"must not be smaller than solver.min_time_step ({scene.solver.min_time_step:g} s)"
+    smallest = scene.solver.min_time_step
+    if smallest != "auto" and smallest > getattr(stage, key):
+        allowed = f"must not be smaller than solver.min_time_step ({smallest:g} s)"
         yield Problem(
             ("stages", n, key), allowed, f"lower solver.min_time_step or take a longer {key}"
         )

@@ -29,8 +29,6 @@ from riser_soil.scene.quantities import (
     wrong,
 )
 
-TOLERANCE = 0.005  # m, local error of a step
-
 Place = Annotated[
     Annotated[Literal["start", "end"], Tag("<word>")] | Annotated[ArcLength, Tag("<number>")],
     Discriminator(
@@ -181,7 +179,7 @@ class DynamicStage(BaseModel):
     tolerance: Length | None = Field(
         default=None,
         description="with time_step: auto, the largest local error of a step: an estimate of how far any node of the "
-        f"riser is off its path after this one step [m]; {TOLERANCE:g} by default",
+        "riser is off its path after this one step [m]; by default 0.02 of its outer diameter",
     )
     motion: Motion | None = Field(default=None, description="prescribed motions of held ends, {start, end}")
     loads: tuple[Load, ...] = Field(default=(), description="loads on the riser during this stage")
@@ -206,11 +204,6 @@ class DynamicStage(BaseModel):
             remedy = "write time_step: auto, or leave tolerance out"
             raise wrong("tolerance", "steps of a given size have no tolerance", remedy)
         return self
-
-    @property
-    def error_tolerance(self) -> float:
-        """Largest local error of an automatic step [m]."""
-        return TOLERANCE if self.tolerance is None else self.tolerance
 
 
 Stage = Annotated[

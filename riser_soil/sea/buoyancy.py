@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from riser_soil.arrays import Array
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser.stations import Derivatives
 from riser_soil.riser.trial import Trial
 from riser_soil.sea.pipe import Pipe
@@ -63,7 +63,7 @@ class Buoyancy:
 
     def __init__(self, pipe: Pipe, dry: Dry, flat: bool) -> None:
         self.line, self._pipe, self._dry, self._flat = pipe.line, pipe, dry, flat
-        self.symmetric = flat
+        self.traits = Traits("F", symmetric=flat)
 
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from riser_soil.arrays import Array
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser.trial import Trial
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.still_water import StationLoads
@@ -13,7 +13,7 @@ class Morison:
     """Loads of the water at the pipe's stations, brought to the line: group I is the added mass, F all the rest."""
 
     name = "morison"
-    symmetric, follows = False, True
+    traits = Traits("IF", symmetric=False, follows=True)
 
     def __init__(self, pipe: Pipe, loads: StationLoads) -> None:
         self.line, self._pipe, self._loads = pipe.line, pipe, loads

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, assert_never
 
 from riser_soil.arrays import Array
 from riser_soil.sea import waves
@@ -50,6 +50,10 @@ class WaveField:
         motion.immersion_gradient[:, :2] += slope
 
     def _heights(self, z: Array, eta: Array, slope: Array) -> waves.Heights:
-        if self._stretching == "wheeler":
-            return waves.wheeler(z, eta, slope, self._depth)
-        return waves.vertical(z, self._depth)
+        match self._stretching:
+            case "wheeler":
+                return waves.wheeler(z, eta, slope, self._depth)
+            case "vertical":
+                return waves.vertical(z, self._depth)
+            case _:
+                assert_never(self._stretching)

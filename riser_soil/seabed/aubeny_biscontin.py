@@ -89,6 +89,11 @@ class AubenyBiscontin:
         return PowerLaw(self.diameter, self._strength, self.a, self.b)
 
     @property
+    def capacity(self) -> float:
+        """Resistance of the backbone [N/m] one diameter deep."""
+        return float(self.backbone(np.array(self.diameter))[0])
+
+    @property
     def start(self) -> float:
         return 0.0
 

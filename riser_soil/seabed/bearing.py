@@ -50,6 +50,15 @@ class PowerLaw:
         return np.where(z > 0.0, factor * su, 0.0), np.where(z > 0.0, slope, 0.0)
 
 
+def strip_capacity(strength: Strength, width: float) -> float:
+    """Least force per length [N/m] under which clay flows from below a strip of a width [m] on its surface.
+
+    (2 + pi) su B + gradient B^2/4: Prandtl's, with a strength that grows with depth after E. H. Davis & J. R. Booker,
+    Geotechnique 23 (1973), whose factor of 1 to 1.7 on it, for the gradient's effect, is left at 1.
+    """
+    return (2.0 + np.pi) * strength.su * width + 0.25 * strength.gradient * width**2
+
+
 def displaced(z: Array, diameter: float) -> tuple[Array, Array, Array]:
     """Integral over z, value and derivative of the pipe's area below the surface [m3, m2, m]; whole for z > D."""
     r = 0.5 * diameter

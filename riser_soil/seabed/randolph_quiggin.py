@@ -87,6 +87,11 @@ class RandolphQuiggin:
         return self.K_max / self.diameter
 
     @property
+    def capacity(self) -> float:
+        """Ultimate resistance [N/m] one diameter deep."""
+        return float(self._ultimate.resistance(np.array(self.diameter))[0])
+
+    @property
     def start(self) -> float:
         return 0.0
 

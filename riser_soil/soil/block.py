@@ -5,6 +5,8 @@ Needs a running gmsh; leaves the mesh in gmsh's current model with one physical 
 
 from __future__ import annotations
 
+from typing import assert_never
+
 import gmsh
 import numpy as np
 
@@ -13,10 +15,13 @@ from riser_soil.soil.grading import BlockSpec, graded, growing
 
 def make_block(spec: BlockSpec) -> None:
     """Build and mesh the block in gmsh's current model."""
-    if spec.kind == "hex":
-        _extrude_layers(spec)
-    else:
-        _tetrahedra(spec)
+    match spec.kind:
+        case "hex":
+            _extrude_layers(spec)
+        case "tet":
+            _tetrahedra(spec)
+        case _:
+            assert_never(spec.kind)
     volumes = [tag for _, tag in gmsh.model.getEntities(3)]
     gmsh.model.addPhysicalGroup(3, volumes)
     gmsh.model.mesh.generate(3)

@@ -38,7 +38,7 @@ def gather_rows(grid: Grid, rows: npt.NDArray[T]) -> npt.NDArray[T]:
 def top_facets(grid: Grid, mesh: Gathered) -> IntArray:
     """Boundary facets that look upwards (nf, nv): counter-clockwise from above, ordered as `Family.faces`."""
     family = grid.family
-    faces = mesh.cells[:, np.array(family.faces)].reshape(-1, len(family.flip))
+    faces: IntArray = mesh.cells[:, np.array(family.faces)].reshape(-1, len(family.flip))
     outer = _unshared(faces[:, : family.corners])
     faces, cells = faces[outer], mesh.cells[outer // len(family.faces)]
     outward = mesh.points[faces].mean(axis=1) - mesh.points[cells].mean(axis=1)

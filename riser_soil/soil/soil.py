@@ -9,7 +9,7 @@ import numpy as np
 
 from riser_soil.arrays import Array
 from riser_soil.errors import MeshError, SceneError
-from riser_soil.part import Block, Energy, Forces, State, Weights, Work
+from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.soil import kernels, mandel
 from riser_soil.soil.element import cell_gradients
@@ -54,7 +54,7 @@ class Soil:
         self._shape = self._gradients.weights.shape
         depth = np.maximum(level - self._gradients.points[..., 2], 0.0).ravel()
         self.law = law(depth)
-        self.symmetric = self.law.symmetric
+        self.traits = Traits("E", self.law.symmetric)
         initial = _geostatic(depth, unit_weight, K0) if start == "geostatic" else np.zeros((depth.size, 6))
         self._check_start(initial, depth, K0)
         self._initial, self._stress, self._history = initial, initial.copy(), self.law.start()

@@ -11,6 +11,7 @@ from typer.testing import CliRunner, Result
 
 from riser_soil.__main__ import app
 from tests.bad_scenes import ALL, GOOD, Bad
+from tests.on_ranks import HANGS
 
 
 def run(arguments: list[str]) -> Result:
@@ -205,7 +206,7 @@ def test_result_folder_must_not_be_a_file(tmp_path: Path) -> None:
 def test_the_true_command(command: str, tmp_path: Path) -> None:
     file = write(tmp_path, GOOD.replace("length:", "lenght:"))
     call = [sys.executable, "-m", "riser_soil", command, "case.yaml"]
-    done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, timeout=HANGS, check=False)
     assert done.returncode == 2
     assert done.stdout == ""
     assert done.stderr.splitlines() == [

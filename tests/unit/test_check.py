@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from meshes.block import main as mesh
 from riser_soil.check import describe
 from riser_soil.scene.reader import scene_from_mapping
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.riser_scenes import held, riser_scene
 
 
 def report(mapping: Mapping) -> str:
@@ -179,3 +182,83 @@ def test_several_warnings_are_counted() -> None:
     lines = report(soft).splitlines()
     assert lines[-1] == f"{len(warnings(soft))} warnings"
     assert len(warnings(soft)) == 2
+
+
+def long_riser(elements: int) -> Mapping:
+    """Nothing of it touches down, nothing is clamped; its largest moment is 264.4 N.m."""
+    pipe: Mapping = {"EA": 1.0e9, "EI": 1.0e6, "mass": 120.0, "submerged_weight": 500.0}
+    ends = held(0.0, 0.0, 0.0), held(7000.0, 0.0, 6000.0)
+    return riser_scene(
+        LAY, pipe=pipe, length=1.0e4, elements=elements, start=ends[0], end=ends[1], gravity=9.81
+    )
+
+
+def test_long_elements_in_a_bend_are_told_with_the_error_of_the_moment() -> None:
+    (found,) = warnings(long_riser(40))
+    assert "elements of 250 m at arc 875 m are too long for the riser's bend" in found
+    numbers = r"= ([\d.]+) N\.m, ([\d.]+)% of the largest, ([\d.]+) N\.m: take at most ([\d.]+)"
+    error, share, largest, longest = (float(x) for x in re.findall(numbers, found)[0])
+    assert largest == pytest.approx(264.4, rel=0.01)
+    assert error == pytest.approx(0.01 * share * largest, rel=0.01)
+    assert longest == pytest.approx(250.0 * (9.0 / share) ** 0.25, rel=0.01)
+    assert not warnings(long_riser(int(1.0e4 / longest) + 1))
+
+
+def test_friction_on_soil_is_none_and_told() -> None:
+    rough = {**touchdown(), "contact": {"friction": {"axial": 0.3}}}
+    (found,) = warnings(rough)
+    assert "contact.friction acts on the seabed only: on the soil, x from 2 to 9 m and y from -1 to 1 m" in found
+    del rough["soil"]
+    assert not warnings(rough)
+
+
+def test_soil_that_the_riser_does_not_reach_is_told() -> None:
+    aside = with_value(touchdown(), "soil", "block", "x", value=[18.0, 21.0])
+    (found,) = warnings(aside)
+    gap = float(re.findall(r"hangs ([\d.]+) m above it", found)[0])
+    assert 6.0 < gap < 8.0
+    assert "its ends move by no more than 0 m" in found
+    for stages, told in (([LAY, heave(3.0)], 1), ([LAY, heave(3.0, amplitude=2.0)], 0)):
+        assert len([w for w in warnings(aside | {"stages": stages}) if "does not reach" in w]) == told
+    pushed = {"name": "push", "kind": "static", "loads": [{"distributed": [0.0, 0.0, -1.0e3]}]}
+    assert len([w for w in warnings(aside | {"stages": [pushed]}) if "does not reach" in w]) == 1
+    gentle = with_value(touchdown(pushed), "soil", "block", "x", value=[10.0, 13.0])
+    assert not warnings(gentle)
+
+
+def test_soil_beside_the_riser_is_told() -> None:
+    beside = with_value(touchdown(), "soil", "block", "y", value=[3.0, 5.0])
+    beside["riser"] |= {"initial": {"points": [[0.0, 0.0, 0.15], [10.0, 0.0, 0.15], [22.5, 0.0, 15.0]]}}
+    (found,) = [w for w in warnings(beside) if "does not reach the soil" in w]
+    assert "y from 3 to 5 m: in its first shape it is not above it" in found
+
+
+@pytest.mark.parametrize(("level", "told"), [(0.0, 0), (0.3, 1)])
+def test_a_mesh_whose_top_is_off_the_seabed_is_told(level: float, told: int, tmp_path: Path) -> None:
+    box = ["--x", "2", "9", "--y", "-1", "1", "--depth", "1", "--size", "0.5", "--size-far", "1"]
+    mesh([str(tmp_path / "soil.msh"), *box, "--level", str(level)])
+    scene = with_value(touchdown(), "soil", "mesh", value={"file": str(tmp_path / "soil.msh")})
+    del scene["soil"]["block"]
+    found = [w for w in warnings(scene) if "nowhere at the seabed" in w]
+    assert len(found) == told
+    assert all("the soil's top lies 0.3 to 0.3 m high and nowhere at the seabed, z = 0 m" in w for w in found)
+
+
+def test_static_loads_that_end_with_their_stage_are_told() -> None:
+    lift: Mapping = {"at": 20.0, "force": [0.0, 0.0, 1.0e3]}
+    lifted = {"name": "lift", "kind": "static", "loads": [lift]}
+
+    def told(*stages: Mapping) -> list[str]:
+        return [w for w in warnings(without_soil(*stages)) if "ends with its stage" in w]
+
+    (found,) = told(LAY, lifted, heave(1.0))
+    assert found == (
+        "warning: stages.1.loads.0: force [0.0, 0.0, 1000.0] N at 20.0 ends with its stage; heave is without it, and "
+        "the riser springs back at once: repeat it in stages.2.loads if it stays"
+    )
+    assert "lay is without it, and the riser comes back" in told(lifted, LAY)[0]
+    assert not told(LAY, lifted)
+    assert not told(lifted, heave(1.0) | {"loads": [lift | {"history": [[0.0, 1.0], [1.0, 0.5]]}]})
+    assert told(lifted, heave(1.0) | {"loads": [lift | {"at": 10.0}]})
+    let_go = lifted | {"loads": [lift | {"history": [[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]]}]}
+    assert not told(let_go, heave(1.0))

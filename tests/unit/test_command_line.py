@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,17 +15,19 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from riser_soil.__main__ import app
-from riser_soil.errors import MeshError, ResultsError, RiserSoilError, SceneError, SolveError
+from riser_soil.errors import Interruption, MeshError, ResultsError, RiserSoilError, SceneError, SolveError
 from riser_soil.scene.scene import Scene
+from tests.on_ranks import HANGS
 
 ROOT = Path(__file__).parents[2]
 SCENE = ROOT / "tests/scenes/catenary.yaml"
+SUMMARY = '{"finished": %s, "version": "0.1.0", "parts": {}, "stages": []}'
 
 
 class Calls:
     """Stands in for the computation: keeps what it is asked for."""
 
-    def __init__(self, failure: Exception | None = None) -> None:
+    def __init__(self, failure: BaseException | None = None) -> None:
         self.failure = failure
         self.folders: list[Path] = []
         self.scenes: list[Scene] = []
@@ -49,7 +53,7 @@ def invoke(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Invoke:
     """Runs the command in an empty folder with the computation replaced."""
     monkeypatch.chdir(tmp_path)
 
-    def call(*arguments: str, failure: Exception | None = None) -> tuple[Result, Calls]:
+    def call(*arguments: str, failure: BaseException | None = None) -> tuple[Result, Calls]:
         calls = Calls(failure)
         monkeypatch.setitem(sys.modules, "riser_soil.run", SimpleNamespace(run=calls.run))
         monkeypatch.setitem(sys.modules, "riser_soil.check", SimpleNamespace(describe=calls.describe))
@@ -120,7 +124,7 @@ def test_unexpected_errors_keep_their_traceback(invoke: Invoke) -> None:
 
 def test_finished_run_needs_force(invoke: Invoke, tmp_path: Path) -> None:
     (tmp_path / "catenary").mkdir()
-    (tmp_path / "catenary/summary.json").write_text('{"finished": true}', encoding="utf-8")
+    (tmp_path / "catenary/summary.json").write_text(SUMMARY % "true", encoding="utf-8")
     result, calls = invoke("run", str(SCENE))
     assert result.exit_code == 2
     assert calls.folders == []
@@ -129,7 +133,7 @@ def test_finished_run_needs_force(invoke: Invoke, tmp_path: Path) -> None:
 
 def test_unfinished_run_is_taken_over(invoke: Invoke, tmp_path: Path) -> None:
     (tmp_path / "catenary").mkdir()
-    (tmp_path / "catenary/summary.json").write_text('{"finished": false}', encoding="utf-8")
+    (tmp_path / "catenary/summary.json").write_text(SUMMARY % "false", encoding="utf-8")
     assert invoke("run", str(SCENE))[0].exit_code == 0
 
 
@@ -140,13 +144,67 @@ def test_check_prints_what_would_be_built(invoke: Invoke) -> None:
     assert calls.scenes[0].title == "other"
 
 
+@pytest.mark.parametrize("target", ["/dev/full", "a closed pipe"])
+@pytest.mark.parametrize("arguments", [["schema"], ["check", str(SCENE)]])
+def test_standard_output_that_takes_no_more_is_told_in_one_line(arguments: list[str], target: str) -> None:
+    why = "No space left on device" if target == "/dev/full" else "Broken pipe"
+    if target == "/dev/full":
+        output = os.open(target, os.O_WRONLY)
+    else:
+        unread, output = os.pipe()
+        os.close(unread)
+    call = [sys.executable, "-m", "riser_soil", *arguments]
+    done = subprocess.run(call, cwd=ROOT, stdout=output, stderr=subprocess.PIPE, text=True, timeout=120, check=False)
+    os.close(output)
+    assert (done.returncode, done.stderr) == (4, f"standard output: cannot be written: {why}\n")
+
+
+def test_a_disk_that_is_full_elsewhere_is_told_in_one_line(invoke: Invoke) -> None:
+    result, _ = invoke("run", str(SCENE), failure=OSError(errno.ENOSPC, "No space left on device", "a/cache"))
+    assert (result.exit_code, result.stderr) == (4, "a/cache: cannot be written: No space left on device\n")
+
+
+def test_interruptions_have_the_status_of_their_signal(invoke: Invoke) -> None:
+    result, _ = invoke("run", str(SCENE), failure=Interruption(signal.SIGINT))
+    assert result.exit_code == 130
+    assert result.stderr == "ended by SIGINT before the first stage; nothing was computed\n"
+
+
+@pytest.mark.parametrize("arguments", [["x" * 300 + ".yaml"], [str(SCENE), "-o", "x" * 300]])
+def test_names_too_long_are_bad_input(invoke: Invoke, arguments: list[str]) -> None:
+    result, calls = invoke("run", *arguments)
+    assert result.exit_code == 2
+    assert result.stderr.endswith("File name too long\n")
+    assert result.stderr.count("\n") == 1
+    assert calls.folders == []
+
+
+def test_a_tmpdir_that_is_none_is_replaced_and_told(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    given = os.environ | {"TMPDIR": str(tmp_path / "file")}
+    call = [sys.executable, "-m", "riser_soil", "check", str(SCENE)]
+    done = subprocess.run(call, cwd=ROOT, env=given, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0
+    assert done.stderr.startswith(f"TMPDIR={tmp_path / 'file'}: is no folder that can be written; ")
+    assert done.stderr.count("\n") == 1
+
+
+def test_the_user_s_own_scene_is_not_replaced(invoke: Invoke, tmp_path: Path) -> None:
+    (tmp_path / "scene.yaml").write_text(SCENE.read_text(encoding="utf-8"), encoding="utf-8")
+    for options in ([], ["--force"]):
+        result, calls = invoke("run", "scene.yaml", "-o", ".", *options)
+        assert result.exit_code == 2
+        assert result.stderr.startswith("scene.yaml: was not written by riser_soil")
+        assert calls.folders == []
+
+
 @pytest.mark.parametrize("arguments", [["run"], ["run", "a.yaml", "--colour"], ["fly"], ["run", "a", "b"]])
 def test_wrong_usage_is_bad_input(invoke: Invoke, arguments: list[str]) -> None:
     assert invoke(*arguments)[0].exit_code == 2
 
 
 @pytest.mark.parametrize("option", ["--help", "--version"])
-def test_help_is_fast_and_imports_nothing_heavy(option: str) -> None:
+def test_help_imports_nothing_heavy(option: str) -> None:
     code = (
         "import sys\n"
         f"sys.argv = ['riser-soil', '{option}']\n"
@@ -156,12 +214,10 @@ def test_help_is_fast_and_imports_nothing_heavy(option: str) -> None:
         "heavy = {'numpy', 'scipy', 'numba', 'petsc4py', 'mpi4py', 'dolfinx', 'pydantic', 'ruamel.yaml'}\n"
         "assert not heavy & set(sys.modules), heavy & set(sys.modules)\n"
     )
-    began = time.perf_counter()
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=HANGS, check=False
     )
     assert done.returncode == 0, done.stderr
-    assert time.perf_counter() - began < 5.0
 
 
 def test_a_scene_is_read_without_numerics() -> None:
@@ -172,6 +228,6 @@ def test_a_scene_is_read_without_numerics() -> None:
         "assert not {'numpy', 'petsc4py', 'mpi4py', 'dolfinx'} & set(sys.modules)\n"
     )
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=HANGS, check=False
     )
     assert done.returncode == 0, done.stderr

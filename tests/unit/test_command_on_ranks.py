@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import sys
+import time
 from pathlib import Path
 
 import pytest
 
-from tests.on_ranks import mpirun
+from tests.on_ranks import Job, mpirun
 
 ROOT = Path(__file__).parents[2]
 SCENE = ROOT / "tests/scenes/catenary.yaml"
@@ -24,7 +28,7 @@ def compute(scene, folder, force):
         raise FAILURE
     MPI.COMM_WORLD.Barrier()
 
-command._PATIENCE = 0.5
+command._PATIENCE = 2.0
 sys.modules["riser_soil.run"] = SimpleNamespace(run=compute)
 sys.argv = ["riser-soil", "run", {str(SCENE)!r}]
 command.main()
@@ -53,3 +57,31 @@ def test_unexpected_error_of_one_rank_ends_all(tmp_path: Path) -> None:
     done = mpirun(2, "-c", script, folder=tmp_path)
     assert done.returncode == 1
     assert "ZeroDivisionError: bug" in done.stderr
+
+
+STUBBORN = """
+import os, signal, time
+from pathlib import Path
+
+signal.signal(signal.SIGTERM, signal.SIG_IGN)
+Path(str(os.getpid())).touch()
+time.sleep(600.0)
+"""
+
+
+def test_nothing_is_left_of_a_job_whose_mpirun_is_killed(tmp_path: Path) -> None:
+    with Job(["mpirun", "-n", "2", "--bind-to", "none", sys.executable, "-c", STUBBORN], tmp_path) as job:
+        while len(ranks := list(tmp_path.iterdir())) < 2:
+            assert job.process.poll() is None
+            time.sleep(0.05)
+        assert {int(rank.name) for rank in ranks} < set(job.processes())
+        os.kill(job.process.pid, signal.SIGKILL)
+    assert not [rank for rank in ranks if _runs(rank.name)]
+
+
+def _runs(process: str) -> bool:
+    """Not gone, nor a zombie that nobody has asked for its exit status."""
+    try:
+        return ") Z " not in Path("/proc", process, "stat").read_text()
+    except FileNotFoundError:
+        return False

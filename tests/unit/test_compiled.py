@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -65,7 +66,9 @@ def test_cache_is_where_the_user_keeps_caches(tmp_path: Path, monkeypatch: pytes
     assert compiled.choose_folder("0" * 16) == tmp_path / ".cache" / "riser_soil" / ("0" * 16)
 
 
-def test_what_cant_be_written_is_replaced_by_a_private_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_cant_be_written_is_replaced_by_a_private_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "file").write_text("in the way")
     (tmp_path / "tmp").mkdir()
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
@@ -73,11 +76,26 @@ def test_what_cant_be_written_is_replaced_by_a_private_folder(tmp_path: Path, mo
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
     folder = compiled.choose_folder("0" * 16)
     assert folder == tmp_path / "tmp" / f"riser_soil-{os.getuid()}" / ("0" * 16)
+    (told,) = capfd.readouterr().err.splitlines()
+    assert str(tmp_path / "file") in told
+    assert told.endswith(f"{folder} is used")
     folder.parent.chmod(0o777)
     other = compiled.choose_folder("0" * 16)
     assert other.is_dir()
     assert folder.parent not in other.parents
     assert other.stat().st_mode & 0o077 == 0
+
+
+def test_a_full_disk_is_no_place_for_a_cache_unless_the_kernels_are_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    full = SimpleNamespace(f_bavail=10, f_frsize=4096)
+    monkeypatch.setattr(os, "statvfs", lambda path: full)
+    with pytest.raises(OSError, match="No space left"):
+        compiled.require_room(tmp_path, 100_000)
+    (tmp_path / "kernels").mkdir()
+    (tmp_path / "kernels" / "morison.nbc").write_bytes(bytes(60_000))
+    compiled.require_room(tmp_path, 100_000)
 
 
 def test_old_versions_go_and_nothing_else(tmp_path: Path) -> None:

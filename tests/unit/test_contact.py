@@ -133,7 +133,7 @@ class Case:
 
     def dense_tangent(self, u: Array) -> Array:
         blocks = self.contact.blocks()
-        values = {key: np.zeros(block.shape) for key, block in blocks.items()}
+        values = {key: block.zeros() for key, block in blocks.items()}
         self.contact.tangent(self.state(u), WEIGHTS, values)
         dense = np.zeros((self.size, self.size))
         for key, block in blocks.items():

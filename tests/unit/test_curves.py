@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from riser_soil.netcdf import SERIES
 from riser_soil.plots.curves import along_arc, end_reactions, end_tension, envelope, instants, save, shapes, sheet
 from riser_soil.results import Run
 from tests.recorded_run import record
@@ -50,3 +51,10 @@ def test_reactions_and_tension_in_time(run: Run, tmp_path: Path) -> None:
 
 def test_instants_are_spread_over_the_records(run: Run) -> None:
     assert np.allclose(run.time[instants(run, 0.5, 1.5, 3)], [0.5, 1.0, 1.5])
+
+
+def test_contact_force_has_a_sign_as_the_ground_may_hold_the_riser_by_suction(run: Run) -> None:
+    _, (axes,) = sheet(1, 1)
+    along_arc(axes, run, "contact_force")
+    assert axes.get_ylabel() == "contact force per length [kN/m], + pushes"
+    assert SERIES["contact_force"].sign == "positive where the ground pushes"

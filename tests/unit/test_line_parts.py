@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from riser_soil.arrays import Array
-from riser_soil.part import Forces, Part, State, Weights
+from riser_soil.part import Forces, Part, State, Traits, Weights
 from riser_soil.riser import hermite, loads, spinning, springs, stations
 from riser_soil.riser.directors import PlanarTurn, SpatialTurn
 from riser_soil.riser.rotary_inertia import RotaryInertia
@@ -100,7 +100,24 @@ def test_symmetric_parts_say_so(name: str, dimension: int) -> None:
     part, state = MAKERS[name](at), at.state(1)
     K = tangent([part], state, WEIGHTS)
     symmetric = bool(np.abs(K - K.T).max() <= 1e-11 * np.abs(K).max())
-    assert symmetric == part.symmetric
+    assert symmetric == part.traits.symmetric
+
+
+@both_dimensions
+@every_part
+def test_forces_are_in_the_groups_that_a_part_declares(name: str, dimension: int) -> None:
+    at = sample(dimension)
+    part, state = MAKERS[name](at), at.state(1)
+    forces = Forces.zeros(state.u.size)
+    part.residual(state, forces)
+    found = {group: bool(f.any()) for group, f in zip("IFE", (forces.inertia, forces.force, forces.end), strict=True)}
+    assert found == {group: group in part.traits.groups for group in "IFE"}
+
+
+@pytest.mark.parametrize("groups", ["", "X", "IFX"])
+def test_a_part_is_in_a_group_that_there_is(groups: str) -> None:
+    with pytest.raises(ValueError, match="groups of a part are letters"):
+        Traits(groups, symmetric=True)
 
 
 def no_operation(*_: object) -> None:

@@ -103,15 +103,14 @@ def angular_momentum(at: Sample, part: Stepping, state: State) -> Array:
         q = np.stack([x[:-1], t[:, 0], x[1:], t[:, 1]], axis=1)
         impulse = np.einsum("eab,ebi->eai", part.instant.M, part.q_rate(state)) @ line.basis.T
         return np.asarray(np.cross(q, impulse).sum(axis=(0, 1)))
-    mass = part.instant.of_ends[:, None, None]
     if isinstance(trial.turn, SpatialTurn):
         frames = np.stack([trial.turn.frame1, trial.turn.frame2], axis=1)
-        normals = [frames[..., 1], frames[..., 2]]
+        moving = [frames[..., k] for k in part.instant.on_directors()]
     else:
         t = trial.turn.tangent
-        normals = [np.stack([-t[..., 1], t[..., 0]], axis=-1) @ line.basis.T]
-    pairs = zip(normals, part.rates(state), strict=True)
-    return np.asarray(sum(np.cross(n, mass * rate @ line.basis.T).sum(axis=(0, 1)) for n, rate in pairs))
+        moving = [np.stack([-t[..., 1], t[..., 0]], axis=-1) @ line.basis.T]
+    each = zip(moving, part.masses, part.rates(state), strict=True)
+    return np.asarray(sum(np.cross(d, mass * rate @ line.basis.T).sum(axis=(0, 1)) for d, mass, rate in each))
 
 
 @both_dimensions

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import hypot
 from pathlib import Path
 from typing import Any
 
@@ -51,10 +52,10 @@ def test_a_start_at_full_speed_is_told_and_a_ramp_heals_it(motion: Mapping, spee
 
 
 def test_a_table_that_starts_moving(tmp_path: Path) -> None:
-    (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + "".join(f"{t},{3 * t},0,0\n" for t in range(8)))
+    (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + "".join(f"{t},{-3 * t},0,0\n" for t in range(8)))
     (told,) = doubts(moved(table="t.csv"), folder=tmp_path)
     assert "the end starts at 3 m/s" in told
-    rows = "".join(f"{t},{0.1 * t**3},0,0\n" for t in range(8))
+    rows = "".join(f"{t},{-0.1 * t**3},0,0\n" for t in range(8))
     (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + rows)
     assert not doubts(moved(table="t.csv"), folder=tmp_path)
 
@@ -87,3 +88,45 @@ def test_long_time_steps(period: float, waves: Mapping | None, time_step: float,
     told = doubts(static(), moved(harmonic=harmonic, time_step=time_step), **water)
     assert len(told) == (says is not None)
     assert all(says in doubt and doubt.startswith("stages.1.time_step: ") for doubt in told if says)
+
+
+@pytest.mark.parametrize(
+    ("stage", "path", "apart"),
+    [
+        (moved(harmonic=HARMONIC | {"amplitude": [12.0, 0.0, 9.0], "ramp": 1.0}), "stages.1.motion", hypot(52.0, 42.0)),
+        (
+            moved(arc={"hub": [40.0, 0.0, 53.0], "amplitude_deg": 30.0, "period": 6.2831853, "ramp": 1.0}),
+            "stages.1.motion",
+            hypot(40.0 + 50.0 * 0.5, 30.0 + 53.0 - 50.0 * 0.75**0.5),
+        ),
+        (static("pull", move={"end": [52.0, 0.0, 5.0]}), "stages.1.move", hypot(52.0, 35.0)),
+    ],
+)
+def test_ends_that_go_farther_apart_than_the_riser_is_long(stage: Mapping, path: str, apart: float) -> None:
+    (told,) = [doubt for doubt in doubts(static(), stage) if "long" in doubt]
+    assert told.startswith(f"{path}: the ends come to be ")
+    found = float(told.split("come to be ")[1].split(" m apart")[0])
+    assert found == pytest.approx(apart, abs=0.1)
+    assert "but the riser is only 60 m long: it is stretched by " in told
+    assert float(told.split("stretched by ")[1].split("%")[0]) == pytest.approx(100.0 * (found / 60.0 - 1.0), abs=0.01)
+
+
+def test_ends_that_stay_within_the_length_are_not_told() -> None:
+    assert not doubts(static(), moved(harmonic=HARMONIC | {"amplitude": [6.0, 0.0, 4.5], "ramp": 3.0}))
+    assert not doubts(static(), static("pull", move={"end": [48.0, 0.0, 5.0]}))
+
+
+def test_motions_go_on_from_where_the_stage_before_left_the_end() -> None:
+    """Each alone would stay within the length."""
+    pull = static("pull", move={"end": [48.0, 0.0, 5.0]})
+    heave = moved(harmonic=HARMONIC | {"amplitude": [2.0, 0.0, 4.0], "ramp": 3.0})
+    assert not doubts(static(), heave)
+    (told,) = doubts(static(), pull, heave)
+    assert told.startswith("stages.2.motion: the ends come to be 6")
+
+
+def test_a_table_that_leads_too_far_at_one_of_its_rows_is_told(tmp_path: Path) -> None:
+    rows = [(t, 20 * (t == 51)) for t in range(0, 103, 3)]
+    (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + "".join(f"{t},{x},0,0\n" for t, x in rows))
+    told = doubts(static(), moved(duration=100.0, table="t.csv"), folder=tmp_path)
+    assert [doubt for doubt in told if "apart at 51 s" in doubt]

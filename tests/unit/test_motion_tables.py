@@ -172,3 +172,18 @@ def test_only_what_leaves_the_plane_makes_three_dimensions(
     header = "t [s], x [m], y [m], z [m], rx [rad], ry [rad], rz [rad]\n"
     rows = [row(t, s * np.array([*direction, *rotation])) for t, s in ((0, 0.0), (1, 1.0), (2, -0.3), (4, 1e-7))]
     assert resolved_dimension(scene(tmp_path, header + "".join(rows))) == dimension
+
+
+def test_a_support_rocks_while_a_table_moves_it(tmp_path: Path) -> None:
+    (tmp_path / "motion.csv").write_text(HEADER + STILL + ROWS, encoding="utf-8")
+    rocking = {"axis": [0.0, 1.0, 0.0], "amplitude_deg": 9.0, "period": 4.0}
+    moving = dynamic(4.0, 0.1, motion={"end": {"table": "motion.csv", "rotation": rocking}})
+    ends = held(0.0, 0.0, 0.0), held(30.0, 0.0, 0.0, rotation="fixed")
+    both = riser_scene(moving, pipe=PIPE, length=30.0, elements=3, start=ends[0], end=ends[1])
+    world = build(scene_from_mapping(both, tmp_path), MPI.COMM_SELF)
+    world.begin(world.scene.stages[0])
+    end = world.line.end
+    assert end.motion is not None
+    assert end.turning is not None
+    assert end.motion(1.0)[0] == pytest.approx([30.1, 0.0, 0.2])
+    assert np.degrees(end.turning(1.0).rotation) == pytest.approx([0.0, 9.0, 0.0])

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from riser_soil.netcdf import HEALTH, SERIES, SeriesFile
+from riser_soil.results import Run
 from tests.recorded_run import Catenary, record
 
 ARC = np.linspace(0.0, 100.0, 11)
@@ -42,7 +43,7 @@ def test_xarray_reads_what_was_recorded(tmp_path: Path) -> None:
     np.testing.assert_array_equal(data["position"].sel(time=0.0), first.position)
     np.testing.assert_array_equal(data["effective_tension"][0], first.effective_tension)
     np.testing.assert_array_equal(data["end_force"][0], first.end_force)
-    assert float(data["end_force"].sel(component=b"z")[0]) == first.end_force[2]
+    assert float(data["end_force"].sel(component="z")[0]) == first.end_force[2]
     assert data.attrs["finished"] == 1
     assert data.attrs["Conventions"].startswith("CF-")
 
@@ -85,6 +86,14 @@ def test_a_reader_does_not_stop_the_writer(tmp_path: Path) -> None:
         reader.communicate("done\n")
     with h5py.File(tmp_path / "results.nc") as read:
         assert len(read["time"]) == 1
+
+
+def test_xarray_and_the_package_s_reader_hold_the_file_together(tmp_path: Path) -> None:
+    record(tmp_path, duration=0.5)
+    with xr.open_dataset(tmp_path / "results.nc", engine="h5netcdf") as data:
+        run = Run(tmp_path)
+        np.testing.assert_array_equal(run["effective_tension"], data["effective_tension"])
+        assert run["component"].tolist() == data["component"].values.tolist() == ["x", "y", "z"]
 
 
 def test_rows_are_copies(tmp_path: Path) -> None:

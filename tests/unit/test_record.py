@@ -15,13 +15,25 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from riser_soil.errors import ResultsError, SceneError
+from riser_soil.errors import ResultsError, SceneError, WriteError
 from riser_soil.progress import Progress
 from riser_soil.record import TICK, Clock
 from riser_soil.results import Run
 from riser_soil.schedule import Due, Schedule
 from riser_soil.screen import print_summary
-from tests.recorded_run import SCENE, block, record
+from tests.recorded_run import (
+    CATENARY_ARC,
+    NOWHERE,
+    SCENE,
+    Catenary,
+    a_recorder,
+    block,
+    record,
+    soil,
+    step,
+)
+from tests.small_disk import files_of_at_most
+from tests.vtk_reading import read_by_vtk
 
 ROOT = Path(__file__).parents[2]
 
@@ -151,7 +163,105 @@ def test_an_error_keeps_the_accepted_steps_and_marks_them_unfinished(tmp_path: P
     assert run.summary["stages"][1]["final"] is not None
     with h5py.File(tmp_path / "results.nc") as file:
         assert file.attrs["finished"] == 0
-    assert (tmp_path / "scene.yaml").read_text() == SCENE
+    assert (tmp_path / "scene.yaml").read_text().endswith(f"\n{SCENE}")
+
+
+def test_a_run_that_fails_keeps_its_last_accepted_step(tmp_path: Path) -> None:
+    with a_recorder(tmp_path) as recorder:
+        step(recorder, 0.1)
+        step(recorder, 0.2, NOWHERE)
+        step(recorder, 0.3, NOWHERE)
+    run = Run(tmp_path)
+    assert not run.finished
+    np.testing.assert_allclose(run.time, [0.1, 0.3])
+    times, frames = read_by_vtk(tmp_path / "riser.xdmf")
+    assert times == run.time.tolist()
+    np.testing.assert_array_equal(frames[-1]["points"], run["position"][-1])
+    assert run["touchdown_arc"][-1] == run.summary["stages"][0]["final"]["touchdown_arc"]
+
+
+def test_before_the_first_frame_there_is_nothing_to_draw(tmp_path: Path) -> None:
+    """VTK's reader dies of a file without frames."""
+    with a_recorder(tmp_path, mesh=block(4, 3, 2)):
+        pass
+    run = Run(tmp_path)
+    assert run.time.size == run.soil_times.size == 0
+    assert run.has_soil
+    assert not list(tmp_path.glob("*.xdmf"))
+    with pytest.raises(ResultsError, match="holds no frame yet"):
+        run.soil_frame()
+
+
+def test_load_steps_of_a_static_stage_that_fails(tmp_path: Path) -> None:
+    with a_recorder(tmp_path, "static") as recorder:
+        for load in (0.1, 0.2):
+            step(recorder, load, NOWHERE)
+    assert Run(tmp_path).time.tolist() == [0.0]
+
+
+def test_the_last_step_is_written_once(tmp_path: Path) -> None:
+    with a_recorder(tmp_path) as recorder:
+        step(recorder, 0.1)
+        recorder.record_last()
+    assert Run(tmp_path).time.tolist() == [0.1]
+    assert read_by_vtk(tmp_path / "riser.xdmf")[0] == [0.1]
+
+
+@pytest.mark.parametrize("series", [False, True])
+def test_riser_and_soil_keep_one_time_axis_where_a_run_fails(series: bool, tmp_path: Path) -> None:
+    mesh, due = block(4, 3, 2), Due(series=series, pictures=False)
+    with a_recorder(tmp_path, mesh=mesh) as recorder:
+        step(recorder, 0.1, pictured=soil(mesh, 30.0))
+        step(recorder, 0.2, due)
+        recorder.record_last(soil(mesh, 29.0))
+    assert Run(tmp_path).time.tolist() == [0.1, 0.2]
+    assert Run(tmp_path).soil_times.tolist() == read_by_vtk(tmp_path / "riser.xdmf")[0] == [0.1, 0.2]
+
+
+def test_without_the_soil_there_is_no_picture_of_the_last_step(tmp_path: Path) -> None:
+    mesh = block(4, 3, 2)
+    with a_recorder(tmp_path, mesh=mesh) as recorder:
+        step(recorder, 0.1, pictured=soil(mesh, 30.0))
+        step(recorder, 0.2, NOWHERE)
+    assert Run(tmp_path).time.tolist() == [0.1, 0.2]
+    assert Run(tmp_path).soil_times.tolist() == read_by_vtk(tmp_path / "riser.xdmf")[0] == [0.1]
+
+
+def test_what_is_told_of_how_far_a_run_came(tmp_path: Path) -> None:
+    with a_recorder(tmp_path) as recorder:
+        assert recorder.reached == f"before the first step; {tmp_path} holds no results yet"
+        step(recorder, 0.25)
+        told = f"in stage only at t = 0.25 s; {tmp_path} has the results up to there, marked unfinished"
+        assert recorder.reached == told
+        recorder.finish()
+        assert recorder.reached == f"after the last stage; {tmp_path} has the whole run"
+
+
+def test_a_run_that_begins_in_motion_is_recorded_from_its_beginning(tmp_path: Path) -> None:
+    with a_recorder(tmp_path) as recorder:
+        line = Catenary(32.0, 35.0)
+        recorder.begin_at(line.riser(CATENARY_ARC), line.touch(CATENARY_ARC))
+        step(recorder, 0.1)
+        recorder.finish()
+    run = Run(tmp_path)
+    assert run.time.tolist() == read_by_vtk(tmp_path / "riser.xdmf")[0] == [0.0, 0.1]
+    assert run["step_time"].tolist() == [0.1]
+    most = run.summary["stages"][0]["extremes"]["touchdown_arc"]
+    assert (most["max"], most["t_max"]) == (35.0, 0.0)
+
+
+def test_a_disk_that_is_full_ends_the_run_in_one_line(tmp_path: Path) -> None:
+    recorder_of = a_recorder(tmp_path)
+    recorder = recorder_of.__enter__()
+    step(recorder, 0.1)
+    recorder.flush()
+    step(recorder, 0.2)
+    with files_of_at_most(100_000), pytest.raises(WriteError, match=r"cannot be written: File too large; .* make room"):
+        recorder.flush()
+    recorder.close()
+    assert Run(tmp_path).time.tolist() == [0.1]
+    assert not Run(tmp_path).finished
+    assert not (tmp_path / ".riser_soil").exists()
 
 
 def test_a_killed_run_leaves_a_readable_folder(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ def test_tangent_and_resistance(dimension: int) -> None:
     forces = Forces.zeros(line.size)
     part.residual(State(1.0, u, np.zeros_like(u), np.zeros_like(u)), forces)
     block = line.element_block()
-    values = {"riser": np.zeros(block.shape)}
+    values = {"riser": block.zeros()}
     part.tangent(State.at_rest(1.0, line.size), STATIC, values)
     product = np.zeros(line.size)
     np.add.at(product, block.rows, np.einsum("eij,ej->ei", values["riser"], u[block.cols]))

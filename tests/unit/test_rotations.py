@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from scipy.linalg import expm
 
 from riser_soil.arrays import Array
 from riser_soil.riser import rotations
-from riser_soil.riser.vectors import Mat, Vec, skew, vector
+from riser_soil.riser.vectors import Mat, Vec, vector
 
 NEAR_PI = np.pi - 1e-9
+EPS = np.finfo(float).eps
 component = st.floats(-1.0, 1.0)
 axes = st.tuples(component, component, component).filter(lambda a: np.linalg.norm(a) > 1e-3)
 angles = st.one_of(st.floats(0.0, NEAR_PI), st.floats(0.0, 1e-6), st.floats(3.14, NEAR_PI))
@@ -41,12 +41,23 @@ def as_arrays(function: Callable[[Vec], Mat]) -> Callable[[Vec], Array]:
     return lambda v: as_array(function(v))
 
 
+def turn_about(axis: Vec, angle: float) -> Array:
+    """The matrix of a turn: what lies along the axis stays, what lies across turns in its plane."""
+    along: Array = np.array(axis) / np.linalg.norm(axis)
+    across: Array = np.cross(along, np.eye(3)[np.abs(along).argmin()])
+    across /= np.linalg.norm(across)
+    beyond: Array = np.cross(along, across)
+    new_across = np.cos(angle) * across + np.sin(angle) * beyond
+    new_beyond = np.cos(angle) * beyond - np.sin(angle) * across
+    return np.outer(along, along) + np.outer(new_across, across) + np.outer(new_beyond, beyond)
+
+
 @given(axis=axes, angle=st.floats(0.0, 20.0))
 @UNHURRIED
-def test_exponential_is_the_matrix_exponential(axis: Vec, angle: float) -> None:
-    rotation = turned(axis, angle)
-    R = as_array(rotations.exp(rotation))
-    assert np.abs(R - expm(as_array(skew(rotation)))).max() < 1e-13
+def test_exponential_is_the_turn_about_the_axis(axis: Vec, angle: float) -> None:
+    """A rotation vector rounded in its last digit turns by as much more or less: errors grow with the angle."""
+    R = as_array(rotations.exp(turned(axis, angle)))
+    assert np.abs(R - turn_about(axis, angle)).max() < 16.0 * EPS * (1.0 + angle)
     assert np.abs(R @ R.T - np.eye(3)).max() < 1e-14
 
 
@@ -101,6 +112,7 @@ def test_derivative_of_the_tangent_map(angle: float) -> None:
     "coefficients", [rotations.exp_coefficients, rotations.exp_slopes, rotations.inverse_coefficient]
 )
 def test_power_series_meet_the_closed_forms(coefficients: Callable[[float], object]) -> None:
+    """The first term that the series leave out is largest in db/dtheta: x^5/7.3e9 of 1/12, a share of 1.6e-12."""
     x = rotations.SERIES_BELOW
     below, above = np.array(coefficients(np.nextafter(x, 0.0))), np.array(coefficients(x))
     assert np.abs(below / above - 1.0).max() < 3e-12

@@ -9,7 +9,15 @@ import pytest
 
 from riser_soil.errors import SceneError
 from riser_soil.part import State, Weights
-from riser_soil.riser.sections import LineType, Segment, Surroundings, elements, rotary_inertia, submerged_weight
+from riser_soil.riser.sections import (
+    LineType,
+    Segment,
+    Surroundings,
+    elements,
+    polar_inertia,
+    rotary_inertia,
+    submerged_weight,
+)
 from tests.dense_chain import residual
 from tests.sample_line import sample
 
@@ -47,6 +55,16 @@ def test_rotary_inertia_of_wall_and_contents() -> None:
     exact = wall * (0.26**4 - 0.2**4) + filling * 0.2**4
     types = [replace(FLEXIBLE, rotary_inertia=given) for given in (None, 3.0, 0.0)]
     assert [rotary_inertia(line, FLOODED) for line in types] == pytest.approx([exact, 3.0, 0.0], rel=1e-14)
+
+
+def test_spin_has_inertia_whatever_is_asked_for() -> None:
+    """rho (I_y + I_z) of the section: twice that about an axis across it; E drops out of a homogeneous section's."""
+    across = rotary_inertia(replace(FLEXIBLE, rotary_inertia=None), FLOODED)
+    types = [replace(FLEXIBLE, rotary_inertia=given) for given in (None, 3.0, 0.0)]
+    strip = LineType(EA=0.3 * 0.1 * 2e9, EI_y=0.3 * 0.1**3 / 12.0 * 2e9, EI_z=0.3**3 * 0.1 / 12.0 * 2e9, mass=30.0)
+    exact = 30.0 * (0.1**2 + 0.3**2) / 12.0
+    found = [polar_inertia(line, FLOODED) for line in (*types, strip)]
+    assert found == pytest.approx([2.0 * across, 6.0, 2.0 * across, exact], rel=1e-14)
 
 
 def test_uneven_elements_keep_their_lengths() -> None:

@@ -16,6 +16,7 @@ from riser_soil.soil.soil import Soil
 from tests.soil_bench import assemble
 from tests.soil_cases import CLAY, ELASTIC, KINDS, clay_block, distorted, inner, moved, small_block
 
+EPS = np.finfo(float).eps
 GRADIENT = 1e-3 * np.array([[1.0, 0.4, -0.2], [0.7, -0.5, 0.3], [-0.6, 0.1, 0.8]])
 
 
@@ -59,7 +60,8 @@ def test_volume_and_rigid_rotation(kind: str) -> None:
     g = cell_gradients(grid.family, grid.nodes.points, grid.nodes.cells)
     assert g.weights.sum() == pytest.approx(3.0, rel=1e-13)
     turn = np.cross(np.array([0.1, -0.2, 0.3]), grid.nodes.points)
-    assert np.abs(strain_of(grid, turn)).max() < 1e-14
+    terms = np.abs(g.full).sum(axis=2).max() * np.abs(turn).max()  # strains are sums of these, rounded one by one
+    assert np.abs(strain_of(grid, turn)).max() < 8.0 * EPS * terms
 
 
 def test_mean_dilatation_makes_the_volume_change_uniform_in_a_hexahedron() -> None:

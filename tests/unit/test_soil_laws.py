@@ -27,7 +27,8 @@ def shear_strain(gamma: Array) -> Array:
 
 def load_path(law: Law, path: Array) -> tuple[Array, Array]:
     """Stress and history (n, ..) after the increments path (steps, n, 6) from an unstressed start."""
-    stress, history = np.zeros(path.shape[1:]), law.start()
+    stress: Array = np.zeros(path.shape[1:])
+    history = law.start()
     for increment in path:
         stress, history = law.stress(increment, stress, history)
     return stress, history
@@ -94,7 +95,8 @@ def test_unloading_is_elastic() -> None:
 
 def test_stress_never_exceeds_the_limit_and_slip_never_shrinks() -> None:
     law, rng = clay(np.linspace(0.0, 2.5, 50)), np.random.default_rng(2)
-    stress, history = np.zeros((50, 6)), law.start()
+    stress: Array = np.zeros((50, 6))
+    history = law.start()
     for _ in range(20):
         stress, after = law.stress(5e-3 * rng.standard_normal((50, 6)), stress, history)
         assert np.all(after >= history)

@@ -92,8 +92,45 @@ def test_stretches_part_at_spans_and_not_at_a_layers_small_gaps() -> None:
     assert (first.start, first.end) == pytest.approx((0.0, 5.0), abs=0.1)
     assert (second.start, second.end) == pytest.approx((10.0, 30.0), abs=0.1)
     assert touchdown(arc, share, clearance, force) == second.end
-    clearance[(arc > 18.0) & (arc < 19.0)] = 1.1e-3
-    assert len(stretches(arc, share, clearance, force)) == 3
+    span = (arc > 18.0) & (arc < 19.0)
+    clearance[span] = 1.1e-3
+    assert len(stretches(arc, share, clearance, np.where(span, 0.0, force))) == 3
+    assert len(stretches(arc, share, clearance, np.where(span, -W, force))) == 2, "held by suction"
+
+
+def test_a_trench_in_which_the_riser_hangs_is_no_place_where_it_lies() -> None:
+    arc, share = points("line")
+    clearance = np.where((arc < 20.0) | ((arc > 25.0) & (arc < 30.0)), -0.1, 0.2)
+    found = stretches(arc, share, clearance, np.where(arc < 18.0, W, 0.0))
+    assert [s.end for s in found] == pytest.approx([18.0], abs=0.1)
+
+
+def test_ripples_where_the_force_ends_do_not_matter() -> None:
+    """Clay that has been lifted may still press or pull a little ahead of the layer."""
+    arc, share = points("line")
+    end = float(NODES[220])
+    clearance, force = landed(arc, end, 0.5)
+    expected = touchdown(arc, share, clearance, force)
+    ahead = np.where((arc > end) & (arc < end + 0.6), 1e-3 * W * np.sin(10.0 * (arc - end)), 0.0)
+    found = touchdown(arc, share, np.where(ahead != 0.0, -1e-9, clearance), force + ahead)
+    assert found == pytest.approx(expected, abs=1e-3)
+
+
+@pytest.mark.parametrize("layer", [0.2, 0.5, 1.5])
+def test_moves_as_smoothly_as_the_forces(layer: float) -> None:
+    """By a fiftieth of an element at a time: where the peak, the end and what is deep pass from station to station."""
+    arc, share = points("line", np.linspace(0.0, LENGTH, 161))
+    moved = 0.005
+    ends = 22.0 + moved * np.arange(60)
+    found = np.array([touchdown(arc, share, *settled(arc, end, layer)) for end in ends])
+    assert np.abs(np.diff(found) - moved).max() < 0.05 * moved
+
+
+def settled(arc: Array, end: float, layer: float) -> tuple[Array, Array]:
+    """As `landed`, but the force sets in smoothly."""
+    t = np.maximum((end - arc) / layer, 0.0)
+    force = W * (1.0 - np.exp(-2.0 * t**3)) + 2.0 * R / layer * np.exp(-t) * np.sin(t) ** 3
+    return np.where(t > 0.0, -1e-9 * force, 1e-6 * (end - arc) ** 2), force
 
 
 def test_nothing_and_all_of_it() -> None:

@@ -222,7 +222,7 @@ def test_after_a_break_it_swings_about_the_same_mean(name: str, tmp_path: Path) 
     assert motion(0.0)[0] == pytest.approx(found[2][1], abs=1e-12)
     for values in (*motion(0.0)[1:], *turning(0.0)):
         assert values == pytest.approx(np.zeros(3), abs=1e-12)
-    period = np.arange(9.0, 18.0, 0.25)
+    period = map(float, np.arange(9.0, 18.0, 0.25))
     assert np.mean([motion(t)[0] for t in period], axis=0) == pytest.approx(END, abs=1e-9)
     if "reference" not in change:
         late = displaced(world, 12.0)
@@ -248,7 +248,7 @@ def test_a_move_in_a_static_stage_takes_the_berth_along(tmp_path: Path) -> None:
     moved = static(), aboard(12.6), static("rest", move={"end": target}), aboard(30.0, "again")
     world, found = ends(scene(tmp_path, text, *moved))
     assert displaced(world, 0.0) == pytest.approx(np.array(target) - END, abs=1e-12)
-    mean = np.mean([displaced(world, t) for t in np.arange(9.0, 18.0, 0.25)], axis=0)
+    mean = np.mean([displaced(world, t) for t in map(float, np.arange(9.0, 18.0, 0.25))], axis=0)
     assert mean == pytest.approx(by, abs=1e-9)
 
 

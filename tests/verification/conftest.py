@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.coupled_scenes import DEMO
+from tests.on_ranks import HANGS
 
 if TYPE_CHECKING:
     from tests.watched_run import WatchedRun
@@ -40,8 +41,8 @@ def compute(place: Path) -> None:
     (place / "watched").write_bytes(pickle.dumps(found))
 
 
-def wait_for(place: Path, seconds: float = 300.0) -> WatchedRun:
-    ends = time.monotonic() + seconds
+def wait_for(place: Path) -> WatchedRun:
+    ends = time.monotonic() + HANGS
     while not (place / "over").exists() and time.monotonic() < ends:
         time.sleep(0.1)
     watched: WatchedRun = pickle.loads((place / "watched").read_bytes())

@@ -41,7 +41,7 @@ def pushed(soil: Soil, factor: float) -> State:
 
 def tangent_times(soil: Soil, state: State, u: Array) -> Array:
     block = soil.blocks()["soil"]
-    values = {"soil": np.zeros(block.shape)}
+    values = {"soil": block.zeros()}
     soil.tangent(state, Weights(0.0, 1.0, 0.0, 0.0), values)
     out = np.zeros_like(u)
     np.add.at(out, block.rows, np.einsum("mij,mj->mi", values["soil"], u[block.cols]))

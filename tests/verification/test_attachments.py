@@ -76,7 +76,8 @@ def test_a_buoy_holds_its_mooring_straight_up(dimension: int) -> None:
 
 def test_a_lazy_wave_balances_at_every_node() -> None:
     """The horizontal force is the same all along; the vertical one grows by all weight and buoyancy on the way."""
-    modules = [{"at": np.linspace(35.0, 64.5, 11).tolist(), "mass": 60.0, "volume": 0.12}]
+    places = [float(s) for s in np.linspace(35.0, 64.5, 11)]
+    modules = [{"at": places, "mass": 60.0, "volume": 0.12}]
     world = built(
         scene(
             static(),
@@ -90,7 +91,7 @@ def test_a_lazy_wave_balances_at_every_node() -> None:
     )
     found, arc = inside(world), world.line.arc
     net = (60.0 - 0.12 * RHO) * G
-    below = sum(net * (arc > s + 1e-9) for s in modules[0]["at"])
+    below = sum(net * (arc > s + 1e-9) for s in places)
     assert found.force[:, 0] == pytest.approx(np.full(61, found.force[0, 0]), rel=1e-7)
     assert found.force[:, 2] - found.force[0, 2] == pytest.approx(100.0 * arc + below, rel=1e-7, abs=1e-3)
     height = world.line.to_global(world.line.x)[:, 2]

@@ -51,7 +51,7 @@ def results(name: str, ranks: int) -> Results:
         folder = Path(place)
         (folder / "scene.yaml").write_text(json.dumps(scene(name)), encoding="utf-8")
         done = mpirun(
-            ranks, "-m", "riser_soil", "run", "scene.yaml", "-o", "out", folder=folder, seconds=300
+            ranks, "-m", "riser_soil", "run", "scene.yaml", "-o", "out", folder=folder
         )
         assert done.returncode == 0, done.stderr
         return read(Run(folder / "out"))

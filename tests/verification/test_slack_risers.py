@@ -43,7 +43,14 @@ def test_hairpin_under_coinciding_ends(tmp_path: Path, capsys: pytest.CaptureFix
     assert np.linalg.norm(np.diff(position, axis=0), axis=1).sum() == pytest.approx(60.0, rel=5e-3)
     laying = found.summary["laying"]
     assert laying["slack"] > 1.0
-    assert f"laid {laying['slack']:.4g} m too far" in capsys.readouterr().out
+    assert f"the riser is slack: laid {laying['slack']:.4g} m too far" in capsys.readouterr().out
+
+
+def test_a_taut_vertical_riser_is_not_called_slack(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Between ends farther apart than its length: laid too far as well, since its horizontal tension is none."""
+    found = done(slack_scene(0.0, 0.0, 60.06), tmp_path)
+    assert found["effective_tension"][-1].min() > 0.0
+    assert "the riser is taut and steep: laid" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -1,0 +1,102 @@
+"""Ctrl-C and SIGTERM end a run where it keeps all that it has accepted: between two steps, never within a record.
+
+Python calls a signal's handler between two of its own instructions, so an exception out of it can come anywhere. Alone,
+a process lets it come at once, unless it is accepting or recording a step. Several ranks would wait for one another for
+ever if each left its own loop: they agree on the step after which all leave. A second signal is obeyed at once.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any, NoReturn
+
+from riser_soil.errors import Interruption
+
+OURS = (signal.SIGINT, signal.SIGTERM)
+
+
+class _Pending:
+    """What this process has been told by signals."""
+
+    def __init__(self) -> None:
+        self.number = 0  # of the signal not yet obeyed; 0 for none
+        self.busy = 0  # how many blocks forbid to leave now
+        self.agreeing = False  # whether all ranks are to leave at the same step
+
+    def take(self, number: int, frame: FrameType | None = None) -> None:
+        again, self.number = self.number != 0, self.number or number
+        if not self.busy and (again or not self.agreeing):
+            self.tell()
+
+    def tell(self, together: bool = False) -> NoReturn:
+        number, self.number = self.number, 0
+        raise Interruption(number, together)
+
+
+_pending = _Pending()
+
+
+@contextmanager
+def listening() -> Iterator[None]:
+    """Signals that would end the process raise Interruption in the block; those that somebody else listens to don't.
+
+    A pipe that is closed is an error of its writer again, and no signal, which PETSc makes of it.
+    """
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+    mine = [number for number in OURS if _is_free(number)]
+    if mine:
+        _pending.number = 0
+    former = {number: signal.signal(number, _pending.take) for number in mine}
+    try:
+        yield
+    finally:
+        for number, handler in former.items():
+            signal.signal(number, handler)
+
+
+def deaf() -> None:
+    """From now on signals end this process at once and without a word."""
+    for number in OURS:
+        signal.signal(number, signal.SIG_DFL)
+
+
+def _is_free(number: int) -> bool:
+    """Only a process's first thread may listen."""
+    usual = signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler)
+    return usual and threading.current_thread() is threading.main_thread()
+
+
+@contextmanager
+def undivided() -> Iterator[None]:
+    """A block that no signal divides: Interruption comes at its end."""
+    _pending.busy += 1
+    try:
+        yield
+    finally:
+        _pending.busy -= 1
+    if _pending.number and not _pending.busy and not _pending.agreeing:
+        _pending.tell()
+
+
+@contextmanager
+def agreeing(comm: Any) -> Iterator[None]:
+    """A block in which the ranks, if there are several, leave together: at `check`."""
+    _pending.agreeing = comm.size > 1
+    try:
+        yield
+    finally:
+        _pending.agreeing = False
+
+
+def check(comm: Any) -> None:
+    """Raises Interruption on all ranks if one has been told; collective in an `agreeing` block, nothing alone."""
+    if _pending.agreeing:
+        number = max(comm.allgather(_pending.number))
+        if number:
+            _pending.number = number
+            _pending.tell(together=True)

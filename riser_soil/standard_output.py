@@ -1,0 +1,75 @@
+"""Standard output that may be closed or full, as by `| head`: a run goes on for its files, and tells at its end."""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, TextIO
+
+
+class _Outlet(io.RawIOBase):
+    """A file descriptor; after the first failure what is written to it is lost."""
+
+    def __init__(self, descriptor: int) -> None:
+        super().__init__()
+        self.failure: OSError | None = None
+        self._descriptor = descriptor
+
+    def writable(self) -> bool:
+        return True
+
+    def fileno(self) -> int:
+        return self._descriptor
+
+    def isatty(self) -> bool:
+        return os.isatty(self._descriptor)
+
+    def write(self, data: Any) -> int:
+        content = memoryview(data)
+        if self.failure is None:
+            try:
+                return os.write(self._descriptor, content)
+            except OSError as err:
+                self.failure = err
+        return len(content)
+
+
+class Told:
+    """What became of what was written: failure is None as long as all went out."""
+
+    def __init__(self, output: _Outlet | None) -> None:
+        self._output = output
+
+    @property
+    def failure(self) -> OSError | None:
+        return None if self._output is None else self._output.failure
+
+
+@contextmanager
+def outlasting() -> Iterator[Told]:
+    """In the block, nobody who writes to standard output or standard error meets an error; the former's is told."""
+    former = sys.stdout, sys.stderr
+    outlets = [_outlet(stream) for stream in former]
+    sys.stdout, sys.stderr = (_text(outlet, stream) for outlet, stream in zip(outlets, former, strict=True))
+    try:
+        yield Told(outlets[0])
+    finally:
+        for stream in (sys.stdout, sys.stderr):
+            if stream is not None:
+                stream.flush()
+        sys.stdout, sys.stderr = former
+
+
+def _outlet(stream: TextIO | None) -> _Outlet | None:
+    """None for a stream that is closed from the beginning."""
+    return None if stream is None else _Outlet(stream.fileno())
+
+
+def _text(outlet: _Outlet | None, like: TextIO) -> TextIO:
+    if outlet is None:
+        return like
+    buffered = io.BufferedWriter(outlet)
+    return io.TextIOWrapper(buffered, like.encoding, like.errors, line_buffering=True)

@@ -1,0 +1,79 @@
+"""Runs that are ended from outside, and what can be said of the folders that they leave."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from riser_soil.errors import ResultsError
+from riser_soil.ownership import refuse
+from riser_soil.results import Run
+from tests.on_ranks import ROOT, environment
+from tests.vtk_reading import times_by_vtk
+
+SCENE = ROOT / "demos" / "first_scene.yaml"
+# Every step is recorded, and the files grow all the time.
+ENDLESS = ("--set", "stages.1.duration=1e4", "--set", "output.interval=0.1")
+# The command, in a process that may write no file longer than so many bytes. MPI needs some when it starts.
+ON_A_SMALL_DISK = """
+import resource, sys
+import riser_soil.run
+from riser_soil.__main__ import main
+
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv.pop(1)),) * 2)
+sys.argv[0] = "riser-soil"
+main()
+"""
+
+
+@dataclass(frozen=True)
+class Left:
+    """What a run has left: rows of its series, and frames of its riser; None where there is no file yet."""
+
+    rows: int | None
+    frames: int | None
+
+
+def start(folder: Path, *command: str) -> subprocess.Popen[str]:
+    call = [sys.executable, *(command or ("-m", "riser_soil")), "run", str(SCENE), "-o", str(folder), *ENDLESS]
+    pipe = subprocess.PIPE
+    return subprocess.Popen(call, cwd=ROOT, env=environment(), stdout=pipe, stderr=pipe, text=True)
+
+
+def look(folders: list[Path]) -> list[Left]:
+    """Reads all files of unfinished runs; AssertionError where one isn't whole, or says that it is finished."""
+    drawn = [path for folder in folders if (path := folder / "riser.xdmf").exists()]
+    times = dict(zip(drawn, times_by_vtk(drawn), strict=True))
+    return [_look(folder, times.get(folder / "riser.xdmf")) for folder in folders]
+
+
+def _look(folder: Path, drawn: list[float] | None) -> Left:
+    refuse(folder, force=False)  # the next run may have it
+    if not (folder / "results.nc").exists():
+        assert not (folder / "summary.json").exists()
+        assert _is_refused(folder)
+        return Left(None, None if drawn is None else len(drawn))
+    run = Run(folder)
+    time = run.time
+    assert np.all(np.diff(time) > 0.0)
+    assert all(len(run[name]) == len(time) for name in ("position", "bending_moment", "end_force", "stage"))
+    assert np.all(np.isfinite(run["position"]))
+    assert len(run["newton_iterations"]) == len(run["step_time"])
+    if (folder / "summary.json").exists():
+        assert not run.finished
+    if drawn is not None:
+        both = min(len(drawn), len(time))
+        np.testing.assert_array_equal(drawn[:both], time[:both])
+    return Left(len(time), None if drawn is None else len(drawn))
+
+
+def _is_refused(folder: Path) -> bool:
+    try:
+        Run(folder)
+    except ResultsError:
+        return True
+    return False

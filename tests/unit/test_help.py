@@ -1,0 +1,43 @@
+"""Every module that can be run tells what it does and takes when it is asked for help, and does nothing else."""
+
+from __future__ import annotations
+
+import runpy
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+# VTK does not stand processes that have imported dolfinx.
+ALONE = ROOT / "riser_soil" / "plots" / "touchdown.py"
+
+
+def runnable() -> list[Path]:
+    places = (ROOT / name for name in ("riser_soil", "demos", "benchmarks", "meshes"))
+    files = sorted(file for place in places for file in place.rglob("*.py"))
+    return [file for file in files if file.name == "__main__.py" or '__name__ == "__main__"' in file.read_text()]
+
+
+def test_the_modules_that_can_be_run_are_found() -> None:
+    names = {str(file.relative_to(ROOT)) for file in runnable()}
+    assert {"riser_soil/__main__.py", "benchmarks/__main__.py", "demos/waves/rao.py", "meshes/block.py"} < names
+
+
+@pytest.mark.parametrize("file", [file for file in runnable() if file != ALONE], ids=lambda f: str(f.relative_to(ROOT)))
+def test_help(file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(sys, "argv", [str(file), "--help"])
+    with pytest.raises(SystemExit) as left:
+        runpy.run_path(str(file), run_name="__main__")
+    assert left.value.code == 0
+    assert "usage: " in capsys.readouterr().out.lower()
+
+
+def test_help_of_the_picture() -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "riser_soil.plots.touchdown", "--help"], capture_output=True, text=True, cwd=ROOT
+    )
+    assert done.returncode == 0
+    assert "usage: python -m riser_soil.plots.touchdown [-h] folder png [magnify]" in done.stdout
+    assert not done.stderr

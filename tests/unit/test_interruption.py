@@ -1,0 +1,140 @@
+"""Signals that end a run: between two steps, with one line, and the last accepted state in the files."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from riser_soil.errors import Interruption
+from riser_soil.interruption import agreeing, check, listening, undivided
+from riser_soil.results import Run
+from tests.on_ranks import environment
+
+ROOT = Path(__file__).parents[2]
+# The command in a scene that goes on for ever, which sends itself a signal after some accepted steps.
+ENDLESS = """
+import os, signal, sys
+from riser_soil.__main__ import main
+from riser_soil.observe import Observer
+
+usual, taken = Observer.record, []
+
+def record(self, march, step, last):
+    usual(self, march, step, last)
+    taken.append(step.t)
+    if len(taken) == 14:
+        os.kill(os.getpid(), signal.SIGNAL)
+
+Observer.record = record
+sys.argv = ["riser-soil", "run", "demos/first_scene.yaml", "-o", sys.argv[1], "--set", "stages.1.duration=1e4"]
+main()
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_comes_as_an_interruption(number: signal.Signals) -> None:
+    before = signal.getsignal(number)
+    with pytest.raises(Interruption) as end, listening():
+        signal.raise_signal(number)
+    assert end.value.exit_status == 128 + number
+    assert str(end.value) == f"ended by {number.name} before the first stage; nothing was computed"
+    assert signal.getsignal(number) == before
+
+
+def test_no_signal_divides_a_record() -> None:
+    done: list[str] = []
+
+    def record() -> None:
+        with undivided():
+            with undivided():
+                signal.raise_signal(signal.SIGTERM)
+                done.append("inner")
+            done.append("outer")
+
+    with listening():
+        with pytest.raises(Interruption):
+            record()
+        with undivided():
+            done.append("told once")
+    assert done == ["inner", "outer", "told once"]
+
+
+def test_what_fails_in_a_record_is_not_hidden_by_a_signal() -> None:
+    def fail() -> None:
+        with undivided():
+            signal.raise_signal(signal.SIGTERM)
+            raise ZeroDivisionError
+
+    with listening(), pytest.raises(ZeroDivisionError):
+        fail()
+
+
+def test_ranks_leave_at_the_same_step() -> None:
+    """This one was not told; the other one was."""
+    others = SimpleNamespace(size=2, allgather=lambda number: [number, int(signal.SIGTERM)])
+    with listening(), agreeing(others), pytest.raises(Interruption) as end:
+        check(others)
+    assert (end.value.number, end.value.together) == (signal.SIGTERM, True)
+
+
+def test_the_second_signal_is_obeyed_at_once() -> None:
+    several = SimpleNamespace(size=2)
+    with listening(), agreeing(several):
+        signal.raise_signal(signal.SIGINT)
+        with pytest.raises(Interruption) as end:
+            signal.raise_signal(signal.SIGINT)
+    assert not end.value.together
+
+
+def test_alone_nobody_is_asked() -> None:
+    with listening(), agreeing(SimpleNamespace(size=1)):
+        check(SimpleNamespace(size=1))
+
+
+def test_signals_that_somebody_else_listens_to_are_left_to_him() -> None:
+    heard: list[int] = []
+    usual = signal.signal(signal.SIGTERM, lambda number, frame: heard.append(number))
+    try:
+        with listening():
+            signal.raise_signal(signal.SIGTERM)
+    finally:
+        signal.signal(signal.SIGTERM, usual)
+    assert heard == [signal.SIGTERM]
+
+
+def test_a_run_in_another_thread_listens_to_nothing() -> None:
+    failures: list[Exception] = []
+
+    def listen() -> None:
+        try:
+            with listening():
+                pass
+        except ValueError as err:
+            failures.append(err)
+
+    thread = threading.Thread(target=listen)
+    thread.start()
+    thread.join()
+    assert failures == []
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_run_keeps_its_last_accepted_step(number: signal.Signals, tmp_path: Path) -> None:
+    """13 steps of 0.1 s, of which every fifth is recorded, after one static step."""
+    script, out = ENDLESS.replace("SIGNAL", number.name), tmp_path / "out"
+    call = [sys.executable, "-c", script, str(out)]
+    done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 128 + number
+    told = f"ended by {number.name} in stage heave at t = 1.3 s; {out} has the results up to there, marked unfinished"
+    assert done.stderr.splitlines()[-1] == told
+    assert len(done.stderr.splitlines()) <= 2, "but for the announcement of kernels"
+    run = Run(out)
+    assert not run.finished
+    assert run.time == pytest.approx([0.0, 0.5, 1.0, 1.3])
+    assert run.summary["stages"][1]["steps"] == 13

@@ -1,0 +1,104 @@
+"""What a run tells at the end of a stage that could not be known before: strains, blurred bending, soil untouched."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from riser_soil.plausibility import Plausibility, Worst
+from riser_soil.run import run
+from riser_soil.scene.reader import scene_from_mapping
+from tests.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.driven_stage import built
+from tests.riser_scenes import dynamic, held, riser_scene, static
+
+ONE_CELL: Mapping = {"kind": "hex", "size_at_riser": 9.0, "size_far": 9.0}
+ROPE: Mapping = {"EA": 1.0e4, "EI": 1.0, "mass": 5.0, "outer_diameter": 0.02}
+
+
+def told(scene: Mapping, folder: Path) -> list[list[str]]:
+    """Warnings in the summary, stage by stage."""
+    run(scene_from_mapping(scene), folder)
+    return [stage["warnings"] for stage in json.loads((folder / "summary.json").read_text())["stages"]]
+
+
+def pulled(*stages: Mapping) -> Mapping:
+    """A rope along x, held at its start."""
+    start = held(0.0, 0.0, 0.0, rotation="fixed")
+    return riser_scene(*stages, pipe=ROPE, length=10.0, elements=5, start=start, end="free")
+
+
+def test_axial_strain_beyond_what_beams_stand_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def force(name: str, size: float) -> Mapping:
+        return static(name, loads=[{"at": "end", "force": [size, 0.0, 0.0]}])
+
+    much, little = told(pulled(force("much", 5.7e3), force("little", 0.9e3)), tmp_path)
+    (warning,) = much
+    assert warning.startswith("the riser is strained along its axis by 0.57 at arc ")
+    assert "at most 10%" in warning
+    assert little == []
+    assert f"warning: much: {warning}\n" in capsys.readouterr().out
+
+
+def test_strain_by_bending(tmp_path: Path) -> None:
+    """Bent to a circle by a moment at its end: curvature M/EI = 12/m times half of 0.02 m."""
+    curl = static("curl", loads=[{"at": "end", "moment": [0.0, 12.0, 0.0]}])
+    scene = pulled(curl)
+    scene["riser"]["segments"][0] |= {"length": 0.5, "elements": 20}
+    ((warning,),) = told(scene, tmp_path)
+    assert warning.startswith("the pipe's outside is strained by bending, curvature times D/2, by 0.12 at arc ")
+
+
+def test_a_stage_tells_its_worst_instant(tmp_path: Path) -> None:
+    history = [[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]
+    push = dynamic(2.0, 0.25, loads=[{"at": "end", "force": [4.0e3, 0.0, 0.0], "history": history}])
+    ((warning, *_),) = told(pulled(push), tmp_path)
+    assert "strained along its axis" in warning
+    assert warning.split(" and ")[1].startswith(("0.75 s", "1 s", "1.25 s", "1.5 s"))
+
+
+def test_the_worst_is_kept_with_its_place() -> None:
+    worst = Worst().or_larger(np.array([0.1, 0.3]), np.array([5.0, 6.0]), 1.0)
+    assert worst == Worst(0.3, 6.0, 1.0)
+    assert worst.or_larger(np.array([0.3, 0.2]), np.array([5.0, 6.0]), 2.0) is worst
+
+
+def test_section_changes_count_with_the_weaker_side() -> None:
+    """At the node between two line types the smaller EA and the larger diameter tell."""
+    scene = pulled(static())
+    scene["line_types"]["thick"] = ROPE | {"EA": 4.0e4, "outer_diameter": 0.1}
+    scene["riser"]["segments"] = [{"line_type": name, "length": 5.0, "elements": 1} for name in ("pipe", "thick")]
+    plausibility = Plausibility(built(scene))
+    assert plausibility.EA.tolist() == [1.0e4, 1.0e4, 4.0e4]
+    assert plausibility.radius.tolist() == [0.01, 0.05, 0.05]
+
+
+def test_bending_that_elements_blur_is_told_in_every_stage(tmp_path: Path) -> None:
+    pipe: Mapping = {"EA": 3.0e8, "EI": 5.0e4, "mass": 120.0, "submerged_weight": 700.0}
+    ends = held(0.0, 0.0, 60.0), held(80.0, 0.0, 100.0, rotation="fixed")
+    stages = static("hang"), static("pull", move={"end": [90.0, 0.0, 100.0]}), dynamic(0.2, 0.1)
+    options: Mapping = {"pipe": pipe, "length": 150.0, "elements": 20, "start": ends[0], "end": ends[1]}
+    hang, *others = told(riser_scene(*stages, **options, gravity=9.81), tmp_path)
+    assert hang == []
+    for (warning,) in others:
+        assert warning.startswith("elements of 7.5 m are too long for the bending at arc 146.25 m: at ")
+        assert "N.m, 46% of the stage's largest (told above 20%)" in warning
+
+
+def test_soil_that_is_never_touched_is_told_after_the_last_stage(tmp_path: Path) -> None:
+    aside = touchdown(LAY, heave(0.2))
+    aside["soil"] |= {"block": {"x": [18.0, 21.0], "y": [-1.0, 1.0], "depth": 1.0}, "mesh": ONE_CELL}
+    lay, moved = told(aside, tmp_path / "aside")
+    assert lay == []
+    (warning,) = moved
+    assert warning.startswith("in no stage did the riser touch the soil, x from 18 to 21 m and y from -1 to 1 m: ")
+    assert "at the end it touches down at [6" in warning
+
+
+def test_soil_that_is_touched_is_not_told(tmp_path: Path) -> None:
+    below = touchdown()
+    below["soil"] |= {"block": {"x": [2.0, 9.0], "y": [-1.0, 1.0], "depth": 1.0}, "mesh": ONE_CELL}
+    assert told(below, tmp_path) == [[]]

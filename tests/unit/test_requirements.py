@@ -1,0 +1,78 @@
+"""What comes from PyPI: each package at one version for a Python, with hashes, and whatever these need."""
+
+from __future__ import annotations
+
+import re
+import sys
+import tomllib
+from importlib.metadata import requires, version
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+from tests.on_ranks import ROOT
+
+DEBIAN = {"numpy", "scipy"}  # as its PETSc was compiled with them
+pythons = pytest.mark.parametrize("python", ["3.11", "3.13", "3.14"])
+
+
+def listed(name: str) -> set[str]:
+    """Names in requirements/NAME.txt."""
+    lines = (ROOT / f"requirements/{name}.txt").read_text(encoding="utf-8").splitlines()
+    return {canonicalize_name(line) for line in lines if not line.startswith("#")}
+
+
+def pins(name: str, python: str) -> dict[str, tuple[str, int]]:
+    """Version and number of hashes of each package pinned for a Python."""
+    text = (ROOT / f"requirements/{name}-pins.txt").read_text(encoding="utf-8").replace("\\\n", " ")
+    found: dict[str, tuple[str, int]] = {}
+    for line in (line for line in text.splitlines() if not line.startswith("#")):
+        pin, *hashes = line.split(" --hash=sha256:")
+        asked = Requirement(pin)
+        if holds(asked, {"python_version": python, "python_full_version": f"{python}.0"}):
+            assert asked.name not in found, f"{asked.name} is pinned twice for Python {python}"
+            assert str(asked.specifier).startswith("==")
+            found[asked.name] = str(asked.specifier)[2:], len([h for h in hashes if re.fullmatch("[0-9a-f]{64} *", h)])
+    return found
+
+
+def holds(asked: Requirement, environment: dict[str, str]) -> bool:
+    return asked.marker is None or asked.marker.evaluate(environment)
+
+
+@pythons
+def test_what_is_listed_is_pinned_with_hashes(python: str) -> None:
+    run, dev = pins("run", python), pins("dev", python)
+    assert set(run) >= listed("run")
+    assert set(dev) >= listed("dev")
+    assert all(hashes > 0 for _, hashes in (run | dev).values())
+
+
+@pythons
+def test_runs_need_no_test_tools_and_bring_no_numpy(python: str) -> None:
+    run, dev = set(pins("run", python)), set(pins("dev", python))
+    assert not run & dev
+    assert not (run | dev) & DEBIAN
+    assert not run & listed("dev")
+
+
+@pythons
+def test_pins_are_what_the_project_asks_for(python: str) -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    asked = {"run": project["dependencies"], "dev": project["optional-dependencies"]["dev"]}
+    for name, texts in asked.items():
+        found, needed = pins(name, python), [Requirement(text) for text in texts]
+        assert {canonicalize_name(r.name) for r in needed} - DEBIAN == listed(name)
+        for each in needed:
+            assert each.name in DEBIAN or each.specifier.contains(found[canonicalize_name(each.name)][0]), str(each)
+
+
+def test_what_pinned_packages_need_is_there() -> None:
+    python = "{}.{}".format(*sys.version_info)
+    found = pins("run", python) | pins("dev", python)
+    for name in found:
+        for needed in map(Requirement, requires(name) or []):
+            if holds(needed, {"extra": ""}):
+                assert needed.name in DEBIAN or canonicalize_name(needed.name) in found, f"{name} needs {needed}"
+                assert needed.specifier.contains(version(needed.name), prereleases=True), f"{name} needs {needed}"

@@ -1,0 +1,106 @@
+"""How elements are found too long for the bending of a line: closed forms, and catenaries whose moments are known."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from riser_soil.march import Accepted, March
+from riser_soil.observe import elastic_residual
+from riser_soil.part import State
+from riser_soil.plausibility import SMOOTH_MISFIT, STEEP_MISFIT
+from riser_soil.riser.resolution import Misfit, misfit
+from riser_soil.run import run_stage
+from riser_soil.system import Clock
+from tests.coupled_scenes import Mapping
+from tests.driven_stage import Watcher, built
+from tests.riser_scenes import held, riser_scene, static
+
+
+def found(scene: Mapping) -> tuple[Misfit, float]:
+    """At the end of the last stage, and the riser's largest bending moment then [N.m]."""
+    world = built(scene)
+    told: list[tuple[Misfit, float]] = []
+
+    def watch(march: March, step: Accepted) -> None:
+        residual = elastic_residual(world, march)
+        moment = np.abs(residual[:, [world.line.dimension, -1]] if world.line.dimension == 2 else residual[:, [4, 10]])
+        told.append((misfit(world.line, world.elements, march.now, residual), float(moment.max())))
+
+    before = State.at_rest(0.0, world.size)
+    for stage in world.scene.stages:
+        before = run_stage(world, stage, before, Watcher(watch), Clock.new())
+    return told[-1]
+
+
+def too_long(told: Misfit, largest: float) -> bool:
+    return told.smooth > SMOOTH_MISFIT * largest or told.steep > STEEP_MISFIT * largest
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("elements", [2, 4])
+def test_a_cantilever_under_its_weight(elements: int, dimension: int) -> None:
+    """k falls off as a parabola, for which the formula with shear is exact; the trapezoidal rule misses by h^2 k''/12,
+    over k at the clamp 1/(6 n^2).
+    """
+    pipe: Mapping = {"EA": 1.0e9, "EI": 1.0e5, "GJ": 1.0e5, "mass": 1.0, "submerged_weight": 1.0}
+    start = held(0.0, 0.0, 0.0, rotation="fixed")
+    scene = riser_scene(
+        static(), pipe=pipe, length=10.0, elements=elements, start=start, end="free", gravity=9.81, dimension=dimension
+    )
+    told, largest = found(scene)
+    assert largest == pytest.approx(50.0, rel=1e-5)
+    assert told.steep == pytest.approx(50.0 / (6.0 * elements**2), rel=1e-4)
+    assert told.smooth < 1e-4
+
+
+def test_two_bending_stiffnesses_have_each_their_curvature() -> None:
+    """Pushed across both section axes, by a force for which curvature is linear: both rules are exact."""
+    pipe: Mapping = {"EA": 1.0e9, "EI_y": 1.0e6, "EI_z": 3.0e6, "GJ": 1.0e6, "mass": 1.0}
+    push = static(loads=[{"at": "end", "force": [0.0, 3.0, 2.0]}])
+    start = held(0.0, 0.0, 0.0, rotation="fixed")
+    told, _ = found(riser_scene(push, pipe=pipe, length=10.0, elements=2, start=start, end="free"))
+    assert told.steep < 1e-6
+    assert told.smooth < 1e-6
+
+
+def hanging(elements: int, rotation: Any = "free", **more: Any) -> Mapping:
+    """Ten kilometres of riser in the plane or in space; its largest moment is 264.4 N.m."""
+    pipe: Mapping = {"EA": 1.0e9, "EI": 1.0e6, "GJ": 1.0e6, "mass": 120.0, "submerged_weight": 500.0}
+    ends = held(0.0, 0.0, 0.0), held(7000.0, 0.0, 6000.0, rotation=rotation)
+    options: Mapping = {"pipe": pipe, "length": 1.0e4, "elements": elements, "start": ends[0], "end": ends[1]}
+    return riser_scene(static(), **options, gravity=9.81, **more)
+
+
+@pytest.mark.parametrize(
+    ("elements", "least", "most", "told"),
+    [(40, 3.0, 5.0, True), (80, 0.15, 0.3, True), (160, 0.005, 0.02, False), (320, 0.0, 0.002, False)],
+)
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_moments_of_a_long_riser(elements: int, least: float, most: float, told: bool, dimension: int) -> None:
+    """The error of its largest moment lies between two bounds, and is told where it is large."""
+    seen, largest = found(hanging(elements, dimension=dimension))
+    assert least < abs(largest / 264.42 - 1.0) < most
+    assert too_long(seen, largest) == told
+
+
+@pytest.mark.parametrize(("elements", "most", "told"), [(20, 0.4, True), (40, 0.09, True), (80, 0.02, False)])
+def test_moments_at_a_clamp(elements: int, most: float, told: bool) -> None:
+    """150 m, clamped in the direction of the catenary, then moved by 10 m; its largest moment is 3,207.4 N.m."""
+    pipe: Mapping = {"EA": 3.0e8, "EI": 5.0e4, "mass": 120.0, "submerged_weight": 700.0}
+    ends = held(0.0, 0.0, 60.0), held(80.0, 0.0, 100.0, rotation="fixed")
+    stages = static("hang"), static("pull", move={"end": [90.0, 0.0, 100.0]})
+    options: Mapping = {"pipe": pipe, "length": 150.0, "elements": elements, "start": ends[0], "end": ends[1]}
+    seen, largest = found(riser_scene(*stages, **options, gravity=9.81))
+    assert 0.2 * most < largest / 3207.4 - 1.0 < most
+    assert too_long(seen, largest) == told
+
+
+def test_a_straight_riser_bends_by_round_off_only() -> None:
+    pipe: Mapping = {"EA": 1.0e8, "EI": 1.0e4, "mass": 50.0}
+    pull = static(loads=[{"at": "end", "force": [1.0e5, 0.0, 0.0]}])
+    start = held(0.0, 0.0, 0.0, rotation="fixed")
+    told, _ = found(riser_scene(pull, pipe=pipe, length=30.0, elements=6, start=start, end="free"))
+    assert max(told.smooth, told.steep) < 1e-6

@@ -1,0 +1,114 @@
+"""A kind that the scene's language gains and a part does not know is refused, never taken for one that is known."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from pydantic import BaseModel
+
+from riser_soil.build import build
+from riser_soil.build.ground import stiffnesses
+from riser_soil.build.laws import hysteretic_law, soil_law
+from riser_soil.build.motions import set_motion
+from riser_soil.build.riser import elements_of
+from riser_soil.build.shape import initial_shape, unstressed_shape
+from riser_soil.build.stage import scheme_of
+from riser_soil.riser.ends import End
+from riser_soil.riser.shapes import straight
+from riser_soil.scene.contact import Contact
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.seabed import RandolphQuiggin
+from riser_soil.scene.soil import LinearElastic, VonMises
+from riser_soil.soil.block import BlockSpec, make_block
+from tests.coupled_scenes import LAY, heave, touchdown
+
+CLAY: dict[str, Any] = {"su": 4.0e3, "su_gradient": 1.5e3, "E_over_su": 300.0, "nu": 0.49}
+
+
+def scene() -> Scene:
+    return scene_from_mapping(touchdown(LAY, heave(1.0)))
+
+
+def another(like: BaseModel | None = None, **values: Any) -> Any:
+    """A new kind with all the keys of a known one: nothing but its type tells them apart."""
+
+    class Another(BaseModel):
+        model_config = {"extra": "allow"}
+
+    return Another(**(dict(like) if like is not None else {}), **values)
+
+
+def with_parts(whole: Any, **parts: Any) -> Any:
+    """The model with parts that its language does not have."""
+    return whole.model_copy(update=parts)
+
+
+def test_each_soil_law_has_its_formula() -> None:
+    depth, shear = np.array([0.0, 2.0]), np.sqrt(2.0) * 4.0e3
+    clay = soil_law(VonMises(kind="von-mises", **CLAY))(depth)
+    stress = np.tile([0.0, 0.0, 0.0, 0.0, 0.0, shear], (2, 1))  # in simple shear, at the strength of the surface
+    np.testing.assert_allclose(clay.overstress(stress), [1.0, 4.0 / 7.0])
+    rock = soil_law(LinearElastic(kind="linear-elastic", E=1.0e6, nu=0.3))(depth)
+    assert not rock.overstress(stress).any()
+
+
+def test_a_third_soil_law_is_refused() -> None:
+    third = another(VonMises(kind="von-mises", **CLAY))
+    with pytest.raises(AssertionError, match="Another"):
+        soil_law(third)
+    whole = scene()
+    soil = with_parts(whole.soil, law=with_parts(third, surface_modulus=1.0e6))
+    with pytest.raises(AssertionError, match="Another"):
+        build(with_parts(whole, soil=soil), MPI.COMM_SELF)
+
+
+def test_a_soil_law_tells_the_modulus_that_contact_goes_by() -> None:
+    whole, settings = scene(), Contact()
+    third = with_parts(whole, soil=with_parts(whole.soil, law=another(VonMises(kind="von-mises", **CLAY))))
+    with pytest.raises(AttributeError, match="surface_modulus"):
+        stiffnesses(third, settings, 0.3, 700.0)
+
+
+def test_another_hysteretic_law_is_refused() -> None:
+    with pytest.raises(AssertionError, match="Another"):
+        hysteretic_law(another(RandolphQuiggin(kind="randolph-quiggin", su=2.0e3)), elements_of(scene()))
+
+
+def test_another_seabed_is_refused() -> None:
+    whole = scene()
+    other = with_parts(whole, seabed=another(whole.seabed))
+    with pytest.raises(AssertionError, match="Another"):
+        stiffnesses(other, Contact(), 0.3, 700.0)
+
+
+def test_another_scheme_is_refused() -> None:
+    stage = scene().stages[1]
+    with pytest.raises(AssertionError, match="Another"):
+        scheme_of(with_parts(stage, scheme=another(generalized_alpha=another(rho_inf=0.8))))
+
+
+def test_another_motion_is_refused() -> None:
+    stage = scene().stages[1]
+    motion = with_parts(stage, motion=another(by_end={"end": another(ways={"circle": another(period=3.0)})}))
+    with pytest.raises(AssertionError, match="Another"):
+        set_motion(End(held=True), "end", np.zeros(3), motion, None)
+
+
+def test_another_shape_is_refused() -> None:
+    whole = scene()
+    elements = elements_of(whole)
+    unstressed = straight(elements.arc, np.zeros(3))
+    with pytest.raises(AssertionError, match="Another"):
+        unstressed_shape(with_parts(whole.riser, unstressed=another()), elements.arc)
+    with pytest.raises(AssertionError, match="spiral"):
+        initial_shape(with_parts(whole, riser=with_parts(whole.riser, initial="spiral")), elements, (), unstressed)
+
+
+def test_another_kind_of_cells_is_refused() -> None:
+    kind: Any = "wedge"
+    with pytest.raises(AssertionError, match="wedge"):
+        make_block(BlockSpec((0.0, 1.0), (0.0, 1.0), 1.0, 0.5, 0.5, kind=kind))

@@ -1,0 +1,92 @@
+"""Runs that are killed, told to end, or meet a full disk, at any moment: what they leave can be read and is honest."""
+
+from __future__ import annotations
+
+import random
+import signal
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from tests.broken_runs import ON_A_SMALL_DISK, look, start
+
+AT_ONCE = 4
+
+
+class Ended(NamedTuple):
+    """A run that a signal has ended, and its lines on standard error."""
+
+    folder: Path
+    status: int
+    told: list[str]
+
+
+def end_by(number: signal.Signals, folder: Path, runs: int) -> list[Ended]:
+    """Half of the runs get the signal within seconds of their start, the others of their first frame; all by chance.
+
+    Before its own first line is read the program can't listen: Python then answers.
+    """
+    chance = random.Random(int(number))
+
+    def end(run: int, seconds: float) -> Ended:
+        out = folder / f"{run}"
+        process = start(out)
+        while number != signal.SIGKILL and process.poll() is None and not listens(process.pid):
+            time.sleep(0.02)
+        while run % 2 and process.poll() is None and not (out / "riser.xdmf").exists():
+            time.sleep(0.02)
+        time.sleep(seconds)
+        process.send_signal(number)
+        _, told = process.communicate(timeout=300)
+        return Ended(out, process.returncode, told.splitlines())
+
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        return list(pool.map(end, range(runs), [chance.uniform(0.0, 5.0) for _ in range(runs)]))
+
+
+def listens(process: int) -> bool:
+    """Whether SIGTERM has a handler."""
+    status = Path(f"/proc/{process}/status").read_text(encoding="ascii")
+    caught = next(line for line in status.splitlines() if line.startswith("SigCgt:"))
+    return bool(int(caught.split()[1], 16) >> (signal.SIGTERM - 1) & 1)
+
+
+@pytest.mark.verify
+def test_a_hundred_kills(tmp_path: Path) -> None:
+    runs = end_by(signal.SIGKILL, tmp_path, 100)
+    left = look([run.folder for run in runs])
+    print(f"nothing yet: {sum(x.rows is None for x in left)}; rows: {sorted(x.rows or 0 for x in left)}")
+    assert {run.status for run in runs} == {-signal.SIGKILL}
+    assert sum((x.frames or 0) > 0 for x in left) >= 50
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ten_signals(number: signal.Signals, tmp_path: Path) -> None:
+    runs = end_by(number, tmp_path, 10)
+    left = look([run.folder for run in runs])
+    print(f"rows: {[x.rows for x in left]}")
+    for run, found in zip(runs, left, strict=True):
+        assert run.status == 128 + number
+        (line,) = run.told
+        assert line.startswith(f"ended by {number.name} ")
+        assert (found.rows or 0) == (found.frames or 0)
+    assert sum((x.rows or 0) > 1 for x in left) >= 5
+
+
+@pytest.mark.verify
+def test_twenty_full_disks(tmp_path: Path) -> None:
+    folders = []
+    for size in [1000 * 2**k // 4 for k in range(20)][:14] + [3_000_000 + 300_000 * k for k in range(6)]:
+        folders.append(tmp_path / f"{size}")
+        process = start(folders[-1], "-c", ON_A_SMALL_DISK, str(size))
+        _, told = process.communicate(timeout=120)
+        assert process.returncode == 4, told
+        (line,) = told.splitlines()
+        assert "cannot be written: File too large" in line
+    left = look(folders)
+    print(f"rows: {[x.rows for x in left]}")
+    assert all((x.rows or 0) > 1 for x in left[-6:])

@@ -1,0 +1,190 @@
+"""Beyond a bifurcation statics find the buckled branch, on any mesh; elastica and rod equations beside it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from petsc4py import PETSc
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipk
+
+from riser_soil.arrays import Array
+from riser_soil.buckling import _largest, stabilising_drag
+from riser_soil.build import World, build
+from riser_soil.newton import Newton, NewtonSettings
+from riser_soil.part import State
+from riser_soil.results import Run
+from riser_soil.run import run
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.system import Clock, System
+from riser_soil.time_scheme import Static
+from tests.coupled_scenes import Mapping
+from tests.on_ranks import mpirun
+from tests.riser_scenes import held, riser_scene, static
+from tests.verification.rod_reference import Rod
+from tests.verification.test_space_beams import first_buckling
+
+EULER = 0.25 * np.pi**2  # of a cantilever of unit length and bending stiffness
+ALONG, SLANTING = (1.0, 0.0, 0.0), (0.6, 0.0, 0.8)
+
+
+def column(elements: int, ratio: float, EA: float = 1e7, dimension: int = 2, axis: Any = ALONG) -> Mapping:
+    """A straight cantilever without weight or imperfection, pushed along its axis by `ratio` times Euler's load."""
+    load = {"at": "end", "force": [-ratio * EULER * a for a in axis]}
+    more: Mapping = {"riser": {"unstressed": {"points": [[0.0, 0.0, 0.0], list(axis)]}}, "dimension": dimension}
+    ends: Mapping = {"start": held(0.0, 0.0, 0.0, rotation="fixed"), "end": "free"}
+    pipe = {"EA": EA, "EI": 1.0, "GJ": 1.0}
+    return riser_scene(static(loads=[load]), pipe=pipe, length=1.0, elements=elements, **ends, **more)
+
+
+def blade(elements: int, force: float) -> Mapping:
+    """The cantilever blade of `test_space_beams`, loaded across its deep section at the tip."""
+    load = {"at": "end", "force": [0.0, 0.0, -force]}
+    more: Mapping = {"riser": {"unstressed": {"points": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]}}, "dimension": 3}
+    ends: Mapping = {"start": held(0.0, 0.0, 0.0, rotation="fixed"), "end": "free"}
+    pipe = {"EA": 1e5, "EI_y": 1e3, "EI_z": 1.0, "GJ": 0.5}
+    return riser_scene(static(loads=[load]), pipe=pipe, length=1.0, elements=elements, **ends, **more)
+
+
+def frame(elements: int, force: float) -> Mapping:
+    """The right-angle frame of `test_space_beams`, N and mm, its joint bent within the two elements beside it."""
+    across, deep = 71240.0 * 30.0 * 0.6**3 / 12.0, 71240.0 * 0.6 * 30.0**3 / 12.0
+    pipe = {"EA": 71240.0 * 18.0, "EI_y": deep, "EI_z": across, "GJ": 71240.0 / 2.62 * 30.0 * 0.6**3 / 3.0}
+    points = [[0.0, 0.0, 0.0], [240.0, 0.0, 0.0], [240.0, 0.0, -240.0]]
+    load = {"at": "end", "force": [force, 0.0, 0.0]}
+    ends: Mapping = {"start": held(0.0, 0.0, 0.0, rotation="fixed"), "end": "free"}
+    more: Mapping = {"riser": {"unstressed": {"points": points}}, "dimension": 3}
+    return riser_scene(static(loads=[load]), pipe=pipe, length=480.0, elements=elements, **ends, **more)
+
+
+def tip(scene: Mapping, folder: Path) -> tuple[Array, int]:
+    """Where the free end comes to, and how many unstable equilibria were left on the way."""
+    run(scene_from_mapping(scene), folder, force=True)
+    stage = Run(folder).summary["stages"][0]
+    return np.array(stage["final"]["end"]["position"]), stage["branch_switches"]
+
+
+def elastica(ratio: float) -> tuple[float, float]:
+    """Tip of the buckled cantilever, along its first axis and aside (Timoshenko & Gere 1961, section 2.7)."""
+    k = 0.5 * np.pi * np.sqrt(ratio)
+    m = brentq(lambda m: ellipk(m) - k, 1e-9, 1.0 - 1e-9, xtol=1e-15)
+    return 2.0 * ellipe(m) / k - 1.0, 2.0 * np.sqrt(m) / k
+
+
+@pytest.mark.parametrize(("elements", "EA"), [(20, 1e7), (200, 1e9), pytest.param(1000, 1e7, marks=pytest.mark.verify)])
+def test_columns_of_any_mesh_buckle(elements: int, EA: float, tmp_path: Path) -> None:
+    found, switches = tip(column(elements, 2.0, EA), tmp_path)
+    assert (found[0], found[2]) == pytest.approx(elastica(2.0), abs=2e-4)
+    assert switches == 1
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize("axis", [ALONG, SLANTING])
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("EA", [1e7, 1e9])
+def test_columns_of_two_thousand_elements_buckle(EA: float, dimension: int, axis: Any, tmp_path: Path) -> None:
+    found, switches = tip(column(2000, 2.0, EA, dimension, axis), tmp_path)
+    along = float(found @ axis)
+    assert (along, np.linalg.norm(found - along * np.array(axis))) == pytest.approx(elastica(2.0), abs=2e-4)
+    assert switches == 1
+
+
+def unstable_modes(scene: Mapping) -> int:
+    """At the equilibrium that Newton's method finds in one step from the first shape."""
+    world: World = build(scene_from_mapping(scene), MPI.COMM_WORLD)
+    system = System(world.comm, world.begin(world.scene.stages[0]), Clock.new())
+    newton = Newton(system, NewtonSettings(world.scene.solver.tolerance, 25, world.force_floor))
+    weights, still = Static().weights(1.0), State.at_rest(1.0, world.size)
+    system.assemble(still, weights)
+    forces, increment = system.forces(still), system.numbering.vector.duplicate()
+    right = increment.duplicate()
+    system.numbering.add_to_global(-forces.force, right)
+    solver = PETSc.KSP().create(world.comm)
+    solver.setType("preonly")
+    solver.getPC().setType("lu")
+    solver.getPC().setFactorSolverType("mumps")
+    solver.setOperators(system.matrix.mat)
+    solver.solve(right, increment)
+    u = np.zeros(world.size)
+    system.numbering.to_local(increment, u)
+    found = newton.unstable_modes(State(1.0, u, 0.0 * u, 0.0 * u))
+    for thing in (solver, right, increment, newton, system):
+        thing.destroy()
+    return found
+
+
+@pytest.mark.parametrize("axis", [ALONG, SLANTING])
+@pytest.mark.parametrize(("dimension", "modes"), [(2, 1), (3, 2)])
+@pytest.mark.parametrize("elements", [20, 1000])
+def test_the_count_knows_the_load_to_a_hundredth(elements: int, dimension: int, modes: int, axis: Any) -> None:
+    """Bound of round-off: 11 eps n^4 = 0.0025 of a cantilever's load for n = 1000, and 0.003 for EA/P = 4e6."""
+    assert unstable_modes(column(elements, 0.98, 1e7, dimension, axis)) == 0
+    assert unstable_modes(column(elements, 1.02, 1e7, dimension, axis)) == modes
+
+
+def test_two_ranks_count_as_one() -> None:
+    """By MUMPS, where one rank has PETSc's own factorisation."""
+    script = (
+        "from tests.verification.test_buckled_branches import column, unstable_modes\n"
+        "from mpi4py import MPI\n"
+        "found = [unstable_modes(column(1000, r, 1e7, 3, (0.6, 0.0, 0.8))) for r in (0.98, 1.02)]\n"
+        "print(found if MPI.COMM_WORLD.rank == 0 else '')\n"
+    )
+    done = mpirun(2, "-c", script)
+    assert done.stdout.strip() == "[0, 2]", done.stderr
+
+
+@pytest.mark.parametrize("elements", [20, 40])
+def test_just_beyond_lateral_torsional_buckling(elements: int, tmp_path: Path) -> None:
+    """Towards positive y, as the mode's largest displacement goes there; as far as the square root of the excess over
+    the load at which the rod's equations have a second solution.
+    """
+    rod = Rod(1.0, 1e5, np.array([0.5, 1.0, 1e3]), np.zeros(3), np.eye(3))
+    critical = first_buckling([(rod, np.eye(3))], np.array([0.0, 1.0, 0.0]), 2.0, 3.5)
+    near, far = (tip(blade(elements, ratio * critical), tmp_path) for ratio in (1.0025, 1.01))
+    assert (near[1], far[1]) == (1, 1)
+    assert min(near[0][1], far[0][1]) > 0.0
+    assert far[0][1] / near[0][1] == pytest.approx(2.0, rel=0.01)
+
+
+@pytest.mark.parametrize(("ratio", "elements"), [(1.06, 40), pytest.param(2.0, 80, marks=pytest.mark.verify)])
+def test_frame_beyond_its_buckling_load(ratio: float, elements: int, tmp_path: Path) -> None:
+    """Both meshes go out of the plane to the same side, as far as the smaller share of the bent joint lets them."""
+    coarse, fine = (tip(frame(n, ratio * 1.0878), tmp_path) for n in (elements, 2 * elements))
+    assert (coarse[1], fine[1]) == (1, 1)
+    assert fine[0][1] > 0.05 * 240.0
+    assert coarse[0] == pytest.approx(fine[0], abs=0.02 * 240.0)
+
+
+@pytest.mark.verify
+def test_frame_of_640_elements(tmp_path: Path) -> None:
+    found, switches = tip(frame(640, 2.0 * 1.0878), tmp_path)
+    assert switches == 1
+    assert found[1] > 0.2 * 240.0
+
+
+
+
+def test_the_least_stabilising_drag() -> None:
+    asked = list[float]()
+
+    def stable(drag: float) -> bool:
+        asked.append(drag)
+        return drag > 3.0
+
+    assert stabilising_drag(1e4, stable) == pytest.approx(1e4 / 2**11)
+    assert stabilising_drag(1e-3, stable) == pytest.approx(1e-3 * 2**12)
+
+
+def test_the_sign_of_a_mode_hangs_on_no_round_off() -> None:
+    """Of displacements as large as each other the first along the line decides."""
+    wave = np.sin(2.0 * np.pi * np.linspace(0.0, 1.0, 9))[:, None] * np.array([0.0, 1.0])
+    for scatter in (1e-14, -1e-14):
+        noisy = wave.copy()
+        noisy[6] += scatter
+        assert _largest(noisy) == 1.0
+        assert _largest(-noisy) == -1.0

@@ -1,0 +1,103 @@
+"""Nothing hangs on the unit of length: the same riser, smaller and larger, under the same gravity.
+
+Lengths go with s, times with its root, forces with s^3, forces per length with s^2, stresses and contact stiffness with
+s, EI with s^5.
+"""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from functools import cache
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from riser_soil.arrays import Array
+from riser_soil.build import build
+from riser_soil.march import Accepted, March
+from riser_soil.observe import riser_snapshot
+from riser_soil.part import State
+from riser_soil.run import run_stage
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.system import Clock
+from tests.coupled_scenes import Mapping
+from tests.driven_stage import Watcher
+from tests.riser_scenes import dynamic, held, riser_scene, static
+
+SCALES = (1e-6, 1e-3, 1e3, 1e6)
+SEABEDS = {
+    "rigid": {"kind": "rigid"},
+    "springs": {"kind": "spring", "stiffness": 1.0e4},
+    "clay": {"kind": "hysteretic", "law": {"kind": "randolph-quiggin", "su": 1.5e3, "su_gradient": 1.5e3}},
+    "slope": {"kind": "rigid", "slope_deg": 2.0},
+}
+
+
+def hose(s: float, seabed: str, dimension: int, time_step: float | str) -> Mapping:
+    """The hose of a tank, its end moved up and down; friction and automatic contact, s times as long."""
+    pipe = {"outer_diameter": 0.15 * s, "mass": 33.113 * s**2, "submerged_weight": 147.1 * s**2, "EA": 1.0e6 * s**3}
+    pipe |= {"EI": 1.0e3 * s**5, "GJ": 8.0e2 * s**5, "drag": {"normal": 1.2}, "added_mass": {"normal": 1.0}}
+    ground = deepcopy(SEABEDS[seabed])
+    if "stiffness" in ground:
+        ground["stiffness"] *= s
+    for name, power in (("su", 1), ("su_gradient", 0)):
+        if "law" in ground:
+            ground["law"][name] *= s**power
+    heave = {"harmonic": {"amplitude": [0.0, 0.0, 0.5 * s], "period": 4.0 * s**0.5, "ramp": 2.0 * s**0.5}}
+    step = {"time_step": time_step if time_step == "auto" else float(time_step) * s**0.5}
+    return riser_scene(
+        static("lay"),
+        dynamic(0.6 * s**0.5, 0.1, "heave", motion={"end": heave}) | step,
+        pipe=pipe,
+        length=40.0 * s,
+        elements=60,
+        start=held(0.0, 0.0, 0.075 * s),
+        end=held(28.0 * s, 0.0, 15.0 * s),
+        seabed=ground,
+        contact={"friction": {"axial": 0.4}},
+        water={"density": 1025.0},
+        gravity=9.81,
+        dimension=dimension,
+        output={"interval": 0.1 * s**0.5},
+    )
+
+
+def told(s: float, seabed: str, dimension: int = 2, time_step: float | str = 0.1) -> Array:
+    """By step, without units: time; H and top tension, largest moment, touchdown arc, lowest node; iterations."""
+    world, rows = build(scene_from_mapping(hose(s, seabed, dimension, time_step)), MPI.COMM_SELF), list[list[float]]()
+
+    def watch(march: March, step: Accepted) -> None:
+        riser, contact = riser_snapshot(world, march), world.seabed
+        assert contact is not None
+        forces = [riser.start_force[0] / s**3, riser.effective_tension[-1] / s**3, riser.bending_moment.max() / s**4]
+        places = [contact.touchdown_arc(march.now) / s, float(riser.position[:, 2].min()) / s]
+        time = 0.0 if len(rows) == 0 else step.t / s**0.5
+        rows.append([time, *forces, *places, step.solution.iterations])
+
+    before = State.at_rest(0.0, world.size)
+    for stage in world.scene.stages:
+        before = run_stage(world, stage, before, Watcher(watch), Clock.new())
+    return np.array(rows)
+
+
+@cache
+def usual(seabed: str, dimension: int = 2, time_step: float | str = 0.1) -> Array:
+    return told(1.0, seabed, dimension, time_step)
+
+
+@pytest.mark.parametrize("s", SCALES)
+@pytest.mark.parametrize("seabed", SEABEDS)
+def test_same_hose_in_any_size(seabed: str, s: float) -> None:
+    """To round-off, as each iteration is the same."""
+    np.testing.assert_allclose(told(s, seabed), usual(seabed), rtol=1e-6, atol=1e-9)
+
+
+@pytest.mark.parametrize("s", SCALES)
+def test_same_hose_in_space(s: float) -> None:
+    np.testing.assert_allclose(told(s, "rigid", dimension=3), usual("rigid", 3), rtol=1e-6, atol=1e-9)
+
+
+@pytest.mark.parametrize("s", SCALES)
+def test_same_automatic_steps(s: float) -> None:
+    np.testing.assert_allclose(told(s, "springs", time_step="auto"), usual("springs", 2, "auto"), rtol=1e-5, atol=1e-9)
