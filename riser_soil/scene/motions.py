@@ -125,8 +125,8 @@ class Table(BaseModel):
             raise wrong_file(f"{self.file}: a table of {rows.rows} rows; cubic splines need at least {_LEAST_ROWS}")
         for line, (a, b) in zip(rows.lines[1:], pairwise(time), strict=True):
             if b - a < NEAREST:
-                how = f"times must increase, by {NEAREST:g} s at least, but {b:g} s follows {a:g} s"
-                raise wrong_file(f"{self.file}:{line}: {how}; sort the rows")
+                how = f"times must increase, but {b:g} s follows {a:g} s"
+                raise wrong_file(f"{self.file}:{line}: {how}; sort the rows, {NEAREST:g} s apart or more")
         return self
 
     @cached_property

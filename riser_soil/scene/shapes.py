@@ -21,7 +21,7 @@ class PointsShape(BaseModel):
     @model_validator(mode="after")
     def _goes_on(self) -> Self:
         if any(math.dist(a, b) < SHORTEST for a, b in pairwise(self.points)):
-            raise wrong("points", f"two points in a row must be {SHORTEST:g} m apart or more", "remove one of the two")
+            raise wrong("points", f"two points in a row must not coincide ({SHORTEST:g} m)", "remove one of the two")
         return self
 
 
