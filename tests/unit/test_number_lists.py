@@ -50,8 +50,8 @@ def test_values_and_lines_are_those_of_the_yaml_reader(name: str, monkeypatch: p
     assert fast.lines == slow.lines
 
 
-SHORTENED = ("flow", "flow over lines", "rows of lists", "rows of numbers", "open points", "rows with remarks")
-SHORTENED += ("lines of Windows", "deep", "two", "shared")
+SHORTENED = ["flow", "flow over lines", "rows of lists", "rows of numbers", "open points", "rows with remarks"]
+SHORTENED += ["lines of Windows", "deep", "two", "shared"]
 
 
 @pytest.mark.parametrize("name", SHORTENED)

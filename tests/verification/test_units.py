@@ -26,7 +26,7 @@ from tests.driven_stage import Watcher
 from tests.riser_scenes import dynamic, held, riser_scene, static
 
 SCALES = (1e-6, 1e-3, 1e3, 1e6)
-SEABEDS = {
+SEABEDS: dict[str, Mapping] = {
     "rigid": {"kind": "rigid"},
     "springs": {"kind": "spring", "stiffness": 1.0e4},
     "clay": {"kind": "hysteretic", "law": {"kind": "randolph-quiggin", "su": 1.5e3, "su_gradient": 1.5e3}},
