@@ -17,7 +17,7 @@ import typer
 
 from riser_soil import __version__
 from riser_soil.errors import Interruption, MeshError, RiserSoilError, SceneError, WriteError, is_full
-from riser_soil.interruption import deaf, listening
+from riser_soil.interruption import deaf, latest, listening
 from riser_soil.standard_output import outlasting
 
 if TYPE_CHECKING:
@@ -141,6 +141,7 @@ def _expected_errors() -> Iterator[None]:
         _end_other_ranks(err.exit_status)
         raise typer.Exit(err.exit_status) from err
     except Interruption as err:
+        err.told = True
         if _rank() == 0 or not err.together:
             _tell_once(str(err))
         if not err.together:
@@ -225,16 +226,20 @@ def main() -> None:
 
 
 def _status() -> int:
+    status = 0
     try:
         with listening():
             _replace_missing_tmpdir()
             app()
-    except Interruption as err:
-        print(err, file=sys.stderr)
-        return err.exit_status
+    except Interruption:
+        pass
     except SystemExit as leave:
-        return int(leave.code or 0)
-    return 0
+        status = int(leave.code or 0)
+    end = latest()
+    if end is not None and not end.told:
+        print(end, file=sys.stderr)
+        status = end.exit_status
+    return status
 
 
 def _replace_missing_tmpdir() -> None:

@@ -43,12 +43,14 @@ class WriteError(RiserSoilError):
 class Interruption(KeyboardInterrupt):
     """A signal that asks the program to end; as KeyboardInterrupt passes all that catches errors.
 
-    place: where the run was, and what is in its folder. together: whether all ranks stopped at the same place.
+    place: where the run was, and what is in its folder. together: whether all ranks stopped at the same place. told:
+    whether the user has been told.
     """
 
     def __init__(self, number: int, together: bool = False) -> None:
         super().__init__(number, together)
         self.number, self.together = number, together
+        self.told = False
         self.place = "before the first stage; nothing was computed"
 
     @property

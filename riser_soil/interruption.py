@@ -26,6 +26,7 @@ class _Pending:
         self.number = 0  # of the signal not yet obeyed; 0 for none
         self.busy = 0  # how many blocks forbid to leave now
         self.agreeing = False  # whether all ranks are to leave at the same step
+        self.latest: Interruption | None = None
 
     def take(self, number: int, frame: FrameType | None = None) -> None:
         again, self.number = self.number != 0, self.number or number
@@ -33,8 +34,13 @@ class _Pending:
             self.tell()
 
     def tell(self, together: bool = False) -> NoReturn:
-        number, self.number = self.number, 0
-        raise Interruption(number, together)
+        self.latest, self.number = Interruption(self.number, together), 0
+        raise self.latest
+
+
+def latest() -> Interruption | None:
+    """The last that was raised: who takes it for a common KeyboardInterrupt may have swallowed it."""
+    return _pending.latest
 
 
 _pending = _Pending()
@@ -50,7 +56,7 @@ def listening() -> Iterator[None]:
         signal.signal(signal.SIGPIPE, signal.SIG_IGN)
     mine = [number for number in OURS if _is_free(number)]
     if mine:
-        _pending.number = 0
+        _pending.number, _pending.latest = 0, None
     former = {number: signal.signal(number, _pending.take) for number in mine}
     try:
         yield
