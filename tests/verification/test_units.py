@@ -36,8 +36,9 @@ SEABEDS: dict[str, Mapping] = {
 
 def hose(s: float, seabed: str, dimension: int, time_step: float | str) -> Mapping:
     """The hose of a tank, its end moved up and down; friction and automatic contact, s times as long."""
-    pipe = {"outer_diameter": 0.15 * s, "mass": 33.113 * s**2, "submerged_weight": 147.1 * s**2, "EA": 1.0e6 * s**3}
-    pipe |= {"EI": 1.0e3 * s**5, "GJ": 8.0e2 * s**5, "drag": {"normal": 1.2}, "added_mass": {"normal": 1.0}}
+    pipe: Mapping = {"outer_diameter": 0.15 * s, "mass": 33.113 * s**2, "submerged_weight": 147.1 * s**2}
+    pipe |= {"EA": 1.0e6 * s**3, "EI": 1.0e3 * s**5, "GJ": 8.0e2 * s**5}
+    pipe |= {"drag": {"normal": 1.2}, "added_mass": {"normal": 1.0}}
     ground = deepcopy(SEABEDS[seabed])
     if "stiffness" in ground:
         ground["stiffness"] *= s
