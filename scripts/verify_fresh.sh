@@ -102,7 +102,7 @@ mount_and_run() { # the new root; runs in its own mount and process namespace
 pip_folders() { # of this host, named in pip's configuration or in a PIP_* variable; an index has its files beside "simple"
     local named
     { cat /etc/pip.conf /etc/xdg/pip/* "$HOME"/.pip/* "$config"/pip/* ${PIP_CONFIG_FILE:-} 2>/dev/null || true; env | grep '^PIP_'; } \
-        | sed 's/^[^=]*=//; s#file://##g; s#/simple/*\($\|[[:space:]]\)#\1#g' | tr -s ' \t' '\n' | grep '^/' | sort -u \
+        | sed '/^ *[#;]/d; s/^[^=]*=//; s#file://##g; s#/simple/*\($\|[[:space:]]\)#\1#g' | tr -s ' \t' '\n' | grep '^/' | sort -u \
         | while read -r named; do [ ! -d "$named" ] || echo "$named"; done
 }
 
