@@ -91,7 +91,8 @@ class March:
         bulk, whole = (self._mass.accelerations(before.t, -f) for f in (forces.inertia + forces.force, total(forces)))
         fixed = self.system.prescribed
         self.before = State(before.t, rest.u, rest.v, np.where(fixed, rest.a, bulk))
-        self._forces = self.system.forces(State(before.t, rest.u, rest.v, np.where(fixed, rest.a, whole)))
+        self.now = State(before.t, rest.u, rest.v, np.where(fixed, rest.a, whole))
+        self._forces = self.system.forces(self.now)
 
     def depends_on(self, control: Control) -> bool:
         """Whether loads or supports change until the stage's end; in statics shorter steps are easier only then."""

@@ -442,7 +442,7 @@ CONFLICTS = [
         19,
         "riser.initial.points",
         "[[0, 0",
-        "1e-12 m apart or more",
+        "coincide",
     ),
     Bad(
         "initial: catenary",

@@ -14,7 +14,7 @@ def main(scene: str, folder: Path) -> None:
     from riser_soil.scene.reader import read_scene
 
     with event.install_recorder("numba:compile") as compiled:
-        run(read_scene(scene), folder, force=True)
+        run(read_scene(scene), folder / "results", force=True)
     found = {"modules": sorted(sys.modules), "compiled": len(compiled.buffer)}
     (folder / "found.json").write_text(json.dumps(found), encoding="utf-8")
 

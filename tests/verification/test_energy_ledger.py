@@ -44,7 +44,8 @@ def fallen(tmp_path_factory: pytest.TempPathFactory) -> Run:
 def test_drag_takes_its_share_of_the_fall(fallen: Run) -> None:
     """Until the pipe lands v² = w/c (1 - exp(-2 c h/m)) after a fall h, c = rho Cd D/2; drag took w h - m v²/2."""
     before = np.flatnonzero(fallen["dissipated_seabed"] == 0.0)[-1]
-    h, c = -fallen["position"][before, 0, 2], 0.5 * DENSITY * DRAG * DIAMETER
+    height = np.interp(fallen["step_time"][before], fallen["time"], fallen["position"][:, 0, 2])
+    h, c = -height, 0.5 * DENSITY * DRAG * DIAMETER
     assert 0.98 * DROP < h < DROP
     kinetic = 0.5 * MASS * LENGTH * WEIGHT / c * (1.0 - np.exp(-2.0 * c * h / MASS))
     assert fallen["kinetic_energy"][before] == pytest.approx(kinetic, rel=1e-3)

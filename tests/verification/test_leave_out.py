@@ -99,12 +99,11 @@ def system(world: World, stage: int) -> System:
 @pytest.mark.parametrize(("dimension", "dofs"), [(2, 3), (3, 6)])
 @pytest.mark.parametrize("scene", [hanging, over_springs])
 def test_matrix_holds_the_free_dofs_alone(scene: Any, dimension: int, dofs: int) -> None:
-    """Held are the ends' positions and, in space, the spin that nothing else holds; contact adds no row."""
+    """Held are the ends' positions and, in space, the spin that nothing else holds at rest; contact adds no row."""
     world = built(scene(LAY, heave(0.2), dimension=dimension))
-    held = 2 * dimension + (dimension == 3)
-    for stage in (0, 1):
+    for stage, spin in ((0, dimension == 3), (1, False)):
         rows, columns = system(world, stage).matrix.mat.getSize()
-        assert rows == columns == dofs * NODES - held
+        assert rows == columns == dofs * NODES - 2 * dimension - spin
 
 
 def test_hanging_riser_has_no_entries_for_contact() -> None:
