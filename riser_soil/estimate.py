@@ -23,7 +23,7 @@ FACTOR = 10.0  # entries of the soil's factor: FACTOR n^(4/3), as nested dissect
 
 # Doubles of a record: by node, by step; of a picture: by node of the riser, by cell of the soil with its nodes.
 PER_NODE, PER_STEP, PER_PICTURE, PER_CELL = 15, 60, 15, 6
-DRAFTS = 2.0  # copies of results.nc while it grows
+COPIES = 2.0  # of each file while it grows
 
 # Seconds on one core: to lay an element out; of a step, and in it of an element, of an element and wave component, of a
 # cell, of the soil's factor by unknowns squared.
@@ -80,7 +80,7 @@ class Size:
         nodes = self.elements + 1
         series = PER_NODE * nodes * self.records + PER_STEP * self.steps
         pictures = (PER_PICTURE * nodes + PER_CELL * self.cells) * self.pictures
-        return 8.0 * (DRAFTS * series + pictures)
+        return 8.0 * COPIES * (series + pictures)
 
 
 def riser_memory(ranks: int, unknowns: int) -> float:

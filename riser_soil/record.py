@@ -18,9 +18,11 @@ from riser_soil.errors import SceneError, WriteError
 from riser_soil.folder import Claim
 from riser_soil.netcdf import SeriesFile, ledger_variables
 from riser_soil.ownership import prepare, sealed
+from riser_soil.record_rows import ledger_row, series_row, soil_frame
 from riser_soil.schedule import Due
+from riser_soil.simulated_time import SimulatedTime
 from riser_soil.snapshot import Ledger, RiserSnapshot, RunFacts, SoilMesh, SoilSnapshot, StepHealth, Touch
-from riser_soil.summary import StageTally, Summary, bend_radius, final_state, pack
+from riser_soil.summary import StageTally, Summary, final_state, pack
 from riser_soil.xdmf import Frame, XdmfFile, polyline
 
 RISER_FIELDS = (
@@ -38,47 +40,10 @@ RISER_FIELDS = (
 SOIL_FIELDS = ("displacement", "von_mises_stress", "equivalent_plastic_strain")
 FIELDS = RISER_FIELDS + SOIL_FIELDS
 
-# Equilibria of static stages take no time; those that would share an instant are set this far apart [s],
-# because readers of time series want time to grow.
-TICK = 1e-6
 # A killed run loses this much wall time of results [s]; more where flushing would take more than this share.
 _FLUSH_EVERY, _FLUSH_SHARE = 1.0, 0.05
 # What waits in memory for its turn on disk [bytes]: at most so much, whatever the share; about so much for each step.
 _MOST_WAITING, _STEP = 1 << 24, 2000
-
-
-class Clock:
-    """Total simulated time: dynamic stages add up, static stages take none."""
-
-    def __init__(self) -> None:
-        self._begun = 0.0
-        self._now = 0.0
-        self._last_record = -TICK
-        self._static = True
-
-    @property
-    def stage_time(self) -> float:
-        """s simulated in the current stage."""
-        return self._now - self._begun
-
-    @property
-    def now(self) -> float:
-        return self._now
-
-    def begin_stage(self, kind: str) -> None:
-        self._static = kind == "static"
-        self._begun = self._now
-
-    def advance(self, t: float) -> None:
-        """t: s since the stage began; in a static stage the load factor, which is no time."""
-        if not self._static:
-            self._now = self._begun + t
-
-    def stamp(self) -> float:
-        """Time of a record made now [s], later than that of every record before."""
-        after = self._last_record + TICK
-        self._last_record = self._now if self._now > self._last_record else after
-        return self._last_record
 
 
 @dataclass
@@ -119,7 +84,7 @@ class Recorder:
             folder / run_folder.RISER_XDMF, "riser", polyline(arc.size), polyline=True
         )
         self._soil_frames = _soil_file(folder, soil_mesh)
-        self._clock = Clock()
+        self._time = SimulatedTime()
         self.now = 0.0  # s of the run at the last step; in a static stage its load factor
         self._latest: Array | None = None
         self._last: Last | None = None
@@ -185,17 +150,17 @@ class Recorder:
         """kind: `static` or `dynamic`. A dynamic stage's extremes include the state that it begins with."""
         if self.summary.stages:
             self.flush()
-        self._clock.begin_stage(kind)
+        self._time.begin_stage(kind)
         stage = StageTally(name, kind)
         if kind == "dynamic" and self._latest is not None:
-            stage.extremes.update(self._clock.now, self._latest)
+            stage.extremes.update(self._time.now, self._latest)
         self.summary.stages.append(stage)
         self._series.begin_stage(name)
 
     def begin_at(self, riser: RiserSnapshot, touch: Touch, soil: SoilSnapshot | None = None) -> None:
         """The state that the run begins with, where its first stage is dynamic: recorded at time zero."""
         self._latest = pack(riser, touch)
-        self.summary.stages[-1].extremes.update(self._clock.now, self._latest)
+        self.summary.stages[-1].extremes.update(self._time.now, self._latest)
         self._record(riser, touch, Due(series=True, pictures=True), soil)
 
     def accept(
@@ -213,9 +178,9 @@ class Recorder:
         t: s since the stage began (static: load factor). soil: needed where there is a soil mesh and pictures
         are due.
         """
-        self._clock.advance(t)
+        self._time.advance(t)
         self._tally(t, riser, touch, health, ledger)
-        row = {"step_time": self._clock.now} | vars(health) | _ledger_row(ledger)
+        row = {"step_time": self._time.now} | vars(health) | ledger_row(ledger)
         self._series.step(dict.fromkeys(self._ledger, 0.0) | row)
         self._waiting += _STEP
         self._record(riser, touch, due, soil)
@@ -235,7 +200,7 @@ class Recorder:
         if not last.written.series:
             self._record(last.riser, last.touch, Due(series=True, pictures=drawable), soil)
         elif drawable and not last.written.pictures:
-            self._picture(last.stamp, _series_row(last.stamp, self._arc, last.riser, last.touch), soil)
+            self._picture(last.stamp, series_row(last.stamp, self._arc, last.riser, last.touch), soil)
             last.written = Due(series=True, pictures=True)
 
     def add_seconds(self, seconds: Mapping[str, float]) -> None:
@@ -290,9 +255,9 @@ class Recorder:
         stage = self.summary.stages[-1]
         self._latest = pack(riser, touch)
         stage.count(health)
-        stage.time = self._clock.stage_time
-        stage.balance(self._clock.now, ledger)
-        self.now = now = t if stage.kind == "static" else self._clock.now
+        stage.time = self._time.stage_time
+        stage.balance(self._time.now, ledger)
+        self.now = now = t if stage.kind == "static" else self._time.now
         stage.extremes.update(now, self._latest)
         stage.final = final_state(self._arc, riser, touch)
         stage.bend(now, self._arc, riser)
@@ -300,8 +265,8 @@ class Recorder:
     def _record(self, riser: RiserSnapshot, touch: Touch, due: Due, soil: SoilSnapshot | None) -> None:
         self._last = Last(riser, touch, soil, due)
         if due.series:
-            self._last.stamp = self._clock.stamp()
-            row = _series_row(self._last.stamp, self._arc, riser, touch)
+            self._last.stamp = self._time.stamp()
+            row = series_row(self._last.stamp, self._arc, riser, touch)
             self._waiting += _size(row)
             self._series.record(row)
             if due.pictures:
@@ -318,7 +283,7 @@ class Recorder:
                     "pictures are due, so the soil's snapshot is needed too: both files share one time axis"
                 )
             self._waiting += _size(vars(soil))
-            self._soil_frames.add(_soil_frame(stamp, soil, self._fields))
+            self._soil_frames.add(soil_frame(stamp, soil, self._fields))
             self._settlement = max(0.0, -float(soil.displacement[:, 2].min()))
 
 
@@ -348,43 +313,5 @@ def _check_fields(fields: tuple[str, ...]) -> tuple[str, ...]:
     return fields
 
 
-def _series_row(stamp: float, arc: Array, riser: RiserSnapshot, touch: Touch) -> dict[str, Any]:
-    """By the names of netcdf.SERIES."""
-    slack, bent = riser.effective_tension.argmin(), riser.curvature.argmax()
-    return {
-        **vars(touch),
-        **vars(riser),
-        "time": stamp,
-        "contact_force_sum": touch.contact_force,
-        "min_effective_tension": riser.effective_tension[slack],
-        "min_effective_tension_arc": arc[slack],
-        "min_bend_radius": bend_radius(riser.curvature[bent]),
-        "min_bend_radius_arc": arc[bent],
-    }
-
-
-def _ledger_row(ledger: Ledger) -> dict[str, float]:
-    return {
-        "kinetic_energy": ledger.kinetic,
-        "strain_energy": ledger.strain,
-        "potential_energy": ledger.potential,
-        "dissipated": ledger.dissipated,
-        "dissipated_time_scheme": ledger.numerical,
-        "work": ledger.work,
-        "relative_energy_residual": ledger.relative_residual,
-        **{f"dissipated_{name}": value for name, value in ledger.dissipated_by.items()},
-        **{f"work_{name}": value for name, value in ledger.work_by.items()},
-    }
-
-
 def _soil_file(folder: Path, mesh: SoilMesh | None) -> XdmfFile | None:
     return None if mesh is None else XdmfFile(folder / run_folder.SOIL_XDMF, "soil", mesh.cells, mesh.points)
-
-
-def _soil_frame(stamp: float, soil: SoilSnapshot, fields: tuple[str, ...]) -> Frame:
-    on_cells = {"von_mises_stress": soil.von_mises, "equivalent_plastic_strain": soil.plastic_strain}
-    return Frame(
-        stamp,
-        {"displacement": soil.displacement} if "displacement" in fields else {},
-        {name: values for name, values in on_cells.items() if name in fields},
-    )

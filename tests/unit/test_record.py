@@ -17,10 +17,10 @@ from rich.console import Console
 
 from riser_soil.errors import ResultsError, SceneError, WriteError
 from riser_soil.progress import Progress
-from riser_soil.record import TICK, Clock
 from riser_soil.results import Run
 from riser_soil.schedule import Due, Schedule
 from riser_soil.screen import print_summary
+from riser_soil.simulated_time import TICK, SimulatedTime
 from tests.recorded_run import (
     CATENARY_ARC,
     NOWHERE,
@@ -79,7 +79,7 @@ def test_the_schedule_starts_anew_with_each_stage() -> None:
 
 
 def test_statics_take_no_time_yet_time_grows() -> None:
-    clock = Clock()
+    clock = SimulatedTime()
     stamps = []
     for kind, times in (
         ("static", [1.0]),
