@@ -115,7 +115,7 @@ def _products(system: System, turns: Array) -> list[Array]:
     """The assembled matrix times increments of the riser (k, size); the riser's slice of each."""
     at = slice(system.model.fields[0].offset, system.model.fields[0].offset + system.model.fields[0].size)
     increment, product = (system.numbering.vector.duplicate() for _ in range(2))
-    found = []
+    found = list[Array]()
     for turn in turns:
         local, met = np.zeros(system.numbering.size), np.zeros(system.numbering.size)
         local[at] = turn

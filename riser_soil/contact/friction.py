@@ -54,7 +54,7 @@ class Friction:
         self._stiffness = stiffness[:, None, None]
         self._begun: Grip | None = None
         self._forces = StationForces(self.line, contact.at)
-        self._slid = np.zeros(contact.share.shape)
+        self._slid: Array = np.zeros(contact.share.shape)
 
     def see(self, trial: Trial) -> Sliding:
         """Tractions of the elements that touch."""

@@ -80,8 +80,9 @@ class RotaryInertia:
         if self.line.dimension == 2:
             return {1: self.across}
         half = 0.5 * self.polar
+        masses: dict[int, Array] = {1: half, 2: half}
         on_tangent = self.across - half
-        return ({0: on_tangent} if on_tangent.any() else {}) | {1: half, 2: half}
+        return {0: on_tangent} | masses if on_tangent.any() else masses
 
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}
