@@ -21,6 +21,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 
 from tests.fuzz.mutations import SCENE, Case, cases
@@ -54,10 +55,8 @@ def endings(cases: Iterable[Case], folder: Path, workers: int) -> Iterator[Endin
 
 def import_all() -> None:
     """What the processes then have already; MPI and the kernels' caches among it."""
-
-    import riser_soil.check
-    import riser_soil.run
-    import riser_soil.soil.soil  # noqa: F401
+    for name in ("riser_soil.check", "riser_soil.run", "riser_soil.soil.soil"):
+        import_module(name)
 
 
 def _ending(number: int, case: Case, folder: Path) -> Ending:
