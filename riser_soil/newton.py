@@ -154,10 +154,10 @@ class Newton:
                 solution,
             )
 
-    def unstable_modes(self, state: State, forces: Forces | None = None) -> int:
-        """Negative pivots at a static state, whose forces may be known; collective."""
+    def unstable_modes(self, state: State, forces: Forces | None = None, doubtful: bool = False) -> int:
+        """Negative pivots at a static state; its forces may be known. doubtful: with those that may be. Collective."""
         found = self.system.forces(state) if forces is None else forces
-        return unstable_modes(self.system, state, STATIC, self._scale(found))
+        return unstable_modes(self.system, state, STATIC, self._scale(found), doubtful)
 
     def renew(self) -> None:
         """Take over a new matrix after the system's pattern has changed."""

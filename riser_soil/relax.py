@@ -124,22 +124,22 @@ def _still_leaving(newton: Newton, part: Relaxation, t: float, attempts: Attempt
     return attempts.leaving
 
 
-def _stable(newton: Newton, part: Relaxation, t: float, drag: float) -> bool:
-    """Whether the tangent at the accepted state is stable with a drag."""
+def _stable(newton: Newton, part: Relaxation, t: float, drag: float, surely: bool = False) -> bool:
+    """Whether the tangent at the accepted state is stable with a drag; surely: round-off doesn't make it so."""
     usual, part.drag = part.drag, drag
     try:
-        return newton.unstable_modes(_still(newton.system, t)) == 0
+        return newton.unstable_modes(_still(newton.system, t), doubtful=surely) == 0
     finally:
         part.drag = usual
 
 
 def _stabilise(newton: Newton, part: Relaxation, t: float, least: bool = False) -> None:
-    """Raise the drag, if need be, to where a step grows in the mode and does not turn to its other side.
+    """Raise the drag, if need be, to where a step surely grows in the mode and does not turn to its other side.
 
     least: lower it, too, to the least such drag.
     """
-    if least or not _stable(newton, part, t, part.drag):
-        part.drag = stabilising_drag(part.drag, lambda drag: _stable(newton, part, t, drag))
+    if least or not _stable(newton, part, t, part.drag, surely=True):
+        part.drag = stabilising_drag(part.drag, lambda drag: _stable(newton, part, t, drag, surely=True))
 
 
 def _still(system: System, t: float) -> State:

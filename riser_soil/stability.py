@@ -3,9 +3,10 @@
 An entry of the tangent K is known to about eps times its size, and so is the factorisation that counts. Such an error
 lies between -B and B, the diagonal matrix B_ii = eps d_i sum_j |K_ij|/d_j with any d > 0, as what remains of B is then
 diagonally dominant, once scaled by d. With d = sqrt(|K_ii|) the bound hangs on no unit. The count is that of K + B:
-what it finds is there, and what it misses lies above -B. On a strut of n equal elements with hinged ends that is a load
-above P_cr by less than 0.7 eps n^4 of it, or by less than 4 eps (n/pi)^2 EA/P if that is more and the strut lies along
-no axis of the dofs: 2e-4 for n = 1000, and 1e-3 for EA/P = 1e7. A strut with a free end counts as one twice as long.
+what it finds is there, and what it misses lies above -B; that of K - B finds what is there and what may be. On a strut
+of n equal elements with hinged ends that is a load above P_cr by less than 0.7 eps n^4 of it, or by less than 4 eps
+(n/pi)^2 EA/P if that is more and the strut lies along no axis of the dofs: 2e-4 for n = 1000, and 1e-3 for EA/P = 1e7.
+A strut with a free end counts as one twice as long.
 
 A turn t of the whole riser that its supports leave free has no stiffness where the loads don't tell one direction from
 another, and what Newton's tolerance leaves of the residual makes a small one of either sign. As K t = 0, holding one
@@ -50,10 +51,11 @@ def judged_parts(system: System) -> Sequence[Part] | None:
     return judged if all(part.traits.symmetric for part in judged) else None
 
 
-def unstable_modes(system: System, state: State, weights: Weights, forces: float) -> int:
+def unstable_modes(system: System, state: State, weights: Weights, forces: float, doubtful: bool = False) -> int:
     """Independent ways to leave the equilibrium that set energy free; collective.
 
-    forces [N]: norm of the forces in play. The system's matrix is not that of its parts afterwards.
+    forces [N]: norm of the forces in play. doubtful: count those as well that round-off may have made or may hide.
+    The system's matrix is not that of its parts afterwards.
     """
     judged = judged_parts(system)
     if judged is None:
@@ -63,7 +65,7 @@ def unstable_modes(system: System, state: State, weights: Weights, forces: float
     diagonal = system.matrix.mat.getDiagonal()
     bounds = _row_bounds(system, diagonal.array)
     mine = _of_this_rank(system, held)
-    diagonal.array_w[:] += EPS * bounds
+    diagonal.array_w[:] += (-EPS if doubtful else EPS) * bounds
     diagonal.array_w[mine] += bounds[mine]
     system.matrix.mat.setDiagonal(diagonal)
     diagonal.destroy()

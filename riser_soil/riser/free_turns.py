@@ -9,22 +9,30 @@ import numpy as np
 from riser_soil.arrays import Array, BoolArray
 from riser_soil.riser.directors import SpatialTurn, Turn
 
-HELD = 1e-9  # of the line's length, or a radian: what moves less at a support is held there, and does not move at all
+HELD = 1e-9  # of the line's length, or a radian: what moves less at a support is held there, or does not move at all
 
 
 def free_turns(x: Array, turn: Turn, prescribed: BoolArray, length: float) -> Array:
-    """Increments (k, nn, d + r) of rigid motions that move no prescribed dof; in space sections may spin along.
+    """Increments (k, nn, d + r) of independent rigid motions that move no prescribed dof; in space sections may spin.
 
     x (nn, d): positions; prescribed (nn, d + r). length: the line's [m]; also the largest displacement of each motion.
     """
     motions = _rigid_motions(x, turn, length)
-    at_supports = motions[:, prescribed] / unit_lengths(x.shape, motions.shape[2], length)[prescribed]
+    units = unit_lengths(x.shape, motions.shape[2], length)
+    motions /= units
     none = np.zeros((len(motions), 1))
-    _, sizes, combined = np.linalg.svd(np.hstack([at_supports, none]).T)
-    free = np.tensordot(combined[np.count_nonzero(sizes > HELD) :], motions, axes=1)
+    _, sizes, combined = np.linalg.svd(np.hstack([motions[:, prescribed], none]).T)
+    free = _independent(combined[np.count_nonzero(sizes > HELD) :] @ motions.reshape(len(motions), -1))
+    free = free.reshape(-1, *units.shape)
     largest = np.abs(free[..., : x.shape[1]]).max(axis=(1, 2), initial=0.0)
-    moving = largest > HELD * length
-    return np.asarray(free[moving] * (length / largest[moving])[:, None, None])
+    moving = largest > HELD
+    return np.asarray(free[moving] / largest[moving][:, None, None] * units)
+
+
+def _independent(motions: Array) -> Array:
+    """Orthonormal motions (k, n) that make up the same ones: a straight line spins as it turns about itself."""
+    _, sizes, basis = np.linalg.svd(motions, full_matrices=False)
+    return np.asarray(basis[sizes > HELD])
 
 
 def unit_lengths(shape: tuple[int, ...], dofs: int, length: float) -> Array:

@@ -20,6 +20,7 @@ from riser_soil.soil.block import BlockSpec, make_block
 from riser_soil.soil.grid import silent_gmsh
 from tests.on_ranks import HANGS
 
+COMPILES = dolfinx.__version__.startswith("0.5.")  # code that numbers nodes; later versions need no compiler for it
 REFERENCE_EDGES = {4: (2, 3), 5: (1, 3), 6: (1, 2), 7: (0, 3), 8: (0, 2), 9: (0, 1)}
 
 
@@ -75,25 +76,20 @@ def test_a_cache_that_cannot_be_written_is_replaced_and_told(
     monkeypatch.setattr(dolfinx_compat, "jit_cache", lambda: tmp_path / "file" / "fenics")
     monkeypatch.setattr(compiled, "FOLDER", tmp_path / "kernels")
     assert nodes_of("hex", 1).owned == 5 * 3 * 3
-    assert list((tmp_path / "kernels" / "fenics").glob("libffcx_*.so"))
+    assert bool(list((tmp_path / "kernels" / "fenics").glob("libffcx_*.so"))) == COMPILES
     (told,) = capfd.readouterr().err.splitlines()
     assert str(tmp_path / "file") in told
     assert told.endswith(f"{tmp_path / 'kernels' / 'fenics'} is used")
 
 
 def test_first_compilation_is_silent(tmp_path: Path) -> None:
-    """In a process of its own, with an empty cache: 0.5 logs each compiler command unless told not to.
-
-    Later ones number nodes without a compiler.
-    """
+    """In a process of its own, with an empty cache: 0.5 logs each compiler command unless told not to."""
     code = (
         "from mpi4py import MPI; from riser_soil.soil.block import BlockSpec\n"
         "from riser_soil.soil.grid import block_grid\n"
         "block_grid(MPI.COMM_SELF, BlockSpec((0.0, 1.0), (0.0, 1.0), 1.0, 1.0, 1.0))"
     )
     environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path), "HOME": str(tmp_path)}
-    done = subprocess.run(
-        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=HANGS
-    )
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=HANGS)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
-    assert bool(list(tmp_path.rglob("libffcx_*.so"))) == dolfinx.__version__.startswith("0.5.")
+    assert bool(list(tmp_path.rglob("libffcx_*.so"))) == COMPILES

@@ -57,6 +57,22 @@ def hinged(x: float, z: float, given: Mapping, **pipe: float) -> Mapping:
     return riser_scene(static(), pipe=made, length=12.0, elements=24, **ends, dimension=3, **given)
 
 
+@pytest.mark.parametrize("axis", [(0.0, 0.0, -1.0), (0.36, 0.48, -0.8), (0.6, 0.64, 0.48)])
+def test_a_straight_line_turns_about_itself_as_its_sections_spin(axis: tuple[float, float, float]) -> None:
+    """Of its three turns about a ball two are left where the spin of that end is held, and none comes twice."""
+    shape: Mapping = {"riser": {"unstressed": {"points": [[0.0, 0.0, 0.0], [12.0 * a for a in axis]]}}, "gravity": 9.81}
+    pipe: Mapping = {"EA": 1e8, "EI": 1e3, "GJ": 1e3, "submerged_weight": 500.0}
+    ends: Mapping = {"start": held(0.0, 0.0, 0.0), "end": "free"}
+    world = built(riser_scene(static(), pipe=pipe, length=12.0, elements=6, **ends, dimension=3, **shape))
+    world.begin(world.scene.stages[0])
+    line = world.line
+    line.hold_spin(True)
+    turns = line.free_turns(State.at_rest(0.0, world.size))
+    sizes = np.linalg.svd(turns / np.linalg.norm(turns, axis=1)[:, None], compute_uv=False)
+    assert len(turns) == 2
+    assert sizes.min() > 1e-3
+
+
 @contextmanager
 def started(world: World) -> Iterator[tuple[System, Newton]]:
     system = System(world.comm, world.begin(world.scene.stages[-1]), Clock.new())

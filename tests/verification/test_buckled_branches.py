@@ -84,10 +84,11 @@ def test_columns_of_any_mesh_buckle(elements: int, EA: float, tmp_path: Path) ->
 
 @pytest.mark.verify
 @pytest.mark.parametrize("axis", [ALONG, SLANTING])
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize(("dimension", "elements"), [(2, 2000), (3, 800)])
 @pytest.mark.parametrize("EA", [1e7, 1e9])
-def test_columns_of_two_thousand_elements_buckle(EA: float, dimension: int, axis: Any, tmp_path: Path) -> None:
-    found, switches = tip(column(2000, 2.0, EA, dimension, axis), tmp_path)
+def test_columns_of_many_elements_buckle(EA: float, dimension: int, elements: int, axis: Any, tmp_path: Path) -> None:
+    """Round-off is 0.3 of the load for EA = 1e9 and 2,000 elements: the drag must exceed what it may hide."""
+    found, switches = tip(column(elements, 2.0, EA, dimension, axis), tmp_path)
     along = float(found @ axis)
     assert (along, np.linalg.norm(found - along * np.array(axis))) == pytest.approx(elastica(2.0), abs=2e-4)
     assert switches == 1
@@ -165,8 +166,6 @@ def test_frame_of_640_elements(tmp_path: Path) -> None:
     found, switches = tip(frame(640, 2.0 * 1.0878), tmp_path)
     assert switches == 1
     assert found[1] > 0.2 * 240.0
-
-
 
 
 def test_the_least_stabilising_drag() -> None:
