@@ -29,6 +29,25 @@ sys.argv[0] = "riser-soil"
 main()
 """
 
+# The command on a disk of its own that other files fill up to so many bytes once the run has begun; what it leaves
+# there is copied, as the disk goes with its mount.
+ON_A_FILLED_DISK = """
+import contextlib, os, pathlib, shutil, subprocess, sys, time
+
+left, disk, kept = int(sys.argv.pop(1)), pathlib.Path(sys.argv.pop(1)), pathlib.Path(sys.argv[4])
+subprocess.run(["mount", "-t", "tmpfs", "-o", "size=200m", "none", disk], check=True)
+sys.argv[4] = str(disk / "out")
+running = subprocess.Popen([sys.executable, "-m", "riser_soil", *sys.argv[1:]])
+while running.poll() is None and not (disk / "out" / "riser.xdmf").exists():
+    time.sleep(0.01)
+with contextlib.suppress(OSError), (disk / "others").open("wb", buffering=0) as others:
+    while (room := os.statvfs(disk)).f_bavail * room.f_bsize > left:
+        others.write(bytes(min(room.f_bavail * room.f_bsize - left, 1 << 20)))
+status = running.wait()
+shutil.copytree(disk / "out", kept)
+sys.exit(status)
+"""
+
 
 @dataclass(frozen=True)
 class Left:
@@ -39,7 +58,17 @@ class Left:
 
 
 def start(folder: Path, *command: str) -> subprocess.Popen[str]:
-    call = [sys.executable, *(command or ("-m", "riser_soil")), "run", str(SCENE), "-o", str(folder), *ENDLESS]
+    return _start([sys.executable, *(command or ("-m", "riser_soil"))], folder, ENDLESS)
+
+
+def start_on_a_filled_disk(folder: Path, disk: Path, left: int) -> subprocess.Popen[str]:
+    """The run ends in want of room, or after 200 s of its own time. disk: an empty folder, where it is mounted."""
+    alone = ["unshare", "--map-root-user", "--mount", sys.executable, "-c", ON_A_FILLED_DISK, str(left), str(disk)]
+    return _start(alone, folder, (*ENDLESS, "--set", "stages.1.duration=200"))
+
+
+def _start(command: list[str], folder: Path, settings: tuple[str, ...]) -> subprocess.Popen[str]:
+    call = [*command, "run", str(SCENE), "-o", str(folder), *settings]
     pipe = subprocess.PIPE
     return subprocess.Popen(call, cwd=ROOT, env=environment(), stdout=pipe, stderr=pipe, text=True)
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.broken_runs import ON_A_SMALL_DISK, look, start
+from tests.broken_runs import ON_A_SMALL_DISK, look, start, start_on_a_filled_disk
 
 AT_ONCE = 4
 
@@ -84,7 +84,29 @@ def test_ten_signals(number: signal.Signals, tmp_path: Path) -> None:
 
 
 @pytest.mark.verify
-def test_twenty_full_disks(tmp_path: Path) -> None:
+def test_twenty_disks_that_others_fill(tmp_path: Path) -> None:
+    """Disks in memory; the scene would fit on them by its estimate."""
+
+    def end(left: int) -> Ended:
+        disk = tmp_path / f"disk-{left}"
+        disk.mkdir()
+        process = start_on_a_filled_disk(tmp_path / f"{left}", disk, left)
+        _, told = process.communicate(timeout=300)
+        return Ended(tmp_path / f"{left}", process.returncode, told.splitlines())
+
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        runs = list(pool.map(end, [400_000 * k for k in range(20)]))
+    for run in runs:
+        assert run.status == 4, run.told
+        (line,) = run.told
+        assert "No space left on device" in line
+    left = look([run.folder for run in runs])
+    print(f"rows: {[x.rows for x in left]}")
+    assert all((x.rows or 0) > 1 for x in left[-6:])
+
+
+@pytest.mark.verify
+def test_twenty_files_that_may_not_grow(tmp_path: Path) -> None:
     folders = []
     for size in [1000 * 2**k // 4 for k in range(20)][:14] + [3_000_000 + 300_000 * k for k in range(6)]:
         folders.append(tmp_path / f"{size}")
