@@ -138,3 +138,30 @@ def test_an_interrupted_run_keeps_its_last_accepted_step(number: signal.Signals,
     assert not run.finished
     assert run.time == pytest.approx([0.0, 0.5, 1.0, 1.3])
     assert run.summary["stages"][1]["steps"] == 13
+
+
+# The command, to which the signal comes within the library of the command line, before a command of ours has begun.
+TOO_EARLY = """
+import os, signal, sys
+import typer.core
+from riser_soil.__main__ import main
+
+usual = typer.core.TyperGroup.invoke
+
+def invoke(self, ctx):
+    os.kill(os.getpid(), signal.SIGNAL)
+    return usual(self, ctx)
+
+typer.core.TyperGroup.invoke = invoke
+sys.argv = ["riser-soil", "schema"]
+main()
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interruption_that_a_library_takes_for_its_own_is_told(number: signal.Signals) -> None:
+    call = [sys.executable, "-c", TOO_EARLY.replace("SIGNAL", number.name)]
+    done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 128 + number
+    assert done.stdout == ""
+    assert done.stderr == f"ended by {number.name} before the first stage; nothing was computed\n"

@@ -98,6 +98,19 @@ def surface(scene: Scene, t: float) -> float:
     return float(water(t, np.array([[*REFERENCE[:2], 10.0]])).immersion[0])
 
 
+@pytest.mark.parametrize(("surge", "told"), [(6.0, 0), (14.0, 1)])
+def test_a_vessel_that_drives_too_far_is_told(surge: float, told: int, tmp_path: Path) -> None:
+    """The ends are 40 m and 33 m apart at rest, and the waves 1.5 m high: from a surge of 6.7 m/m the 60 m are used up."""
+    text = table(*EVERYWHERE, surge=(surge, 0.0))
+    world = begun(scene(tmp_path, text, aboard(duration=40.0)))
+    doubts = [doubt for doubt in physical_warnings(world) if "m apart" in doubt]
+    assert len(doubts) == told
+    for doubt in doubts:
+        assert doubt.startswith("stages.0.motion: the ends come to be ")
+        farthest = float(np.hypot(40.0 + 1.5 * surge, 33.0))
+        assert float(doubt.split("come to be ")[1].split(" m")[0]) == pytest.approx(farthest, abs=0.1)
+
+
 @pytest.mark.parametrize("waves", [AIRY, JONSWAP])
 def test_a_buoy_follows_the_surface_at_its_reference(waves: Mapping, tmp_path: Path) -> None:
     """From the first moment on, as it grows with the waves unless told otherwise."""
