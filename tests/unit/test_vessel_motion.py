@@ -100,7 +100,7 @@ def surface(scene: Scene, t: float) -> float:
 
 @pytest.mark.parametrize(("surge", "told"), [(6.0, 0), (14.0, 1)])
 def test_a_vessel_that_drives_too_far_is_told(surge: float, told: int, tmp_path: Path) -> None:
-    """The ends are 40 m and 33 m apart at rest, and the waves 1.5 m high: from a surge of 6.7 m/m the 60 m are used up."""
+    """The ends are 40 m and 33 m apart at rest, the waves 1.5 m high: a surge of 6.7 m/m uses up the 60 m."""
     text = table(*EVERYWHERE, surge=(surge, 0.0))
     world = begun(scene(tmp_path, text, aboard(duration=40.0)))
     doubts = [doubt for doubt in physical_warnings(world) if "m apart" in doubt]
