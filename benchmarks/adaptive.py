@@ -8,17 +8,17 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil.arrays import Array
-from riser_soil.build import World, build
-from riser_soil.march import Accepted, March
-from riser_soil.observe import riser_snapshot
-from riser_soil.part import State
-from riser_soil.relax import Relaxed
+from riser_soil.assembly import World, build
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.core.system import Clock
+from riser_soil.results.observer import riser_snapshot
+from riser_soil.results.touchdown_zone import TouchdownZone
 from riser_soil.run import run_stage
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
-from riser_soil.system import Clock
-from riser_soil.touchdown_zone import TouchdownZone
+from riser_soil.solve.dynamic_relaxation import Relaxed
+from riser_soil.solve.time_stepper import Accepted, March
 
 SCENE = Path(__file__).parent.parent / "tests" / "scenes" / "tank.yaml"
 DURATION = 30.0  # s

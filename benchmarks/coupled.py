@@ -7,7 +7,7 @@ from pathlib import Path
 from petsc4py import PETSc
 
 from benchmarks.stage import last_stage, typical_seconds
-from riser_soil.system import Clock
+from riser_soil.core.system import Clock
 
 SCENE = Path(__file__).parent.parent / "demos" / "touchdown_clay" / "scene.yaml"
 

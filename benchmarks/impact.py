@@ -14,21 +14,21 @@ import numpy as np
 from mpi4py import MPI
 
 from benchmarks.impact_methods import Averaged, DiscreteGradient
-from riser_soil.build import World, build
-from riser_soil.build.ground import contact_radius
+from riser_soil.assembly import World, build
+from riser_soil.assembly.scales import contact_radius
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
+from riser_soil.core.part import Model, Part, State
+from riser_soil.core.system import Clock, System
 from riser_soil.errors import SolveError
-from riser_soil.march import March
-from riser_soil.newton import Newton, NewtonSettings
-from riser_soil.part import Model, Part, State
 from riser_soil.riser.stations import gauss
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.seabed.grounds import Plane
-from riser_soil.stepping import StepControl
-from riser_soil.system import Clock, System
-from riser_soil.time_scheme import GeneralizedAlpha
+from riser_soil.solve.newton import Newton, NewtonSettings
+from riser_soil.solve.step_control import StepControl
+from riser_soil.solve.time_scheme import GeneralizedAlpha
+from riser_soil.solve.time_stepper import March
 from tests.coupled_scenes import Mapping
 from tests.falling_pipe import DROP, LENGTH, WEIGHT, Energies, flat, tilted
 
@@ -94,7 +94,7 @@ def _take(method: Method, scene: Mapping, energies: Energies) -> None:
     assert isinstance(stage.time_step, float)
     system = System(world.comm, _model(world, stage, method[1]), Clock.new())
     solver = world.scene.solver
-    newton = Newton(system, NewtonSettings(solver.tolerance, solver.max_iterations, world.force_floor))
+    newton = Newton(system, NewtonSettings(solver.tolerance, solver.max_iterations, world.scales.force_floor))
     try:
         rest = State.at_rest(0.0, world.size)
         march = March(system, newton, SCHEMES[method[0]], rest, wrong_root=ALL_WELCOME)

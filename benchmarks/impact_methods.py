@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.arrays import Array, BoolArray
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
-from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
 
 NEAR = 1e-8  # m: below it a difference quotient of the potential is round-off
 

@@ -16,11 +16,11 @@ from statistics import mean, median
 from petsc4py import PETSc
 
 from benchmarks.stage import TimedStage, last_stage, random_right_hand_side
-from riser_soil.direct_solver import factorise_directly
-from riser_soil.newton import Newton, Step
-from riser_soil.observe import Observer
-from riser_soil.part import Forces, State
-from riser_soil.system import Clock
+from riser_soil.core.part import Forces, State
+from riser_soil.core.system import Clock
+from riser_soil.results.observer import Observer
+from riser_soil.solve.linear_solver import factorise_directly
+from riser_soil.solve.newton import Newton, Step
 
 SCENE = Path(__file__).parent.parent / "tests" / "scenes" / "catenary.yaml"
 SIZES = ((2, 35), (2, 100), (3, 100), (3, 400))

@@ -11,16 +11,16 @@ from statistics import median
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil.build import World, build
-from riser_soil.build.stage import scheme_of
-from riser_soil.march import March
-from riser_soil.newton import Newton, NewtonSettings
-from riser_soil.observe import Observer
-from riser_soil.part import State
+from riser_soil.assembly import World, build
+from riser_soil.assembly.stage import scheme_of
+from riser_soil.core.part import State
+from riser_soil.core.system import Clock, System
+from riser_soil.results.observer import Observer
 from riser_soil.run import steps_of
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
-from riser_soil.system import Clock, System
+from riser_soil.solve.newton import Newton, NewtonSettings
+from riser_soil.solve.time_stepper import March
 
 
 class TimedStage:
@@ -30,7 +30,7 @@ class TimedStage:
         self.world, self.stage = world, stage
         solver = world.scene.solver
         self.system = System(world.comm, world.begin(stage), clock)
-        settings = NewtonSettings(solver.tolerance, solver.max_iterations, world.force_floor)
+        settings = NewtonSettings(solver.tolerance, solver.max_iterations, world.scales.force_floor)
         self.newton = Newton(self.system, settings)
         self.march = March(self.system, self.newton, scheme_of(stage), replace(before, t=0.0))
         self.control = steps_of(world, stage, self.march)

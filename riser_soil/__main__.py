@@ -83,7 +83,7 @@ def check(scene: SceneFile, overrides: Overrides = None) -> None:
     """Check a scene: tell what would be built, what is left out and why, what looks doubtful; solve nothing."""
     with _expected_errors():
         checked = _read(scene, overrides)
-        from riser_soil.check import describe
+        from riser_soil.checks.check import describe
 
         with _placed(scene, overrides):
             text = describe(checked)
@@ -110,7 +110,7 @@ def _read(scene: str, overrides: list[str] | None) -> "Scene":
 
 def _result_folder(file: str, scene: "Scene", output: Path | None, force: bool) -> Path:
     """The folder for the results; a finished run in it is only overwritten by force."""
-    from riser_soil.ownership import refuse
+    from riser_soil.results.ownership import refuse
 
     folder = output or Path(scene.output.directory or Path(file).stem)
     if os.path.lexists(folder) and not folder.is_dir():

@@ -9,24 +9,24 @@ from typing import Protocol
 
 from mpi4py import MPI
 
-from riser_soil.auto_steps import AutoSteps
-from riser_soil.build import World, build
-from riser_soil.build.stage import scheme_of, times_to_hit
-from riser_soil.doubts import physical_warnings
+from riser_soil.assembly import World, build
+from riser_soil.assembly.stage import scheme_of, times_to_hit
+from riser_soil.checks.limits import size_that_fits, tell, too_long
+from riser_soil.checks.plausibility import physical_warnings
+from riser_soil.core.part import Model, State
+from riser_soil.core.system import Clock, System
 from riser_soil.errors import Interruption, SceneError, SolveError, WriteError
 from riser_soil.interruption import agreeing, check, listening, undivided
-from riser_soil.limits import size_that_fits, tell, too_long
-from riser_soil.local_error import first_step
-from riser_soil.march import Accepted, March
-from riser_soil.newton import Newton, NewtonSettings
-from riser_soil.observe import Observer
-from riser_soil.ownership import refuse
-from riser_soil.part import Model, State
-from riser_soil.relax import Relaxed, relax
+from riser_soil.results.observer import Observer
+from riser_soil.results.ownership import refuse
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import Stage, StaticStage
-from riser_soil.stepping import Control, StepControl
-from riser_soil.system import Clock, System
+from riser_soil.solve.automatic_steps import AutoSteps
+from riser_soil.solve.dynamic_relaxation import Relaxed, relax
+from riser_soil.solve.local_error import first_step
+from riser_soil.solve.newton import Newton, NewtonSettings
+from riser_soil.solve.step_control import Control, StepControl
+from riser_soil.solve.time_stepper import Accepted, March
 
 MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
 
@@ -142,7 +142,7 @@ def _overload(world: World) -> str:
     """What the ground has to do with a failure."""
     if not world.contacts:
         return ""
-    from riser_soil.overload import overload
+    from riser_soil.checks.overload import overload
 
     return overload(world)
 
@@ -174,9 +174,9 @@ def _static_step(world: World, march: March, control: Control, observer: Followe
 
 def _relaxed(world: World, march: March, control: Control, observer: Follower) -> bool:
     """Whether an equilibrium was found at the load factor that Newton's method missed; else the step is halved."""
-    system, settings = march.system, _settings(world)
+    system, settings, weight = march.system, _settings(world), world.scales.weight
     try:
-        relaxed = relax(world.comm, system.model, world.line, world.weight, settings, system.clock, control.target)
+        relaxed = relax(world.comm, system.model, world.line, weight, settings, system.clock, control.target)
     except SolveError:
         if not march.depends_on(control) or not control.cut():
             raise
@@ -188,7 +188,7 @@ def _relaxed(world: World, march: March, control: Control, observer: Follower) -
 
 def _settings(world: World) -> NewtonSettings:
     solver = world.scene.solver
-    return NewtonSettings(solver.tolerance, solver.max_iterations, world.force_floor)
+    return NewtonSettings(solver.tolerance, solver.max_iterations, world.scales.force_floor)
 
 
 def steps_of(world: World, stage: Stage, march: March) -> Control:

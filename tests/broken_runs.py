@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from riser_soil.errors import ResultsError
-from riser_soil.ownership import refuse
 from riser_soil.results import Run
+from riser_soil.results.ownership import refuse
 from tests.on_ranks import ROOT, environment
 from tests.vtk_reading import times_by_vtk
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.part import Forces, Part, State, Weights
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Forces, Part, State, Weights
 from riser_soil.riser.line import Line
 
 STATIC = Weights(inertia=0.0, force=1.0, shift_v=0.0, shift_a=0.0)

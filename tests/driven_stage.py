@@ -11,20 +11,20 @@ import pytest
 from mpi4py import MPI
 from scipy.sparse import csr_matrix
 
-from riser_soil.arrays import Array, IntArray
-from riser_soil.build import World, build
-from riser_soil.build.stage import scheme_of
-from riser_soil.march import Accepted, March
-from riser_soil.newton import Newton, NewtonSettings
-from riser_soil.observe import Observer
-from riser_soil.part import State
-from riser_soil.relax import Relaxed
+from riser_soil.assembly import World, build
+from riser_soil.assembly.stage import scheme_of
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.part import State
+from riser_soil.core.system import Clock, System
+from riser_soil.results.observer import Observer
 from riser_soil.run import run_stage
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage, Stage
-from riser_soil.stepping import Control
-from riser_soil.system import Clock, System
-from riser_soil.time_scheme import Static
+from riser_soil.solve.dynamic_relaxation import Relaxed
+from riser_soil.solve.newton import Newton, NewtonSettings
+from riser_soil.solve.step_control import Control
+from riser_soil.solve.time_scheme import Static
+from riser_soil.solve.time_stepper import Accepted, March
 from tests.coupled_scenes import Mapping
 
 Watch = Callable[[System, Accepted], None]
@@ -89,7 +89,7 @@ class FirstStep:
         self.system = System(world.comm, world.begin(stage), Clock.new())
         self.scheme = scheme_of(stage)
         solver = world.scene.solver
-        settings = NewtonSettings(solver.tolerance, solver.max_iterations, world.force_floor)
+        settings = NewtonSettings(solver.tolerance, solver.max_iterations, world.scales.force_floor)
         newton = Newton(self.system, settings)
         self._before = March(self.system, newton, self.scheme, replace(before, t=0.0)).before
         newton.destroy()

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.march import Accepted, March
-from riser_soil.relax import Relaxed
+from riser_soil.core.arrays import Array
 from riser_soil.scene.stages import Stage
+from riser_soil.solve.dynamic_relaxation import Relaxed
+from riser_soil.solve.time_stepper import Accepted, March
 from tests.coupled_scenes import Mapping
 
 WEIGHT, LENGTH, DROP = 700.0, 20.0, 1.0  # N/m, m, m

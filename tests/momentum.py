@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.build import World
-from riser_soil.march import March
+from riser_soil.assembly import World
+from riser_soil.core.arrays import Array
 from riser_soil.riser.directors import SpatialTurn
 from riser_soil.riser.hermite import weigh
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.midpoint_inertia import MidpointInertia, MidpointRotaryInertia
 from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.secants import directors
+from riser_soil.solve.time_stepper import March
 
 
 def momentum(world: World, march: March) -> tuple[Array, Array]:

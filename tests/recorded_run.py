@@ -10,10 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from riser_soil.arrays import Array, IntArray
-from riser_soil.record import Recorder
-from riser_soil.schedule import Due, Schedule
-from riser_soil.snapshot import (
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.snapshot import (
     Ledger,
     RiserSnapshot,
     RunFacts,
@@ -22,6 +20,8 @@ from riser_soil.snapshot import (
     StepHealth,
     Touch,
 )
+from riser_soil.results.record import Recorder
+from riser_soil.results.schedule import Due, Schedule
 
 EI, WEIGHT, RADIUS = 5.0e4, 650.0, 0.15  # N.m2, N/m, m
 FACTS = RunFacts(

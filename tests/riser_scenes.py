@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil.arrays import Array
-from riser_soil.build import build
-from riser_soil.march import Accepted, March
-from riser_soil.observe import riser_snapshot
-from riser_soil.part import State
+from riser_soil.assembly import build
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.core.snapshot import RiserSnapshot
+from riser_soil.core.system import Clock
+from riser_soil.results.observer import riser_snapshot
 from riser_soil.run import run_stage
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
-from riser_soil.snapshot import RiserSnapshot
-from riser_soil.system import Clock
+from riser_soil.solve.time_stepper import Accepted, March
 from tests.coupled_scenes import Mapping
 from tests.driven_stage import Watcher
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.part import State
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.attachments import Attachment, Attachments, masses
 from riser_soil.riser.beam import Beam

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.riser.attachments import Attachment
 from riser_soil.sea.buoyancy import Buoyancy, DryStations
 from riser_soil.sea.dry_pipe import DryPipe

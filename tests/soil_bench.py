@@ -8,8 +8,8 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from riser_soil.arrays import Array, BoolArray, IntArray
-from riser_soil.part import Forces, State, Weights
+from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.part import Forces, State, Weights
 from riser_soil.soil.soil import Soil
 
 WEIGHTS = Weights(inertia=0.0, force=1.0, shift_v=0.0, shift_a=0.0)

@@ -10,8 +10,8 @@ import basix
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil.arrays import Array, BoolArray
-from riser_soil.part import State
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.part import State
 from riser_soil.soil.block import BlockSpec
 from riser_soil.soil.grid import Grid, block_grid
 from riser_soil.soil.linear_elastic import LinearElastic

@@ -6,8 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from riser_soil.arrays import Array
 from riser_soil.contact.law import NormalLaw
+from riser_soil.core.arrays import Array
 
 
 def through(*turns: float, steps: int = 80) -> Array:

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from riser_soil.arrays import Array
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.contact.soil_contact import SoilContact
-from riser_soil.march import Accepted
-from riser_soil.part import State
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.core.system import System
 from riser_soil.run import run
 from riser_soil.scene.scene import Scene
-from riser_soil.system import System
+from riser_soil.solve.time_stepper import Accepted
 from tests.driven_stage import before_commit
 
 

@@ -14,7 +14,7 @@ from demos.compute import compute
 from demos.page import publish, table
 from demos.tank.statics import HERE, at_rest_blocks
 from demos.tank.swing import EXTREMES, NEAR_TOUCHDOWN, SCENE, SINCE, extremes
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.plots.curves import envelope, save, sheet
 from riser_soil.results import Run
 

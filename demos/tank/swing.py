@@ -9,9 +9,9 @@ import numpy as np
 
 from demos.compute import timed
 from demos.tank.statics import HERE, ROUNDED, WEIGHT
-from riser_soil.arrays import Array
-from riser_soil.derived import peak
+from riser_soil.core.arrays import Array
 from riser_soil.results import Run
+from riser_soil.results.derived import peak
 
 SCENE = HERE / "scene.yaml"
 SINCE, UNTIL = 20.0, 60.0  # s, periods 3 to 6: the first is the ramp

@@ -9,7 +9,7 @@ from scipy.integrate import trapezoid
 
 from demos.page import table
 from demos.waves.rao import responses
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.results import Run
 from riser_soil.sea.jonswap import components as jonswap_waves
 

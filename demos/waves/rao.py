@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 
 FILE = Path(__file__).parent / "rao.csv"
 LENGTH, BREADTH, DRAUGHT, GRAVITY = 260.0, 46.0, 16.0, 9.81

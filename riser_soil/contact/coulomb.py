@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 
 
 def traction(elastic: Array, N: Array, mu: Array) -> tuple[Array, Array, Array]:

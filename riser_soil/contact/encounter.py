@@ -8,12 +8,12 @@ from typing import Protocol
 
 import numpy as np
 
-from riser_soil.arrays import Array, IntArray
-from riser_soil.compiled import njit
 from riser_soil.contact.gap import gap_forms, heights, penalty_hessian
 from riser_soil.contact.ground import ContactPoints, Soil
 from riser_soil.contact.law import Penalty
-from riser_soil.part import State
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
+from riser_soil.core.part import State
 
 SOIL = "contact.soil"
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.compiled import njit
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 
 QUAD = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))  # corners of quad4
 AREA = ((-1.0, -1.0), (1.0, 0.0), (0.0, 1.0))  # gradients of the area coordinates of tri6

@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array, IntArray
 from riser_soil.contact.coulomb import traction
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.contact.station_forces import StationForces
-from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import stations
 from riser_soil.riser.trial import Trial
 

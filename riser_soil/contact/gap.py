@@ -17,9 +17,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.arrays import Array, IntArray
-from riser_soil.compiled import njit
 from riser_soil.contact.facets import second_derivatives, shape
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
 
 
 @njit

@@ -7,9 +7,9 @@ from typing import Protocol
 
 import numpy as np
 
-from riser_soil.arrays import Array, BoolArray, IntArray
 from riser_soil.contact.pairing import Pairing
-from riser_soil.part import State
+from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.part import State
 
 ASPECT = (
     1.618  # the golden ratio: sides of facets, also diagonals of simple grids, miss all four points of a node

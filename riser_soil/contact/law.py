@@ -10,7 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
-from riser_soil.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array, BoolArray
 
 #: Penetration of a riser at rest under its own weight, in outer diameters: small beside what a pipe's size
 #: can show.

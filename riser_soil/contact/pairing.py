@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from riser_soil.arrays import Array, IntArray
-from riser_soil.compiled import njit
 from riser_soil.contact.facets import centre, fill_shape, inside
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
 
 NEIGHBOURS = 8  # facets tried first; a point that none of them holds is looked for in all facets
 RIM = 1e-9  # widening of a facet in (ξ, η): round-off must not open a slit between neighbours

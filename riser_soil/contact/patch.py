@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.arrays import Array, IntArray
 from riser_soil.contact.pairing import bounds
+from riser_soil.core.arrays import Array, IntArray
 
 EMPTY = np.empty(0, dtype=np.int64)
 

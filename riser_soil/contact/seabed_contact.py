@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array, BoolArray, IntArray
 from riser_soil.contact.law import NormalLaw
 from riser_soil.contact.station_forces import StationForces
 from riser_soil.contact.touchdown import Stretch, stretches, touchdown
-from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
 from riser_soil.riser.trial import Trial

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.arrays import Array, BoolArray
 from riser_soil.contact.encounter import SOIL, Encounter, Grounds, RiserNodes, Touching, add_blocks, add_shares
 from riser_soil.contact.gap import heights
 from riser_soil.contact.ground import ASPECT, ContactPoints, Soil, SoilSurface
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.patch import Patch, around
 from riser_soil.contact.touchdown import Stretch, stretches, touchdown
-from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
 
 FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
 

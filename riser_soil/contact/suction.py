@@ -18,8 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.arrays import Array, BoolArray
 from riser_soil.contact.law import Penalty
+from riser_soil.core.arrays import Array, BoolArray
 
 
 @dataclass(frozen=True)

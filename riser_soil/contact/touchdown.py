@@ -32,7 +32,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 
 DEEP = 96.0  # rises of the force within a depth of 1: 43 l on stiff springs, of which f0 is read from the far half
 LEAST = 60.0  # stations within a depth of 1 in a layer that the mesh doesn't resolve

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.riser import rotations
 from riser_soil.riser.ends import Kinematics, Turning
 from riser_soil.riser.vectors import matrix, vector

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from riser_soil.arrays import Array
-from riser_soil.smooth_step import smooth_step
+from riser_soil.core.arrays import Array
+from riser_soil.core.smooth_step import smooth_step
 
 Value = TypeVar("Value", float, Array)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.arrays import Array, BoolArray, IntArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 
 TURN = 2.0 * np.pi
 

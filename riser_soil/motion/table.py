@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from scipy.interpolate import CubicSpline
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.motion.ramped import ramped
 from riser_soil.riser.ends import Kinematics
 

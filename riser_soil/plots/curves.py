@@ -14,9 +14,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from riser_soil.arrays import Array
-from riser_soil.derived import along, reactions
+from riser_soil.core.arrays import Array
 from riser_soil.results import Run
+from riser_soil.results.derived import along, reactions
 
 # Along the arc: what the axis says, and the factor that makes it so.
 ALONG_ARC: dict[str, tuple[str, float]] = {

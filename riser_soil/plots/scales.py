@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 
 # Upper ends of colour scales within a decade, each with the number of labels that makes round steps.
 _TOPS = ((1, 6), (1.2, 5), (1.6, 5), (2, 5), (3, 4), (4, 5), (5, 6), (6, 4), (8, 5), (10, 6))

@@ -13,11 +13,11 @@ import pyvista as pv
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError
-from riser_soil.folder import SCENE
 from riser_soil.plots.scales import colour_scale, magnification
 from riser_soil.results import Run, SoilFrame
+from riser_soil.results.folder import SCENE
 
 _SIZE = (1600, 900)
 _CELL_TYPES = {4: pv.CellType.TETRA, 8: pv.CellType.HEXAHEDRON, 10: pv.CellType.QUADRATIC_TETRA}

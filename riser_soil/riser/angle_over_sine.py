@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.compiled import njit
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 
 SERIES_BELOW = 0.05  # 1 - cos(theta) under which closed forms lose digits and the series has converged
 SERIES: Array = np.cumprod([1.0] + [2.0 * n / (2.0 * n + 1.0) for n in range(1, 13)])[::-1].copy()

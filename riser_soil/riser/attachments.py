@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array, IntArray
-from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import hermite
 from riser_soil.riser.line import UP, Line
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import uniform_load
 from riser_soil.riser.elastic import elastic_elements
 from riser_soil.riser.line import Line

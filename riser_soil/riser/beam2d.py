@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.compiled import njit
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 from riser_soil.riser.bending import bow, bow_slopes, end_moments
 
 Vec2 = tuple[float, float]

@@ -10,7 +10,7 @@ Source: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, 
 7.
 """
 
-from riser_soil.compiled import njit
+from riser_soil.core.compiled import njit
 
 
 @njit

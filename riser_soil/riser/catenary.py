@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import SceneError
 from riser_soil.riser.cable import Balance, Chain, fit
 from riser_soil.riser.shapes import UP, Curve, X, from_nodes

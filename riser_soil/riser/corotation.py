@@ -15,7 +15,7 @@ Pacoste, Comput. Methods Appl. Mech. Engng 191 (2002), need further terms.
 import math
 from typing import NamedTuple
 
-from riser_soil.compiled import njit
+from riser_soil.core.compiled import njit
 from riser_soil.riser.vectors import Mat, Vec, add, cross, dot, matmul, scale, sub
 
 

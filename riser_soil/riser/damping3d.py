@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.compiled import njit
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 from riser_soil.riser.beam3d import (
     STILL,
     Move,

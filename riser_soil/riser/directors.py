@@ -17,8 +17,8 @@ import math
 
 import numpy as np
 
-from riser_soil.arrays import Array, BoolArray, IntArray
-from riser_soil.compiled import fixed, njit
+from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser import rotations
 from riser_soil.riser.hermite import interleave
 from riser_soil.riser.vectors import (

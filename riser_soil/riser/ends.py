@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 
 Kinematics = tuple[Array, Array, Array]
 Motion = Callable[[float], Kinematics]

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.riser.directors import SpatialTurn, Turn
 
 HELD = 1e-9  # of the line's length, or a radian: what moves less at a support is held there, or does not move at all

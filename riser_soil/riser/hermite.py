@@ -12,8 +12,8 @@ load gives its residual F_q (ne, 4, d), conjugate to q. The kernels below carry 
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.compiled import fixed, njit
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import fixed, njit
 
 Four = tuple[float, float, float, float]
 Size = tuple[int, ...]  # of `fixed`: D for the dimension d, R for the r rotation dofs

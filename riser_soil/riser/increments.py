@@ -6,8 +6,8 @@ changed in place.
 """
 
 
-from riser_soil.arrays import Array
-from riser_soil.compiled import njit
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 from riser_soil.riser.rotations import right_tangent_derivative
 from riser_soil.riser.vectors import Mat, Vec, matrix, vecmat, vector
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser.attachments import Masses
 from riser_soil.riser.hermite import add_mass, consistent_mass, weigh
 from riser_soil.riser.line import Line

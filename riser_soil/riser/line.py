@@ -12,10 +12,10 @@ from functools import cached_property
 
 import numpy as np
 
-from riser_soil.arrays import Array, BoolArray, IntArray
-from riser_soil.compiled import njit
+from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.compiled import njit
+from riser_soil.core.part import Block, State
 from riser_soil.errors import SceneError
-from riser_soil.part import Block, State
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames
 from riser_soil.riser.ends import End, Turning

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.errors import SceneError
-from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import SpatialTurn, moment_stiffness
 from riser_soil.riser.line import Line

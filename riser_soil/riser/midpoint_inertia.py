@@ -23,9 +23,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.compiled import fixed
-from riser_soil.part import Block, Energy, Forces, Part, State, Traits, Weights, Work
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import fixed
+from riser_soil.core.part import Block, Energy, Forces, Part, State, Traits, Weights, Work
 from riser_soil.riser import hermite
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line

@@ -17,8 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.part import State
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
 from riser_soil.riser.directors import SpatialTurn
 from riser_soil.riser.line import Line
 from riser_soil.riser.section_forces import end_forces

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import spinning
 from riser_soil.riser.directors import PlanarFrames, SpatialFrames
 from riser_soil.riser.line import Line

@@ -14,7 +14,7 @@ Engng 26 (1988).
 
 import math
 
-from riser_soil.compiled import njit
+from riser_soil.core.compiled import njit
 from riser_soil.riser.vectors import Mat, Vec, cross, dot, isotropic, matadd, matscale, outer, skew
 
 SERIES_BELOW = 0.25  # theta^2 under which the closed forms lose digits and the power series have converged

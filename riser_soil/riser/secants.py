@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.compiled import njit
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames, moment_stiffness, node_frames
 from riser_soil.riser.rotations import exp_coefficients
 from riser_soil.riser.vectors import (

@@ -13,8 +13,8 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from riser_soil.arrays import Array, IntArray
-from riser_soil.part import State
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.part import State
 from riser_soil.riser.directors import SpatialTurn
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements

@@ -8,7 +8,7 @@ from typing import Self
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 
 

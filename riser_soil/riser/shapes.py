@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.riser.line import Layout
 

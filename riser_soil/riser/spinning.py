@@ -11,8 +11,8 @@ T_L(Theta) m is conjugate to the rotation vector. Arrays of nodes: Theta, W, A (
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.compiled import njit
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 from riser_soil.riser.rotations import left_tangent, right_tangent_derivative
 from riser_soil.riser.vectors import (
     Mat,

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array, IntArray
-from riser_soil.compiled import fixed, njit
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser.hermite import Size, add_rows, shapes, slopes
 
 POINTS = 0.5 + np.sqrt(0.6) * np.array([-0.5, 0.0, 0.5])

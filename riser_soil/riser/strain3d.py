@@ -19,7 +19,7 @@ The strains do not change when the frame turns about the chord.
 import math
 from typing import NamedTuple
 
-from riser_soil.compiled import njit
+from riser_soil.core.compiled import njit
 from riser_soil.riser.bending import bow, bow_slopes
 from riser_soil.riser.vectors import Vec, add, dot, scale
 

@@ -7,7 +7,7 @@ moment)_x.
 """
 
 
-from riser_soil.compiled import njit
+from riser_soil.core.compiled import njit
 from riser_soil.riser.strain3d import Pair, Stiffness, Strain, Stress
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import beam2d, beam3d, damping2d, damping3d, increments
 from riser_soil.riser.directors import SpatialTurn
 from riser_soil.riser.elastic import PlanarElements, SpatialElements, elastic_elements

@@ -11,7 +11,7 @@ t = -e1. A `mu` is the generalised moment conjugate to (tau, y, z), m the moment
 import math
 from typing import NamedTuple
 
-from riser_soil.compiled import njit
+from riser_soil.core.compiled import njit
 from riser_soil.riser.angle_over_sine import angle_over_sine
 from riser_soil.riser.vectors import Mat, Vec, add, cross, dot, scale
 

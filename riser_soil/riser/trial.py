@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.compiled import fixed
-from riser_soil.part import State, Weights
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import fixed
+from riser_soil.core.part import State, Weights
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import Turn
 

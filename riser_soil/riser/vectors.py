@@ -6,8 +6,8 @@ allocates nothing per element. `vector` and `matrix` read them from arrays, `sto
 """
 
 
-from riser_soil.arrays import Array
-from riser_soil.compiled import njit
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 
 Vec = tuple[float, float, float]
 Mat = tuple[Vec, Vec, Vec]

@@ -6,8 +6,8 @@ from typing import Protocol
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser.stations import Derivatives
 from riser_soil.riser.trial import Trial
 from riser_soil.sea.pipe import Pipe

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.sea.water import WaterMotion
 
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.part import Weights
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Weights
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import waterline
 from riser_soil.sea.pipe import Pipe

@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.sea.components import Components
 from riser_soil.sea.dispersion import wave_number
 

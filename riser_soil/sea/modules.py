@@ -15,8 +15,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.part import Weights
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Weights
 from riser_soil.riser import stations
 from riser_soil.riser.attachments import Attachment, places
 from riser_soil.riser.line import Line

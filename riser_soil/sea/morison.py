@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from riser_soil.arrays import Array
-from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser.trial import Trial
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.still_water import StationLoads

@@ -16,8 +16,8 @@ import math
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.compiled import fixed, njit
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser.hermite import Size
 
 

@@ -18,8 +18,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.part import Weights
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Weights
 from riser_soil.riser import stations
 from riser_soil.riser.stations import Derivatives
 from riser_soil.riser.trial import Trial

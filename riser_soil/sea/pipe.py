@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array, IntArray
-from riser_soil.part import Weights
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.part import Weights
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
 from riser_soil.riser.trial import Trial

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 
 
 class WaterMotion(NamedTuple):

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.compiled import fixed, njit
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser.hermite import Size, add_rows, shape
 from riser_soil.riser.stations import POINTS
 from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Literal, assert_never
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
+from riser_soil.core.smooth_step import smooth_step
 from riser_soil.sea import waves
 from riser_soil.sea.components import Components
 from riser_soil.sea.water import WaterMotion
-from riser_soil.smooth_step import smooth_step
 
 Stretching = Literal["wheeler", "vertical"]
 

@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.compiled import njit
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 from riser_soil.sea.components import Components
 
 # Exponent k z below which a component is left out: it has decayed to 1e-13 of what it is at the surface.

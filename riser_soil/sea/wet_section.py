@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
-from riser_soil.arrays import Array
-from riser_soil.compiled import njit
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 
 
 @njit

@@ -31,7 +31,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.seabed.bearing import PowerLaw, Strength
 
 TINY = 1e-30

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 
 SHALLOW = 0.1  # z/D below which Randolph & Quiggin's bearing factor follows the square root
 

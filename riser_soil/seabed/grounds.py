@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 
 
 class Distance(NamedTuple):

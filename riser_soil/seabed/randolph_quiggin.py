@@ -33,7 +33,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.seabed.bearing import SHALLOW, PowerLaw, Strength, displaced
 
 TINY = 1e-30

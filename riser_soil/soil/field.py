@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.arrays import Array, BoolArray, IntArray
-from riser_soil.part import State
+from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.part import State
 from riser_soil.soil.grid import Grid
 
 

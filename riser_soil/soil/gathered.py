@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from riser_soil.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.soil.grid import Grid
 
 T = TypeVar("T", bound=np.generic)

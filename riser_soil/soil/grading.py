@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 
 _PIECES = 16  # on either side of the riser, to count cells by
 _EQUAL = 1e-9  # difference of two sizes, over either, that is none

@@ -12,11 +12,11 @@ import gmsh
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil import dolfinx_compat
-from riser_soil.arrays import Array, BoolArray
-from riser_soil.dolfinx_compat import Nodes
+from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.errors import MeshError
+from riser_soil.soil import dolfinx_compat
 from riser_soil.soil.block import BlockSpec, make_block
+from riser_soil.soil.dolfinx_compat import Nodes
 from riser_soil.soil.families import HEX8, TET10, Family
 from riser_soil.soil.mesh_file import HEXAHEDRON, cell_type, read_mesh
 

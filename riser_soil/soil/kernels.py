@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.arrays import Array, IntArray
-from riser_soil.compiled import njit
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
 
 _SHEAR = 1.0 / np.sqrt(2.0)
 

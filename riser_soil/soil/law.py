@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 
 
 class Law(Protocol):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 
 UNIT: Array = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 DEVIATOR: Array = np.eye(6) - np.outer(UNIT, UNIT) / 3.0  # projector on the deviatoric part

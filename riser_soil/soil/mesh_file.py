@@ -17,7 +17,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from riser_soil.arrays import Array, BoolArray, IntArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.errors import MeshError
 
 TETRAHEDRON, HEXAHEDRON = 4, 5  # gmsh's numbers of the first-order cells

@@ -7,10 +7,10 @@ from typing import Literal
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
-from riser_soil.part import Block, Energy, Forces, State, Traits, Weights, Work
-from riser_soil.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.soil import kernels, mandel
 from riser_soil.soil.element import cell_gradients
 from riser_soil.soil.field import SoilField, components

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.soil import mandel
 
 

@@ -55,7 +55,7 @@ def endings(cases: Iterable[Case], folder: Path, workers: int) -> Iterator[Endin
 
 def import_all() -> None:
     """What the processes then have already; MPI and the kernels' caches among it."""
-    for name in ("riser_soil.check", "riser_soil.run", "riser_soil.soil.soil"):
+    for name in ("riser_soil.checks.check", "riser_soil.run", "riser_soil.soil.soil"):
         import_module(name)
 
 

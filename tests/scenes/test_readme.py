@@ -12,9 +12,9 @@ from typing import Any
 
 import pytest
 
-from riser_soil.netcdf import SERIES
-from riser_soil.record import FIELDS
 from riser_soil.results import Run
+from riser_soil.results.netcdf import SERIES
+from riser_soil.results.record import FIELDS
 from riser_soil.scene.scene import Scene
 from tests.on_ranks import ROOT, SHARED_CORES, environment, finished
 

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil.arrays import Array
-from riser_soil.balance import Balance
-from riser_soil.march import Accepted, March
-from riser_soil.newton import Newton, NewtonSettings, Solution
-from riser_soil.part import Energy, Forces, Model, Part, State, Work
-from riser_soil.snapshot import Ledger
-from riser_soil.stepping import StepControl
-from riser_soil.system import Clock, System
-from riser_soil.time_scheme import GeneralizedAlpha, Scheme
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Energy, Forces, Model, Part, State, Work
+from riser_soil.core.snapshot import Ledger
+from riser_soil.core.system import Clock, System
+from riser_soil.results.energy_ledger import Balance
+from riser_soil.solve.newton import Newton, NewtonSettings, Solution
+from riser_soil.solve.step_control import StepControl
+from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
+from riser_soil.solve.time_stepper import Accepted, March
 from tests.toy_chain import Chain, Floor, Inertia, Springs
 
 ALPHA = GeneralizedAlpha.from_rho_inf(0.6)

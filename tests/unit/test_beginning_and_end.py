@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from riser_soil.errors import Interruption, SolveError
-from riser_soil.march import Accepted, March
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.stepping import Control
-from riser_soil.time_scheme import Static
+from riser_soil.solve.step_control import Control
+from riser_soil.solve.time_scheme import Static
+from riser_soil.solve.time_stepper import Accepted, March
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown
 
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq, fsolve
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.riser.catenary import Catenary, catenary
 from riser_soil.riser.shapes import X

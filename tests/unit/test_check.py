@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from meshes.block import main as mesh
-from riser_soil.check import describe
+from riser_soil.checks.check import describe
 from riser_soil.scene.reader import scene_from_mapping
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.riser_scenes import held, riser_scene

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from riser_soil import compiled
+from riser_soil.core import compiled
 
 DAY = 86400.0
 
@@ -22,7 +22,7 @@ def package(tmp_path: Path) -> Path:
     """A package with a kernel that inlines a function of another module."""
     folder = tmp_path / "riser_soil"
     sources = {
-        "riser/kernel.py": "from riser_soil.compiled import njit\nfrom riser_soil.riser.law import f\n",
+        "riser/kernel.py": "from riser_soil.core.compiled import njit\nfrom riser_soil.riser.law import f\n",
         "riser/law.py": "from riser_soil.riser import (\n    numbers,\n)\n",
         "riser/numbers.py": "TWO = 2.0\n",
         "plots.py": "import riser_soil.riser.kernel\n",

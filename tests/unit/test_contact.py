@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from riser_soil.arrays import Array, IntArray
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.soil_contact import Reach, SoilContact
-from riser_soil.part import Forces, State, Weights
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.part import Forces, State, Weights
 
 LAW = Penalty(stiffness=2.0e5, smoothing=1e-3)
 WEIGHTS = Weights(inertia=0.0, force=0.0, shift_v=0.0, shift_a=0.0)

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array, IntArray
 from riser_soil.contact.facets import inside, second_derivatives, shape
 from riser_soil.contact.gap import gap_forms, heights, penalty_hessian
 from riser_soil.contact.pairing import Pairing, invert
+from riser_soil.core.arrays import Array, IntArray
 
 CORNERS = {
     4: np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]], dtype=float),

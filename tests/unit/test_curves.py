@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from riser_soil.netcdf import SERIES
 from riser_soil.plots.curves import along_arc, end_reactions, end_tension, envelope, instants, save, shapes, sheet
 from riser_soil.results import Run
+from riser_soil.results.netcdf import SERIES
 from tests.recorded_run import record
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from riser_soil.derived import along, peak, reactions
 from riser_soil.results import Run
+from riser_soil.results.derived import along, peak, reactions
 from tests.recorded_run import WEIGHT, Catenary, record
 
 

@@ -14,9 +14,10 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil import compiled, dolfinx_compat
-from riser_soil.dolfinx_compat import Nodes
+from riser_soil.core import compiled
+from riser_soil.soil import dolfinx_compat
 from riser_soil.soil.block import BlockSpec, make_block
+from riser_soil.soil.dolfinx_compat import Nodes
 from riser_soil.soil.grid import silent_gmsh
 from tests.on_ranks import HANGS
 

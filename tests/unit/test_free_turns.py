@@ -8,13 +8,13 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
-from riser_soil import stability
-from riser_soil.build import World
-from riser_soil.newton import Newton, NewtonSettings
-from riser_soil.part import State
+from riser_soil.assembly import World
+from riser_soil.core.part import State
+from riser_soil.core.system import Clock, System
 from riser_soil.riser.ends import End
-from riser_soil.system import Clock, System
-from riser_soil.time_scheme import Static
+from riser_soil.solve import stability
+from riser_soil.solve.newton import Newton, NewtonSettings
+from riser_soil.solve.time_scheme import Static
 from tests.coupled_scenes import Mapping
 from tests.driven_stage import built, take
 from tests.riser_scenes import held, riser_scene, static
@@ -76,7 +76,7 @@ def test_a_straight_line_turns_about_itself_as_its_sections_spin(axis: tuple[flo
 @contextmanager
 def started(world: World) -> Iterator[tuple[System, Newton]]:
     system = System(world.comm, world.begin(world.scene.stages[-1]), Clock.new())
-    newton = Newton(system, NewtonSettings(1e-8, 25, world.force_floor))
+    newton = Newton(system, NewtonSettings(1e-8, 25, world.scales.force_floor))
     yield system, newton
     newton.destroy()
     system.destroy()

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from riser_soil.arrays import Array
 from riser_soil.contact.coulomb import traction
 from riser_soil.contact.friction import Friction, directions, mobilised_within
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
-from riser_soil.part import State
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
 from riser_soil.riser import hermite, shapes, stations
 from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line

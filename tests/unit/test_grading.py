@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.build.riser import elements_of
+from riser_soil.assembly.riser import elements_of
 from riser_soil.errors import SceneError
 from riser_soil.scene.grading import graded_lengths
 from riser_soil.scene.reader import scene_from_mapping

@@ -12,8 +12,8 @@ import h5py
 import numpy as np
 import pytest
 
-from riser_soil import growing_file
-from riser_soil.growing_file import GrowingFile, appending, reading
+from riser_soil.results import growing_file
+from riser_soil.results.growing_file import GrowingFile, appending, reading
 from tests.recorded_run import CATENARY_ARC, a_recorder, step
 from tests.small_disk import files_of_at_most
 
@@ -133,8 +133,8 @@ def test_a_frame_costs_the_same_however_many_there_are(tmp_path: Path, written: 
 
 def test_waiting_frames_do_not_pile_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Though no time passes, in which they would have their turn."""
-    monkeypatch.setattr("riser_soil.record.time.monotonic", lambda: 0.0)
-    monkeypatch.setattr("riser_soil.record._MOST_WAITING", 500_000)
+    monkeypatch.setattr("riser_soil.results.record.time.monotonic", lambda: 0.0)
+    monkeypatch.setattr("riser_soil.results.record._MOST_WAITING", 500_000)
     with a_recorder(tmp_path) as recorder:
         for number in range(100):
             step(recorder, 0.1 * (number + 1))

@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[2]
 ENDLESS = """
 import os, signal, sys
 from riser_soil.__main__ import main
-from riser_soil.observe import Observer
+from riser_soil.results.observer import Observer
 
 usual, taken = Observer.record, []
 

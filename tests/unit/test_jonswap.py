@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.signal import periodogram
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.sea.components import Components
 from riser_soil.sea.jonswap import HIGHEST, LOWEST, components, quantiles, spectrum
 from riser_soil.sea.sea import Sea

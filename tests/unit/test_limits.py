@@ -9,13 +9,13 @@ import pytest
 from mpi4py import MPI
 from typer.testing import CliRunner
 
-from riser_soil import limits, machine
 from riser_soil.__main__ import app
-from riser_soil.build import build
-from riser_soil.check import describe, memory
+from riser_soil.assembly import build
+from riser_soil.checks import limits, machine
+from riser_soil.checks.check import describe, memory
+from riser_soil.checks.estimate import size_of
+from riser_soil.checks.inventory import unknowns
 from riser_soil.errors import SceneError
-from riser_soil.estimate import size_of
-from riser_soil.inventory import unknowns
 from riser_soil.scene.reader import scene_from_mapping
 from tests.bad_scenes import GOOD
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown

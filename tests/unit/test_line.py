@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
 from riser_soil.errors import SceneError
-from riser_soil.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.ends import End, Kinematics

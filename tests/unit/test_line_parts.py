@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
-from riser_soil.part import Forces, Part, State, Traits, Weights
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Forces, Part, State, Traits, Weights
 from riser_soil.riser import hermite, loads, spinning, springs, stations
 from riser_soil.riser.directors import PlanarTurn, SpatialTurn
 from riser_soil.riser.rotary_inertia import RotaryInertia

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.build.riser import elements_of
-from riser_soil.inventory import built, left_out
+from riser_soil.assembly.riser import elements_of
+from riser_soil.checks.inventory import built, left_out
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from tests.riser_scenes import dynamic, held, riser_scene, static

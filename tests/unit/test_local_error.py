@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil.arrays import Array
-from riser_soil.local_error import LocalError, first_step
-from riser_soil.march import March
-from riser_soil.newton import Newton, NewtonSettings
-from riser_soil.part import Model, Part, State
-from riser_soil.system import Clock, System
-from riser_soil.time_scheme import GeneralizedAlpha
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Model, Part, State
+from riser_soil.core.system import Clock, System
+from riser_soil.solve.local_error import LocalError, first_step
+from riser_soil.solve.newton import Newton, NewtonSettings
+from riser_soil.solve.time_scheme import GeneralizedAlpha
+from riser_soil.solve.time_stepper import March
 from tests.toy_chain import Chain, Floor, Inertia, Springs
 
 SCHEMES = [GeneralizedAlpha.newmark(), GeneralizedAlpha.from_rho_inf(0.8), GeneralizedAlpha.from_rho_inf(0.3)]

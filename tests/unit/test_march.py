@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from riser_soil.core.part import Field, Forces, Model, Part, State
+from riser_soil.core.system import Clock, System
 from riser_soil.errors import SolveError
-from riser_soil.march import Accepted, March
-from riser_soil.newton import Newton, NewtonSettings
-from riser_soil.part import Field, Forces, Model, Part, State
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.stepping import StepControl
-from riser_soil.system import Clock, System
-from riser_soil.time_scheme import GeneralizedAlpha, Midpoint, Scheme
+from riser_soil.solve.newton import Newton, NewtonSettings
+from riser_soil.solve.step_control import StepControl
+from riser_soil.solve.time_scheme import GeneralizedAlpha, Midpoint, Scheme
+from riser_soil.solve.time_stepper import Accepted, March
 from tests.toy_chain import Chain, Floor, Inertia, Springs
 
 AVERAGE = GeneralizedAlpha.newmark()

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil.mass import RiserMass
-from riser_soil.part import Model
-from riser_soil.system import Clock, System
+from riser_soil.core.part import Model
+from riser_soil.core.system import Clock, System
+from riser_soil.solve.riser_mass import RiserMass
 from tests.toy_chain import Chain, Inertia, Springs
 
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil.matrix import Matrix
-from riser_soil.numbering import Numbering
-from riser_soil.part import Block
+from riser_soil.core.matrix import Matrix
+from riser_soil.core.numbering import Numbering
+from riser_soil.core.part import Block
 from tests.on_ranks import mpirun
 from tests.toy_chain import Chain
 
@@ -43,8 +43,8 @@ def test_blocks_add_up_and_absent_dofs_drop_out() -> None:
 ON_RANKS = '''
 import numpy as np
 from mpi4py import MPI
-from riser_soil.matrix import Matrix
-from riser_soil.numbering import Numbering
+from riser_soil.core.matrix import Matrix
+from riser_soil.core.numbering import Numbering
 from tests.toy_chain import Chain
 
 comm = MPI.COMM_WORLD

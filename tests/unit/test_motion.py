@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.motion.carried import Displaced, Turned
 from riser_soil.motion.harmonic import Harmonic
 from riser_soil.motion.move import Move

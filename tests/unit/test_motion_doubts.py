@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from riser_soil.motion_doubts import motion_doubts
+from riser_soil.checks.motion_plausibility import motion_doubts
 from riser_soil.scene.reader import scene_from_mapping
 from tests.riser_scenes import Mapping, dynamic, held, riser_scene, static
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil.arrays import Array
-from riser_soil.build import build
+from riser_soil.assembly import build
+from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.riser.ends import Kinematics
 from riser_soil.scene.dump import dump_scene

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
-from riser_soil.part import Part, State, Weights
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Part, State, Weights
 from riser_soil.riser import shapes
 from riser_soil.riser.line import End, Line
 from riser_soil.sea.components import regular

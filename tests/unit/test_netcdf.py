@@ -8,8 +8,8 @@ import h5py
 import numpy as np
 import xarray as xr
 
-from riser_soil.netcdf import HEALTH, SERIES, SeriesFile
 from riser_soil.results import Run
+from riser_soil.results.netcdf import HEALTH, SERIES, SeriesFile
 from tests.recorded_run import Catenary, record
 
 ARC = np.linspace(0.0, 100.0, 11)

@@ -7,15 +7,15 @@ import re
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
-from riser_soil.build import World
-from riser_soil.overload import Bearing, overload
-from riser_soil.part import State
+from riser_soil.assembly import World
+from riser_soil.checks.overload import Bearing, overload
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.core.system import Clock
 from riser_soil.run import run_stage
 from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
 from riser_soil.seabed.bearing import Strength, strip_capacity
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
-from riser_soil.system import Clock
 from tests.driven_stage import Watcher, built
 from tests.riser_scenes import held, riser_scene, static
 

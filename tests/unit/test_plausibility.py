@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from riser_soil.plausibility import Plausibility, Worst
+from riser_soil.results.plausibility import Plausibility, Worst
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown

@@ -11,7 +11,7 @@ from PIL import Image
 from riser_soil.errors import ResultsError
 from riser_soil.plots import picture
 from riser_soil.plots.scales import colour_scale, magnification
-from riser_soil.record import Recorder
+from riser_soil.results.record import Recorder
 from tests.recorded_run import FACTS, SCENE, block, record
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from mpi4py import MPI
 
-from riser_soil.build import build
+from riser_soil.assembly import build
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from tests.bad_scenes import GOOD

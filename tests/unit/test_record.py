@@ -16,11 +16,11 @@ import pytest
 from rich.console import Console
 
 from riser_soil.errors import ResultsError, SceneError, WriteError
-from riser_soil.progress import Progress
 from riser_soil.results import Run
-from riser_soil.schedule import Due, Schedule
-from riser_soil.screen import print_summary
-from riser_soil.simulated_time import TICK, SimulatedTime
+from riser_soil.results.progress import Progress
+from riser_soil.results.schedule import Due, Schedule
+from riser_soil.results.screen import print_summary
+from riser_soil.results.simulated_time import TICK, SimulatedTime
 from tests.recorded_run import (
     CATENARY_ARC,
     NOWHERE,
@@ -296,7 +296,7 @@ def _wait_for_steps(folder: Path, process: subprocess.Popen[bytes]) -> None:
 
 def test_recording_imports_no_drawing() -> None:
     code = (
-        "import sys, riser_soil.record, riser_soil.progress, riser_soil.screen, riser_soil.results\n"
+        "import sys; from riser_soil.results import progress, read, record, screen\n"
         "heavy = {'pyvista', 'vtk', 'vtkmodules', 'matplotlib', 'scipy', 'dolfinx', 'xarray', 'pandas'}\n"
         "print(sorted(heavy & set(sys.modules)))"
     )

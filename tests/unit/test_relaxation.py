@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.part import Forces, State, Weights
+from riser_soil.core.part import Forces, State, Weights
 from riser_soil.riser.relaxation import Relaxation
 from tests.sample_line import sample
 

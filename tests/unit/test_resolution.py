@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.march import Accepted, March
-from riser_soil.observe import elastic_residual
-from riser_soil.part import State
-from riser_soil.plausibility import SMOOTH_MISFIT, STEEP_MISFIT
+from riser_soil.core.part import State
+from riser_soil.core.system import Clock
+from riser_soil.results.observer import elastic_residual
+from riser_soil.results.plausibility import SMOOTH_MISFIT, STEEP_MISFIT
 from riser_soil.riser.resolution import Misfit, misfit
 from riser_soil.run import run_stage
-from riser_soil.system import Clock
+from riser_soil.solve.time_stepper import Accepted, March
 from tests.coupled_scenes import Mapping
 from tests.driven_stage import Watcher, built
 from tests.riser_scenes import held, riser_scene, static

@@ -13,8 +13,8 @@ import h5py
 import pytest
 
 from riser_soil.errors import SceneError, WriteError
-from riser_soil.folder import NAMES, Claim
-from riser_soil.ownership import prepare, refuse, sealed
+from riser_soil.results.folder import NAMES, Claim
+from riser_soil.results.ownership import prepare, refuse, sealed
 from tests.recorded_run import a_recorder, block, record, step
 
 ROOT = Path(__file__).parents[2]
@@ -111,7 +111,7 @@ def test_a_second_run_is_refused_while_the_first_writes(force: bool, tmp_path: P
 
 def test_a_dead_run_holds_nothing(tmp_path: Path) -> None:
     hold = (
-        "import time\nfrom pathlib import Path\nfrom riser_soil.folder import Claim\n"
+        "import time\nfrom pathlib import Path\nfrom riser_soil.results.folder import Claim\n"
         f"claim = Claim(Path({str(tmp_path)!r}))\nprint('held', flush=True)\ntime.sleep(60)"
     )
     with subprocess.Popen([sys.executable, "-c", hold], cwd=ROOT, stdout=subprocess.PIPE, text=True) as other:
@@ -128,7 +128,7 @@ def test_of_many_runs_one_gets_the_folder(tmp_path: Path) -> None:
     """Each holds it for a moment, and removes the lock's file at its end: nobody may hold a file that has gone."""
     take = (
         "import sys, time\nfrom pathlib import Path\nfrom riser_soil.errors import SceneError\n"
-        "from riser_soil.folder import Claim\n"
+        "from riser_soil.results.folder import Claim\n"
         f"folder = Path({str(tmp_path)!r})\nend = time.monotonic() + 1.0\n"
         "while time.monotonic() < end:\n"
         "    try:\n        claim = Claim(folder)\n    except SceneError:\n        continue\n"

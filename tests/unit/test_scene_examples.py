@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from riser_soil import __version__
 from riser_soil.__main__ import app
-from riser_soil.record import FIELDS
+from riser_soil.results.record import FIELDS
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.output import ALL_FIELDS

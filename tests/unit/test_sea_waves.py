@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.sea import waves
 from riser_soil.sea.components import Components, regular
 from riser_soil.sea.current import SteadyCurrent, at_heights

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
-from riser_soil.part import Forces, State
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Forces, State
 from riser_soil.riser import hermite, shapes, stations
 from riser_soil.riser.line import End, Line
 from riser_soil.seabed.grounds import Ground, Plane, Profile

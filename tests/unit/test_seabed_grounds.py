@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.seabed.grounds import Ground, Plane, Profile
 
 X = np.random.default_rng(4).uniform(-3.0, 12.0, size=(40, 3))

@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from riser_soil.arrays import Array
 from riser_soil.contact.law import NormalLaw
 from riser_soil.contact.seabed_contact import SeabedContact
-from riser_soil.part import State
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
 from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
 from riser_soil.seabed.bearing import PowerLaw, Strength, displaced
 from riser_soil.seabed.grounds import Plane

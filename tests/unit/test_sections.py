@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from riser_soil.core.part import State, Weights
 from riser_soil.errors import SceneError
-from riser_soil.part import State, Weights
 from riser_soil.riser.sections import (
     LineType,
     Segment,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.riser import shapes
 from riser_soil.riser.ends import End

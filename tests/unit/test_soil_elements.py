@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
-from riser_soil.part import Forces, State
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Forces, State
 from riser_soil.soil import kernels, mandel
 from riser_soil.soil.element import cell_gradients
 from riser_soil.soil.grid import Grid

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.soil import mandel
 from riser_soil.soil.law import Law
 from riser_soil.soil.linear_elastic import LinearElastic

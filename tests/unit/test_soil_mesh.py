@@ -10,8 +10,8 @@ import pytest
 from mpi4py import MPI
 
 from meshes.block import main as write_block
+from riser_soil.core.part import State
 from riser_soil.errors import MeshError, SceneError
-from riser_soil.part import State
 from riser_soil.soil.block import BlockSpec, graded
 from riser_soil.soil.element import cell_gradients
 from riser_soil.soil.grid import Grid, block_grid, file_grid, silent_gmsh

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from riser_soil.stepping import StepControl
+from riser_soil.solve.step_control import StepControl
 
 
 def walk(control: StepControl, easy: bool = True) -> list[float]:

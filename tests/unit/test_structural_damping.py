@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
-from riser_soil.part import State
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.directors import SpatialTurn

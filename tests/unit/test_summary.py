@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.snapshot import Ledger, Touch
-from riser_soil.summary import Extremes, StageTally, Summary, angle_deg, final_state, pack, plain_json, unpack
+from riser_soil.core.snapshot import Ledger, Touch
+from riser_soil.results.summary import Extremes, StageTally, Summary, angle_deg, final_state, pack, plain_json, unpack
 from tests.recorded_run import EI, FACTS, WEIGHT, Catenary, record
 
 ARC = np.linspace(0.0, 150.0, 301)

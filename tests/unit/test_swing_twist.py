@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.riser import angle_over_sine, rotations, swing_twist
 from riser_soil.riser.vectors import Vec, matrix, vector
 

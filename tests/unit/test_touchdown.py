@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
 from riser_soil.contact.touchdown import stretches, touchdown
+from riser_soil.core.arrays import Array
 from riser_soil.riser import stations
 
 LENGTH, W, R = 40.0, 150.0, 280.0

@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
-from riser_soil.part import State
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
 from riser_soil.riser import rotations
 from riser_soil.riser.ends import End, Turning
 from riser_soil.riser.line import Line

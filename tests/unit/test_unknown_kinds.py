@@ -9,13 +9,14 @@ import pytest
 from mpi4py import MPI
 from pydantic import BaseModel
 
-from riser_soil.build import build
-from riser_soil.build.ground import stiffnesses
-from riser_soil.build.laws import hysteretic_law, soil_law
-from riser_soil.build.motions import set_motion
-from riser_soil.build.riser import elements_of
-from riser_soil.build.shape import initial_shape, unstressed_shape
-from riser_soil.build.stage import scheme_of
+from riser_soil.assembly import build
+from riser_soil.assembly.ground import stiffnesses
+from riser_soil.assembly.laws import hysteretic_law, soil_law
+from riser_soil.assembly.motions import set_motion
+from riser_soil.assembly.riser import elements_of
+from riser_soil.assembly.scales import Scales
+from riser_soil.assembly.shape import initial_shape, unstressed_shape
+from riser_soil.assembly.stage import scheme_of
 from riser_soil.riser.ends import End
 from riser_soil.riser.shapes import straight
 from riser_soil.scene.contact import Contact
@@ -70,7 +71,7 @@ def test_a_soil_law_tells_the_modulus_that_contact_goes_by() -> None:
     whole, settings = scene(), Contact()
     third = with_parts(whole, soil=with_parts(whole.soil, law=another(VonMises(kind="von-mises", **CLAY))))
     with pytest.raises(AttributeError, match="surface_modulus"):
-        stiffnesses(third, settings, 0.3, 700.0)
+        stiffnesses(third, settings, Scales(weight=700.0, diameter=0.3, force_floor=0.0))
 
 
 def test_another_hysteretic_law_is_refused() -> None:
@@ -82,7 +83,7 @@ def test_another_seabed_is_refused() -> None:
     whole = scene()
     other = with_parts(whole, seabed=another(whole.seabed))
     with pytest.raises(AssertionError, match="Another"):
-        stiffnesses(other, Contact(), 0.3, 700.0)
+        stiffnesses(other, Contact(), Scales(weight=700.0, diameter=0.3, force_floor=0.0))
 
 
 def test_another_scheme_is_refused() -> None:

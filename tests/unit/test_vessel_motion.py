@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil.arrays import Array
-from riser_soil.build import World, build
-from riser_soil.build.sea import components_of, water_of
-from riser_soil.doubts import physical_warnings
+from riser_soil.assembly import World, build
+from riser_soil.assembly.sea import components_of, water_of
+from riser_soil.checks.plausibility import physical_warnings
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
 from riser_soil.errors import SceneError
 from riser_soil.motion.rao import RaoTable
-from riser_soil.part import State
 from riser_soil.riser import rotations
 from riser_soil.riser.directors import SpatialFrames
 from riser_soil.riser.ends import Turning

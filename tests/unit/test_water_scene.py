@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.build.sea import components_of, water_of, wave_age, wave_clock
+from riser_soil.assembly.sea import components_of, water_of, wave_age, wave_clock
+from riser_soil.checks.wave_plausibility import wave_doubts
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
-from riser_soil.wave_doubts import wave_doubts
 from tests.riser_scenes import dynamic, held, riser_scene, static
 
 PIPE = {"outer_diameter": 0.3, "mass": 120.0, "EA": 3.0e8, "EI": 5.0e4, "GJ": 4.0e4}

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from riser_soil.arrays import Array
-from riser_soil.part import State
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.line import End, Line
 from riser_soil.sea.buoyancy import Buoyancy

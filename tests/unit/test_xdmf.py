@@ -6,8 +6,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from riser_soil.arrays import IntArray
-from riser_soil.xdmf import Frame, XdmfFile, polyline
+from riser_soil.core.arrays import IntArray
+from riser_soil.results.xdmf import Frame, XdmfFile, polyline
 from tests.recorded_run import block, record
 from tests.vtk_reading import read_by_vtk
 

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.riser import beam2d, beam3d, increments, rotations
 from riser_soil.riser.vectors import vector
 

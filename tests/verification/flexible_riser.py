@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.integrate import solve_bvp
 
-from riser_soil.arrays import Array
-from riser_soil.part import State
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.catenary import Catenary, catenary

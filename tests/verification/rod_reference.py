@@ -7,7 +7,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.riser.vectors import skew, vector
 
 TOLERANCES = {"rtol": 1e-11, "atol": 1e-13, "method": "DOP853"}

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Forces, State, Weights
 from riser_soil.errors import MeshError
-from riser_soil.part import Forces, State, Weights
 from riser_soil.soil.block import BlockSpec
 from riser_soil.soil.grid import block_grid, file_grid
 from riser_soil.soil.soil import Soil

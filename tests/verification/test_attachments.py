@@ -10,8 +10,8 @@ import pytest
 from scipy.linalg import eigh
 from scipy.special import ellipk
 
-from riser_soil.build import World
-from riser_soil.part import State, Weights
+from riser_soil.assembly import World
+from riser_soil.core.part import State, Weights
 from riser_soil.riser import shapes
 from riser_soil.riser.attachments import Attachment, masses
 from riser_soil.riser.beam import Beam

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.riser import beam2d
 from tests.verification.beam_chain import Element2d, arc_space, load, straight_plane, straight_space
 from tests.verification.rod_reference import Rod, tip

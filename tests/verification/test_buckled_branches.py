@@ -12,16 +12,16 @@ from petsc4py import PETSc
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from riser_soil.arrays import Array
-from riser_soil.buckling import _largest, stabilising_drag
-from riser_soil.build import World, build
-from riser_soil.newton import Newton, NewtonSettings
-from riser_soil.part import State
+from riser_soil.assembly import World, build
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.core.system import Clock, System
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.system import Clock, System
-from riser_soil.time_scheme import Static
+from riser_soil.solve.buckling import _largest, stabilising_drag
+from riser_soil.solve.newton import Newton, NewtonSettings
+from riser_soil.solve.time_scheme import Static
 from tests.coupled_scenes import Mapping
 from tests.on_ranks import mpirun
 from tests.riser_scenes import held, riser_scene, static
@@ -98,7 +98,7 @@ def unstable_modes(scene: Mapping) -> int:
     """At the equilibrium that Newton's method finds in one step from the first shape."""
     world: World = build(scene_from_mapping(scene), MPI.COMM_WORLD)
     system = System(world.comm, world.begin(world.scene.stages[0]), Clock.new())
-    newton = Newton(system, NewtonSettings(world.scene.solver.tolerance, 25, world.force_floor))
+    newton = Newton(system, NewtonSettings(world.scene.solver.tolerance, 25, world.scales.force_floor))
     weights, still = Static().weights(1.0), State.at_rest(1.0, world.size)
     system.assemble(still, weights)
     forces, increment = system.forces(still), system.numbering.vector.duplicate()

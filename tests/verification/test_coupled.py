@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil.arrays import Array
-from riser_soil.build import World, build
-from riser_soil.march import Accepted
+from riser_soil.assembly import World, build
+from riser_soil.core.arrays import Array
+from riser_soil.core.system import System, total
 from riser_soil.results import Run
 from riser_soil.riser.catenary import catenary
 from riser_soil.scene.reader import read_scene
-from riser_soil.system import System, total
+from riser_soil.solve.time_stepper import Accepted
 from tests.coupled_scenes import DEMO, LAY, Mapping, touchdown
 from tests.driven_stage import built, take
 from tests.watched_run import WatchedRun

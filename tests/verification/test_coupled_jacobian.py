@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, IntArray
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.driven_stage import FirstStep, built
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
 from tests.coupled_scenes import Mapping

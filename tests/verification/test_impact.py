@@ -1,7 +1,7 @@
 """A pipe falls on the ground: no energy appears beyond what gravity and supports put in.
 
 Stiffnesses and time steps are those at which average acceleration of the contact force gains several times the
-energy of the fall (see riser_soil.time_scheme).
+energy of the fall (see riser_soil.solve.time_scheme).
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ from benchmarks.impact import (
     outcome,
     pair_table,
 )
-from riser_soil.arrays import Array
-from riser_soil.build import build
-from riser_soil.newton import Newton, Solution, Step
-from riser_soil.observe import riser_snapshot
-from riser_soil.part import State
+from riser_soil.assembly import build
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.core.system import Clock
+from riser_soil.results.observer import riser_snapshot
 from riser_soil.run import run_stage
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
-from riser_soil.system import Clock
+from riser_soil.solve.newton import Newton, Solution, Step
 from tests.coupled_scenes import Mapping
 from tests.driven_stage import Watcher, built, take
 from tests.falling_pipe import FALL, Energies, flat, pinned, tilted

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.build import World
-from riser_soil.system import Clock, System
+from riser_soil.assembly import World
+from riser_soil.core.system import Clock, System
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.driven_stage import built
 from tests.on_ranks import HANGS, environment
@@ -22,7 +22,7 @@ FOR_PICTURES = {"pyvista", "vtk", "vtkmodules", "matplotlib"}
 SLOW_TO_IMPORT = {"pandas", "xarray", "typer"} | {
     f"scipy.{name}" for name in ("fft", "integrate", "interpolate", "optimize", "signal", "spatial", "special", "stats")
 }
-OWN_FOR_SOIL = {"riser_soil.soil.soil", "riser_soil.dolfinx_compat"}
+OWN_FOR_SOIL = {"riser_soil.soil.soil", "riser_soil.soil.dolfinx_compat"}
 FOR_HEAVE = {False: set[str](), True: {f"riser_soil.motion.{name}" for name in ("harmonic", "ramped")}}
 NODES = 37
 

@@ -14,7 +14,7 @@ import xarray
 from scipy.interpolate import griddata
 
 from riser_soil import __version__
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.results import Run
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.on_ranks import HANGS, environment, mpirun

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.results import Run
 from tests.coupled_scenes import DEMO, LAY, Mapping, heave, touchdown
 from tests.on_ranks import mpirun

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from tests.coupled_scenes import Mapping
 from tests.riser_scenes import AVERAGE, Told, distance, dynamic, held, in_waves, riser_scene, static, tell
 

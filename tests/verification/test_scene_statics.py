@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
-from riser_soil.build.world import FORCE_FLOOR
+from riser_soil.assembly.scales import FORCE_FLOOR
+from riser_soil.core.arrays import Array
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from riser_soil.core.snapshot import RiserSnapshot
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
 from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
-from riser_soil.snapshot import RiserSnapshot
 from tests.coupled_scenes import Mapping
 from tests.riser_scenes import distance, held, riser_scene, static, tell
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.soil.block import BlockSpec
 from riser_soil.soil.families import Family
 from riser_soil.soil.grid import Grid, block_grid

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import jv
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from riser_soil.riser import beam3d
 from riser_soil.riser.rotations import exp
 from riser_soil.riser.vectors import vector

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 from tests.coupled_scenes import Mapping
 from tests.riser_scenes import AVERAGE, dynamic, held, riser_scene, static, tell
 

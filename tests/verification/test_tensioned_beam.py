@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from riser_soil.arrays import Array
-from riser_soil.part import State, Weights
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State, Weights
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.ends import End, Kinematics

@@ -19,12 +19,12 @@ import pytest
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from riser_soil.arrays import Array
-from riser_soil.march import Accepted, March
-from riser_soil.observe import riser_snapshot
-from riser_soil.part import State
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.core.system import Clock
+from riser_soil.results.observer import riser_snapshot
 from riser_soil.run import run_stage
-from riser_soil.system import Clock
+from riser_soil.solve.time_stepper import Accepted, March
 from tests.driven_stage import Watcher, built
 from tests.riser_scenes import held, riser_scene, static
 

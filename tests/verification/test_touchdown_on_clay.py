@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from demos.compute import compute
-from riser_soil.arrays import Array
-from riser_soil.build.ground import GAUSS_POINTS
-from riser_soil.march import Accepted, March
-from riser_soil.part import State
+from riser_soil.assembly.ground import GAUSS_POINTS
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.core.system import Clock
 from riser_soil.riser import stations
 from riser_soil.run import run_stage
-from riser_soil.system import Clock
+from riser_soil.solve.time_stepper import Accepted, March
 from tests.coupled_scenes import Mapping
 from tests.driven_stage import Watcher, built
 from tests.riser_scenes import held, riser_scene, static

@@ -11,9 +11,9 @@ import pytest
 from riser_soil.contact.touchdown import Stretch
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
+from riser_soil.results.touchdown_zone import joined
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.touchdown_zone import joined
 from tests.coupled_scenes import LAY, Mapping, touchdown
 from tests.riser_scenes import dynamic, held, riser_scene, static
 

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from riser_soil.core.snapshot import RiserSnapshot
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.snapshot import RiserSnapshot
 from tests.coupled_scenes import Mapping
 from tests.riser_scenes import held, riser_scene, static, tell
 

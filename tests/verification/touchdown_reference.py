@@ -19,7 +19,7 @@ import numpy as np
 from scipy.integrate import solve_bvp
 from scipy.optimize import brentq, minimize_scalar
 
-from riser_soil.arrays import Array
+from riser_soil.core.arrays import Array
 
 TOLERANCE = 1e-8
 

@@ -1,0 +1,165 @@
+"""What the water of a scene acts on: the pipe, and the modules on it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.riser.line import Line
+from riser_soil.riser.sections import Elements
+
+if TYPE_CHECKING:
+    from riser_soil.riser.attachments import Attachment
+    from riser_soil.sea.buoyancy import Dry
+    from riser_soil.sea.pipe import Pipe
+    from riser_soil.sea.still_water import Resistance
+    from riser_soil.sea.wetting import Surface, Wetting
+
+
+class Body(Protocol):
+    """Something in the water, at stations (ne, ng); forces and masses per length, for single modules as they are."""
+
+    @property
+    def pipe(self) -> Pipe:
+        """Its stations."""
+        ...
+
+    @property
+    def drags(self) -> bool:
+        """Whether it has drag."""
+        ...
+
+    @property
+    def adds_mass(self) -> bool:
+        """Whether it has added mass."""
+        ...
+
+    @property
+    def still(self) -> Resistance:
+        """What still water does to it."""
+        ...
+
+    @property
+    def mass(self) -> Array:
+        """Added mass (ne, 2), normal and tangential."""
+        ...
+
+    @property
+    def displaced(self) -> Array:
+        """Mass of the water in its place (ne,)."""
+        ...
+
+    def wetting(self, surface: Surface) -> Wetting:
+        """How wet its stations are."""
+        ...
+
+    def dry(self, surface: Surface, gravity: float) -> Dry:
+        """What of it is dry."""
+        ...
+
+
+@dataclass(frozen=True)
+class PipeInWater:
+    """The pipe, in water of density rho."""
+
+    rho: float
+    line: Line
+    elements: Elements
+
+    @cached_property
+    def pipe(self) -> Pipe:
+        from riser_soil.sea.pipe import Pipe
+
+        return Pipe(self.line)
+
+    @property
+    def drags(self) -> bool:
+        return bool(self.elements.drag.any())
+
+    @property
+    def adds_mass(self) -> bool:
+        return bool(self.elements.added_mass.any())
+
+    @property
+    def still(self) -> Resistance:
+        from riser_soil.sea.morison_law import drag_coefficients
+        from riser_soil.sea.still_water import StillWater
+
+        drag = drag_coefficients(self.rho, self.elements.outer_diameter, *self.elements.drag.T)
+        return StillWater(self.pipe, drag, self.mass)
+
+    @cached_property
+    def mass(self) -> Array:
+        from riser_soil.sea.morison_law import added_masses
+
+        return added_masses(self.rho, self.elements.outer_diameter, *self.elements.added_mass.T)
+
+    @property
+    def displaced(self) -> Array:
+        return np.asarray(self.rho * 0.25 * np.pi * self.elements.outer_diameter**2)
+
+    def wetting(self, surface: Surface) -> Wetting:
+        from riser_soil.sea.wetting import Wetting
+
+        return Wetting(self.pipe, surface)
+
+    def dry(self, surface: Surface, gravity: float) -> Dry:
+        from riser_soil.sea.dry_pipe import DryPipe
+
+        return DryPipe(self.pipe, surface, gravity * self.displaced)
+
+
+@dataclass(frozen=True)
+class ModulesInWater:
+    """Modules on the line, each with a volume or a drag area, in water of density rho."""
+
+    rho: float
+    line: Line
+    modules: Sequence[Attachment]
+
+    @cached_property
+    def pipe(self) -> Pipe:
+        from riser_soil.sea.modules import pipe_at
+
+        return pipe_at(self.line, self.modules)
+
+    @property
+    def drags(self) -> bool:
+        return any(module.drag_area for module in self.modules)
+
+    @property
+    def adds_mass(self) -> bool:
+        return any(module.added_mass for module in self.modules)
+
+    @property
+    def still(self) -> Resistance:
+        from riser_soil.sea.modules import StillWaterOnModules
+
+        return StillWaterOnModules(self.pipe, 0.5 * self.rho * self._of("drag_area"), self.mass[:, 0])
+
+    @cached_property
+    def mass(self) -> Array:
+        return (self._of("added_mass") * self.displaced)[:, None] * np.ones(2)
+
+    @property
+    def displaced(self) -> Array:
+        return self.rho * self._of("volume")
+
+    def wetting(self, surface: Surface) -> Wetting:
+        from riser_soil.sea.modules import diameters
+        from riser_soil.sea.wetting import Wetting
+
+        return Wetting(self.pipe, surface, diameters(self.modules)[:, None])
+
+    def dry(self, surface: Surface, gravity: float) -> Dry:
+        from riser_soil.sea.buoyancy import DryStations
+
+        return DryStations(self.pipe, self.wetting(surface), gravity * self.displaced)
+
+    def _of(self, name: str) -> Array:
+        return np.array([getattr(module, name) for module in self.modules], dtype=float)

@@ -1,0 +1,198 @@
+"""What the riser lies on: soil, seabed, and contact with them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, assert_never
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.assembly.laws import hysteretic_law, soil_law
+from riser_soil.assembly.scales import Scales, contact_radius, scales_of
+from riser_soil.core.arrays import Array
+from riser_soil.errors import SceneError
+from riser_soil.riser.line import Line
+from riser_soil.riser.sections import Elements
+from riser_soil.scene.contact import Contact as ContactScene
+from riser_soil.scene.plane import vertical_plane
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed, Seabed, SpringSeabed
+from riser_soil.scene.soil import GeneratedMesh, MeshFile
+from riser_soil.scene.soil import Soil as SoilScene
+
+if TYPE_CHECKING:
+    from riser_soil.contact.friction import Friction
+    from riser_soil.contact.law import NormalLaw
+    from riser_soil.contact.seabed_contact import SeabedContact
+    from riser_soil.contact.soil_contact import SoilContact
+    from riser_soil.seabed.grounds import Ground
+    from riser_soil.soil.grid import Grid
+    from riser_soil.soil.soil import Soil
+    from riser_soil.soil.surface import Surface
+
+GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within it, three leave ten times the error
+# Of the outer diameter: a penalty's corner, sharper ones cost Newton iterations; the slide that mobilises friction.
+NARROWEST_CORNER, WIDEST_CORNER, MOBILISATION = 1.0 / 3000.0, 1.0 / 300.0, 1.0 / 30.0
+
+
+def soil_of(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Soil:
+    """The continuum; meshed finely under the straight line between the riser's ends. Collective."""
+    from riser_soil.soil.soil import Soil
+
+    return Soil(
+        _grid(scene, given, line, comm),
+        soil_law(given.law),
+        level=scene.seabed_level,
+        unit_weight=given.submerged_unit_weight,
+        K0=given.K0,
+    )
+
+
+def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Grid:
+    from riser_soil.assembly.soil_block import block_of
+    from riser_soil.soil.grid import block_grid, file_grid
+
+    match given.mesh:
+        case MeshFile():
+            return file_grid(comm, given.mesh.file)
+        case GeneratedMesh():
+            pass
+        case _:
+            assert_never(given.mesh)
+    first, last = ((float(x), float(y)) for x, y, _ in (line.to_global(line.x[node]) for node in (0, -1)))
+    return block_grid(comm, block_of(scene, given, (first, last)))
+
+
+def soil_contact_of(
+    scene: Scene, settings: ContactScene, line: Line, elements: Elements, surface: Surface, stiffness: float
+) -> SoilContact:
+    """Contact of the riser with the soil; evaluated on the first rank. stiffness: of the penalty [N/m2]."""
+    from riser_soil.contact.law import Penalty
+    from riser_soil.contact.soil_contact import FOOTPRINT, SoilContact
+
+    scales = scales_of(elements)
+    outer_radius = float(_at_nodes(0.5 * elements.outer_diameter).mean()) or 0.5 * scales.diameter
+    return SoilContact(
+        line,
+        _at_nodes(contact_radius(scene, elements)),
+        surface,
+        Penalty(stiffness, smoothing(settings, scales, "soil", stiffness)),
+        footprint=FOOTPRINT * outer_radius,  # also where the axis touches: a single point finds no balance on a kink
+        along=line.direction[:2],
+        active=line.active,
+    )
+
+
+def seabed_contact_of(
+    scene: Scene, settings: ContactScene, line: Line, elements: Elements, law: NormalLaw, beside: SoilContact | None
+) -> SeabedContact:
+    """Contact of the riser with the seabed, beside the soil where there is one."""
+    from riser_soil.contact.seabed_contact import SeabedContact
+    from riser_soil.riser.stations import ENDS, gauss
+
+    assert scene.seabed is not None
+    return SeabedContact(
+        line,
+        contact_radius(scene, elements),
+        _ground(scene, scene.seabed),
+        law,
+        {"node": ENDS, "line": gauss(GAUSS_POINTS)}[settings.method],
+        covered=beside.covers if beside is not None else None,
+    )
+
+
+def friction_of(settings: ContactScene, seabed: SeabedContact, elements: Elements) -> Friction | None:
+    """Friction on the seabed, where the scene asks for it."""
+    given = settings.friction
+    if given is None:
+        return None
+    from riser_soil.contact.friction import Friction, mobilised_within
+
+    mu = given.axial, given.axial if given.lateral is None else given.lateral
+    slide = MOBILISATION * scales_of(elements).diameter if given.mobilisation == "auto" else float(given.mobilisation)
+    return Friction(seabed, *mu, mobilised_within(slide, *mu, np.abs(elements.weight)))
+
+
+def seabed_law(seabed: Seabed, settings: ContactScene, elements: Elements, stiffness: dict[str, float]) -> NormalLaw:
+    """How the seabed answers to penetration. stiffness [N/m2]: of penalties, by ground."""
+    match seabed:
+        case HystereticSeabed():
+            return hysteretic_law(seabed.law, elements)
+        case RigidSeabed() | SpringSeabed():
+            return _penalty(settings, scales_of(elements), stiffness["seabed"])
+        case _:
+            assert_never(seabed)
+
+
+def _penalty(settings: ContactScene, scales: Scales, stiffness: float) -> NormalLaw:
+    from riser_soil.contact.law import Penalty
+
+    penalty = Penalty(stiffness, smoothing(settings, scales, "seabed", stiffness))
+    if settings.suction is None:
+        return penalty
+    from riser_soil.contact.suction import Sticking
+
+    cap, reach, peak = settings.suction.cap, settings.suction.reach, settings.suction.cap / penalty.stiffness
+    if reach <= peak:
+        raise SceneError(
+            f"contact.suction.reach = {reach:g} m: suction has its cap of {cap:g} N/m at {peak:g} m on a seabed of "
+            f"{penalty.stiffness:g} N/m2, and must reach farther; raise reach or lower cap"
+        )
+    return Sticking(penalty, cap, reach)
+
+
+def _ground(scene: Scene, seabed: Seabed) -> Ground:
+    """The seabed's shape."""
+    from riser_soil.seabed.grounds import Plane, Profile
+
+    plane = vertical_plane(scene)
+    origin, direction = np.asarray(plane.origin), np.asarray(plane.direction)
+    if seabed.profile is not None:
+        return Profile(origin[:2], direction[:2], *np.array(seabed.profile).T)
+    if seabed.slope_deg == 0.0:
+        return Plane.level(seabed.level)
+    towards = float(np.arctan2(direction[1], direction[0]))
+    return Plane.sloping(np.array([*origin[:2], seabed.level]), np.radians(seabed.slope_deg), towards)
+
+
+def _at_nodes(values: Array) -> Array:
+    """The larger of what the two elements beside a node have (nn,)."""
+    return np.maximum(np.append(values, 0.0), np.append(0.0, values))
+
+
+def smoothing(settings: ContactScene, scales: Scales, ground: str, stiffness: float) -> float:
+    """Half width [m] of the rounded corner of a penalty of this stiffness [N/m2].
+
+    Rounded over much more than the penetration at rest, the riser hovers: on a stiff floor that would shift the tension
+    more than the penalty does.
+    """
+    if settings.smoothing != "auto":
+        return float(settings.smoothing)
+    if ground == "soil":
+        return WIDEST_CORNER * scales.diameter
+    at_rest = scales.weight / stiffness
+    return float(np.clip(at_rest, NARROWEST_CORNER * scales.diameter, WIDEST_CORNER * scales.diameter))
+
+
+def stiffnesses(scene: Scene, settings: ContactScene, scales: Scales) -> dict[str, float]:
+    """Force per length and penetration [N/m2] by ground: the scene's own, else the automatic choice."""
+    from riser_soil.contact.law import automatic_stiffness
+
+    def penalty(E: float | None) -> float:
+        """Where the pipe must not enter; E: Young's modulus [Pa], None of a rigid ground."""
+        if settings.stiffness != "auto":
+            return float(settings.stiffness)
+        return automatic_stiffness(E, scales.weight, scales.diameter)
+
+    out = {"soil": penalty(scene.soil.law.surface_modulus)} if scene.soil is not None else {}
+    match scene.seabed:
+        case RigidSeabed():
+            out["seabed"] = penalty(None)
+        case SpringSeabed():
+            out["seabed"] = scene.seabed.stiffness
+        case HystereticSeabed() | None:
+            pass
+        case _:
+            assert_never(scene.seabed)
+    return out
+

@@ -1,0 +1,111 @@
+"""From the scene's motions of the ends to functions of time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import TYPE_CHECKING, assert_never
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.riser.ends import End, Motion, Turning
+from riser_soil.riser.line import Line
+from riser_soil.scene.motions import Arc, Harmonic, Rotation, Table, Vessel, Way
+from riser_soil.scene.quantities import Vector
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
+
+if TYPE_CHECKING:
+    from riser_soil.assembly.vessels import Vessels
+    from riser_soil.motion.carried import Six
+
+
+def vessels_of(scene: Scene) -> Vessels | None:
+    """The vessels that carry ends; None where there are none."""
+    stages = [stage for stage in scene.stages if isinstance(stage, DynamicStage) and stage.motion is not None]
+    if not any(motion.vessel for stage in stages if stage.motion for motion in stage.motion.by_end.values()):
+        return None
+    from riser_soil.assembly.vessels import Vessels
+
+    return Vessels(scene)
+
+
+def set_motions(line: Line, stage: Stage, vessels: Vessels | None) -> None:
+    """Give the held ends their motions in this stage, from where they are now; without one they stay there."""
+    for end, node, name in ((line.start, 0, "start"), (line.end, -1, "end")):
+        set_motion(end, name, line.to_global(line.x[node]), stage, vessels)
+    line.begin_stage()
+
+
+def set_motion(end: End, name: str, origin: Array, stage: Stage, vessels: Vessels | None) -> None:
+    """Give an end that is at origin (3,) its motion in a stage; vessels want the stages in their order."""
+    end.motion = end.turning = None
+    if isinstance(stage, StaticStage):
+        target = getattr(stage.move, name, None)
+        _move(end, origin, target)
+        if target is not None and vessels is not None:
+            vessels.move(name, np.asarray(target) - origin)
+    elif stage.motion is not None and name in stage.motion.by_end:
+        for way in stage.motion.by_end[name].ways.values():  # rotation last: a table beside it has none of its own
+            _set(end, name, origin, stage, way, vessels)
+
+
+def _move(end: End, origin: Array, target: Vector | None) -> None:
+    if target is not None:
+        from riser_soil.motion.move import Move
+
+        end.motion = Move(origin, np.asarray(target))
+
+
+def _set(end: End, name: str, origin: Array, stage: Stage, way: Way, vessels: Vessels | None) -> None:
+    """One way of moving an end, or of turning it."""
+    match way:
+        case Harmonic():
+            end.motion = _harmonic(origin, way)
+        case Arc():
+            end.motion = _arc(origin, way)
+        case Rotation():
+            end.turning = _rocking(way)
+        case Table():
+            _carry(end, origin, _table(way))
+        case Vessel():
+            assert vessels is not None
+            vessel = vessels.motion(stage, name, origin)
+            _carry(end, vessel.berth.mean, vessel)
+        case _:
+            assert_never(way)
+
+
+def _harmonic(origin: Array, given: Harmonic) -> Motion:
+    from riser_soil.motion.harmonic import Harmonic
+
+    return Harmonic(origin, np.array(given.amplitude), given.period, given.ramp, np.array(given.phases))
+
+
+def _arc(origin: Array, given: Arc) -> Motion:
+    from riser_soil.motion.swing import Arc, Swing
+
+    swing = Swing(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
+    return Arc(origin, np.array(given.hub), np.array(given.axis), swing)
+
+
+def _rocking(given: Rotation) -> Callable[[float], Turning]:
+    from riser_soil.motion.swing import Rocking, Swing
+
+    swing = Swing(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
+    return Rocking(np.array(given.axis) / np.linalg.norm(given.axis), swing)
+
+
+def _table(given: Table) -> Six:
+    from riser_soil.motion.table import Table
+
+    values = np.hstack([given.displacements, given.rotations])
+    return Table(np.array(given.columns.values["t"]), values, given.ramp)
+
+
+def _carry(end: End, origin: Array, six: Six) -> None:
+    from riser_soil.motion.carried import Displaced, Turned
+
+    once = lru_cache(maxsize=2)(six)  # a step asks again and again for its beginning and its end
+    end.motion, end.turning = Displaced(origin, once), Turned(once)

@@ -1,0 +1,38 @@
+"""Typical sizes of a riser, from which defaults follow: its weight per length, its diameter, the force of round-off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.riser.sections import Elements
+from riser_soil.scene.scene import Scene
+
+FORCE_FLOOR = 1e-14  # of EA: a residual below this is round-off even where all forces vanish
+LEAST_WEIGHT = 1e-6  # of EA/L: stands for the weight of a line that has none
+
+
+@dataclass(frozen=True)
+class Scales:
+    """weight: typical force per length [N/m]. force_floor [N]: what counts as zero.
+
+    diameter: the largest outer one [m]; of a line without one, that of a solid bar with its stiffnesses.
+    """
+
+    weight: float
+    diameter: float
+    force_floor: float
+
+
+def scales_of(elements: Elements) -> Scales:
+    EA = float(elements.EA.max())
+    bar = float(4.0 * np.sqrt((elements.EI_y / elements.EA).max()))
+    weight = max(float(np.abs(elements.weight).max()), LEAST_WEIGHT * EA / float(elements.arc[-1]))
+    return Scales(weight, float(elements.outer_diameter.max()) or bar, FORCE_FLOOR * EA)
+
+
+def contact_radius(scene: Scene, elements: Elements) -> Array:
+    """Distance (ne,) from the axis to the line of the pipe that touches [m]."""
+    return 0.5 * elements.outer_diameter * (scene.contact_at == "outer")

@@ -1,0 +1,113 @@
+"""Loads of the water on the riser, as far as the scene has them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from riser_soil.assembly.bodies import Body, ModulesInWater, PipeInWater
+from riser_soil.assembly.sea import water_of
+from riser_soil.core.part import Part
+from riser_soil.riser.line import Line
+from riser_soil.riser.sections import Elements
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage, Stage
+from riser_soil.scene.water import Water
+
+if TYPE_CHECKING:
+    from riser_soil.riser.attachments import Attachment
+    from riser_soil.sea.buoyancy import Buoyancy
+    from riser_soil.sea.morison import Morison
+    from riser_soil.sea.moving_water import Stream
+    from riser_soil.sea.still_water import StationLoads
+    from riser_soil.sea.wetting import Surface
+
+
+def sea_loads(
+    scene: Scene, line: Line, elements: Elements, stage: Stage, attachments: Sequence[Attachment] = ()
+) -> list[Part]:
+    """The parts "morison" and "buoyancy" of a stage, of the pipe and of the modules on it."""
+    if scene.water is None:
+        return []
+    bodies: list[Body] = [PipeInWater(scene.water.density, line, elements)]
+    modules = [attachment for attachment in attachments if attachment.volume or attachment.drag_area]
+    if modules:
+        bodies.append(ModulesInWater(scene.water.density, line, modules))
+    return [part for body in bodies for part in _Loads(scene, scene.water, body, stage).parts()]
+
+
+@dataclass(frozen=True)
+class _Loads:
+    """What the water of a scene does to a body in a stage."""
+
+    scene: Scene
+    water: Water
+    body: Body
+    stage: Stage
+
+    def parts(self) -> Iterator[Part]:
+        if self.act:
+            yield self.morison
+        if self.surface is not None:
+            yield self.buoyancy
+
+    @property
+    def act(self) -> bool:
+        """Whether the water does more than carry: in motion, or in a stage in which the riser moves."""
+        if isinstance(self.stage, DynamicStage):
+            return self.body.drags or self.body.adds_mass or self.waves
+        return self.body.drags and self.water.current is not None
+
+    @property
+    def waves(self) -> bool:
+        return self.water.waves is not None and isinstance(self.stage, DynamicStage)
+
+    @cached_property
+    def stream(self) -> Stream | None:
+        """Water that moves."""
+        if self.water.current is None and not self.waves:
+            return None
+        from riser_soil.sea.moving_water import Stream
+
+        water = water_of(self.scene, self.stage)
+        assert water is not None
+        return Stream(self.body.pipe, water)
+
+    @cached_property
+    def surface(self) -> Surface | None:
+        """Where the water has one; it is level without waves."""
+        if self.water.surface_level is None:
+            return None
+        from riser_soil.sea.wetting import FlatSurface
+
+        return self.stream if self.waves else FlatSurface(self.body.pipe, self.water.surface_level)
+
+    @property
+    def morison(self) -> Morison:
+        from riser_soil.sea.morison import Morison
+
+        return Morison(self.body.pipe, self._at_stations())
+
+    def _at_stations(self) -> StationLoads:
+        """Each thing that the water has adds to what is there without it."""
+        loads = self._in_motion(self.stream) if self.stream is not None else self.body.still
+        if self.surface is None:
+            return loads
+        from riser_soil.sea.wetting import PartlyWet
+
+        return PartlyWet(loads, self.body.wetting(self.surface))
+
+    def _in_motion(self, stream: Stream) -> StationLoads:
+        from riser_soil.sea.moving_water import AcceleratedWater, RelativeDrag
+
+        drag = RelativeDrag(self.body.still, stream)
+        return AcceleratedWater(drag, stream, self.body.mass, self.body.displaced) if self.waves else drag
+
+    @property
+    def buoyancy(self) -> Buoyancy:
+        from riser_soil.sea.buoyancy import Buoyancy
+
+        assert self.surface is not None
+        return Buoyancy(self.body.pipe, self.body.dry(self.surface, self.scene.gravity), flat=not self.waves)

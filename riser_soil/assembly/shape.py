@@ -1,0 +1,113 @@
+"""The riser's unstressed shape and the one that it starts from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, assert_never
+
+import numpy as np
+
+from riser_soil.assembly.scales import contact_radius
+from riser_soil.core.arrays import Array
+from riser_soil.riser import sections, shapes
+from riser_soil.scene.riser import Riser, Support
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.shapes import ArcShape, PointsShape
+
+if TYPE_CHECKING:
+    from riser_soil.riser.attachments import Attachment
+    from riser_soil.riser.catenary import Catenary
+
+# The least radius H/w of a first shape's bends, over the elements' length, and over the length (EI/w)^(1/3) that a line
+# needs to bend under its own weight: sharper than elements and pipe can follow.
+SHARPEST_IN_ELEMENTS = 0.5
+SHARPEST_BEND = 0.4
+
+
+def _ends(riser: Riser) -> tuple[Array | None, Array | None]:
+    start, end = (np.asarray(e.position) if isinstance(e, Support) else None for e in (riser.start, riser.end))
+    return start, end
+
+
+def unstressed_shape(riser: Riser, arc: Array) -> shapes.Curve:
+    match riser.unstressed:
+        case ArcShape(arc=given):
+            return shapes.circle(arc, given.centre, given.from_point, np.radians(given.angle_deg), given.axis)
+        case PointsShape(points=points):
+            return shapes.through(arc, points)
+        case "straight":
+            return _straight(riser, arc)
+        case _:
+            assert_never(riser.unstressed)
+
+
+def _straight(riser: Riser, arc: Array) -> shapes.Curve:
+    """From start to end; along x where an end is free."""
+    start, end = _ends(riser)
+    if start is None or end is None or np.array_equal(start, end):
+        return shapes.straight(arc, np.zeros(3) if start is None else start)
+    return shapes.straight(arc, start, end - start)
+
+
+def initial_shape(
+    scene: Scene, elements: sections.Elements, attachments: Sequence[Attachment], unstressed: shapes.Curve
+) -> tuple[Catenary | None, shapes.Curve]:
+    """The first shape, and the catenary where it is one."""
+    given = scene.riser.initial
+    match given:
+        case "catenary":
+            catenary = _catenary(scene, elements, attachments)
+            return catenary, catenary.curve
+        case PointsShape(points=points):
+            return None, shapes.through(elements.arc, points)
+        case "straight":
+            return None, _laid_straight(scene.riser, elements.arc)
+        case "unstressed":
+            return None, unstressed
+        case _:
+            assert_never(given)
+
+
+def _laid_straight(riser: Riser, arc: Array) -> shapes.Curve:
+    """Straight between the ends, as long as they are apart; along x where one is free."""
+    start, end = _ends(riser)
+    if start is not None and end is not None:
+        return shapes.between(arc, start, end)
+    return shapes.straight(arc, np.zeros(3) if start is None else start)
+
+
+def _catenary(scene: Scene, elements: sections.Elements, attachments: Sequence[Attachment]) -> Catenary:
+    from riser_soil.riser.catenary import catenary
+
+    start, end = _ends(scene.riser)
+    assert start is not None, "the scene's checks let no catenary start without two held ends"
+    assert end is not None
+    return catenary(
+        elements.arc,
+        start,
+        end,
+        elements.weight,
+        elements.EA,
+        level=_resting_level(scene, elements),
+        points=np.array([(attachment.arc, attachment.net_weight) for attachment in attachments]).reshape(-1, 2),
+        least_H=_least_tension(elements),
+    )
+
+
+def _resting_level(scene: Scene, elements: sections.Elements) -> float:
+    """Height z [m] of the axis where the thinnest of the riser rests; -inf where there is nothing to rest on."""
+    if scene.contact is None:
+        return -np.inf
+    return scene.seabed_level + float(contact_radius(scene, elements).min())
+
+
+def least_bend(elements: sections.Elements) -> float:
+    """The shortest length (EI/w)^(1/3) [m] over which the line bends under its own weight; inf where nothing weighs."""
+    w, EI = np.abs(elements.weight), np.maximum(elements.EI_y, elements.EI_z)
+    return float(np.cbrt(EI[w > 0.0] / w[w > 0.0]).min(initial=np.inf))
+
+
+def _least_tension(elements: sections.Elements) -> float:
+    """H [N] of a catenary that the elements can follow."""
+    w, EI = np.abs(elements.weight), np.maximum(elements.EI_y, elements.EI_z)
+    return float(np.maximum(SHARPEST_IN_ELEMENTS * w * elements.length, SHARPEST_BEND * np.cbrt(EI * w**2)).max())

@@ -1,0 +1,124 @@
+"""What a stage adds: loads, inertia, and its time scheme."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, assert_never
+
+import numpy as np
+
+from riser_soil.assembly.riser import spins_freely
+from riser_soil.core.part import Part
+from riser_soil.riser.line import Line
+from riser_soil.riser.sections import Elements
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import (
+    DynamicStage,
+    GeneralizedAlphaScheme,
+    MidpointScheme,
+    NewmarkScheme,
+    Stage,
+    StaticStage,
+)
+from riser_soil.scene.stages import Load as LoadScene
+from riser_soil.solve.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
+
+if TYPE_CHECKING:
+    from riser_soil.riser.attachments import Attachment, Masses
+    from riser_soil.riser.loads import Load
+
+
+def scheme_of(stage: Stage) -> Scheme:
+    """How the stage goes from one step to the next."""
+    if isinstance(stage, StaticStage):
+        return Static()
+    match stage.scheme:
+        case MidpointScheme():
+            return Midpoint()
+        case NewmarkScheme(newmark=given):
+            return GeneralizedAlpha.newmark(given.beta, given.gamma)
+        case GeneralizedAlphaScheme(generalized_alpha=given):
+            return GeneralizedAlpha.from_rho_inf(given.rho_inf)
+        case _:
+            assert_never(stage.scheme)
+
+
+def times_to_hit(scene: Scene, stage: DynamicStage) -> list[float]:
+    """Times [s] in a stage where output is due, a motion's ramp ends or a load's history bends."""
+    motions = stage.motion.by_end.values() if stage.motion else ()
+    ramps = [way.ramp for motion in motions for way in motion.ways.values() if way.ramp]
+    bends = [t for load in stage.loads for t, _ in load.history or ()]
+    paces = {scene.output.interval, scene.output.xdmf_interval} - {None}
+    return [*ramps, *bends, *(t for pace in paces if pace for t in _multiples(pace, stage.duration))]
+
+
+def _multiples(interval: float, end: float) -> list[float]:
+    return [n * interval for n in range(1, int(end / interval) + 1)]
+
+
+def hold_spin(scene: Scene, line: Line, stage: Stage) -> None:
+    """Hold the start's spin about the pipe's axis in stages where neither an end nor inertia resists it."""
+    line.hold_spin(spins_freely(scene.riser) and isinstance(stage, StaticStage))
+
+
+def loads_of(line: Line, stage: Stage) -> list[Part]:
+    """The part of the stage's loads, if it has any."""
+    if not stage.loads:
+        return []
+    from riser_soil.riser.loads import PointLoads
+
+    return [PointLoads(line, [_load(line, load, stage.kind == "static") for load in stage.loads])]
+
+
+def _load(line: Line, given: LoadScene, static: bool) -> Load:
+    from riser_soil.riser.loads import Load
+
+    places = {"start": 0.0, "end": float(line.arc[-1]), None: 0.0}
+    vectors = {k: getattr(given, k) for k in ("force", "moment", "distributed")}
+    return Load(
+        _factor(given, static),
+        places[given.at] if isinstance(given.at, str | None) else given.at,
+        **{k: np.asarray(v) for k, v in vectors.items() if v is not None},
+    )
+
+
+def _factor(given: LoadScene, static: bool) -> Callable[[float], float]:
+    if given.history is None:
+        return (lambda t: t) if static else (lambda t: 1.0)
+    times, factors = np.array(given.history).T
+    return lambda t: float(np.interp(t, times, factors))
+
+
+def dynamic_parts(
+    stage: DynamicStage, line: Line, elements: Elements, attachments: Sequence[Attachment] = ()
+) -> list[Part]:
+    """What a riser has only in motion."""
+    parts = _inertia(line, elements, attachments)
+    if isinstance(stage.scheme, MidpointScheme):
+        from riser_soil.riser.midpoint_inertia import over_steps
+
+        parts = [over_steps(part) for part in parts]
+    if elements.damping.any():
+        from riser_soil.riser.structural_damping import StructuralDamping
+
+        parts.append(StructuralDamping(line, elements))
+    return parts
+
+
+def _inertia(line: Line, elements: Elements, attachments: Sequence[Attachment]) -> list[Part]:
+    from riser_soil.riser.inertia import Inertia
+
+    parts: list[Part] = [Inertia(line, elements.mass, _attached_mass(line, attachments))]
+    if line.dimension == 3 or elements.rotary_inertia.any():
+        from riser_soil.riser.rotary_inertia import RotaryInertia
+
+        parts.append(RotaryInertia(line, elements.rotary_inertia, elements.polar_inertia))
+    return parts
+
+
+def _attached_mass(line: Line, attachments: Sequence[Attachment]) -> Masses | None:
+    if not attachments:
+        return None
+    from riser_soil.riser.attachments import masses
+
+    return masses(line, attachments)

@@ -1,0 +1,174 @@
+"""The parts of a scene that live through all its stages."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from mpi4py import MPI
+
+from riser_soil.assembly.motions import set_motions, vessels_of
+from riser_soil.assembly.pressures import pressures_of
+from riser_soil.assembly.riser import attached_weight, attachments_of, elements_of, line_of, springs_of
+from riser_soil.assembly.scales import Scales, scales_of
+from riser_soil.assembly.sea_loads import sea_loads
+from riser_soil.assembly.shape import least_bend
+from riser_soil.assembly.stage import dynamic_parts, hold_spin, loads_of
+from riser_soil.core.part import Field, Model, Part
+from riser_soil.riser.beam import Beam
+from riser_soil.riser.line import Line
+from riser_soil.riser.sections import Elements
+from riser_soil.scene.riser import Support
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage, Move, Stage, StaticStage
+
+if TYPE_CHECKING:
+    from riser_soil.assembly.vessels import Vessels
+    from riser_soil.contact.friction import Friction
+    from riser_soil.contact.seabed_contact import SeabedContact
+    from riser_soil.contact.soil_contact import SoilContact
+    from riser_soil.riser.attachments import Attachment
+    from riser_soil.riser.catenary import Catenary
+    from riser_soil.riser.wall_tension import Pressures
+    from riser_soil.soil.soil import Soil
+
+AUTO_TOLERANCE = 0.02  # of the diameter: local error of automatic steps
+AUTO_SMALLEST, AUTO_SMALLEST_OF_STAGE = 1e-4, 1e-7  # of a given time step; of a stage with automatic ones
+
+
+@dataclass(eq=False)
+class World:
+    """A scene's fields and lasting parts; what the scene lacks is None.
+
+    catenary: the first shape, None for other ones.
+    attachments: point masses and buoyancy modules on the line; their weight less buoyancy is among `riser_parts`.
+    pressures: inside and outside the pipe; None where the tension in its wall is not told.
+    contact_stiffness [N/m2]: force per length and penetration, by ground (soil, seabed).
+    vessels: those that carry ends, None where there are none.
+    """
+
+    scene: Scene
+    comm: MPI.Intracomm
+    line: Line
+    elements: Elements
+    riser_parts: list[Part]
+    catenary: Catenary | None
+    attachments: tuple[Attachment, ...] = ()
+    pressures: Pressures | None = None
+    soil: Soil | None = None
+    soil_contact: SoilContact | None = None
+    seabed: SeabedContact | None = None
+    friction: Friction | None = None
+    contact_stiffness: dict[str, float] = field(default_factory=dict)
+    vessels: Vessels | None = None
+
+    @property
+    def fields(self) -> list[Field]:
+        soil: list[Field] = [self.soil.field, self.soil.surface] if self.soil is not None else []
+        return [self.line, *soil]
+
+    @property
+    def contacts(self) -> list[SoilContact | SeabedContact]:
+        """What the riser may touch."""
+        return [contact for contact in (self.soil_contact, self.seabed) if contact is not None]
+
+    @property
+    def size(self) -> int:
+        """Entries of a local array on this rank."""
+        return sum(f.size for f in self.fields)
+
+    @cached_property
+    def scales(self) -> Scales:
+        return scales_of(self.elements)
+
+    def error_tolerance(self, stage: DynamicStage) -> float:
+        """Largest local error of an automatic step [m]."""
+        return AUTO_TOLERANCE * self.scales.diameter if stage.tolerance is None else stage.tolerance
+
+    def smallest_step(self, stage: DynamicStage) -> float:
+        """Down to which time steps are cut [s]."""
+        given = self.scene.solver.min_time_step
+        if given != "auto":
+            return float(given)
+        return AUTO_SMALLEST_OF_STAGE * stage.duration if stage.time_step == "auto" else AUTO_SMALLEST * stage.time_step
+
+    @property
+    def slack(self) -> float:
+        """How far the end of the first shape lies beyond its place [m]."""
+        return self.catenary.slack if self.catenary is not None else 0.0
+
+    @property
+    def hanging(self) -> str:
+        """How the riser hangs whose first shape ends beyond its place: in a loop, or stretched and so steep that its
+        horizontal tension is less than a bend takes.
+        """
+        ends = self.scene.riser.start, self.scene.riser.end
+        points = [end.position for end in ends if isinstance(end, Support)]
+        taut = len(points) == 2 and math.dist(*points) >= self.scene.riser.length
+        return "the riser is taut and steep" if taut else "the riser is slack"
+
+    @property
+    def too_slack(self) -> str:
+        """What to tell where a riser whose first shape ends beyond its place finds no equilibrium."""
+        bend = least_bend(self.elements)
+        return (
+            f"{self.hanging}: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
+            "its place, and no way back there was found; take shorter segments, move the ends apart, or take "
+            f"elements well below (EI/w)^(1/3) = {bend:.3g} m, the length over which it bends under its own weight"
+        )
+
+    @property
+    def laying(self) -> StaticStage | None:
+        """What brings the end of a slack riser to its place before the scene's stages."""
+        end = self.scene.riser.end
+        if self.slack == 0.0 or not isinstance(end, Support):
+            return None
+        return StaticStage(name="laying", kind="static", move=Move(end=end.position))
+
+    def begin_laying(self, stage: StaticStage) -> Model:
+        """Set the end in motion and name the parts: without a current's drag."""
+        model = self.begin(stage)
+        return Model(model.fields, [part for part in model.parts if not part.traits.follows])
+
+    def begin(self, stage: Stage) -> Model:
+        """Set the ends in motion and name the parts of a stage."""
+        set_motions(self.line, stage, self.vessels)
+        hold_spin(self.scene, self.line, stage)
+        parts = [*self.riser_parts, *loads_of(self.line, stage)]
+        if isinstance(stage, DynamicStage):
+            parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
+        parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
+        soil = [self.soil] if self.soil is not None else []
+        friction = [self.friction] if self.friction is not None else []
+        return Model(self.fields, [*parts, *soil, *self.contacts, *friction])
+
+
+def build(scene: Scene, comm: MPI.Intracomm) -> World:
+    """Build the parts of a scene; collective. Raises SceneError or MeshError."""
+    elements = elements_of(scene)
+    attachments = attachments_of(scene)
+    line, catenary = line_of(scene, elements, attachments, active=comm.rank == 0)
+    parts = [Beam(line, elements), *springs_of(scene.riser, line), *attached_weight(line, attachments)]
+    pressures, vessels = pressures_of(scene, line, elements), vessels_of(scene)
+    world = World(scene, comm, line, elements, parts, catenary, attachments, pressures, vessels=vessels)
+    if scene.contact is not None:
+        _add_ground(world)
+    return world
+
+
+def _add_ground(world: World) -> None:
+    from riser_soil.assembly import ground
+
+    scene, settings = world.scene, world.scene.contact
+    assert settings is not None
+    stiffness = ground.stiffnesses(scene, settings, world.scales)
+    line, elements, world.contact_stiffness = world.line, world.elements, stiffness
+    if scene.soil is not None:
+        world.soil = soil = ground.soil_of(scene, scene.soil, line, world.comm)
+        world.soil_contact = ground.soil_contact_of(scene, settings, line, elements, soil.surface, stiffness["soil"])
+    if scene.seabed is not None:
+        law = ground.seabed_law(scene.seabed, settings, elements, stiffness)
+        world.seabed = ground.seabed_contact_of(scene, settings, line, elements, law, world.soil_contact)
+        world.friction = ground.friction_of(settings, world.seabed, elements)

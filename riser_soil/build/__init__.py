@@ -1,5 +1,0 @@
-"""From the scene to its parts: the only place that asks whether a scene has a thing, and that imports what it has."""
-
-from riser_soil.build.world import World, build
-
-__all__ = ["World", "build"]

@@ -1,0 +1,154 @@
+"""How large a scene is, told from its numbers alone, before anything is built: unknowns, steps, memory, disk, time.
+
+Memory and disk are those of `check`'s report within some tens of per cent, the time within a factor of three or so.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from riser_soil.scene.layout import initial_ends
+from riser_soil.scene.plane import resolved_dimension
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.soil import MeshFile
+from riser_soil.scene.soil import Soil as SoilScene
+from riser_soil.scene.stages import DynamicStage, Stage
+
+# Bytes of: a process with the packages that every scene needs, what dolfinx and gmsh add, element and matrix arrays of
+# an unknown of the riser, value, place and matrix entry of one entry of a cell's matrix, a time at which output is
+# due, an element in a wave component.
+PROCESS, SOIL_PROCESS, PER_RISER_DOF, PER_CELL_ENTRY, PER_STOP, PER_WAVE = 0.24e9, 0.1e9, 2e3, 24.0, 150.0, 150.0
+FACTOR = 10.0  # entries of the soil's factor: FACTOR n^(4/3), as nested dissection gives them in three dimensions
+
+# Doubles of a record: by node, by step; of a picture: by node of the riser, by cell of the soil with its nodes.
+PER_NODE, PER_STEP, PER_PICTURE, PER_CELL = 15, 60, 15, 6
+COPIES = 2.0  # of each file while it grows
+
+# Seconds on one core: to lay an element out; of a step, and in it of an element, of an element and wave component, of a
+# cell, of the soil's factor by unknowns squared.
+BUILD, STEP, ELEMENT, WAVE, CELL, FACTORED = 1.5e-4, 1.5e-3, 6e-5, 3e-7, 5e-5, 3e-9
+LONGEST_AUTO = 0.05  # of a stage: the longest automatic step
+
+BYTES_OF_A_CELL = 60.0  # in a mesh file, with its nodes
+TETRAHEDRA, NODES_OF_TETRAHEDRA = 6.0, 1.8  # in a cube of the size asked for; quadratic nodes for each
+
+
+@dataclass(frozen=True)
+class Size:
+    """What a scene makes: elements and cells, unknowns, steps of all stages, records in results.nc, pictures.
+
+    components: of the waves. entries: of a cell's matrix. auto: whether there are more steps, as some are automatic.
+    stops: times that they have to hit. seconds: on one core.
+    """
+
+    elements: int
+    components: int
+    riser_unknowns: int
+    cells: float
+    soil_unknowns: float
+    entries: int
+    steps: float
+    auto: bool
+    stops: float
+    records: float
+    pictures: float
+    seconds: float
+
+    @property
+    def told_steps(self) -> str:
+        return f"for {'at least ' if self.auto else ''}{self.steps:.6g} steps"
+
+    def memory(self, ranks: int) -> float:
+        """Bytes over all ranks."""
+        soil = soil_memory(ranks, self.cells, self.entries, self.soil_unknowns) if self.cells else 0.0
+        return riser_memory(ranks, self.riser_unknowns) + soil + self.memory_of_stops + self.memory_of_waves
+
+    @property
+    def memory_of_stops(self) -> float:
+        """Bytes of the times that automatic steps have to hit."""
+        return PER_STOP * self.stops
+
+    @property
+    def memory_of_waves(self) -> float:
+        """Bytes of the phases of all components along the riser."""
+        return PER_WAVE * self.elements * self.components
+
+    @property
+    def disk(self) -> float:
+        """Bytes of the results, while they are written."""
+        nodes = self.elements + 1
+        series = PER_NODE * nodes * self.records + PER_STEP * self.steps
+        pictures = (PER_PICTURE * nodes + PER_CELL * self.cells) * self.pictures
+        return 8.0 * COPIES * (series + pictures)
+
+
+def riser_memory(ranks: int, unknowns: int) -> float:
+    """Bytes of the processes and of the riser in them."""
+    return ranks * PROCESS + PER_RISER_DOF * unknowns
+
+
+def soil_memory(ranks: int, cells: float, entries: int, unknowns: float) -> float:
+    """Bytes that the soil adds; entries: of a cell's matrix."""
+    return ranks * SOIL_PROCESS + 8.0 * FACTOR * unknowns ** (4.0 / 3.0) + PER_CELL_ENTRY * entries * cells
+
+
+def size_of(scene: Scene) -> Size:
+    """The size of a scene."""
+    elements = scene.riser.element_count
+    cells, unknowns, entries = _soil(scene, scene.soil) if scene.soil is not None else (0.0, 0.0, 0)
+    stages = [_stage(scene, stage) for stage in scene.stages]
+    steps, stops, records, pictures = (math.fsum(column) for column in zip(*stages, strict=True))
+    waves = scene.water.waves if scene.water else None
+    components = waves.jonswap.components if waves and waves.jonswap else int(waves is not None)
+    of_riser = STEP + elements * (ELEMENT + WAVE * components)
+    seconds = BUILD * elements + steps * (of_riser + cells * CELL + FACTORED * unknowns**2)
+    dofs = 3 if resolved_dimension(scene) == 2 else 6
+    auto = any(isinstance(stage, DynamicStage) and stage.time_step == "auto" for stage in scene.stages)
+    return Size(
+        elements=elements,
+        components=components,
+        riser_unknowns=dofs * (elements + 1),
+        cells=cells,
+        soil_unknowns=unknowns,
+        entries=entries,
+        steps=steps,
+        auto=auto,
+        stops=stops,
+        records=records,
+        pictures=pictures,
+        seconds=seconds,
+    )
+
+
+def _stage(scene: Scene, stage: Stage) -> tuple[float, float, float, float]:
+    """Steps, times that automatic steps have to hit, records and pictures of a stage."""
+    if not isinstance(stage, DynamicStage):
+        return float(scene.solver.load_steps), 0.0, 1.0, 1.0
+    output, auto = scene.output, stage.time_step == "auto"
+    paces = [stage.duration / pace for pace in (output.interval, output.xdmf_interval) if pace is not None]
+    stops = math.fsum(paces) if auto else 0.0
+    steps = max(stops, 1.0 / LONGEST_AUTO) if stage.time_step == "auto" else stage.duration / stage.time_step
+    pictures = _due(stage.duration, output.xdmf_interval or output.interval, steps)
+    return steps, stops, max(pictures, _due(stage.duration, output.interval, steps)), pictures
+
+
+def _due(duration: float, interval: float | None, steps: float) -> float:
+    """How often output is due: every step without an interval."""
+    return steps if interval is None else min(steps, duration / interval + 1.0)
+
+
+def _soil(scene: Scene, soil: SoilScene) -> tuple[float, float, int]:
+    """Cells, unknowns, and entries of a cell's matrix."""
+    if isinstance(soil.mesh, MeshFile):
+        cells = soil.mesh.file.stat().st_size / BYTES_OF_A_CELL
+        return cells, 3.0 * cells, 24 * 24
+    from riser_soil.assembly.soil_block import block_of
+
+    start, end = initial_ends(scene.riser)
+    block = block_of(scene, soil, ((start[0], start[1]), (end[0], end[1])))
+    if block.kind == "hex":
+        x, y, z = block.layers()
+        return float(x) * y * z, 3.0 * (x + 1) * (y + 1) * z, 24 * 24
+    cells = TETRAHEDRA * block.cubes()
+    return cells, 3.0 * NODES_OF_TETRAHEDRA * cells, 30 * 30

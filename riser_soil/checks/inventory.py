@@ -1,0 +1,105 @@
+"""What a scene is built of, and what is left out and why."""
+
+from __future__ import annotations
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.assembly.pressures import no_wall_tension
+from riser_soil.core.part import Field
+from riser_soil.scene.plane import resolved_dimension
+from riser_soil.scene.riser import RotationSpring, Support
+from riser_soil.scene.scene import Scene
+
+
+def built(scene: Scene) -> tuple[str, ...]:
+    """Names of the parts that the scene's stages solve with."""
+    return tuple(name for name, reason in _reasons(scene).items() if not reason)
+
+
+def left_out(scene: Scene) -> dict[str, str]:
+    """What is never built, imported or solved for, or not told of, each with its reason."""
+    told = {**_reasons(scene), "wall tension": no_wall_tension(scene)}
+    return {name: reason for name, reason in told.items() if reason}
+
+
+def _reasons(scene: Scene) -> dict[str, str]:
+    """Part -> why it is left out, empty where it is built."""
+    ends = (scene.riser.start, scene.riser.end)
+    sprung = any(isinstance(e, Support) and isinstance(e.rotation, RotationSpring) for e in ends)
+    ground = scene.seabed is not None or scene.soil is not None
+    return {
+        "riser": "",
+        "springs": "" if sprung else "no end has a rotational spring",
+        "attachments": "" if scene.riser.attachments else "nothing is attached to the riser",
+        "loads": "" if any(s.loads for s in scene.stages) else "no stage has loads",
+        "inertia": "" if has_dynamics(scene) else "all stages are static",
+        "rotary inertia": _no_rotary_inertia(scene),
+        "structural damping": _no_structural_damping(scene),
+        "morison": _no_morison(scene),
+        "buoyancy": _no_buoyancy(scene),
+        "seabed": "" if scene.seabed is not None else "the scene has no seabed",
+        "friction": "" if scene.contact and scene.contact.friction else "no friction is asked for",
+        "soil": "" if scene.soil is not None else "the scene has no soil",
+        "contact": "" if ground else "the scene has neither seabed nor soil",
+    }
+
+
+DISSIPATING = ("morison", "structural damping", "contact", "seabed", "friction", "soil")
+WORKING = ("loads", "morison", "buoyancy")
+
+
+def dissipating(scene: Scene) -> tuple[str, ...]:
+    """Parts of the energy ledger that may dissipate."""
+    return _in_ledger(scene, DISSIPATING)
+
+
+def working(scene: Scene) -> tuple[str, ...]:
+    """Parts of the energy ledger that may put energy in, and the supports."""
+    return (*_in_ledger(scene, WORKING), "supports")
+
+
+def _in_ledger(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
+    parts = {*built(scene)} - (set() if scene.soil is not None else {"contact"})
+    return tuple(name.replace(" ", "_") for name in names if name in parts)
+
+
+def has_dynamics(scene: Scene) -> bool:
+    return any(s.kind == "dynamic" for s in scene.stages)
+
+
+def _no_rotary_inertia(scene: Scene) -> str:
+    if not has_dynamics(scene):
+        return "all stages are static"
+    given = any(t.rotary_inertia for t in scene.used_line_types.values())
+    return "" if given or resolved_dimension(scene) == 3 else "no line type has rotary inertia"
+
+
+def _no_structural_damping(scene: Scene) -> str:
+    if not has_dynamics(scene):
+        return "all stages are static"
+    damped = any(t.damping and t.damping.ratio for t in scene.used_line_types.values())
+    return "" if damped else "no line type has damping"
+
+
+def _no_morison(scene: Scene) -> str:
+    if scene.water is None:
+        return "the scene has no water"
+    if not has_dynamics(scene) and scene.water.current is None:
+        return "all stages are static, and still water does not load a riser at rest"
+    types, attachments = scene.used_line_types.values(), scene.riser.attachments
+    resist = any(t.drag or t.added_mass for t in types) or any(a.drag_area or a.added_mass for a in attachments)
+    if resist or (scene.water.waves and has_dynamics(scene)):
+        return ""
+    return "no line type has drag or added mass, nor any attachment"
+
+
+def _no_buoyancy(scene: Scene) -> str:
+    if scene.water is None:
+        return "the scene has no water"
+    return "the water has no surface: all is submerged" if scene.water.surface_level is None else ""
+
+
+def unknowns(comm: MPI.Intracomm, field: Field) -> int:
+    """Free dofs of a field over all ranks; collective."""
+    return int(comm.allreduce(int(np.count_nonzero(field.owned & ~field.prescribed))))

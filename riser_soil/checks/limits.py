@@ -1,0 +1,99 @@
+"""What a scene may ask of the machine: told before anything is built, from the scene's numbers alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from mpi4py import MPI
+
+from riser_soil.checks.estimate import Size, riser_memory, size_of
+from riser_soil.checks.machine import available_memory, free_disk
+from riser_soil.errors import SceneError
+from riser_soil.scene.scene import Scene
+
+NOTED, LONG = 20.0, 3600.0  # s: a run tells its estimate; a run is warned of
+_REMEDIES = {
+    "riser.segments": "take longer elements",
+    "output.interval": "take a longer interval",
+    "water.waves.jonswap.components": "take fewer components or longer elements",
+    "soil.mesh": "take larger cells or a smaller block",
+}
+_UNITS = ((365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "h"), (60.0, "min"), (0.0, "s"))
+
+
+def size_that_fits(scene: Scene, folder: Path, comm: MPI.Intracomm) -> Size:
+    """The size of a scene whose results go to a folder; SceneError, with the numbers, where it exceeds the memory that
+    is available or the disk that is free. Collective: all ranks come to the same answer.
+    """
+    size = size_of(scene)
+    most = comm.allreduce(available_memory() * _nodes(comm), MPI.MIN)
+    free = comm.allreduce(free_disk(folder), MPI.MIN)
+    if size.memory(comm.size) > most:
+        raise SceneError(_too_much_memory(size, comm.size, most))
+    if size.disk > free:
+        raise SceneError(_too_much_disk(size, free))
+    return size
+
+
+def too_long(size: Size) -> Iterator[str]:
+    """A warning of a long run."""
+    if size.seconds > LONG:
+        yield (
+            f"the run takes about {in_words(size.seconds)}, {size.told_steps} of {_parts(size)}: check duration, "
+            "time_step and load_steps, and what is meshed more finely than it needs to be"
+        )
+
+
+def tell(size: Size, comm: MPI.Intracomm) -> None:
+    """Tell of a run that lasts a while, before it begins."""
+    if size.seconds > NOTED and comm.rank == 0:
+        print(f"this takes about {in_words(size.seconds)}, {size.told_steps} of {_parts(size)}", flush=True)
+
+
+def in_words(seconds: float) -> str:
+    """A time in a unit that suits it."""
+    unit, name = next((unit, name) for unit, name in _UNITS if seconds >= 2.0 * unit)
+    return f"{seconds / (unit or 1.0):.2g} {name}"
+
+
+def in_bytes(number: float) -> str:
+    return f"{number / 1e9:.3g} GB" if number >= 1e9 else f"{number / 1e6:.3g} MB"
+
+
+def _nodes(comm: MPI.Intracomm) -> float:
+    """On how many machines the ranks run, each with memory of its own."""
+    here = comm.Split_type(MPI.COMM_TYPE_SHARED)
+    share = comm.size / here.size
+    here.Free()
+    return share
+
+
+def _parts(size: Size) -> str:
+    soil = f" and {size.cells:.4g} cells of soil" if size.cells else ""
+    return f"{size.elements} elements{soil}"
+
+
+def _too_much_memory(size: Size, ranks: int, most: float) -> str:
+    path = _largest(size)
+    need = f"{_parts(size)} need about {in_bytes(size.memory(ranks))} of memory"
+    if path == "output.interval":
+        need = f"automatic steps that hit {size.stops:.4g} output times need {in_bytes(size.memory(ranks))} of memory"
+    return f"{path}: {need}, and {in_bytes(most)} are available; {_REMEDIES[path]}"
+
+
+def _largest(size: Size) -> str:
+    """Path of what takes most of the memory."""
+    parts = {
+        "riser.segments": riser_memory(1, size.riser_unknowns),
+        "output.interval": size.memory_of_stops,
+        "water.waves.jonswap.components": size.memory_of_waves,
+    }
+    parts["soil.mesh"] = size.memory(1) - sum(parts.values())
+    return max(parts, key=lambda path: parts[path])
+
+
+def _too_much_disk(size: Size, free: float) -> str:
+    what = f"{size.records:.4g} records and {size.pictures:.4g} pictures of {_parts(size)}, {size.told_steps}"
+    remedy = "take longer intervals of output, a shorter duration or a longer time_step"
+    return f"output.interval: {what}: about {in_bytes(size.disk)} on disk, and {in_bytes(free)} are free; {remedy}"

@@ -1,0 +1,194 @@
+"""Doubts about motions and waves in time: ends that start or stop with a shock or go too far apart, too long steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import NamedTuple, assert_never
+
+import numpy as np
+
+from riser_soil.assembly.motions import set_motion, vessels_of
+from riser_soil.core.arrays import Array
+from riser_soil.riser.ends import End
+from riser_soil.scene.motions import Arc, EndMotion, Harmonic, Rotation, Table, Vessel
+from riser_soil.scene.riser import Support
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
+
+# Part of the top speed by which an end's velocity may jump.
+JUMP = 0.02
+# Times at which speeds are looked up: a prime number of intervals, as whole periods would always find the same.
+LOOKS = 98
+# Longest time step over the shortest period.
+LONGEST_STEP = 0.1
+# Strain of a riser pulled straight between its ends from which they are too far apart for most pipes.
+STRETCHED = 0.01
+# Instants of a period, and at most of a stage, at which the ends' places are looked up.
+PER_PERIOD, MOST_LOOKS = 24, 20000
+
+
+class Course(NamedTuple):
+    """Velocities of an end as a stage begins and as it ends (3,), and its top speed: [m/s], or [deg/s] of turning."""
+
+    moves: bool
+    first: Array
+    last: Array
+    top: float
+
+
+STILL = Course(False, np.zeros(3), np.zeros(3), 0.0)
+Courses = dict[str, Course]
+"""By the unit, m/s and deg/s."""
+
+
+def motion_doubts(scene: Scene) -> Iterator[str]:
+    """What an engineer would question about motions and time steps, each with its numbers."""
+    for name, support in (("start", scene.riser.start), ("end", scene.riser.end)):
+        if isinstance(support, Support):
+            yield from _shocks(scene, name, support)
+    yield from _stretched(scene)
+    for n, stage in enumerate(scene.stages):
+        if isinstance(stage, DynamicStage):
+            yield from _long_steps(scene, f"stages.{n}.time_step", stage)
+
+
+def farthest_move(scene: Scene) -> float:
+    """The largest distance [m] of an end from where it was at first, in all stages."""
+    places = list(_places(scene))
+    found = [np.linalg.norm(x - places[0][name][0], axis=1).max() for place in places for name, x in place.items()]
+    return float(max(found, default=0.0))
+
+
+def _stretched(scene: Scene) -> Iterator[str]:
+    """Ends that go farther apart than the riser is long."""
+    length = scene.riser.length
+    for n, (stage, place) in enumerate(zip(scene.stages, _places(scene), strict=True)):
+        moves = stage.move if isinstance(stage, StaticStage) else stage.motion
+        if moves is None or len(place) < 2:
+            continue
+        apart = np.linalg.norm(place["end"] - place["start"], axis=1)
+        at = int(apart.argmax())
+        strain = float(apart[at]) / length - 1.0
+        if strain > STRETCHED:
+            when = f" at {_times(scene, stage)[at]:.4g} s" if isinstance(stage, DynamicStage) else ""
+            key = "move" if isinstance(stage, StaticStage) else "motion"
+            yield (
+                f"stages.{n}.{key}: the ends come to be {apart[at]:.6g} m apart{when}, but the riser is only "
+                f"{length:.6g} m long: it is stretched by {strain:.2%} and more; lengthen the segments, bring the ends "
+                "together or make their motions smaller"
+            )
+
+
+def _places(scene: Scene) -> Iterator[dict[str, Array]]:
+    """Where the held ends are (nt, 3) [m] at the times of each stage."""
+    ends = {name: getattr(scene.riser, name) for name in ("start", "end")}
+    last = {name: np.array(given.position) for name, given in ends.items() if isinstance(given, Support)}
+    end, vessels = End(held=True), vessels_of(scene)
+    for stage in scene.stages:
+        place = {}
+        for name, origin in last.items():
+            set_motion(end, name, origin, stage, vessels)
+            motion = end.motion
+            place[name] = np.array([origin if motion is None else motion(t)[0] for t in _times(scene, stage)])
+        last = {name: x[-1] for name, x in place.items()}
+        yield place
+
+
+def _times(scene: Scene, stage: Stage) -> Array:
+    """Times [s] of a stage at which its ends are looked up: often in each period, and at the rows of tables."""
+    if isinstance(stage, StaticStage):
+        return np.array([0.0, 1.0])
+    periods = [period for _, period in _periods(scene, stage)]
+    count = PER_PERIOD * stage.duration / min(periods, default=stage.duration)
+    even = np.linspace(0.0, stage.duration, int(np.clip(count, LOOKS, MOST_LOOKS)))
+    motions = stage.motion.by_end.values() if stage.motion is not None else ()
+    rows = [np.array(motion.table.columns.values["t"]) for motion in motions if motion.table is not None]
+    times = np.unique(np.concatenate([even, *rows]))
+    return np.asarray(times[times <= stage.duration])
+
+
+def _shocks(scene: Scene, name: str, support: Support) -> Iterator[str]:
+    """Jumps of an end's velocity between stages; a static stage leaves no velocities to go on from."""
+    courses = list(_courses(scene, name, support))
+    rest: Courses = {"m/s": STILL, "deg/s": STILL}
+    for n, (before, after) in enumerate(pairwise([rest, *courses])):
+        if not isinstance(scene.stages[n], DynamicStage):
+            continue
+        for unit in rest:
+            yield from _shock(f"stages.{n}", name, unit, before[unit], after[unit])
+
+
+def _shock(path: str, name: str, unit: str, before: Course, after: Course) -> Iterator[str]:
+    jump, top = float(np.linalg.norm(after.first - before.last)), max(before.top, after.top)
+    if jump <= JUMP * top:
+        return
+    if after.moves and not np.linalg.norm(before.last) > JUMP * top:
+        yield (
+            f"{path}.motion.{name}: the {name} starts at {jump:.3g} {unit} from rest, at once, which sends a shock "
+            "through the riser: give the motion a ramp [s]"
+        )
+    else:
+        how = "takes up another motion" if after.moves else "stops dead"
+        yield (
+            f"{path}: the {name} {how} as the stage begins, its velocity jumping by {jump:.3g} {unit}, which sends a "
+            "shock through the riser: let the motion before it come to rest (a table can), or make one stage of the "
+            "two; a ramp smooths a motion's beginning only"
+        )
+
+
+def _courses(scene: Scene, name: str, support: Support) -> Iterator[Courses]:
+    """What each stage does with an end."""
+    end, position, vessels = End(held=True), np.array(support.position), vessels_of(scene)
+    for stage in scene.stages:
+        set_motion(end, name, position, stage, vessels)
+        duration = stage.duration if isinstance(stage, DynamicStage) else 1.0
+        yield _course(end, np.linspace(0.0, duration, LOOKS), support.rotation != "free")
+        position = position if end.motion is None else end.motion(duration)[0]
+
+
+def _course(end: End, times: Array, turns: bool) -> Courses:
+    velocities = None if end.motion is None else np.array([end.motion(t)[1] for t in times])
+    spins = None
+    if end.turning is not None and turns:
+        spins = np.degrees([end.turning(t).angular_velocity for t in times])
+    return {"m/s": _told(velocities), "deg/s": _told(spins)}
+
+
+def _told(velocities: Array | None) -> Course:
+    if velocities is None:
+        return STILL
+    return Course(True, velocities[0], velocities[-1], float(np.linalg.norm(velocities, axis=1).max()))
+
+
+def _long_steps(scene: Scene, path: str, stage: DynamicStage) -> Iterator[str]:
+    periods = dict(_periods(scene, stage))
+    if not periods:
+        return
+    what = min(periods, key=lambda name: periods[name])
+    longest = LONGEST_STEP * periods[what]
+    if stage.time_step != "auto" and stage.time_step > longest * (1.0 + 1e-9):
+        yield (
+            f"{path}: steps of {stage.time_step:g} s are long beside the period of {what}, {periods[what]:g} s: take "
+            f"at most a tenth of it, {longest:.3g} s"
+        )
+
+
+def _periods(scene: Scene, stage: DynamicStage) -> Iterator[tuple[str, float]]:
+    """Periods [s] of what moves in a stage."""
+    if scene.water is not None and scene.water.waves is not None:
+        yield "the waves", scene.water.waves.period
+    if stage.motion is not None:
+        for name, motion in stage.motion.by_end.items():
+            yield from ((f"the {name}'s {key}", period) for key, period in _own_periods(motion))
+
+
+def _own_periods(motion: EndMotion) -> Iterator[tuple[str, float]]:
+    for key, way in motion.ways.items():
+        match way:
+            case Harmonic() | Arc() | Rotation():
+                yield key, way.period
+            case Table() | Vessel():  # as fast as its file, or as the waves
+                pass
+            case _:
+                assert_never(way)

@@ -1,0 +1,89 @@
+"""Where the riser puts more on the ground than that bears: what to tell beside a solve that failed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+
+from riser_soil.assembly import World
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.scene.soil import VonMises
+from riser_soil.seabed.bearing import Strength, strip_capacity
+
+if TYPE_CHECKING:
+    from riser_soil.contact.seabed_contact import SeabedContact
+    from riser_soil.contact.soil_contact import SoilContact
+
+
+@runtime_checkable
+class Bearing(Protocol):
+    """A law of the ground with a limit."""
+
+    @property
+    def capacity(self) -> float:
+        """Force per length [N/m] at a penetration of one diameter."""
+        ...
+
+
+class Overload(NamedTuple):
+    """Of the node that is deepest in a ground which it loads beyond its capacity: load and capacity [N/m], depth [m],
+    arc length [m] and position (3,) [m]; what the capacity is.
+    """
+
+    load: float
+    capacity: float
+    depth: float
+    arc: float
+    position: Array
+    meaning: str
+
+
+def overload(world: World) -> str:
+    """Where a ground is loaded most, beyond what it bears, as the end of a message; empty where none is. Collective.
+
+    A riser that sinks may yet be caught, as by firmer ground beside: this explains a failure and foretells none.
+    """
+    worst = max(_overloads(world), key=lambda each: each.load / each.capacity, default=None)
+    worst = world.comm.bcast(worst)
+    if worst is None:
+        return ""
+    x, y, z = worst.position
+    return (
+        f"; the ground's bearing capacity is exceeded: at arc {worst.arc:.4g} m, at ({x:.4g}, {y:.4g}, {z:.4g}) m, "
+        f"the riser puts {worst.load:.4g} N/m on clay that bears about {worst.capacity:.4g} N/m, {worst.meaning}, and "
+        f"has sunk in by {worst.depth:.4g} m: check su, or hold the riser up"
+    )
+
+
+def _overloads(world: World) -> Iterator[Overload]:
+    """On the rank that holds contact, where the riser is now: what touches weighs down at least with its weight."""
+    if not world.line.active:
+        return
+    state = State.at_rest(0.0, world.size)
+    for contact, capacity, meaning in _limits(world):
+        force = contact.force_per_length(state)
+        load = np.where(force > 0.0, np.maximum(force, _weight(world)), 0.0)
+        depth = np.where(load > capacity, contact.depth(state), -np.inf)
+        node = int(np.argmax(depth))
+        if load[node] > capacity:
+            place = world.line.arc[node], world.line.positions3(state)[node]
+            yield Overload(load[node], capacity, depth[node], *place, meaning)
+
+
+def _limits(world: World) -> Iterator[tuple[SoilContact | SeabedContact, float, str]]:
+    """Grounds that bear so much only [N/m], and what that is."""
+    soil, D = world.scene.soil, world.scales.diameter
+    if soil is not None and world.soil_contact is not None and isinstance(soil.law, VonMises):
+        clay = Strength(soil.law.su, soil.law.su_gradient)
+        yield world.soil_contact, strip_capacity(clay, D), f"(2 + pi) su D + su_gradient D^2/4 with D = {D:.4g} m"
+    if world.seabed is not None and isinstance(world.seabed.law, Bearing):
+        yield world.seabed, world.seabed.law.capacity, f"by its law at a depth of one diameter, {D:.4g} m"
+
+
+def _weight(world: World) -> Array:
+    """Of the riser at the nodes (nn,) [N/m], downwards."""
+    weight = world.elements.weight
+    return np.maximum(np.append(weight, weight[-1:]), np.append(weight[:1], weight))

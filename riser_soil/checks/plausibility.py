@@ -1,0 +1,96 @@
+"""Physical doubts about a scene as it is built, each with its numbers and a remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from riser_soil.assembly import World
+from riser_soil.checks.bending_plausibility import bending_doubts
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage, Load, StaticStage
+
+
+def physical_warnings(world: World) -> Iterator[str]:
+    """What a riser engineer would question, each with its numbers; collective."""
+    yield from _light_pipes(world)
+    yield from bending_doubts(world)
+    if world.contacts:
+        from riser_soil.checks.ground_plausibility import ground_doubts
+
+        yield from ground_doubts(world)
+    yield from _beyond_the_rao(world)
+    yield from _loads_that_end(world.scene)
+    if world.scene.water is not None and world.scene.water.waves is not None:
+        from riser_soil.checks.wave_plausibility import wave_doubts
+
+        yield from wave_doubts(world.scene)
+    if _moves(world.scene):
+        from riser_soil.checks.motion_plausibility import motion_doubts
+
+        yield from motion_doubts(world.scene)
+
+
+def _moves(scene: Scene) -> bool:
+    """Whether ends move in any stage, or waves come in a dynamic one."""
+    waves = scene.water is not None and scene.water.waves is not None
+    return any(
+        stage.move is not None if isinstance(stage, StaticStage) else waves or stage.motion is not None
+        for stage in scene.stages
+    )
+
+
+def _light_pipes(world: World) -> Iterator[str]:
+    weight, arc = world.elements.weight, world.line.arc
+    light = np.flatnonzero(weight < 0.0)
+    if light.size:
+        yield (
+            f"submerged weight is negative, {weight[light].min():.4g} N/m, from arc {arc[light[0]]:.4g} m on: the "
+            "pipe floats; check mass, contents and diameters, or give submerged_weight"
+        )
+
+
+def _beyond_the_rao(world: World) -> Iterator[str]:
+    """Waves outside the frequencies of a vessel's table."""
+    for path, beyond in (world.vessels.beyond if world.vessels is not None else {}).items():
+        yield (
+            f"{path}: {100.0 * beyond.below:.3g} % of the waves' energy lies below the table's first frequency, "
+            f"{beyond.first:.4g} rad/s, where the vessel moves as there, and {100.0 * beyond.above:.3g} % above its "
+            f"last, {beyond.last:.4g} rad/s, where it doesn't move: by the table's ends that is little; longer tables "
+            "would tell"
+        )
+
+
+def _loads_that_end(scene: Scene) -> Iterator[str]:
+    """Loads of static stages that the next stage does not have, and so takes away."""
+    for n, (stage, after) in enumerate(pairwise(scene.stages)):
+        if not isinstance(stage, StaticStage):
+            continue
+        for m, load in enumerate(stage.loads):
+            if not _has_ended(load) and _acting(load) not in [_acting(other) for other in after.loads]:
+                back = "springs back at once" if isinstance(after, DynamicStage) else "comes back"
+                yield (
+                    f"stages.{n}.loads.{m}: {_told(load)} ends with its stage; {after.name} is without it, and the "
+                    f"riser {back}: repeat it in stages.{n + 1}.loads if it stays"
+                )
+
+
+def _has_ended(load: Load) -> bool:
+    """Whether a static load's own history brings it to nothing by the end of its stage."""
+    if load.history is None:
+        return False
+    times, factors = zip(*load.history, strict=True)
+    return float(np.interp(1.0, times, factors)) == 0.0
+
+
+def _acting(load: Load) -> tuple[object, ...]:
+    """What a load is, whatever its size in time."""
+    return load.at, load.force, load.moment, load.distributed
+
+
+def _told(load: Load) -> str:
+    given = {"force": (load.force, "N"), "moment": (load.moment, "N.m"), "distributed": (load.distributed, "N/m")}
+    parts = [f"{key} {[float(f'{x:.4g}') for x in v]} {unit}" for key, (v, unit) in given.items() if v is not None]
+    return " and ".join(parts) + (f" at {load.at}" if load.at is not None else "")

@@ -1,0 +1,210 @@
+"""The contract between the parts of a scene and the system that solves them together.
+
+Every part adds its share to one residual R(u, v, a) = inertia·I + force·F + E, internal minus external:
+
+- I, inertia: forces that the time scheme weights as inertia (mass, added mass);
+- F, force: forces that the scheme weights as stiffness and damping (beam, weight, drag, loads);
+- E, end of step: forces always taken at the end of the step (contact, quasi-static soil).
+
+A residual has no memory: it depends on the trial state alone. History changes only in `commit`, once per accepted step.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, BoolArray, IntArray
+
+GROUPS = "IFE"  # of forces; see the module's text
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """Trial state of all local dofs.
+
+    t: seconds since the stage began; in a static stage the load factor, 0 to 1.
+    u: increment since the last accepted state: displacement [m], body-axes rotation vector [rad].
+    v: rate: velocity [m/s], body-axes angular velocity [rad/s].
+    a: acceleration [m/s2], body-axes angular acceleration [rad/s2].
+    """
+
+    t: float
+    u: Array
+    v: Array
+    a: Array
+
+    @classmethod
+    def at_rest(cls, t: float, size: int) -> State:
+        return cls(t, np.zeros(size), np.zeros(size), np.zeros(size))
+
+
+@dataclass(frozen=True)
+class Weights:
+    """How the time scheme combines the groups, and how rates follow increments (dv/du [1/s], da/du [1/s2])."""
+
+    inertia: float
+    force: float
+    shift_v: float
+    shift_a: float
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """A batch of m dense element matrices: local dof numbers of rows (m, nr) and columns (m, nc); -1 is absent."""
+
+    rows: IntArray
+    cols: IntArray
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        return (self.rows.shape[0], self.rows.shape[1], self.cols.shape[1])
+
+    def zeros(self) -> Array:
+        """The matrices themselves, all zero."""
+        return np.zeros(self.shape)
+
+
+@dataclass(eq=False)
+class Forces:
+    """Local residual [N, N.m] by group; see the module's text."""
+
+    inertia: Array
+    force: Array
+    end: Array
+
+    @classmethod
+    def zeros(cls, size: int) -> Forces:
+        return cls(np.zeros(size), np.zeros(size), np.zeros(size))
+
+
+@dataclass
+class Energy:
+    """Energy stored at a state [J]."""
+
+    kinetic: float = 0.0
+    strain: float = 0.0
+    potential: float = 0.0
+
+    def __add__(self, other: Energy) -> Energy:
+        return Energy(
+            self.kinetic + other.kinetic, self.strain + other.strain, self.potential + other.potential
+        )
+
+    @property
+    def total(self) -> float:
+        return self.kinetic + self.strain + self.potential
+
+
+@dataclass
+class Work:
+    """Energy turned over in one accepted step [J]: dissipated, and put in by external non-conservative loads.
+
+    inertial: the share of `external` that a mass gains as it changes, beyond the work of its force m a.
+    """
+
+    dissipated: float = 0.0
+    external: float = 0.0
+    inertial: float = 0.0
+
+    def __add__(self, other: Work) -> Work:
+        return Work(
+            self.dissipated + other.dissipated, self.external + other.external, self.inertial + other.inertial
+        )
+
+
+@dataclass(frozen=True)
+class Traits:
+    """What a part is; declared here, never guessed from its name or its blocks.
+
+    groups: letters of those that its forces are in. In E they may jump from step to step, as where the riser lands.
+    symmetric: its tangent.
+    follows: its forces follow the line, but hardly stiffen or soften it, such as the drag of a current.
+    """
+
+    groups: str
+    symmetric: bool
+    follows: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.groups or set(self.groups) - set(GROUPS):
+            raise ValueError(f'groups of a part are letters of "{GROUPS}", not "{self.groups}"')
+
+
+class Part(Protocol):
+    """A contribution to the system: riser, inertia, Morison loads, soil, contact, …"""
+
+    name: str
+    traits: Traits
+
+    def blocks(self) -> dict[str, Block]:
+        """Patterns that the part adds to. Parts that share a key share the very same rows and columns."""
+        ...
+
+    def residual(self, state: State, forces: Forces) -> None:
+        """Add this rank's share of the residual."""
+        ...
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        """Add this rank's share of dR/du, rates included by the shifts, into values[key] of shape (m, nr, nc)."""
+        ...
+
+    def energy(self, state: State) -> Energy:
+        """This rank's share of the stored energy."""
+        ...
+
+    def work(self, before: State, after: State) -> Work:
+        """This rank's share of the energy turned over by the step from `before` to `after`, asked before commit."""
+        ...
+
+    def commit(self, state: State) -> None:
+        """Accept the step: keep its configuration and history; increments restart from zero."""
+        ...
+
+
+@runtime_checkable
+class Slender(Protocol):
+    """A field with rotations beside its translations (nn, d), local numbers.
+
+    lever: arm [m] by which a moment is weighed as the forces of a couple, so that nothing hangs on the unit of length.
+    """
+
+    @property
+    def lever(self) -> float: ...
+
+    @property
+    def translation_dofs(self) -> IntArray: ...
+
+
+class Field(Protocol):
+    """Owner of dofs. Fields of one `space` share a numbering (the soil and its surface as seen by contact)."""
+
+    name: str
+    space: str
+    size: int
+    offset: int
+    global_index: IntArray
+    owned: BoolArray
+    prescribed: BoolArray
+
+    def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
+        """Write increment, rate and acceleration of the prescribed entries into these views of the field's slice."""
+        ...
+
+    def commit(self, state: State) -> None:
+        """Accept the increments of the field's slice."""
+        ...
+
+    def describe(self, entry: int) -> str:
+        """Where a local entry sits, for messages."""
+        ...
+
+
+@dataclass(eq=False)
+class Model:
+    """What a stage solves: the dof owners and the parts that act on them."""
+
+    fields: list[Field]
+    parts: list[Part] = field(default_factory=list)

@@ -1,0 +1,123 @@
+"""What the recorder is told: plain arrays and numbers, SI units, global axes (z up).
+
+nn riser nodes in the order of the arc length; nv points and nc cells of the soil's output mesh.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from riser_soil.core.arrays import Array, IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class RiserSnapshot:
+    """The riser at one instant.
+
+    Forces and moments at the ends are exerted by the support on the riser; moments by the right-hand rule.
+    """
+
+    position: Array  # (nn, 3) m
+    effective_tension: Array  # (nn,) N, positive in tension
+    wall_tension: Array  # (nn,) N, positive in tension; nan where the pressures are unknown
+    bending_moment: Array  # (nn,) N.m, magnitude >= 0
+    curvature: Array  # (nn,) 1/m, magnitude >= 0
+    bend_utilisation: Array  # (nn,) curvature times the least bend radius allowed; nan where none is given
+    contact_force: Array  # (nn,) N/m, positive where the ground pushes, negative where it holds the riser by suction
+    moment_vector: Array  # (nn, 3) N.m, exerted by the part towards `end` on the part towards `start`
+    start_force: Array  # (3,) N
+    end_force: Array  # (3,) N
+    start_moment: Array  # (3,) N.m
+    end_moment: Array  # (3,) N.m
+    start_tangent: Array  # (3,) unit tangent at the start, in the direction of growing arc length
+    end_tangent: Array  # (3,) the same at the end
+
+
+@dataclass(frozen=True, eq=False)
+class SoilSnapshot:
+    """The soil at one instant; displacement relative to the geostatic start."""
+
+    displacement: Array  # (nv, 3) m
+    von_mises: Array  # (nc,) Pa, cell averages
+    plastic_strain: Array  # (nc,) equivalent plastic strain, cell averages
+
+
+@dataclass(frozen=True, eq=False)
+class SoilMesh:
+    """The soil's output mesh: hexahedra, linear or quadratic tetrahedra, in VTK's node order."""
+
+    points: Array  # (nv, 3) m
+    cells: IntArray  # (nc, 8), (nc, 4) or (nc, 10)
+
+
+@dataclass(frozen=True, eq=False)
+class Touch:
+    """Where the riser touches the seabed and what the seabed does to it."""
+
+    touchdown_arc: float  # m, nan when nothing touches
+    touchdown_position: Array  # (3,) m, of the riser's axis there; nan when nothing touches
+    touchdown_points: int  # places where the riser comes down or leaves the seabed; its ends don't count
+    max_penetration: float  # m, 0 when nothing touches
+    contact_force: Array  # (3,) N, the sum over the riser, exerted on the riser
+    penetration: Array | None = None  # (nn,) m, of the underside into the ground as it is now; None where not wanted
+    embedment: Array | None = None  # (nn,) m, greatest depth yet below the ground as it lay at first; the same
+    slip: Array | None = None  # (nn,) m, way slid over the seabed so far; None without friction, or not wanted
+
+
+@dataclass(frozen=True)
+class StepHealth:
+    """How hard the solver worked for one accepted step."""
+
+    newton_iterations: int
+    time_step: float  # s; in a static stage the increment of the load factor
+    energy_residual: float  # J, of this step's energy balance; nan in a static stage
+    step_cuts: int  # failed attempts before this step was accepted
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """Energy of the whole model [J]: stored now, and turned over since the stage began.
+
+    numerical: taken out by the time scheme, negative where it put energy in; see `riser_soil.results.energy_ledger`.
+    residual = change of (kinetic + strain + potential) + dissipated + numerical - work, positive when energy appears
+    from nowhere; nan in a static stage, whose first shape need not be an equilibrium.
+    turned_over: the largest yet of kinetic energy, strain energy, energy dissipated, and work, by their sizes; the
+    potential's zero is anywhere.
+    dissipated_by, work_by: what adds up to `dissipated` and `work`, by part; "supports" are the ends that move.
+    """
+
+    kinetic: float = 0.0
+    strain: float = 0.0
+    potential: float = 0.0
+    dissipated: float = 0.0
+    numerical: float = 0.0
+    work: float = 0.0
+    residual: float = 0.0
+    turned_over: float = 0.0
+    dissipated_by: Mapping[str, float] = field(default_factory=dict)
+    work_by: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def stored(self) -> float:
+        return self.kinetic + self.strain + self.potential
+
+    @property
+    def relative_residual(self) -> float:
+        """Residual over the energy turned over; nan where there is none."""
+        return self.residual / self.turned_over if self.turned_over > 0.0 else float("nan")
+
+
+@dataclass(frozen=True)
+class RunFacts:
+    """What is known of a run before its first step."""
+
+    title: str
+    version: str
+    ranks: int
+    built: tuple[str, ...]  # names of the parts that were built
+    left_out: dict[str, str] = field(default_factory=dict)  # part -> reason
+    dissipating: tuple[str, ...] = ()  # names that may stand in the ledger's dissipated_by
+    working: tuple[str, ...] = ()  # names that may stand in the ledger's work_by
+    riser_dofs: int = 0
+    soil_dofs: int = 0

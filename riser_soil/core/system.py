@@ -1,0 +1,166 @@
+"""All parts of a stage as one system: residual, tangent, prescribed motion, commit."""
+
+from __future__ import annotations
+
+import time
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.matrix import Matrix
+from riser_soil.core.numbering import Numbering
+from riser_soil.core.part import Block, Energy, Field, Forces, Model, Part, Slender, State, Weights, Work
+
+
+@dataclass
+class Clock:
+    """Seconds spent, by part."""
+
+    seconds: defaultdict[str, float]
+
+    @classmethod
+    def new(cls) -> Clock:
+        return cls(defaultdict(float))
+
+    def add(self, name: str, since: float) -> None:
+        """Count the time since `since` (of time.perf_counter)."""
+        self.seconds[name] += time.perf_counter() - since
+
+    @property
+    def total(self) -> float:
+        """Seconds counted so far."""
+        return sum(self.seconds.values())
+
+
+class System:
+    """Residual and matrix over the free dofs of the model's fields; collective over `comm`.
+
+    smooth: whether no forces are taken at the end of the step alone, so that none may jump, as contact's do.
+    lever: see `Slender`; levers (size,): that of each local dof, 1 for translations.
+    """
+
+    def __init__(self, comm: MPI.Intracomm, model: Model, clock: Clock) -> None:
+        self.comm, self.model, self.clock = comm, model, clock
+        self.numbering = Numbering(comm, model.fields)
+        self.prescribed: BoolArray = self._gather_prescribed()
+        self.held: IntArray = np.flatnonzero(self.prescribed)
+        self.lever, self.levers = self._weigh_moments()
+        self.symmetric: bool = comm.allreduce(all(p.traits.symmetric for p in model.parts), MPI.LAND)
+        self.smooth: bool = not comm.allreduce(any("E" in p.traits.groups for p in model.parts), MPI.LOR)
+        self.matrix = self._new_matrix()
+
+    def _gather_prescribed(self) -> BoolArray:
+        return np.concatenate([f.prescribed for f in self.model.fields])
+
+    def _weigh_moments(self) -> tuple[float, Array]:
+        riser, levers = self.model.fields[0], np.ones(self.numbering.size)
+        if not isinstance(riser, Slender):
+            return 1.0, levers
+        levers[riser.offset : riser.offset + riser.size] = riser.lever
+        levers[riser.translation_dofs] = 1.0
+        return riser.lever, levers
+
+    def _new_matrix(self) -> Matrix:
+        blocks: dict[str, Block] = {}
+        for part in self.model.parts:
+            blocks.update(part.blocks())
+        return Matrix(self.numbering, blocks, self.symmetric)
+
+    def renew_pattern(self) -> None:
+        """Build the matrix anew from the parts' present blocks."""
+        self.matrix.destroy()
+        self.matrix = self._new_matrix()
+
+    def prescribe(self, state: State) -> None:
+        """Write the prescribed motion at state.t into the state's arrays."""
+        for field in self.model.fields:
+            part = slice(field.offset, field.offset + field.size)
+            field.prescribe(state.t, state.u[part], state.v[part], state.a[part])
+
+    def forces(self, state: State) -> Forces:
+        """This rank's residual by group (local arrays; shares of shared dofs are summed by the numbering)."""
+        forces = Forces.zeros(self.numbering.size)
+        for part in self.model.parts:
+            since = time.perf_counter()
+            part.residual(state, forces)
+            self.clock.add(part.name, since)
+        return forces
+
+    def assemble(self, state: State, weights: Weights, parts: Sequence[Part] | None = None) -> None:
+        """Put dR/du at the state into the matrix; by default that of all parts."""
+        self.matrix.clear()
+        for part in self.model.parts if parts is None else parts:
+            since = time.perf_counter()
+            part.tangent(state, weights, self.matrix.values)
+            self.clock.add(part.name, since)
+        since = time.perf_counter()
+        self.matrix.assemble()
+        self.clock.add("matrix", since)
+
+    def energy(self, state: State) -> Energy:
+        mine = sum((p.energy(state) for p in self.model.parts), Energy())
+        values = self.sum([mine.kinetic, mine.strain, mine.potential])
+        return Energy(*values)
+
+    def work(self, before: State, after: State) -> dict[str, Work]:
+        """Energy turned over by each part; those of one name together."""
+        mine: dict[str, Work] = {}
+        for part in self.model.parts:
+            mine[part.name] = mine.get(part.name, Work()) + part.work(before, after)
+        summed = self.sum([x for work in mine.values() for x in (work.dissipated, work.external, work.inertial)])
+        return {name: Work(*summed[3 * i : 3 * i + 3]) for i, name in enumerate(mine)}
+
+    def work_against(self, bulk: Array, end: Array, u: Array) -> float:
+        """Work [J] that bulk forces F, as their mean, and end-of-step forces E take out over a step."""
+        return self.sum([float((bulk + end) @ u)])[0]
+
+    def work_of_supports(self, reactions: Array, u: Array) -> float:
+        """Work [J] that prescribed motions put in over a step: mean reactions times increment."""
+        return self.sum([float(reactions @ u[self.held])])[0]
+
+    def reactions(self, forces: Forces) -> Array:
+        """What the supports of this rank's prescribed dofs exert [N, N.m]."""
+        at = self.held
+        return forces.inertia[at] + forces.force[at] + forces.end[at]
+
+    def commit(self, state: State) -> None:
+        """Accept a state: parts first, then the fields that they act on."""
+        owners: list[Part | Field] = [*self.model.parts, *self.model.fields]
+        for owner in owners:
+            owner.commit(state)
+
+    def describe(self, row: int) -> str:
+        """Where a row of the system sits; collective."""
+        entries = np.flatnonzero(self.numbering.index == row)
+        return next(filter(None, self.comm.allgather(self._describe(entries))), f"row {row}")
+
+    def _describe(self, entries: IntArray) -> str:
+        for entry in entries:
+            field = self._field_of(int(entry))
+            if field.owned[entry - field.offset]:
+                return field.describe(int(entry) - field.offset)
+        return ""
+
+    def _field_of(self, entry: int) -> Field:
+        return next(f for f in self.model.fields if f.offset <= entry < f.offset + f.size)
+
+    def sum(self, values: list[float]) -> list[float]:
+        """Sums over all ranks; collective."""
+        if self.comm.size == 1:
+            return values
+        summed = np.array(values)
+        self.comm.Allreduce(MPI.IN_PLACE, summed)
+        return [float(value) for value in summed]
+
+    def destroy(self) -> None:
+        self.matrix.destroy()
+        self.numbering.destroy()
+
+
+def total(forces: Forces) -> Array:
+    """Sum of all groups [N, N.m]: zero on free dofs in balance, the reaction on prescribed ones."""
+    return forces.inertia + forces.force + forces.end

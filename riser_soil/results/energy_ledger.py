@@ -1,0 +1,74 @@
+"""The energy ledger of a stage, step by step.
+
+Two errors of the time integration are told apart. With F the forces of group F, E those of group E, and W the work of
+supports, all that acts takes
+
+    B = du.((F(n) + F(n+1))/2 + E(n+1)) - W
+
+out of the motion in a step (`Accepted.braking`). What the kinetic energy loses beyond that, -(K(n+1) - K(n)) - B, is
+the time scheme's own: with linear inertia exactly what alpha_m, alpha_f, beta and gamma dissipate, zero to round-off
+for average acceleration (for Newmark's scheme: Hughes, The Finite Element Method, 1987, section 9.4). What the parts'
+energies tell otherwise than B is the residual: the error of the mean of nonlinear forces over a step, zero for linear
+ones and else of second order. Inertia that turns adds its own such error to the scheme's share.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+
+from riser_soil.core.part import Energy, Work
+from riser_soil.core.snapshot import Ledger
+from riser_soil.solve.time_stepper import Accepted
+
+SPRINGS = ("start spring", "end spring")  # a spring works only as its support turns
+
+
+class Balance:
+    """Ledger of a stage that begins with some energy [J]. A static stage's does not balance.
+
+    dissipating, working: names of what may dissipate and put in, as the scene has it. They are the ledger's accounts,
+    booked on or not.
+    """
+
+    def __init__(self, begun: Energy, static: bool, dissipating: Sequence[str], working: Sequence[str]) -> None:
+        self._begun, self._static = begun.total, static
+        self.ledger = Ledger(
+            *(begun.kinetic, begun.strain, begun.potential),
+            dissipated_by=dict.fromkeys(dissipating, 0.0),
+            work_by=dict.fromkeys(working, 0.0),
+        )
+
+    def add(self, energy: Energy, step: Accepted) -> float:
+        """Book a step; energy: stored after it. The step's own residual [J]."""
+        before, turned = self.ledger, _by_kind(step.turned)
+        dissipated_by = _added(before.dissipated_by, ((name, work.dissipated) for name, work in turned))
+        work_by = _added(before.work_by, ((name, work.external) for name, work in turned))
+        dissipated, work = (math.fsum(accounts.values()) for accounts in (dissipated_by, work_by))
+        numerical = 0.0 if self._static else before.numerical + before.kinetic - energy.kinetic - step.braking
+        self.ledger = Ledger(
+            *(energy.kinetic, energy.strain, energy.potential),
+            dissipated=dissipated,
+            numerical=numerical,
+            work=work,
+            residual=np.nan if self._static else energy.total - self._begun + dissipated + numerical - work,
+            turned_over=max(before.turned_over, energy.kinetic, energy.strain, abs(dissipated), abs(work)),
+            dissipated_by=dissipated_by,
+            work_by=work_by,
+        )
+        return self.ledger.residual - before.residual
+
+
+def _by_kind(turned: Mapping[str, Work]) -> list[tuple[str, Work]]:
+    return [("supports" if name in SPRINGS else name.replace(" ", "_"), work) for name, work in turned.items()]
+
+
+def _added(before: Mapping[str, float], more: Iterable[tuple[str, float]]) -> dict[str, float]:
+    """Sums by name; KeyError for a part that turns energy over and has no account."""
+    after = dict(before)
+    for name, value in more:
+        if name in after or value != 0.0:
+            after[name] += value
+    return after

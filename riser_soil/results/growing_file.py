@@ -1,0 +1,180 @@
+"""A file that grows by whole updates: who opens it, and a kill at any moment, meets it before an update or after one.
+
+Two copies take turns. An update goes to the one that nobody sees, which then takes the name of the other; the other
+gets the same update before the next. So an update costs what it changes, however long the file has become. An HDF5 file
+can't be appended to in place: torn in mid-write it cannot be opened at all.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import BinaryIO
+
+import h5py
+
+from riser_soil.results.folder import draft_of, write_atomically
+
+_PAGE = 4096
+
+
+class GrowingFile:
+    """Owner of the file at `path`, which it makes anew with this content; `close` removes the second copy.
+
+    A reader that holds an HDF5 file open, and so keeps HDF5's lock on it, is not disturbed: it keeps its copy, and the
+    writer makes itself another. Raises OSError where the disk does; the file is then whole as before the update.
+    """
+
+    def __init__(self, path: Path, content: bytes) -> None:
+        self.path = path
+        self.size = len(content)
+        self._lacking: Mapping[int, bytes] | None = None  # of the second copy; None where there is no second copy
+        write_atomically(path, content)
+
+    def update(self, changes: Mapping[int, bytes], size: int) -> None:
+        """changes: bytes by their offset; size: of the file after them."""
+        draft = draft_of(self.path)
+        try:
+            self._catch_up(draft)
+            _write(draft, changes, size)
+            self._lacking = changes if _exchange(draft, self.path) else None
+        except OSError as err:
+            self._lacking = None
+            draft.unlink(missing_ok=True)
+            raise OSError(err.errno, err.strerror, str(self.path)) from err
+        self.size = size
+
+    def close(self) -> None:
+        self._lacking = None
+        draft_of(self.path).unlink(missing_ok=True)
+
+    def _catch_up(self, draft: Path) -> None:
+        if self._lacking is None or _held(draft):
+            draft.unlink(missing_ok=True)
+            shutil.copyfile(self.path, draft)
+        else:
+            _write(draft, self._lacking, self.size)
+
+
+def _write(path: Path, changes: Mapping[int, bytes], size: int) -> None:
+    with path.open("r+b") as file:
+        for offset, content in changes.items():
+            file.seek(offset)
+            file.write(content)
+        file.truncate(size)
+
+
+def _held(path: Path) -> bool:
+    """Whether a reader has the file open; where there are no locks, nobody can tell."""
+    with path.open("r+b") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+        except OSError:
+            return False
+    return False
+
+
+def _exchange(draft: Path, path: Path) -> bool:
+    """Give the draft the file's name; whether the file's former self could be kept under the draft's."""
+    former = draft.with_suffix(".former")
+    former.unlink(missing_ok=True)
+    try:
+        os.link(path, former)
+    except OSError:  # a file system without hard links
+        draft.replace(path)
+        return False
+    draft.replace(path)
+    former.replace(draft)
+    return True
+
+
+@contextmanager
+def appending(file: GrowingFile) -> Iterator[h5py.File]:
+    """The HDF5 file, to be changed; what has been written in the block becomes one update of it."""
+    with file.path.open("rb") as base:
+        pages = _Pages(base, file.size)
+        with h5py.File(pages, "r+") as store:
+            yield store
+    file.update(pages.changes(), pages.size)
+
+
+def reading(path: Path) -> h5py.File:
+    """The HDF5 file, beside whoever else reads it, in this process too; OSError where it can't be read.
+
+    With HDF5's lock, which tells the writer of the reader, unless there are no locks or others have opened it without.
+    """
+    try:
+        return h5py.File(path, "r")
+    except OSError:
+        return h5py.File(path, "r", locking=False)
+
+
+class _Pages:
+    """A file to HDF5, which neither tells of a disk that is full nor survives it: what it writes stays in memory."""
+
+    def __init__(self, base: BinaryIO, size: int) -> None:
+        self.size = size
+        self._base, self._at = base, 0
+        self._pages: dict[int, bytearray] = {}
+
+    def changes(self) -> dict[int, bytes]:
+        """Pages written to, by their offset, up to the file's end."""
+        whole = {number * _PAGE: page for number, page in sorted(self._pages.items())}
+        return {at: bytes(page[: self.size - at]) for at, page in whole.items() if at < self.size}
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        self._at = offset + {os.SEEK_SET: 0, os.SEEK_CUR: self._at, os.SEEK_END: self.size}[whence]
+        return self._at
+
+    def tell(self) -> int:
+        return self._at
+
+    def flush(self) -> None:
+        """Nothing is on its way: the changes are taken as they are."""
+
+    def truncate(self, size: int) -> int:
+        self.size = size
+        return size
+
+    def read(self, count: int) -> bytes:
+        content = bytearray(count)
+        self.readinto(memoryview(content))
+        return bytes(content)
+
+    def readinto(self, buffer: memoryview) -> int:
+        into = memoryview(buffer).cast("B")
+        for number, within, at in _cut(self._at, len(into)):
+            page = self._pages.get(number) or self._read(number)
+            into[at] = page[within]
+        self._at += len(into)
+        return len(into)
+
+    def write(self, data: memoryview) -> int:
+        content = memoryview(data).cast("B")
+        for number, within, at in _cut(self._at, len(content)):
+            if number not in self._pages:
+                self._pages[number] = self._read(number)
+            self._pages[number][within] = content[at]
+        self._at += len(content)
+        self.size = max(self.size, self._at)
+        return len(content)
+
+    def _read(self, number: int) -> bytearray:
+        self._base.seek(number * _PAGE)
+        return bytearray(self._base.read(_PAGE).ljust(_PAGE, b"\0"))
+
+
+def _cut(offset: int, count: int) -> Iterator[tuple[int, slice, slice]]:
+    """Page by page: its number, the part of it, and the part of the `count` bytes that begin at `offset`."""
+    done = 0
+    while done < count:
+        number, start = divmod(offset + done, _PAGE)
+        size = min(_PAGE - start, count - done)
+        yield number, slice(start, start + size), slice(done, done + size)
+        done += size

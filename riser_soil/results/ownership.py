@@ -1,0 +1,150 @@
+"""Which files of a result folder this program has written itself: those alone does a run replace.
+
+A file of the same name that somebody else wrote, or changed since, is refused, whatever else is allowed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import h5py
+
+from riser_soil.errors import RiserSoilError, SceneError, WriteError, is_full
+from riser_soil.results.folder import (
+    NAMES,
+    RISER_NUMBERS,
+    RISER_XDMF,
+    SCENE,
+    SERIES,
+    SOIL_NUMBERS,
+    SOIL_XDMF,
+    SUMMARY,
+    Claim,
+    is_finished,
+)
+from riser_soil.results.growing_file import reading
+
+PROGRAM = "riser_soil"
+XDMF_HEAD = """<?xml version="1.0"?>
+<Xdmf Version="3.0">
+ <Domain>
+  <Grid Name={name} GridType="Collection" CollectionType="Temporal">
+"""
+_SEAL = "# Written by riser_soil, which replaces this file as long as it is unchanged: sha256 {}\n"
+_SEALED = re.compile(_SEAL.format("([0-9a-f]{64})").encode())
+_FRAMES = re.compile(r"frame_\d+|cells|points")
+
+
+def sealed(text: str) -> str:
+    """The text below a line that tells whether it is still the same."""
+    return _SEAL.format(hashlib.sha256(text.encode()).hexdigest()) + text
+
+
+def refuse(folder: Path, force: bool) -> None:
+    """Raises SceneError when a run may not have the folder. Touches nothing.
+
+    It may not while another run writes there; where it would replace what the program has not written; and without
+    `force` where a finished run is.
+    """
+    try:
+        if not force and is_finished(folder):
+            raise SceneError(f"{folder}: holds a finished run; choose another folder (-o) or add --force")
+        Claim.try_out(folder)
+        for name in NAMES:
+            _refuse_foreign(folder / name)
+    except OSError as err:
+        raise _unusable(folder, err) from err
+
+
+def prepare(folder: Path, force: bool) -> Claim:
+    """Makes the folder, or clears a previous run's files (and no others) out of it; the hold on it.
+
+    The old summary goes first, so that a kill in between cannot leave a folder that looks finished. The scene stays
+    until there is another: it may be the one that is run.
+    """
+    refuse(folder, force)
+    try:
+        claim = Claim(folder)
+        claim.clear()
+        for name in NAMES:
+            _refuse_foreign(folder / name)
+        for name in NAMES:
+            if name != SCENE:
+                (folder / name).unlink(missing_ok=True)
+    except OSError as err:
+        raise _unusable(folder, err) from err
+    return claim
+
+
+def _unusable(folder: Path, err: OSError) -> RiserSoilError:
+    if is_full(err):
+        return WriteError(f"{folder}: cannot be written: {err.strerror}; nothing was computed")
+    return SceneError(f"{folder}: cannot be used as the output folder: {err.strerror or err}")
+
+
+def _refuse_foreign(path: Path) -> None:
+    if path.is_symlink() or (path.exists() and not (path.is_file() and _OWN[path.name](path))):
+        raise SceneError(
+            f"{path}: was not written by riser_soil, or has been changed since, and would be replaced; move it away, "
+            "or choose another folder (-o)"
+        )
+
+
+def _own_scene(path: Path) -> bool:
+    """By its seal. Earlier versions had none: theirs is older than the results beside it, if nobody has changed it."""
+    text = path.read_bytes()
+    if seal := _SEALED.match(text):
+        return hashlib.sha256(text[seal.end() :]).hexdigest() == seal[1].decode()
+    return _of_earlier_version(path.parent) and path.stat().st_mtime <= (path.parent / SERIES).stat().st_mtime
+
+
+def _of_earlier_version(folder: Path) -> bool:
+    own = all((folder / name).is_file() and _OWN[name](folder / name) for name in (SUMMARY, SERIES, RISER_NUMBERS))
+    return own and not _tells(folder / RISER_NUMBERS, lambda file: "source" in file.attrs)
+
+
+def _own_summary(path: Path) -> bool:
+    try:
+        summary = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError:
+        return False
+    return isinstance(summary, dict) and {"finished", "version", "stages", "parts"} <= summary.keys()
+
+
+def _own_xdmf(path: Path) -> bool:
+    with path.open("rb") as file:
+        return file.read(200).startswith(XDMF_HEAD.format(name=quoteattr(path.stem)).encode())
+
+
+def _own_series(path: Path) -> bool:
+    return _tells(path, lambda file: str(file.attrs.get("source", "")).startswith(PROGRAM))
+
+
+def _own_numbers(path: Path) -> bool:
+    """Earlier versions did not sign them."""
+    return _tells(path, lambda file: "source" in file.attrs or all(map(_FRAMES.fullmatch, file)))
+
+
+def _tells(path: Path, question: Callable[[h5py.File], bool]) -> bool:
+    """The answer of an HDF5 file; no for a file that isn't one."""
+    try:
+        with reading(path) as file:
+            return question(file)
+    except OSError:
+        return False
+
+
+_OWN: dict[str, Callable[[Path], bool]] = {
+    SUMMARY: _own_summary,
+    SERIES: _own_series,
+    RISER_XDMF: _own_xdmf,
+    RISER_NUMBERS: _own_numbers,
+    SOIL_XDMF: _own_xdmf,
+    SOIL_NUMBERS: _own_numbers,
+    SCENE: _own_scene,
+}

@@ -1,0 +1,131 @@
+"""Plausibility of results as they come: strains beyond small ones, bending that elements blur, soil never touched."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from riser_soil.assembly import World
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.core.snapshot import RiserSnapshot, Touch
+from riser_soil.riser.resolution import misfit
+from riser_soil.riser.section_forces import at_most
+from riser_soil.scene.stages import Stage
+
+# Strain from which EA and EI would be no constants, and a section would not keep its shape.
+LARGE_STRAIN = 0.1
+# Shares of the largest moment by which turn and end moments of an element may differ, see riser/resolution.py.
+# Of 48 catenaries, hanging, clamped and on the seabed, those whose largest moment is off by less than 2 % stay below.
+SMOOTH_MISFIT, STEEP_MISFIT = 0.1, 0.2
+# The same as a turn of the element [rad] that is too small to mind: it strains a pipe's outside by 1e-3 D/L.
+SMALL_TURN = 2e-3
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The largest value yet of what must stay small, its arc [m], and the time [s] or load factor."""
+
+    value: float = 0.0
+    arc: float = math.nan
+    t: float = math.nan
+
+    def or_larger(self, values: Array, arcs: Array, t: float) -> Worst:
+        at = int(values.argmax())
+        return Worst(float(values[at]), float(arcs[at]), t) if values[at] > self.value else self
+
+
+class Plausibility:
+    """What a stage's results look like at the instants that are recorded; on the rank that holds the riser.
+
+    EA [N] and radius [m] (nn,): the smaller and the larger of what the two elements beside a node have.
+    """
+
+    def __init__(self, world: World) -> None:
+        elements = world.elements
+        self._world = world
+        self.EA = -at_most(np.repeat(-elements.EA[:, None], 2, axis=1))
+        self.radius = at_most(np.repeat(0.5 * elements.outer_diameter[:, None], 2, axis=1))
+        self._middle = 0.5 * (world.line.arc[1:] + world.line.arc[:-1])
+        self._touched = world.soil_contact is None
+
+    def begin_stage(self, stage: Stage) -> None:
+        self._last_stage = stage.name == self._world.scene.stages[-1].name
+        self._unit = "s" if stage.kind == "dynamic" else "of the load"
+        self._largest = 0.0  # moment [N.m]
+        self._axial = self._bending = self._smooth = self._steep = Worst()
+
+    def look(self, t: float, state: State, riser: RiserSnapshot, touch: Touch) -> None:
+        """t: s of the run (static stages: load factor)."""
+        arc = self._world.line.arc
+        self._axial = self._axial.or_larger(np.abs(riser.effective_tension) / self.EA, arc, t)
+        self._bending = self._bending.or_larger(self.radius * riser.curvature, arc, t)
+        self._largest = max(self._largest, float(riser.bending_moment.max()))
+        contact = self._world.soil_contact
+        if contact is not None and not self._touched:
+            self._touched = bool(contact.force_per_length(state).any())
+        down = not math.isnan(touch.touchdown_arc)
+        self._where = "touches down at" if down else "hangs with its lowest point at"
+        self._lowest = touch.touchdown_position if down else riser.position[riser.position[:, 2].argmin()]
+
+    def look_closely(self, t: float, state: State, elastic: Array) -> None:
+        """elastic: residual of the elements less its viscous share (ne, 2 ndof)."""
+        found = misfit(self._world.line, self._world.elements, state, elastic)
+        self._smooth = self._grown(self._smooth, found.smooth, found.smooth_at, t)
+        self._steep = self._grown(self._steep, found.steep, found.steep_at, t)
+
+    def _grown(self, worst: Worst, moment: float, e: int, t: float) -> Worst:
+        elements = self._world.elements
+        small = moment * elements.length[e] < SMALL_TURN * max(elements.EI_y[e], elements.EI_z[e])
+        return worst if small else worst.or_larger(np.array([moment]), self._middle[[e]], t)
+
+    def warnings(self) -> tuple[str, ...]:
+        """With numbers and a remedy."""
+        return tuple(self._told())
+
+    def _told(self) -> Iterator[str]:
+        yield from self._strains()
+        yield from self._blurred()
+        if self._last_stage and not self._touched:
+            yield self._never()
+
+    def _strains(self) -> Iterator[str]:
+        if self._axial.value > LARGE_STRAIN:
+            yield (
+                f"the riser is strained along its axis by {self._at(self._axial)}; beams with a constant EA stand for "
+                f"strains of some per cent, at most {LARGE_STRAIN:.0%}: correct EA, the length or what pulls"
+            )
+        if self._bending.value > LARGE_STRAIN:
+            yield (
+                f"the pipe's outside is strained by bending, curvature times D/2, by {self._at(self._bending)}; beams "
+                f"whose sections keep their shape and EI stand for at most {LARGE_STRAIN:.0%}: correct EI or what bends"
+            )
+
+    def _blurred(self) -> Iterator[str]:
+        for found, allowed in ((self._smooth, SMOOTH_MISFIT), (self._steep, STEEP_MISFIT)):
+            largest = max(found.value, self._largest)
+            share = found.value / largest if largest > 0.0 else 0.0
+            if share > allowed:
+                length = float(self._world.line.length[np.abs(self._middle - found.arc).argmin()])
+                yield (
+                    f"elements of {length:.4g} m are too long for the bending at arc {found.arc:.5g} m: at "
+                    f"{found.t:.5g} {self._unit} their turn and the moments at their ends differ by {found.value:.4g} "
+                    f"N.m, {share:.0%} of the stage's largest (told above {allowed:.0%}); moments may be off as much; "
+                    "take elements half as long there"
+                )
+                return
+
+    def _at(self, worst: Worst) -> str:
+        return f"{worst.value:.3g} at arc {worst.arc:.5g} m and {worst.t:.5g} {self._unit}"
+
+    def _never(self) -> str:
+        assert self._world.soil is not None
+        (x0, y0, _), (x1, y1, _) = self._world.soil.grid.low, self._world.soil.grid.high
+        down = ", ".join(f"{x:.5g}" for x in self._lowest)
+        return (
+            f"in no stage did the riser touch the soil, x from {x0:.5g} to {x1:.5g} m and y from {y0:.5g} to {y1:.5g} "
+            f"m: at the end it {self._where} [{down}] m; move the soil there, or leave it out"
+        )

@@ -1,0 +1,117 @@
+"""Reads the folder of a run, finished or not, from its files alone."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import h5py
+import numpy as np
+
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.errors import ResultsError
+from riser_soil.results import folder as run_folder
+from riser_soil.results.growing_file import reading
+
+
+@dataclass(frozen=True, eq=False)
+class SoilFrame:
+    """The soil at one instant; what was left out of the output is missing from the fields."""
+
+    time: float  # s
+    points: Array  # (nv, 3) m, undeformed
+    cells: IntArray  # (nc, 4, 8 or 10), VTK's node order
+    fields: dict[str, Array]  # displacement (nv, 3) m; von_mises_stress Pa, equivalent_plastic_strain (nc,)
+
+
+class Run:
+    """One run's results as numpy arrays, SI units.
+
+    `run["effective_tension"]` is a variable of results.nc, first axis time (nt); `run.arc` (nn,) m;
+    `run.summary` is summary.json. Raises ResultsError when the folder holds no run, or a name is not in it.
+    """
+
+    def __init__(self, folder: Path | str) -> None:
+        self.folder = Path(folder)
+        if not (self.folder / run_folder.SERIES).is_file():
+            raise ResultsError(f"{self.folder}: is not the folder of a run: no {run_folder.SERIES}")
+
+    def __getitem__(self, name: str) -> Array:
+        with self._open_series() as file:
+            if name not in file:
+                known = ", ".join(sorted(file))
+                raise ResultsError(f"{self.folder}: results.nc has no {name}; it has {known}")
+            stored = file[name]
+            values: Array = (stored.asstr() if h5py.check_string_dtype(stored.dtype) else stored)[...]
+        return values
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        path = self.folder / run_folder.SUMMARY
+        try:
+            summary: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as err:
+            raise ResultsError(f"{path}: cannot be read: {err}") from err
+        return summary
+
+    @property
+    def finished(self) -> bool:
+        return self.summary["finished"] is True
+
+    @cached_property
+    def arc(self) -> Array:
+        return self["arc"]
+
+    @cached_property
+    def time(self) -> Array:
+        """(nt,) s, total simulated time."""
+        return self["time"]
+
+    @cached_property
+    def stage_names(self) -> list[str]:
+        return [stage["name"] for stage in self.summary["stages"]]
+
+    @property
+    def has_soil(self) -> bool:
+        return (self.folder / run_folder.SOIL_NUMBERS).is_file()
+
+    @cached_property
+    def soil_times(self) -> Array:
+        """(nf,) s, times of the soil's frames."""
+        return np.array([float(grid.find("Time").get("Value")) for grid in self._soil_grids])
+
+    def soil_frame(self, index: int = -1) -> SoilFrame:
+        """One frame of the soil, the last unless told."""
+        if not self._soil_grids:
+            raise ResultsError(f"{self.folder}: soil.xdmf holds no frame yet")
+        grid = self._soil_grids[index]
+        fields = {item.get("Name"): self._heavy(item) for item in grid.findall("Attribute")}
+        points, cells = (self._heavy(grid.find(name)) for name in ("Geometry", "Topology"))
+        return SoilFrame(float(self.soil_times[index]), points, cells, fields)
+
+    @cached_property
+    def _soil_grids(self) -> list[Any]:
+        path = self.folder / run_folder.SOIL_XDMF
+        if self.has_soil and not path.exists():
+            return []  # it comes with the first frame
+        try:
+            return ElementTree.parse(path).findall("Domain/Grid/Grid")
+        except (OSError, ElementTree.ParseError) as err:
+            raise ResultsError(f"{path}: cannot be read: {err}") from err
+
+    def _heavy(self, element: Any) -> Any:
+        """The array in the HDF5 file that the element's data item names."""
+        file, where = element.find("DataItem").text.strip().split(":")
+        with reading(self.folder / file) as store:
+            return store[where][...]
+
+    def _open_series(self) -> h5py.File:
+        path = self.folder / run_folder.SERIES
+        try:
+            return reading(path)
+        except OSError as err:
+            raise ResultsError(f"{path}: cannot be read: {err}") from err

@@ -1,0 +1,317 @@
+"""The recorder: told of every accepted step, it writes the run's folder. Lives on one rank only."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.snapshot import Ledger, RiserSnapshot, RunFacts, SoilMesh, SoilSnapshot, StepHealth, Touch
+from riser_soil.errors import SceneError, WriteError
+from riser_soil.results import folder as run_folder
+from riser_soil.results.folder import Claim
+from riser_soil.results.netcdf import SeriesFile, ledger_variables
+from riser_soil.results.ownership import prepare, sealed
+from riser_soil.results.record_rows import ledger_row, series_row, soil_frame
+from riser_soil.results.schedule import Due
+from riser_soil.results.simulated_time import SimulatedTime
+from riser_soil.results.summary import StageTally, Summary, final_state, pack
+from riser_soil.results.xdmf import Frame, XdmfFile, polyline
+
+RISER_FIELDS = (
+    "effective_tension",
+    "wall_tension",
+    "bending_moment",
+    "curvature",
+    "bend_utilisation",
+    "contact_force",
+    "penetration",
+    "embedment",
+    "slip",
+    "moment_vector",
+)
+SOIL_FIELDS = ("displacement", "von_mises_stress", "equivalent_plastic_strain")
+FIELDS = RISER_FIELDS + SOIL_FIELDS
+
+# A killed run loses this much wall time of results [s]; more where flushing would take more than this share.
+_FLUSH_EVERY, _FLUSH_SHARE = 1.0, 0.05
+# What waits in memory for its turn on disk [bytes]: at most so much, whatever the share; about so much for each step.
+_MOST_WAITING, _STEP = 1 << 24, 2000
+
+
+@dataclass
+class Last:
+    """The state told last, and what it has been written to."""
+
+    riser: RiserSnapshot
+    touch: Touch
+    soil: SoilSnapshot | None
+    written: Due
+    stamp: float = 0.0  # s, of its record in the series
+
+
+class Recorder:
+    """Owner of everything in the run's folder. Use `open`, in a `with` statement, and `finish` at the end.
+
+    A run that leaves the `with` statement without `finish`, or is killed, keeps its results as unfinished; in the first
+    case up to the last accepted step. Raises WriteError where the disk takes no more.
+    """
+
+    def __init__(
+        self,
+        claim: Claim,
+        folder: Path,
+        facts: RunFacts,
+        arc: Array,
+        soil_mesh: SoilMesh | None,
+        fields: tuple[str, ...],
+    ) -> None:
+        self.summary = Summary(facts)
+        self._claim, self._folder = claim, folder
+        self._arc = arc
+        self._fields = fields
+        left_out = set(RISER_FIELDS) - set(fields)
+        self._ledger = ledger_variables(facts.dissipating, facts.working)
+        self._series = SeriesFile(folder / run_folder.SERIES, arc, facts.title, facts.version, left_out, self._ledger)
+        self._riser_frames = XdmfFile(
+            folder / run_folder.RISER_XDMF, "riser", polyline(arc.size), polyline=True
+        )
+        self._soil_frames = _soil_file(folder, soil_mesh)
+        self._time = SimulatedTime()
+        self.now = 0.0  # s of the run at the last step; in a static stage its load factor
+        self._latest: Array | None = None
+        self._last: Last | None = None
+        self._settlement: float | None = None
+        self._next_flush = 0.0
+        self._waiting = 0
+        self._closed = False
+
+    @classmethod
+    def open(
+        cls,
+        folder: Path,
+        facts: RunFacts,
+        arc: Array,
+        soil_mesh: SoilMesh | None,
+        scene_text: str,
+        fields: tuple[str, ...] | None = None,
+        force: bool = False,
+    ) -> Self:
+        """Takes the folder over, until it is closed, and lays the files out.
+
+        arc: (nn,) m. scene_text: the resolved scene, kept as scene.yaml. fields: of FIELDS; None for all.
+        Raises SceneError for an unknown field and for a folder that the run may not have (see `ownership`).
+        """
+        wanted = _check_fields(FIELDS if fields is None else fields)
+        claim = prepare(folder, force)
+        try:
+            with _told_when_full(folder):
+                run_folder.write_atomically(folder / run_folder.SCENE, sealed(scene_text))
+                recorder = cls(claim, folder, facts, arc, soil_mesh, wanted)
+                recorder.flush()
+        except BaseException:
+            claim.release()
+            raise
+        return recorder
+
+    @property
+    def reached(self) -> str:
+        """How far the run has come, to be told when it ends before its time."""
+        if self.summary.finished:
+            return f"after the last stage; {self._folder} has the whole run"
+        stages = [stage for stage in self.summary.stages if stage.steps]
+        if not stages:
+            return f"before the first step; {self._folder} holds no results yet"
+        last = stages[-1]
+        time = f" at t = {last.time:.6g} s" if last.kind == "dynamic" else f" after {last.steps} load step(s)"
+        return f"in stage {last.name}{time}; {self._folder} has the results up to there, marked unfinished"
+
+    @property
+    def settlement(self) -> float | None:
+        """m, deepest settlement of the soil when it was last pictured; None without soil."""
+        return self._settlement
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def begin_stage(self, name: str, kind: str) -> None:
+        """kind: `static` or `dynamic`. A dynamic stage's extremes include the state that it begins with."""
+        if self.summary.stages:
+            self.flush()
+        self._time.begin_stage(kind)
+        stage = StageTally(name, kind)
+        if kind == "dynamic" and self._latest is not None:
+            stage.extremes.update(self._time.now, self._latest)
+        self.summary.stages.append(stage)
+        self._series.begin_stage(name)
+
+    def begin_at(self, riser: RiserSnapshot, touch: Touch, soil: SoilSnapshot | None = None) -> None:
+        """The state that the run begins with, where its first stage is dynamic: recorded at time zero."""
+        self._latest = pack(riser, touch)
+        self.summary.stages[-1].extremes.update(self._time.now, self._latest)
+        self._record(riser, touch, Due(series=True, pictures=True), soil)
+
+    def accept(
+        self,
+        t: float,
+        due: Due,
+        riser: RiserSnapshot,
+        touch: Touch,
+        health: StepHealth,
+        ledger: Ledger,
+        soil: SoilSnapshot | None = None,
+    ) -> None:
+        """Takes one accepted step.
+
+        t: s since the stage began (static: load factor). soil: needed where there is a soil mesh and pictures
+        are due.
+        """
+        self._time.advance(t)
+        self._tally(t, riser, touch, health, ledger)
+        row = {"step_time": self._time.now} | vars(health) | ledger_row(ledger)
+        self._series.step(dict.fromkeys(self._ledger, 0.0) | row)
+        self._waiting += _STEP
+        self._record(riser, touch, due, soil)
+        if time.monotonic() > self._next_flush or self._waiting > _MOST_WAITING:
+            self.flush()
+
+    def record_last(self, soil: SoilSnapshot | None = None) -> None:
+        """Writes the last accepted step to all that it has not been written to: the run ends before its time.
+
+        soil: at that step; where it is missing, and there is a soil mesh, there is no picture.
+        """
+        last = self._last
+        if last is None or self._closed:
+            return
+        soil = last.soil or soil
+        drawable = self._soil_frames is None or soil is not None
+        if not last.written.series:
+            self._record(last.riser, last.touch, Due(series=True, pictures=drawable), soil)
+        elif drawable and not last.written.pictures:
+            self._picture(last.stamp, series_row(last.stamp, self._arc, last.riser, last.touch), soil)
+            last.written = Due(series=True, pictures=True)
+
+    def add_seconds(self, seconds: Mapping[str, float]) -> None:
+        """Adds wall time [s] to the named parts of the run."""
+        self.summary.seconds.update(seconds)
+
+    def flush(self) -> None:
+        """Brings everything told so far to disk: the frames, the series that tells how far they go, the summary."""
+        begun = time.monotonic()
+        with _told_when_full(self._folder, self._let_go):
+            for frames in self._pictures:
+                frames.flush()
+            self._series.flush(self.summary.finished)
+            self.summary.write(self._folder / run_folder.SUMMARY)
+        self._waiting = 0
+        now = time.monotonic()
+        self._next_flush = now + max(_FLUSH_EVERY, (now - begun) / _FLUSH_SHARE)
+
+    def finish(self) -> None:
+        """Marks the run finished; nothing may be added afterwards."""
+        self.summary.finished = True
+        self.close()
+
+    def close(self) -> None:
+        """Brings the rest to disk and gives the folder free. Does nothing the second time."""
+        if self._closed:
+            return
+        try:
+            if not self.summary.finished:
+                self.record_last()
+            self.flush()
+        finally:
+            self._let_go()
+
+    def _let_go(self) -> None:
+        """Nothing is written any more: what can't be written once is not tried again."""
+        if self._closed:
+            return
+        self._closed = True
+        for frames in self._pictures:
+            frames.close()
+        self._series.close()
+        self._claim.release()
+
+    @property
+    def _pictures(self) -> list[XdmfFile]:
+        return [frames for frames in (self._riser_frames, self._soil_frames) if frames is not None]
+
+    def _tally(
+        self, t: float, riser: RiserSnapshot, touch: Touch, health: StepHealth, ledger: Ledger
+    ) -> None:
+        stage = self.summary.stages[-1]
+        self._latest = pack(riser, touch)
+        stage.count(health)
+        stage.time = self._time.stage_time
+        stage.balance(self._time.now, ledger)
+        self.now = now = t if stage.kind == "static" else self._time.now
+        stage.extremes.update(now, self._latest)
+        stage.final = final_state(self._arc, riser, touch)
+        stage.bend(now, self._arc, riser)
+
+    def _record(self, riser: RiserSnapshot, touch: Touch, due: Due, soil: SoilSnapshot | None) -> None:
+        self._last = Last(riser, touch, soil, due)
+        if due.series:
+            self._last.stamp = self._time.stamp()
+            row = series_row(self._last.stamp, self._arc, riser, touch)
+            self._waiting += _size(row)
+            self._series.record(row)
+            if due.pictures:
+                self._picture(self._last.stamp, row, soil)
+
+    def _picture(self, stamp: float, row: Mapping[str, Array], soil: SoilSnapshot | None) -> None:
+        wanted = [name for name in RISER_FIELDS if name in self._fields]
+        on_points = {name: row[name] for name in (*wanted, "position")}
+        self._waiting += _size(on_points)
+        self._riser_frames.add(Frame(stamp, on_points, geometry="position"))
+        if self._soil_frames is not None:
+            if soil is None:
+                raise ValueError(
+                    "pictures are due, so the soil's snapshot is needed too: both files share one time axis"
+                )
+            self._waiting += _size(vars(soil))
+            self._soil_frames.add(soil_frame(stamp, soil, self._fields))
+            self._settlement = max(0.0, -float(soil.displacement[:, 2].min()))
+
+
+@contextmanager
+def _told_when_full(folder: Path, then: Callable[[], None] | None = None) -> Iterator[None]:
+    """Raises WriteError for what the disk did not take, when `then` is done."""
+    try:
+        yield
+    except OSError as err:
+        if then is not None:
+            then()
+        raise WriteError(
+            f"{err.filename or folder}: cannot be written: {err.strerror or err}; the run ends here, and its files are "
+            "whole up to what went in before: make room, or choose another folder (-o)"
+        ) from err
+
+
+def _size(values: Mapping[str, Any]) -> int:
+    """Bytes of the arrays among the values."""
+    return sum(value.nbytes for value in values.values() if isinstance(value, np.ndarray))
+
+
+def _check_fields(fields: tuple[str, ...]) -> tuple[str, ...]:
+    unknown = [name for name in fields if name not in (*FIELDS, "position")]
+    if unknown:
+        raise SceneError(f'output.fields: "{unknown[0]}" is not a field; allowed: {", ".join(FIELDS)}')
+    return fields
+
+
+def _soil_file(folder: Path, mesh: SoilMesh | None) -> XdmfFile | None:
+    return None if mesh is None else XdmfFile(folder / run_folder.SOIL_XDMF, "soil", mesh.cells, mesh.points)

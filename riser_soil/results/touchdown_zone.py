@@ -1,0 +1,79 @@
+"""Where the riser touches the ground at an accepted state, over all grounds that it may touch."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from riser_soil.assembly import World
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.core.snapshot import Touch
+from riser_soil.riser import stations
+from riser_soil.riser.line import Line
+
+if TYPE_CHECKING:
+    from riser_soil.contact.touchdown import Stretch
+
+
+class TouchdownZone:
+    """What the rank that holds contact tells of it. fields: those of `Touch` along the riser that are wanted."""
+
+    def __init__(self, world: World, fields: Sequence[str] = ()) -> None:
+        self._world, self._fields = world, fields
+        self._embedment = np.zeros(world.line.nodes)
+
+    def look(self, state: State) -> Touch:
+        """At each accepted state in turn: the embedment is the greatest depth yet."""
+        contacts, line = self._world.contacts, self._world.line
+        lying = joined([s for contact in contacts for s in contact.stretches(state)], float(line.length.max()))
+        arc = touchdown_arc(lying, line)
+        return Touch(
+            touchdown_arc=arc,
+            touchdown_position=position_at(line, state, arc),
+            touchdown_points=sum(int(s.start > line.arc[0]) + int(s.end < line.arc[-1]) for s in lying),
+            max_penetration=max((contact.max_penetration(state) for contact in contacts), default=0.0),
+            contact_force=np.asarray(sum((contact.force_on_riser(state) for contact in contacts), np.zeros(3))),
+            penetration=self._penetration(state) if "penetration" in self._fields else None,
+            embedment=self._embedded(state) if "embedment" in self._fields else None,
+            slip=self._world.friction.slip() if self._world.friction and "slip" in self._fields else None,
+        )
+
+    def _penetration(self, state: State) -> Array:
+        found = [contact.penetration(state) for contact in self._world.contacts]
+        return np.asarray(np.max(found, axis=0))
+
+    def _embedded(self, state: State) -> Array:
+        self._embedment = np.max([self._embedment, *(c.depth(state) for c in self._world.contacts)], axis=0)
+        return self._embedment
+
+
+def joined(stretches: Sequence[Stretch], near: float) -> list[Stretch]:
+    """Those in order of the arc length, made one where one ground ends and the next begins within `near` [m]."""
+    found: list[Stretch] = []
+    for this in sorted(stretches):
+        if found and this.start - found[-1].end <= near:
+            found[-1] = found[-1]._replace(end=max(found[-1].end, this.end))
+        else:
+            found.append(this)
+    return found
+
+
+def touchdown_arc(lying: Sequence[Stretch], line: Line) -> float:
+    """As `contact.touchdown` has it for one ground; nan where nothing touches."""
+    if not lying:
+        return float("nan")
+    last = lying[-1]
+    return last.start if last.end >= line.arc[-1] and last.start > line.arc[0] else last.end
+
+
+def position_at(line: Line, state: State, arc: float) -> Array:
+    """Of the riser's axis (3,) [m], global axes, at an arc length [m]; nan where that is."""
+    if np.isnan(arc):
+        return np.full(3, np.nan)
+    e = int(np.clip(np.searchsorted(line.arc, arc) - 1, 0, line.length.size - 1))
+    length = line.length[e : e + 1]
+    at = stations.points(length, (arc - line.arc[e]) / length)
+    return line.to_global(stations.interpolate(at, line.trial(state).q[e : e + 1])[0, 0])

@@ -1,0 +1,130 @@
+"""XDMF time series for ParaView and VTK: numbers in HDF5, structure in XML, readable at any moment.
+
+One temporal collection of uniform grids. The HDF5 file gets its numbers before the XML that points into it, so that the
+XML never names what is not there.
+"""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import h5py
+import numpy as np
+
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.results.growing_file import GrowingFile, appending
+from riser_soil.results.ownership import PROGRAM, XDMF_HEAD
+
+_CELLS = {4: "Tetrahedron", 8: "Hexahedron", 10: "Tetrahedron_10"}
+_FOOT = "  </Grid>\n </Domain>\n</Xdmf>\n"
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One instant: values on points and cells, (n,) or (n, 3).
+
+    geometry: name of the values on points, (np, 3) m, that are the points; None where the mesh stays.
+    """
+
+    time: float  # s
+    on_points: dict[str, Array] = field(default_factory=dict)
+    on_cells: dict[str, Array] = field(default_factory=dict)
+    geometry: str | None = None
+
+
+class XdmfFile:
+    """Writer of PATH.xdmf and the HDF5 file of the same name beside it. The former comes with the first frame: VTK's
+    reader, and ParaView with it, dies of a collection without any.
+
+    cells: (nc, k) point numbers in VTK's order: k = 4, 8 or 10; or (1, np) with `polyline`.
+    points: (np, 3) m for a mesh that stays; None when each frame brings its own geometry.
+    """
+
+    def __init__(
+        self, path: Path, name: str, cells: IntArray, points: Array | None = None, *, polyline: bool = False
+    ) -> None:
+        heavy = path.with_suffix(".h5")
+        self._heavy_name = heavy.name
+        self._frames = 0
+        self._waiting: list[Frame] = []
+        content = io.BytesIO()
+        with h5py.File(content, "w") as store:
+            store.attrs["source"] = PROGRAM
+            item = self._store(store, "cells", np.asarray(cells, dtype=np.int64))
+            self._points = None if points is None else self._store(store, "points", points)
+        self._heavy = GrowingFile(heavy, content.getvalue())
+        kind = _polyline_of(cells) if polyline else f'TopologyType="{_CELLS[cells.shape[1]]}"'
+        self._topology = f'<Topology {kind} NumberOfElements="{len(cells)}">{item}</Topology>'
+        self._path, self._head = path, XDMF_HEAD.format(name=quoteattr(name))
+        self._text: GrowingFile | None = None
+
+    def add(self, frame: Frame) -> None:
+        """Takes a copy of one frame, later than the ones before; it lives in memory until `flush`."""
+        on_points = {name: np.array(values) for name, values in frame.on_points.items()}
+        on_cells = {name: np.array(values) for name, values in frame.on_cells.items()}
+        self._waiting.append(replace(frame, on_points=on_points, on_cells=on_cells))
+
+    def flush(self) -> None:
+        """Writes the waiting frames: first the numbers, then the XML."""
+        if not self._waiting:
+            return
+        with appending(self._heavy) as store:
+            grids = [self._grid(store, self._frames + i, frame) for i, frame in enumerate(self._waiting)]
+        self._frames += len(grids)
+        self._waiting.clear()
+        self._append("".join(grids))
+
+    def close(self) -> None:
+        self._heavy.close()
+        if self._text is not None:
+            self._text.close()
+
+    def _grid(self, store: h5py.File, number: int, frame: Frame) -> str:
+        group = f"frame_{number:06d}"
+        values = frame.on_points | frame.on_cells
+        items = {name: self._store(store, f"{group}/{name}", v) for name, v in values.items()}
+        points = self._points if frame.geometry is None else items[frame.geometry]
+        lines = [
+            f'<Grid Name="{group}" GridType="Uniform">',
+            f'<Time Value="{float(frame.time)!r}"/>',
+            self._topology,
+            f'<Geometry GeometryType="XYZ">{points}</Geometry>',
+        ]
+        lines += [_attribute(name, "Node", v, items[name]) for name, v in frame.on_points.items()]
+        lines += [_attribute(name, "Cell", v, items[name]) for name, v in frame.on_cells.items()]
+        return "".join(f"   {line}\n" for line in [*lines, "</Grid>"])
+
+    def _store(self, store: h5py.File, where: str, values: Array | IntArray) -> str:
+        store[where] = values
+        dims = " ".join(str(n) for n in values.shape)
+        number = "Int" if values.dtype.kind == "i" else "Float"
+        return (
+            f'<DataItem Dimensions="{dims}" NumberType="{number}" Precision="8" Format="HDF">'
+            f"{self._heavy_name}:/{where}</DataItem>"
+        )
+
+    def _append(self, grids: str) -> None:
+        """Put grids behind the last one; the text itself stays on disk, so that memory doesn't grow with the run."""
+        added = (grids + _FOOT).encode()
+        if self._text is None:
+            self._text = GrowingFile(self._path, self._head.encode() + added)
+            return
+        end = self._text.size - len(_FOOT)
+        self._text.update({end: added}, end + len(added))
+
+
+def polyline(nodes: int) -> IntArray:
+    """Connectivity (1, nodes) of one line through all points in their order."""
+    return np.arange(nodes, dtype=np.int64)[None, :]
+
+
+def _polyline_of(cells: IntArray) -> str:
+    return f'TopologyType="Polyline" NodesPerElement="{cells.shape[1]}"'
+
+
+def _attribute(name: str, centre: str, values: Array, item: str) -> str:
+    kind = "Vector" if values.ndim == 2 else "Scalar"
+    return f'<Attribute Name={quoteattr(name)} AttributeType="{kind}" Center="{centre}">{item}</Attribute>'

@@ -1,0 +1,128 @@
+"""The only module that knows how versions of dolfinx differ (0.5, 0.9, 0.11).
+
+The soil needs three things of dolfinx: distribute a gmsh mesh over the ranks, number Lagrange nodes, and say
+where they are. Everything else works on the arrays returned here.
+"""
+
+from __future__ import annotations
+
+import importlib
+import logging
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import dolfinx
+import numpy as np
+from dolfinx import fem, jit
+from mpi4py import MPI
+
+from riser_soil.core import compiled
+from riser_soil.core.arrays import Array, IntArray
+
+ROOM = 1 << 22  # bytes that the code of one element needs, and more
+STALE_AFTER = 120.0  # s; the code compiled for one element takes a few seconds
+
+
+@dataclass(frozen=True, eq=False)
+class Nodes:
+    """Lagrange nodes of this rank's part of a mesh, owned ones first, then ghosts.
+
+    cells (nc, nn): local node numbers of the cells this rank owns, in basix' order (vertices first). points
+    (n, 3): m. number (n,): global node number; rank by rank, contiguous. owned: how many this rank owns.
+    """
+
+    comm: MPI.Intracomm
+    cells: IntArray
+    points: Array
+    number: IntArray
+    owned: int
+
+
+def mesh_from_gmsh(model: Any, comm: MPI.Intracomm) -> Any:
+    """dolfinx mesh of the gmsh model that lives on rank 0, distributed over the ranks (collective)."""
+    made = _gmsh_module().model_to_mesh(model, comm, 0, gdim=3)
+    return made.mesh if hasattr(made, "mesh") else made[0]
+
+
+def lagrange_nodes(mesh: Any, degree: int, comm: MPI.Intracomm) -> Nodes:
+    """Nodes of the continuous Lagrange space of this degree (collective; 0.5 compiles code the first time).
+
+    The arrays outlive the mesh; `comm` is the caller's, since the mesh frees its own copy.
+    """
+    _quiet_compiler_log()
+    cache = writable_cache(comm)
+    remove_stale_locks(comm, cache)
+    space = _function_space(mesh, degree, cache)
+    index_map = space.dofmap.index_map
+    owned_cells = mesh.topology.index_map(mesh.topology.dim).size_local
+    local = np.arange(index_map.size_local + index_map.num_ghosts, dtype=np.int32)
+    return Nodes(
+        comm,
+        _table(space.dofmap)[:owned_cells].astype(np.int64),
+        np.array(space.tabulate_dof_coordinates(), dtype=np.float64),
+        np.asarray(index_map.local_to_global(local), dtype=np.int64),
+        int(index_map.size_local),
+    )
+
+
+def jit_cache() -> Path:
+    """Folder in which dolfinx keeps its compiled code."""
+    options = jit.get_options() if hasattr(jit, "get_options") else jit.get_parameters()
+    return Path(options["cache_dir"])
+
+
+def _gmsh_module() -> Any:
+    name = "gmshio" if hasattr(dolfinx.io, "gmshio") or _release() < (0, 10) else "gmsh"
+    return importlib.import_module(f"dolfinx.io.{name}")
+
+
+def _release() -> tuple[int, int]:
+    major, minor = dolfinx.__version__.split(".")[:2]
+    return int(major), int(minor)
+
+
+def _function_space(mesh: Any, degree: int, cache: Path) -> Any:
+    options = {"cache_dir": str(cache)}
+    if hasattr(fem, "functionspace"):
+        return fem.functionspace(mesh, ("Lagrange", degree), jit_options=options)
+    return fem.FunctionSpace(mesh, ("Lagrange", degree), jit_params=options)
+
+
+def _table(dofmap: Any) -> Any:
+    """Dofs by cell as a 2-d array: an adjacency list in 0.5, an array since; a rank may have no cells."""
+    dofs = dofmap.list.array if hasattr(dofmap.list, "array") else dofmap.list
+    return np.asarray(dofs).reshape(-1, dofmap.dof_layout.num_dofs)
+
+
+def _quiet_compiler_log() -> None:
+    """The compiler of 0.5 logs every command at level INFO through the root logger."""
+    for handler in logging.getLogger().handlers:
+        handler.setLevel(max(handler.level, logging.WARNING))
+
+
+def writable_cache(comm: MPI.Intracomm) -> Path:
+    """Where dolfinx keeps its code; the kernels' cache where it can't be written. The same on all ranks; collective."""
+    cache = jit_cache()
+    if comm.rank == 0:
+        try:
+            compiled.require_room(cache, ROOM)
+        except OSError as err:
+            cache = compiled.FOLDER / "fenics"
+            compiled.tell(f"the cache of compiled elements can't be written ({err}); {cache} is used")
+    return Path(comm.bcast(str(cache)))
+
+
+def remove_stale_locks(comm: MPI.Intracomm, cache: Path) -> None:
+    """A process killed while it compiled leaves a lock on which every later run waits and then fails."""
+    if comm.rank == 0:
+        for source in cache.glob("libffcx_*.c"):
+            if not source.with_suffix(".c.cached").exists() and _age(source) > STALE_AFTER:
+                source.unlink(missing_ok=True)
+    comm.barrier()
+
+
+def _age(file: Path) -> float:
+    """Seconds since the file was written; 0 if it has gone."""
+    return time.time() - file.stat().st_mtime if file.exists() else 0.0

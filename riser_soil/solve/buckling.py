@@ -1,0 +1,93 @@
+"""The mode in which a riser leaves an unstable equilibrium.
+
+Of the tangent K and the drag D of dynamic relaxation it is the mode with the most negative w in K m = w D m, in which
+the riser moves away fastest. It comes by inverse iteration on K + s D, where s is the least power of two, in steps from
+any drag, that makes this stable: then w lies between -s and -s/2. The start is the same for all risers, and the sign
+makes the largest displacement positive, so that no round-off decides which way the riser goes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from petsc4py import PETSc
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State, Weights
+from riser_soil.core.system import System
+from riser_soil.riser.line import Line
+from riser_soil.riser.relaxation import Relaxation
+from riser_soil.solve.linear_solver import factorise_directly
+from riser_soil.solve.stability import judged_parts
+
+MOST_ITERATIONS = 200
+SETTLED = 1e-12  # change of a mode's direction in an iteration, squared
+AS_LARGE = 1.0 - 1e-6  # of the largest displacement
+LEAST_DRAG, MOST_DRAG = 1e-12, 1e12  # over the drag that the search starts from
+AXES = np.sqrt([1.0, 2.0, 3.0])  # of the start: no plane of symmetry holds it
+
+
+def stabilising_drag(drag: float, stable: Callable[[float], bool]) -> float:
+    """The least drag that is `drag` times a power of two and makes an unstable equilibrium stable."""
+    least, most = LEAST_DRAG * drag, MOST_DRAG * drag
+    while not stable(drag) and drag < most:
+        drag *= 2.0
+    while stable(0.5 * drag) and drag > least:
+        drag *= 0.5
+    return drag
+
+
+def buckling_mode(system: System, part: Relaxation, line: Line, state: State, weights: Weights) -> Array:
+    """Increments (size,) of the mode, its largest displacement of the line +1 m; `part` has the drag s. Collective."""
+    parts = judged_parts(system)
+    assert parts is not None
+    system.assemble(state, weights, [part])
+    drag = system.matrix.mat.getDiagonal()
+    system.assemble(state, weights, parts)
+    solver = PETSc.PC().create(system.comm)
+    factorise_directly(solver, system)
+    solver.setUp()
+    mode = _iterate(solver, drag, _start(system, line))
+    found = np.zeros(system.numbering.size)
+    system.numbering.to_local(mode, found)
+    for thing in (solver, drag, mode):
+        thing.destroy()
+    return np.asarray(found / _largest(line.nodal(found)[:, : line.dimension]))
+
+
+def _start(system: System, line: Line) -> PETSc.Vec:
+    """Displacements that grow along the line and share no symmetry with it."""
+    local, x = np.zeros(system.numbering.size), system.numbering.vector.duplicate()
+    line.nodal(local)[:, : line.dimension] = (1.0 + line.arc / line.arc[-1])[:, None] * AXES[: line.dimension]
+    x.set(0.0)
+    system.numbering.to_global(local, x)
+    return x
+
+
+def _iterate(solver: PETSc.PC, drag: PETSc.Vec, x: PETSc.Vec) -> PETSc.Vec:
+    """Inverse iteration from x, which becomes the mode, of unit size in the drag's norm."""
+    load, image = x.duplicate(), x.duplicate()
+    for _ in range(MOST_ITERATIONS):
+        load.pointwiseMult(drag, x)
+        solver.apply(load, image)
+        along = image.dot(load) / x.dot(load)
+        x.axpby(1.0, -along, image)  # what turns
+        load.pointwiseMult(drag, x)
+        turned = x.dot(load)
+        load.pointwiseMult(drag, image)
+        size = image.dot(load)
+        image.copy(x)
+        x.scale(size**-0.5)
+        if turned < SETTLED * size:
+            break
+    for vector in (load, image):
+        vector.destroy()
+    return x
+
+
+def _largest(displacements: Array) -> float:
+    """The entry of largest size, with its sign; the first along the line of those that are as large."""
+    entries = displacements.ravel()
+    sizes = np.abs(entries)
+    return float(entries[np.flatnonzero(sizes >= AS_LARGE * sizes.max())[0]])

@@ -1,0 +1,195 @@
+"""Dynamic relaxation: pseudo-time steps through an artificial drag, until equilibrium needs none.
+
+Used when Newton's method finds no equilibrium from the shape that a static stage starts with, and reported when used.
+The way there is none that the riser takes: the ground remembers nothing of it but its end.
+Where the equilibrium that it comes to is unstable, the riser leaves it in its mode of buckling: the first move is
+small, and the drag is that in which the mode grows to a multiple in each step, until the tangent is stable without it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.core.part import Model, State
+from riser_soil.core.roles import Remembering
+from riser_soil.core.system import Clock, System
+from riser_soil.errors import SolveError
+from riser_soil.riser.line import Line
+from riser_soil.riser.relaxation import Relaxation
+from riser_soil.solve.buckling import buckling_mode, stabilising_drag
+from riser_soil.solve.newton import Newton, NewtonSettings, NotConvergedError, Solution, Step, UnstableError
+from riser_soil.solve.time_scheme import Static
+
+FREE_FALL = 0.1  # the first step lets the riser fall by about this many element lengths
+STIFFEST = 1e8  # drag over the first
+MOST_STEPS = 2000
+NUDGE = 1e-4  # element lengths: the first move away from an unstable equilibrium
+NEAR = 1.0  # element lengths to an unstable equilibrium that is left
+MOST_ATTEMPTS = 50  # at an equilibrium without drag
+QUICK = 6  # Newton iterations up to which the drag is lowered
+NEARLY_THERE = 1e-2  # largest increment, in element lengths, from which equilibrium without drag is tried
+
+
+@dataclass
+class Relaxed:
+    """What it took: Newton iterations, and unstable equilibria that were left on the way."""
+
+    iterations: int = 0
+    branch_switches: int = 0
+
+
+def relax(
+    comm: MPI.Intracomm, model: Model, line: Line, weight: float, settings: NewtonSettings, clock: Clock, t: float
+) -> Relaxed:
+    """Bring the line to a stable equilibrium at the load factor t and commit it.
+
+    weight: typical force per length [N/m]. Raises SolveError when no equilibrium is found.
+    """
+    part = Relaxation(line, weight / (FREE_FALL * line.length.min()))
+    system = System(comm, Model(model.fields, [*model.parts, part]), clock)
+    newton = Newton(system, replace(settings, least_iterations=1))  # a slow move's forces may pass for balance
+    try:
+        return _descend(system, newton, part, line, t)
+    finally:
+        newton.destroy()
+        system.destroy()
+
+
+@dataclass
+class Attempts:
+    """At an equilibrium without drag. After n failures for want of stability the next comes n steps later, and after an
+    unstable equilibrium was left not before the tangent is stable.
+    """
+
+    failures: int = 0
+    wait: int = 0
+    leaving: bool = False
+
+    def due(self) -> bool:
+        self.wait -= 1
+        return self.wait <= 0
+
+    def count(self, failure: NotConvergedError) -> None:
+        self.failures += 1
+        self.wait = self.failures if isinstance(failure, UnstableError) else 0
+        if self.failures == MOST_ATTEMPTS:
+            raise SolveError(f"dynamic relaxation ends in no stable equilibrium: {failure}") from failure
+
+
+def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: float) -> Relaxed:
+    stiffest, done, moved, attempts = part.drag * STIFFEST, Relaxed(), np.inf, Attempts()
+    for _ in range(MOST_STEPS):
+        slow = moved < NEARLY_THERE * line.length.min()
+        if slow and attempts.due() and not _still_leaving(newton, part, t, attempts):
+            found = _without_drag(system, newton, part, line, t, attempts)
+            done.branch_switches += attempts.leaving
+            if found is not None:
+                done.iterations += found.iterations
+                return done
+        if attempts.leaving:
+            _stabilise(newton, part, t)
+        try:
+            solution = _step(system, newton, part, t, part.drag)
+        except NotConvergedError as failure:
+            part.drag *= 8.0
+            if part.drag > stiffest:
+                raise SolveError(f"dynamic relaxation fails even in tiny pseudo-time steps: {failure}") from failure
+            continue
+        done.iterations += solution.iterations
+        moved = _largest_increment(system, line, solution)
+        part.drag *= 0.4 if solution.iterations <= QUICK else 1.0
+    raise SolveError(f"dynamic relaxation finds no equilibrium in {MOST_STEPS} pseudo-time steps")
+
+
+def _without_drag(
+    system: System, newton: Newton, part: Relaxation, line: Line, t: float, attempts: Attempts
+) -> Solution | None:
+    """An equilibrium where there is a stable one; one that is not is left where it is near."""
+    try:
+        return _step(system, newton, part, t, drag=0.0)
+    except NotConvergedError as failure:
+        attempts.count(failure)
+        if isinstance(failure, UnstableError) and _is_near(system, line, failure.solution):
+            _leave(system, newton, part, line, failure.solution)
+            attempts.leaving, attempts.wait = True, 0
+    return None
+
+
+def _still_leaving(newton: Newton, part: Relaxation, t: float, attempts: Attempts) -> bool:
+    """Whether the tangent is unstable where the riser is since it left an unstable equilibrium."""
+    attempts.leaving = attempts.leaving and not _stable(newton, part, t, 0.0)
+    return attempts.leaving
+
+
+def _stable(newton: Newton, part: Relaxation, t: float, drag: float, surely: bool = False) -> bool:
+    """Whether the tangent at the accepted state is stable with a drag; surely: round-off doesn't make it so."""
+    usual, part.drag = part.drag, drag
+    try:
+        return newton.unstable_modes(_still(newton.system, t), doubtful=surely) == 0
+    finally:
+        part.drag = usual
+
+
+def _stabilise(newton: Newton, part: Relaxation, t: float, least: bool = False) -> None:
+    """Raise the drag, if need be, to where a step surely grows in the mode and does not turn to its other side.
+
+    least: lower it, too, to the least such drag.
+    """
+    if least or not _stable(newton, part, t, part.drag, surely=True):
+        part.drag = stabilising_drag(part.drag, lambda drag: _stable(newton, part, t, drag, surely=True))
+
+
+def _still(system: System, t: float) -> State:
+    return State.at_rest(t, system.numbering.size)
+
+
+def _step(system: System, newton: Newton, part: Relaxation, t: float, drag: float) -> Solution:
+    """A pseudo-time step with the given drag, committed.
+
+    It must end in an equilibrium that is stable, with the drag where there is one: a longer step would not follow a
+    riser that falls away from an unstable one, but return to it.
+    """
+    usual, part.drag = part.drag, drag
+    step = Step(Static(), _still(system, t), t, 0.0, None, np.zeros(system.numbering.size))
+    try:
+        solution = newton.solve(step)
+        newton.require_stable(solution)
+    finally:
+        part.drag = usual
+    if drag > 0.0:
+        _pass_through(system, solution.state)
+    else:
+        system.commit(solution.state)
+    return solution
+
+
+def _pass_through(system: System, state: State) -> None:
+    """Commit a state that is none of the stage's, so that its forces leave no trace."""
+    remembering = [part for part in system.model.parts if isinstance(part, Remembering)]
+    kept = [part.memory for part in remembering]
+    system.commit(state)
+    for part, memory in zip(remembering, kept, strict=True):
+        part.memory = memory
+
+
+def _is_near(system: System, line: Line, solution: Solution) -> bool:
+    return _largest_increment(system, line, solution) < NEAR * float(line.length.min())
+
+
+def _leave(system: System, newton: Newton, part: Relaxation, line: Line, unstable: Solution) -> None:
+    """Commit an unstable equilibrium, and a small move from there in the mode in which it is left fastest."""
+    _pass_through(system, unstable.state)
+    t = unstable.state.t
+    _stabilise(newton, part, t, least=True)
+    mode = buckling_mode(system, part, line, _still(system, t), Static().weights(0.0))
+    moved = _still(system, t)
+    moved.u[:] = NUDGE * line.length.min() * mode
+    _pass_through(system, moved)
+
+
+def _largest_increment(system: System, line: Line, solution: Solution) -> float:
+    """Longest translation [m] of the step, the same on all ranks, as every rank holds the riser."""
+    return float(np.abs(line.nodal(solution.state.u)[:, : line.dimension]).max())

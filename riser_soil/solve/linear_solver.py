@@ -1,0 +1,65 @@
+"""The linear solver of a system: PETSc's own banded factorisation where a serial system is a chain, MUMPS otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+
+from petsc4py import PETSc
+
+from riser_soil.core.system import System
+
+PREFIX = "riser_soil_"
+# MUMPS' controls: room for fill-in in per cent (14); for counting pivots, on several ranks too (13), null pivots (24).
+ROOM = {14: 60}
+COUNTING = {13: 1, 24: 1}
+NO_PIVOT = 1e-200  # whatever the units; by PETSc's default the stiffness of a riser a fingernail long is none
+
+
+@contextmanager
+def defaults(options: Mapping[str, str]) -> Iterator[None]:
+    """PETSc options under the project's prefix while the block lasts; what the user has set wins."""
+    database = PETSc.Options()
+    added = [key for key in options if not database.hasName(PREFIX + key)]
+    for key in added:
+        database[PREFIX + key] = options[key]
+    try:
+        yield
+    finally:
+        for key in added:
+            database.delValue(PREFIX + key)
+
+
+def factorise_directly(pc: PETSc.PC, system: System) -> None:
+    """Make a preconditioner an exact solver, symmetric where the system is."""
+    mumps = not _is_chain(system)
+    _choose(pc, system, "cholesky" if mumps and system.symmetric else "lu", ROOM)
+
+
+def negative_pivots(system: System) -> int:
+    """Negative pivots of the system's symmetric matrix: its number of negative eigenvalues; collective."""
+    pc = PETSc.PC().create(system.comm)
+    try:
+        _choose(pc, system, "cholesky", ROOM | COUNTING)
+        pc.setUp()
+        negative: int = pc.getFactorMatrix().getInertia()[0]
+    finally:
+        pc.destroy()
+    return negative
+
+
+def _choose(pc: PETSc.PC, system: System, kind: str, controls: Mapping[int, int]) -> None:
+    pc.setOperators(system.matrix.mat)
+    pc.setType(kind)
+    if _is_chain(system):
+        pc.setFactorOrdering("natural")
+        pc.setFactorPivot(zeropivot=NO_PIVOT)
+        return
+    pc.setFactorSolverType("mumps")
+    pc.setFactorSetUpSolverType()
+    for control, value in controls.items():
+        pc.getFactorMatrix().setMumpsIcntl(control, value)
+
+
+def _is_chain(system: System) -> bool:
+    return system.comm.size == 1 and len(system.model.fields) == 1

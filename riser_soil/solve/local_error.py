@@ -1,0 +1,95 @@
+"""How far one step of a dynamic stage goes wrong: an estimate from the change of the accelerations.
+
+While the acceleration changes linearly, Newmark's displacement misses (beta - 1/6) dt^2 (a(n+1) - a(n)) of the Taylor
+series (Zienkiewicz & Xie, A simple error estimator and adaptive time stepping procedure for dynamic analysis,
+Earthquake Engineering and Structural Dynamics 20, 1991), and its velocity (gamma - 1/2) dt (a(n+1) - a(n)), which is a
+displacement too one step later. What contact adds to the accelerations counts with beta = 1/2 and gamma = 1 (see
+`time_scheme`). Neither is filtered: an impact shorter than the step shows as an error of the order of the displacement
+that it undoes.
+
+Accelerations of generalised-alpha lag behind: a(n) belongs to the time t(n) - lag dt. Where stiff forces prescribe the
+motion, as a riser's stiffness in tension does, the displacement is exact and the velocity takes what it misses instead:
+it is off by -stiff_lag dt^2 da/dt. Where steps change size, both are brought from the last step's lag to that of the
+next. The first keeps the second order; without the second, each change of size sets off an oscillation of the tension
+from step to step (compare Brüls & Arnold, The generalized-alpha scheme as a linear multistep integrator, Journal of
+Computational and Nonlinear Dynamics 3, 2008, on the first). It moves velocities by what the scheme errs anyway.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.part import State
+from riser_soil.core.system import System
+from riser_soil.solve.newton import Solution
+from riser_soil.solve.riser_mass import RiserMass
+from riser_soil.solve.time_scheme import Dynamic, GeneralizedAlpha
+
+CONTACT = GeneralizedAlpha.newmark(0.5, 1.0)
+FAR = 4.0  # times the last step: how far ahead its jerk is trusted
+SAME = 1e-9  # of a step: two steps that differ by round-off
+
+
+@runtime_checkable
+class Extended(Protocol):
+    """A field with places; (nn, d) local numbers of their translations [m]."""
+
+    @property
+    def translation_dofs(self) -> IntArray: ...
+
+
+class LocalError:
+    """Local error of the steps of a stage, in the displacements of the riser [m]; collective."""
+
+    def __init__(self, system: System, scheme: Dynamic, mass: RiserMass) -> None:
+        self._system, self._scheme, self._mass = system, scheme, mass
+        self._jerk: Array | None = None
+        self._dt = 0.0
+
+    def start(self, before: State, dt: float) -> State:
+        """The accepted state as a step of size dt starts from it; the same object where nothing is to be done."""
+        scheme, last, to = self._scheme, self._dt, min(dt, FAR * self._dt)
+        unlagged = scheme.lag == scheme.stiff_lag == 0.0
+        if self._jerk is None or unlagged or abs(dt - last) < SAME * dt:
+            return before
+        v = before.v + scheme.stiff_lag * (last**2 - to**2) * self._jerk
+        return replace(before, v=v, a=before.a + scheme.lag * (last - to) * self._jerk)
+
+    def accept(self, start: State, after: State, dt: float) -> None:
+        """Keep how fast the accelerations changed in a step from `start` to the accepted state `after`."""
+        self._jerk, self._dt = (after.a - start.a) / dt, dt
+        self._jerk[self._system.held] = 0.0
+
+    def of(self, start: State, moving: State, solution: Solution, dt: float) -> float:
+        """Largest local error of a place [m] in a step from `start` that is solved, but not committed.
+
+        moving: the state at the start as the riser moves, contact's share of the accelerations included.
+        """
+        missed = self._missed(start, moving, solution)
+        missed[self._system.held] = 0.0
+        riser = self._system.model.fields[0]
+        assert isinstance(riser, Extended)
+        largest = dt**2 * np.linalg.norm(missed[riser.translation_dofs], axis=1).max()
+        return float(self._system.comm.bcast(largest))
+
+    def _missed(self, start: State, moving: State, solution: Solution) -> Array:
+        """Local error of the displacements, relative to dt^2 [m/s2]."""
+        scheme, end = self._scheme, solution.state
+        if self._system.smooth or not isinstance(scheme, GeneralizedAlpha):
+            return scheme.error_constant * (end.a - start.a)
+        contact = self._mass.accelerations(start.t, -solution.forces.end)
+        bulk = end.a - contact / (2.0 * scheme.beta)
+        change = contact - (moving.a - start.a)
+        return scheme.error_constant * (bulk - start.a) + CONTACT.error_constant * change
+
+
+def first_step(system: System, moving: State, tolerance: float) -> float:
+    """Time [s] in which the accelerations at the start move the riser by the tolerance [m]; inf where it rests."""
+    riser = system.model.fields[0]
+    assert isinstance(riser, Extended)
+    largest = system.comm.bcast(np.linalg.norm(moving.a[riser.translation_dofs], axis=1).max())
+    return float(np.sqrt(2.0 * tolerance / largest)) if largest > 0.0 else float("inf")

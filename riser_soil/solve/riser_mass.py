@@ -1,0 +1,107 @@
+"""Accelerations of the riser that a given force causes: its mass matrix, banded, factorised where it is needed.
+
+Needed once at the start of a dynamic stage and, with contact, once a step (see time_scheme).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import solveh_banded
+
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.part import Field, Part, State, Weights
+from riser_soil.core.system import System
+
+MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
+MASSLESS = 1e-12  # of a node's largest mass
+
+
+class RiserMass:
+    """Inverse of the riser's mass (its own and the added one) on its free dofs; collective over the system's ranks."""
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+        self._riser: Field = system.model.fields[0]
+        self._parts: list[Part] = [part for part in system.model.parts if "I" in part.traits.groups]
+        self._moving: Array | None = None
+
+    def accelerations(self, t: float, force: Array) -> Array:
+        """a with M a = force, in the accepted configuration at time t; local arrays, zero outside the riser.
+
+        What has no mass (as the twist of a line without inertia about its axis) and prescribed dofs get none.
+        """
+        at = slice(self._riser.offset, self._riser.offset + self._riser.size)
+        mine = self._solve(t, force[at]) if self._system.comm.rank == 0 else None
+        out = np.zeros_like(force)
+        out[at] = self._system.comm.bcast(mine)
+        return out
+
+    def kinetic_energy(self, state: State) -> float:
+        """Kinetic energy [J] of the riser at an accepted state."""
+        mine = sum(part.energy(state).kinetic for part in self._parts)
+        return float(self._system.comm.allreduce(mine))
+
+    def _solve(self, t: float, force: Array) -> Array:
+        """With rotations counted by the way of the lever's end, so that all masses are in kg."""
+        levers = self._system.levers[self._riser.offset : self._riser.offset + self._riser.size]
+        blocks = self._element_matrices(t)
+        of_element = levers[: blocks.shape[1]]
+        return self._solve_weighed(blocks / np.outer(of_element, of_element), force / levers) / levers
+
+    def _solve_weighed(self, blocks: Array, force: Array) -> Array:
+        if self._moving is None:
+            self._moving = _moving(blocks, ~self._riser.prescribed)
+        banded = _banded(_projected(blocks, self._moving), self._riser.size)
+        _add_nodal(banded, (blocks.max() or 1.0) * (np.eye(self._moving.shape[1]) - self._moving))
+        nodal = force.reshape(len(self._moving), -1, 1)
+        return np.asarray(solveh_banded(banded, (self._moving @ nodal).ravel(), overwrite_ab=True))
+
+    def _element_matrices(self, t: float) -> Array:
+        state = State.at_rest(t, self._system.numbering.size)
+        values = {"riser": np.zeros_like(self._system.matrix.values["riser"])}
+        for part in self._parts:
+            part.tangent(state, MASS_ONLY, values)
+        return values["riser"]
+
+
+def _moving(blocks: Array, free: BoolArray) -> Array:
+    """Projectors (nn, dofs, dofs) of the nodes onto what is free and has mass.
+
+    A node without rotary inertia has none about its tangents where they agree. That axis need not be an axis of the
+    dofs, but it stays where it is in the body axes, so that the projectors hold for all configurations.
+    """
+    dofs = blocks.shape[1] // 2
+    mass = np.zeros((len(blocks) + 1, dofs, dofs))
+    mass[:-1] += blocks[:, :dofs, :dofs]
+    mass[1:] += blocks[:, dofs:, dofs:]
+    mask = free.reshape(-1, dofs)
+    masses, axes = np.linalg.eigh(mass * mask[:, :, None] * mask[:, None, :])
+    kept = axes * (masses > MASSLESS * masses[:, -1:])[:, None, :]
+    return np.asarray(kept @ np.swapaxes(kept, 1, 2))
+
+
+def _projected(blocks: Array, moving: Array) -> Array:
+    """Element matrices of the projected accelerations."""
+    dofs = moving.shape[1]
+    both = np.zeros_like(blocks)
+    both[:, :dofs, :dofs], both[:, dofs:, dofs:] = moving[:-1], moving[1:]
+    return np.asarray(both @ blocks @ both)
+
+
+def _banded(blocks: Array, size: int) -> Array:
+    """Upper banded storage of a chain of element matrices (ne, 2 dofs, 2 dofs): ab[u + i - j, j] = a[i, j]."""
+    count, width, _ = blocks.shape
+    dofs = width // 2
+    ab = np.zeros((width, size))
+    for i in range(width):
+        for j in range(i, width):
+            ab[width - 1 + i - j, j : j + dofs * count : dofs] += blocks[:, i, j]
+    return ab
+
+
+def _add_nodal(ab: Array, nodal: Array) -> None:
+    """Add matrices of the nodes (nn, dofs, dofs) to the upper banded storage."""
+    dofs = nodal.shape[1]
+    for i in range(dofs):
+        for j in range(i, dofs):
+            ab[2 * dofs - 1 + i - j, j::dofs] += nodal[:, i, j]

@@ -1,0 +1,143 @@
+"""Whether an equilibrium is stable: the negative eigenvalues of its tangent, less what round-off and free turns make.
+
+An entry of the tangent K is known to about eps times its size, and so is the factorisation that counts. Such an error
+lies between -B and B, the diagonal matrix B_ii = eps d_i sum_j |K_ij|/d_j with any d > 0, as what remains of B is then
+diagonally dominant, once scaled by d. With d = sqrt(|K_ii|) the bound hangs on no unit. The count is that of K + B:
+what it finds is there, and what it misses lies above -B; that of K - B finds what is there and what may be. On a strut
+of n equal elements with hinged ends that is a load above P_cr by less than 0.7 eps n^4 of it, or by less than 4 eps
+(n/pi)^2 EA/P if that is more and the strut lies along no axis of the dofs: 2e-4 for n = 1000, and 1e-3 for EA/P = 1e7.
+A strut with a free end counts as one twice as long.
+
+A turn t of the whole riser that its supports leave free has no stiffness where the loads don't tell one direction from
+another, and what Newton's tolerance leaves of the residual makes a small one of either sign. As K t = 0, holding one
+dof that it moves takes it away and leaves all else as it is: v - c t, with that dof zero, has the energy of v.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.part import Part, State, Weights
+from riser_soil.core.system import System
+from riser_soil.solve.linear_solver import negative_pivots
+
+EPS = float(np.finfo(float).eps)
+NO_STIFFNESS = 1e-4  # of the forces in play, for a turn that moves the riser by its length; a residual makes much less
+
+
+@runtime_checkable
+class TurningFreely(Protocol):
+    """A field that may move as a whole without moving its supports."""
+
+    offset: int
+    size: int
+
+    def free_turns(self, state: State) -> Array:
+        """Such motions (k, size), their largest displacement the field's own length."""
+        ...
+
+    def in_newtons(self, forces: Array) -> Array:
+        """Forces and moments (size,) of the field, moments over that length."""
+        ...
+
+
+def judged_parts(system: System) -> Sequence[Part] | None:
+    """The parts whose tangent decides; None where it lacks symmetry, as with moments in space, so that nothing does."""
+    judged = [part for part in system.model.parts if not part.traits.follows]
+    return judged if all(part.traits.symmetric for part in judged) else None
+
+
+def unstable_modes(system: System, state: State, weights: Weights, forces: float, doubtful: bool = False) -> int:
+    """Independent ways to leave the equilibrium that set energy free; collective.
+
+    forces [N]: norm of the forces in play. doubtful: count those as well that round-off may have made or may hide.
+    The system's matrix is not that of its parts afterwards.
+    """
+    judged = judged_parts(system)
+    if judged is None:
+        return 0
+    system.assemble(state, weights, judged)
+    held = _one_dof_each(system, _neutral(system, state, NO_STIFFNESS * forces))
+    diagonal = system.matrix.mat.getDiagonal()
+    bounds = _row_bounds(system, diagonal.array)
+    mine = _of_this_rank(system, held)
+    diagonal.array_w[:] += (-EPS if doubtful else EPS) * bounds
+    diagonal.array_w[mine] += bounds[mine]
+    system.matrix.mat.setDiagonal(diagonal)
+    diagonal.destroy()
+    return negative_pivots(system)
+
+
+def hold_free_turns(system: System, state: State, least: float) -> None:
+    """Hold free turns of the riser that meet less than `least` [N] in the assembled matrix, each at a dof; collective.
+
+    It is singular there, so that round-off would decide where a step ends among equilibria that differ by a turn.
+    """
+    held = _one_dof_each(system, _neutral(system, state, least))
+    if held.size:
+        diagonal, mine = system.matrix.mat.getDiagonal(), _of_this_rank(system, held)
+        diagonal.array_w[mine] += np.abs(diagonal.array_r[mine])
+        system.matrix.mat.setDiagonal(diagonal)
+        diagonal.destroy()
+
+
+def _of_this_rank(system: System, rows: IntArray) -> IntArray:
+    """Which of this rank's rows are among some of the system's."""
+    first, last = system.matrix.mat.getOwnershipRange()
+    return np.asarray(rows[(rows >= first) & (rows < last)] - first)
+
+
+def _row_bounds(system: System, diagonal: Array) -> Array:
+    """d_i sum_j |K_ij|/d_j of this rank's rows, whose diagonal entries are given."""
+    of_all = np.sqrt(np.abs(np.concatenate(system.comm.allgather(diagonal))))
+    of_all[of_all == 0.0] = of_all.max()
+    starts, columns, values = system.matrix.mat.getValuesCSR()
+    first, last = system.matrix.mat.getOwnershipRange()
+    return np.asarray(of_all[first:last] * np.add.reduceat(np.abs(values) / of_all[columns], starts[:-1]))
+
+
+def _neutral(system: System, state: State, least: float) -> Array:
+    """Free turns of the riser (k, size) that meet less than `least` [N]; the same on all ranks."""
+    riser = system.model.fields[0]
+    if not isinstance(riser, TurningFreely):
+        return np.zeros((0, 0))
+    turns = riser.free_turns(state)
+    if not turns.size:
+        return turns
+    met = np.array([riser.in_newtons(force) for force in _products(system, turns)]).reshape(turns.shape)
+    _, sizes, combined = np.linalg.svd(met.T, full_matrices=False)
+    return np.asarray(combined[sizes < least] @ turns)
+
+
+def _products(system: System, turns: Array) -> list[Array]:
+    """The assembled matrix times increments of the riser (k, size); the riser's slice of each."""
+    at = slice(system.model.fields[0].offset, system.model.fields[0].offset + system.model.fields[0].size)
+    increment, product = (system.numbering.vector.duplicate() for _ in range(2))
+    found = list[Array]()
+    for turn in turns:
+        local, met = np.zeros(system.numbering.size), np.zeros(system.numbering.size)
+        local[at] = turn
+        increment.set(0.0)
+        system.numbering.to_global(local, increment)
+        system.matrix.mat.mult(increment, product)
+        system.numbering.to_local(product, met)
+        found.append(met[at])
+    for vector in (increment, product):
+        vector.destroy()
+    return found
+
+
+def _one_dof_each(system: System, turns: Array) -> IntArray:
+    """Rows of the system, one for each turn, that no combination of the turns leaves in place: Gaussian elimination."""
+    rest, rows = turns.copy(), list[int]()
+    for _ in turns:
+        chosen, dof = np.unravel_index(int(np.abs(rest).argmax()), rest.shape)
+        pivot = rest[chosen] / rest[chosen, dof]
+        rest -= np.outer(rest[:, dof], pivot)
+        rest[:, dof] = 0.0
+        rows.append(int(system.numbering.index[system.model.fields[0].offset + dof]))
+    return np.array(rows, dtype=np.int64)

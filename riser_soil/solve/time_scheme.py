@@ -1,0 +1,214 @@
+"""From increments to rates, and from the groups of forces to one residual.
+
+One code path for statics, Newmark, generalised-alpha and the midpoint rule. With bulk forces I + F and end-of-step
+forces E (contact, quasi-static soil), the residual of a step from n to n + 1 is, but for the midpoint rule,
+
+    R = W [(1 - am) I(n+1) + am I(n) + (1 - af) F(n+1) + af F(n)] + E(n+1),    W = 2 beta / (1 - am).
+
+E is treated fully implicitly (Kane, Repetto, Ortiz & Marsden, Finite element analysis of nonsmooth contact, Computer
+Methods in Applied Mechanics and Engineering 180, 1999): the acceleration that it causes counts with 2 beta = 1,
+gamma = 1, whatever the bulk's beta and gamma are, so that impact takes energy out and never puts any in. W makes both
+meet in one equation with a symmetric coupling to the soil.
+Generalised-alpha: Chung & Hulbert (1993), eqs 17 and 25; alpha_m = alpha_f = 0 is Newmark's scheme.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Forces, State, Weights
+
+
+class Scheme(Protocol):
+    """What a step needs to know of the time integration."""
+
+    @property
+    def needs_history(self) -> bool:
+        """Whether forces at the start of the step enter the residual."""
+        ...
+
+    def weights(self, dt: float) -> Weights: ...
+
+    def trial(self, before: State, t: float, dt: float, u: Array) -> State:
+        """State at the end of the step for the increment u, taken as bulk motion alone."""
+        ...
+
+    def balanced_at(self, before: State, end: State, dt: float) -> State:
+        """Where in the step forces are asked for: at its end, or at another state that follows from the end."""
+        ...
+
+    def past(self, start: Forces | None) -> Array | None:
+        """What the forces at the start of the step, where needed, add to the local residual."""
+        ...
+
+    def combine(self, forces: Forces, past: Array | None) -> Array:
+        """Local residual from the forces there and from `past`."""
+        ...
+
+    def mean(self, start: Array, balanced: Array) -> Array:
+        """Mean over the step, of second order, of what follows from the forces at its start and there."""
+        ...
+
+
+class Dynamic(Scheme, Protocol):
+    """What is known of the error of a scheme that goes through time."""
+
+    @property
+    def lag(self) -> float:
+        """Accelerations belong to a time this share of their step before its end."""
+        ...
+
+    @property
+    def stiff_lag(self) -> float:
+        """Velocities of motions that stiff forces prescribe are off by minus this times dt^2 times the jerk."""
+        ...
+
+    @property
+    def error_constant(self) -> float:
+        """Local error in displacements, relative to dt^2 times the change of the accelerations; see `local_error`."""
+        ...
+
+
+@dataclass(frozen=True)
+class Static:
+    """Equilibrium: no rates, no inertia."""
+
+    needs_history = False
+
+    def weights(self, dt: float) -> Weights:
+        return Weights(inertia=0.0, force=1.0, shift_v=0.0, shift_a=0.0)
+
+    def trial(self, before: State, t: float, dt: float, u: Array) -> State:
+        nothing = np.zeros_like(u)
+        return State(t, u, nothing, nothing.copy())
+
+    def balanced_at(self, before: State, end: State, dt: float) -> State:
+        return end
+
+    def mean(self, start: Array, balanced: Array) -> Array:
+        return 0.5 * (start + balanced)
+
+    def past(self, start: Forces | None) -> Array | None:
+        return None
+
+    def combine(self, forces: Forces, past: Array | None) -> Array:
+        return forces.force + forces.end
+
+
+@dataclass(frozen=True)
+class GeneralizedAlpha:
+    """Newmark's kinematics with weighted inertia (alpha_m) and weighted other bulk forces (alpha_f)."""
+
+    alpha_m: float
+    alpha_f: float
+    beta: float
+    gamma: float
+
+    @classmethod
+    def newmark(cls, beta: float = 0.25, gamma: float = 0.5) -> GeneralizedAlpha:
+        return cls(0.0, 0.0, beta, gamma)
+
+    @classmethod
+    def from_rho_inf(cls, rho_inf: float) -> GeneralizedAlpha:
+        """Second order; rho_inf is the spectral radius at infinite frequency: 1 keeps all, 0 kills it at once."""
+        alpha_m = (2.0 * rho_inf - 1.0) / (rho_inf + 1.0)
+        alpha_f = rho_inf / (rho_inf + 1.0)
+        return cls(alpha_m, alpha_f, 0.25 * (1.0 - alpha_m + alpha_f) ** 2, 0.5 - alpha_m + alpha_f)
+
+    @property
+    def needs_history(self) -> bool:
+        return self.alpha_m != 0.0 or self.alpha_f != 0.0
+
+    @property
+    def bulk_weight(self) -> float:
+        return 2.0 * self.beta / (1.0 - self.alpha_m)
+
+    @property
+    def lag(self) -> float:
+        return self.alpha_f - self.alpha_m
+
+    @property
+    def stiff_lag(self) -> float:
+        return self.beta - 0.5 * self.lag - 1.0 / 6.0
+
+    @property
+    def error_constant(self) -> float:
+        return abs(self.stiff_lag) + abs(self.gamma - self.lag - 0.5)
+
+    def weights(self, dt: float) -> Weights:
+        bulk = self.bulk_weight
+        return Weights(
+            inertia=bulk * (1.0 - self.alpha_m),
+            force=bulk * (1.0 - self.alpha_f),
+            shift_v=self.gamma / (self.beta * dt),
+            shift_a=1.0 / (self.beta * dt**2),
+        )
+
+    def trial(self, before: State, t: float, dt: float, u: Array) -> State:
+        a = (u - dt * before.v) / (self.beta * dt**2) - (0.5 / self.beta - 1.0) * before.a
+        v = before.v + dt * ((1.0 - self.gamma) * before.a + self.gamma * a)
+        return State(t, u, v, a)
+
+    def balanced_at(self, before: State, end: State, dt: float) -> State:
+        return end
+
+    def mean(self, start: Array, balanced: Array) -> Array:
+        return 0.5 * (start + balanced)
+
+    def past(self, start: Forces | None) -> Array | None:
+        if start is None:
+            return None
+        return self.bulk_weight * (self.alpha_m * start.inertia + self.alpha_f * start.force)
+
+    def combine(self, forces: Forces, past: Array | None) -> Array:
+        bulk = self.bulk_weight
+        out = bulk * (1.0 - self.alpha_m) * forces.inertia
+        out += bulk * (1.0 - self.alpha_f) * forces.force
+        out += forces.end
+        if past is not None:
+            out += past
+        return out
+
+    def split_contact(self, state: State, contact: Array, dt: float) -> State:
+        """The state with the contact's share `contact` [m/s2] out of its bulk acceleration and in full in its rate."""
+        a = state.a - contact / (2.0 * self.beta)
+        v = state.v + dt * (1.0 - self.gamma / (2.0 * self.beta)) * contact
+        return State(state.t, state.u, v, a)
+
+
+@dataclass(frozen=True)
+class Midpoint:
+    """The implicit midpoint rule: all forces in balance at the configuration half-way of the increments.
+
+    Rates at the end follow from u = dt (v(n) + v(n+1))/2, as in Newmark's scheme with beta = 1/4 and gamma = 1/2. With
+    inertia as in `riser.midpoint_inertia` linear and angular momentum are kept to round-off. Not for contact or
+    quasi-static soil, whose forces belong to the end.
+    """
+
+    needs_history = False
+    lag = stiff_lag = 0.0
+    error_constant = 1.0 / 12.0
+
+    def weights(self, dt: float) -> Weights:
+        return Weights(inertia=1.0, force=1.0, shift_v=2.0 / dt, shift_a=4.0 / dt**2)
+
+    def trial(self, before: State, t: float, dt: float, u: Array) -> State:
+        v = 2.0 / dt * u - before.v
+        return State(t, u, v, 2.0 / dt * (v - before.v) - before.a)
+
+    def balanced_at(self, before: State, end: State, dt: float) -> State:
+        return State(end.t - 0.5 * dt, 0.5 * end.u, end.u / dt, (end.v - before.v) / dt)
+
+    def past(self, start: Forces | None) -> Array | None:
+        return None
+
+    def combine(self, forces: Forces, past: Array | None) -> Array:
+        """Twice the balance, as the parts differentiate by half the increment."""
+        return 2.0 * (forces.inertia + forces.force + forces.end)
+
+    def mean(self, start: Array, balanced: Array) -> Array:
+        return balanced

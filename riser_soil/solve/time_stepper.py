@@ -1,0 +1,290 @@
+"""One accepted step after the other: solve, balance the energy, commit, and keep the rates for the next."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Energy, Forces, State, Work
+from riser_soil.core.roles import Adaptive, Carrying, Demanding, Foreseeing, Turning
+from riser_soil.core.system import System, total
+from riser_soil.errors import SolveError
+from riser_soil.solve.local_error import LocalError
+from riser_soil.solve.newton import Newton, NotConvergedError, Solution, Step
+from riser_soil.solve.predictor import Extrapolation
+from riser_soil.solve.riser_mass import RiserMass
+from riser_soil.solve.step_control import Control
+from riser_soil.solve.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
+
+WRONG_ROOT = 0.2  # of the energy in motion: what a step may make out of nothing
+ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away
+EASY = 6  # Newton iterations up to which a step that was cut may grow again
+
+
+@dataclass(frozen=True, eq=False)
+class Accepted:
+    """A solved step and its energy balance [J]; cuts: failed attempts before it.
+
+    turned: what each part, and "supports", dissipates and puts in. braking: what all forces, supports included, take
+    out of the motion; in exact time integration the kinetic energy loses that much.
+    """
+
+    t: float
+    dt: float
+    solution: Solution
+    cuts: int
+    energy: Energy
+    turned: dict[str, Work]
+    braking: float
+
+    @property
+    def dissipated(self) -> float:
+        return sum(work.dissipated for work in self.turned.values())
+
+    @property
+    def work(self) -> float:
+        return sum(work.external for work in self.turned.values())
+
+
+class March:
+    """A stage on its way.
+
+    before: the accepted state that the next step starts from, its increments zero; its rates leave out what contact
+    adds to them (see `time_scheme`). now: the same state as the riser moves; energy: stored in it [J].
+    wrong_root: share of the energy in motion that a step may make out of nothing.
+    """
+
+    def __init__(
+        self, system: System, newton: Newton, scheme: Scheme, before: State, wrong_root: float = WRONG_ROOT
+    ) -> None:
+        self.system, self.newton, self.scheme, self._wrong_root = system, newton, scheme, wrong_root
+        self._mass: RiserMass | None = None
+        self._error: LocalError | None = None
+        owners = (*system.model.fields, *system.model.parts)
+        self._foreseeing = [owner for owner in owners if isinstance(owner, Foreseeing)]
+        self._turning = [field for field in system.model.fields if isinstance(field, Turning)]
+        self._adaptive = [part for part in system.model.parts if isinstance(part, Adaptive)]
+        self.before = self.now = before
+        self.restart()
+        if not isinstance(scheme, Static):
+            self._mass = RiserMass(system)
+            self._start_rates(before)
+        self._carrying = [part for part in system.model.parts if isinstance(part, Carrying)]
+        self._begin_step()
+        self._history = self.system.forces(self.before) if self._needs_history else None
+        self.energy = system.energy(self.before)
+
+    def restart(self) -> None:
+        """Start anew from the configuration that the parts hold now."""
+        self._forces = self.system.forces(self.before)
+        self._past = Extrapolation(self.system.numbering.size, smooth=self.system.smooth)
+
+    def _start_rates(self, before: State) -> None:
+        """Accelerations in balance with the forces at the start of a dynamic stage; prescribed rates."""
+        assert self._mass is not None
+        rest = State(before.t, before.u, before.v.copy(), np.zeros_like(before.a))
+        self.system.prescribe(rest)
+        forces = self.system.forces(rest)
+        bulk, whole = (self._mass.accelerations(before.t, -f) for f in (forces.inertia + forces.force, total(forces)))
+        fixed = self.system.prescribed
+        self.before = State(before.t, rest.u, rest.v, np.where(fixed, rest.a, bulk))
+        self.now = State(before.t, rest.u, rest.v, np.where(fixed, rest.a, whole))
+        self._forces = self.system.forces(self.now)
+
+    def depends_on(self, control: Control) -> bool:
+        """Whether loads or supports change until the stage's end; in statics shorter steps are easier only then."""
+        end = State(control.end, self.before.u.copy(), self.before.v.copy(), self.before.a.copy())
+        change = total(self.system.forces(end)) - total(self.system.forces(self.before))
+        self.system.prescribe(end)
+        changed = bool(np.any(change != 0.0) or np.any(end.u != 0.0))
+        return bool(self.system.comm.allreduce(changed, MPI.LOR))
+
+    def advance(self, control: Control, most_cuts: int | None = None) -> Accepted:
+        """Take one step, cut as often as it needs; SolveError when it can't be cut any more, or may not."""
+        if isinstance(control, Demanding) and self._error is None:
+            self._error = self._new_error()
+        cuts = 0
+        while True:
+            try:
+                return self._account(self._solve(control.target, control.dt), control, cuts)
+            except NotConvergedError as failure:
+                cuts += 1
+                if cuts - 1 == most_cuts or not control.cut():
+                    raise SolveError(
+                        f"no convergence at t = {control.target:.6g} with the smallest step {control.dt:.3g}: {failure}"
+                    ) from failure
+
+    def next_step(self, control: Control) -> Step:
+        """The step to be solved next."""
+        return self._step(control.target, control.dt)
+
+    def _step(self, t: float, dt: float) -> Step:
+        start = self._start(dt)
+        history = self._history if start is self.before else self.system.forces(start)
+        return Step(self.scheme, start, t, dt, history, self._guess(t, dt))
+
+    def _new_error(self) -> LocalError:
+        assert self._mass is not None
+        assert isinstance(self.scheme, GeneralizedAlpha | Midpoint)
+        return LocalError(self.system, self.scheme, self._mass)
+
+    def _start(self, dt: float) -> State:
+        """The accepted state as a step of size dt starts from it."""
+        return self.before if self._error is None else self._error.start(self.before, dt)
+
+    def _solve(self, t: float, dt: float) -> Solution:
+        step = self._step(t, dt)
+        try:
+            solution = self.newton.solve(step)
+        except NotConvergedError:
+            if not self._renew_pattern():
+                raise
+            solution = self.newton.solve(step)
+        if isinstance(self.scheme, Static):
+            self.newton.require_stable(solution)
+        return solution
+
+    def _guess(self, t: float, dt: float) -> Array:
+        """The motion of the last steps continued, as fields and parts improve it."""
+        guess = self._past.increments(dt)
+        for owner in self._foreseeing:
+            guess = owner.improve(State(t, guess, self.before.v, self.before.a))
+        return guess
+
+    def _renew_pattern(self) -> bool:
+        """Rebuild what the motion has outgrown; whether anything was."""
+        outgrown = [part for part in self._adaptive if part.outgrown]
+        if not self.system.comm.allreduce(bool(outgrown), MPI.LOR):
+            return False
+        for part in outgrown:
+            part.rebuild(self.before)
+        self.newton.renew()
+        return True
+
+    def _account(self, solution: Solution, control: Control, cuts: int) -> Accepted:
+        state = solution.state
+        turned = self.system.work(self.before, state)
+        reactions = self.scheme.mean(*(self.system.reactions(f) for f in (self._forces, solution.forces)))
+        supports = self.system.work_of_supports(reactions, state.u)
+        start = self._forces if self._history is None else self._history
+        bulk = self.scheme.mean(start.force, solution.forces.force)
+        against = self.system.work_against(bulk, solution.forces.end, state.u)
+        braking = against - supports - sum(work.inertial for work in turned.values())
+        turned["supports"] = Work(external=supports)
+        step = Accepted(control.target, control.dt, solution, cuts, self.system.energy(state), turned, braking)
+        self._refuse_wrong_root(step)
+        self._refuse_inaccurate(step, control)
+        return step
+
+    def _refuse_wrong_root(self, step: Accepted) -> None:
+        """A dynamic step that adds much to the energy in motion out of nothing is a root of the equations far from the
+        motion that it continues, or too long for it: NotConvergedError, so that it is cut.
+        """
+        if isinstance(self.scheme, Static):
+            return
+        was, now = self.energy, step.energy
+        appeared = now.total - was.total + step.dissipated - step.work
+        in_motion = was.kinetic + was.strain + max(0.0, was.potential - now.potential) + abs(step.work)
+        # Over an element's length the least force that counts does negligible work, as where a motion starts from rest.
+        negligible = ENERGY_ROUND_OFF * abs(was.potential) + self.newton.settings.floor * self.system.lever
+        if appeared > self._wrong_root * in_motion + negligible:
+            appeared += self._kinetic(step) - now.kinetic
+        if appeared > self._wrong_root * in_motion + negligible:
+            raise NotConvergedError(
+                f"the step's solution makes {appeared:.3g} J out of nothing, beside {in_motion:.3g} J in motion"
+            )
+
+    def _kinetic(self, step: Accepted) -> float:
+        """Kinetic energy [J] after a step, not yet committed, as the riser moves: in the step's own energy contact has
+        accelerated it as the bulk's forces do, so that it speeds up where it rests.
+        """
+        if self.system.smooth or self._mass is None or not isinstance(self.scheme, GeneralizedAlpha):
+            return step.energy.kinetic
+        contact = self._mass.accelerations(self.before.t, -step.solution.forces.end)
+        return self._mass.kinetic_energy(self.scheme.split_contact(step.solution.state, contact, step.dt))
+
+    def _refuse_inaccurate(self, step: Accepted, control: Control) -> None:
+        """NotConvergedError for a step whose local error is too large, so that it is cut."""
+        if self._error is None or not isinstance(control, Demanding):
+            return
+        error = self._error.of(self._start(step.dt), self.now, step.solution, step.dt)
+        if fault := control.fault(error):
+            raise NotConvergedError(fault)
+
+    def commit(self, step: Accepted, control: Control) -> None:
+        """Accept the step and get ready for the next."""
+        state, forces = step.solution.state, step.solution.forces
+        self.system.commit(state)
+        start = self._start(step.dt)
+        self.before, self.now = self._rates_after(step)
+        if self._error is not None:
+            self._error.accept(start, self.before, step.dt)
+        self._begin_step()
+        self._forces, self._history = forces, self._forces_after(step) if self._needs_history else None
+        self.energy = self._energy_after(step)
+        self._past.accept(state.u, step.dt)
+        control.accept(easy=step.solution.iterations <= EASY)
+        self._renew_pattern()
+
+    def _rates_after(self, step: Accepted) -> tuple[State, State]:
+        """The state just committed, increments zero: with the bulk's rates alone, and as the riser moves."""
+        solved, forces = step.solution.state, step.solution.forces
+        state = State(solved.t, np.zeros_like(solved.u), solved.v, solved.a)
+        if isinstance(self.scheme, Midpoint):
+            now = self._in_balance(self._with_momentum(state))
+            return now, now
+        if self.system.smooth or self._mass is None or not isinstance(self.scheme, GeneralizedAlpha):
+            return state, state
+        contact = self._mass.accelerations(state.t, -forces.end)
+        bulk = self.scheme.split_contact(state, contact, step.dt)
+        return bulk, State(bulk.t, bulk.u, bulk.v, bulk.a + contact)
+
+    def _begin_step(self) -> None:
+        for part in self._carrying:
+            part.begin(self.before)
+
+    def _with_momentum(self, state: State) -> State:
+        """An accepted state with the rates that have the momentum of the step's end."""
+        assert self._mass is not None
+        excess = np.zeros_like(state.v)
+        for part in self._carrying:
+            part.add_excess(state, excess)
+        return State(state.t, state.u, state.v + self._mass.accelerations(state.t, excess), state.a)
+
+    def _in_balance(self, state: State) -> State:
+        """An accepted state with the accelerations that its forces cause, as the scheme's own balance is elsewhere."""
+        assert self._mass is not None
+        held = np.where(self.system.prescribed, state.a, 0.0)
+        forces = self.system.forces(State(state.t, state.u, state.v, held))
+        return State(state.t, state.u, state.v, held + self._mass.accelerations(state.t, -total(forces)))
+
+    def _energy_after(self, step: Accepted) -> Energy:
+        """Stored energy of the accepted state: the step's, but kinetic as the riser moves."""
+        as_solved = self.system.smooth and not isinstance(self.scheme, Midpoint)
+        if as_solved or self._mass is None:
+            return step.energy
+        return replace(step.energy, kinetic=self._mass.kinetic_energy(self.now))
+
+    @property
+    def _needs_history(self) -> bool:
+        """Whether the scheme weighs the forces at the start, or contact has changed the rates since they were found."""
+        if not isinstance(self.scheme, GeneralizedAlpha):
+            return False
+        return self.scheme.needs_history or not self.system.smooth
+
+    def _forces_after(self, step: Accepted) -> Forces:
+        """Bulk forces at the state just accepted, in its own axes: the step's, unless contact has changed the rates."""
+        if not self.system.smooth:
+            return self.system.forces(self.before)
+        forces, u = step.solution.forces, step.solution.state.u
+        return Forces(*(self._in_new_axes(f, u) for f in (forces.inertia, forces.force, forces.end)))
+
+    def _in_new_axes(self, conjugate: Array, increments: Array) -> Array:
+        out = conjugate.copy()
+        for field in self._turning:
+            at = slice(field.offset, field.offset + field.size)
+            out[at] = field.in_new_axes(conjugate[at], increments[at])
+        return out
