@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil.assembly import World, build
+from riser_soil.assembly import Assembly, build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Clock
@@ -18,7 +18,7 @@ from riser_soil.run import run_stage
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
 from riser_soil.solve.dynamic_relaxation import Relaxed
-from riser_soil.solve.time_stepper import Accepted, March
+from riser_soil.solve.time_stepper import Accepted, TimeStepper
 
 SCENE = Path(__file__).parent.parent / "tests" / "scenes" / "tank.yaml"
 DURATION = 30.0  # s
@@ -31,7 +31,7 @@ TOLERANCES = (3e-2, 1e-2, 3e-3, 1e-3)  # m
 class Course:
     """What the accepted steps of a stage tell of the riser."""
 
-    world: World
+    assembly: Assembly
     t: list[float] = field(default_factory=list)
     dt: list[float] = field(default_factory=list)
     tension: list[float] = field(default_factory=list)
@@ -39,29 +39,29 @@ class Course:
     cuts: int = 0
     iterations: int = 0
 
-    def begin_stage(self, stage: Stage, march: March) -> None:
-        self._zone = TouchdownZone(self.world)
+    def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
+        self._zone = TouchdownZone(self.assembly)
 
     def relaxed(self, relaxed: Relaxed) -> None:
         pass
 
-    def record(self, march: March, step: Accepted, last: bool) -> None:
+    def record(self, stepper: TimeStepper, step: Accepted, last: bool) -> None:
         self.t.append(step.t)
         self.dt.append(step.dt)
-        self.tension.append(float(riser_snapshot(self.world, march).effective_tension[-1]))
-        self.touchdown.append(self._zone.look(march.now).touchdown_arc)
+        self.tension.append(float(riser_snapshot(self.assembly, stepper).effective_tension[-1]))
+        self.touchdown.append(self._zone.look(stepper.now).touchdown_arc)
         self.cuts += step.cuts
-        self.iterations = march.newton.iterations
+        self.iterations = stepper.newton.iterations
 
 
 def course(*overrides: str, scene_file: Path = SCENE) -> Course:
     """The last stage of a scene, without output times."""
     scene = read_scene(scene_file, ["output={}", *overrides])
-    world = build(scene, MPI.COMM_SELF)
-    before = State.at_rest(0.0, world.size)
+    assembly = build(scene, MPI.COMM_SELF)
+    before = State.at_rest(0.0, assembly.size)
     for stage in scene.stages:
-        seen = Course(world)
-        before = run_stage(world, stage, before, seen, Clock.new())
+        seen = Course(assembly)
+        before = run_stage(assembly, stage, before, seen, Clock.new())
     return seen
 
 

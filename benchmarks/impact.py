@@ -14,7 +14,7 @@ import numpy as np
 from mpi4py import MPI
 
 from benchmarks.impact_methods import Averaged, DiscreteGradient
-from riser_soil.assembly import World, build
+from riser_soil.assembly import Assembly, build
 from riser_soil.assembly.scales import contact_radius
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
@@ -28,7 +28,7 @@ from riser_soil.seabed.grounds import Plane
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha
-from riser_soil.solve.time_stepper import March
+from riser_soil.solve.time_stepper import TimeStepper
 from tests.coupled_scenes import Mapping
 from tests.falling_pipe import DROP, LENGTH, WEIGHT, Energies, flat, tilted
 
@@ -88,42 +88,43 @@ def outcome(method: Method, fall: Fall, k: float, dt: float, duration: float = D
 
 
 def _take(method: Method, scene: Mapping, energies: Energies) -> None:
-    world = build(scene_from_mapping(scene), MPI.COMM_SELF)
-    stage = world.scene.stages[0]
+    assembly = build(scene_from_mapping(scene), MPI.COMM_SELF)
+    stage = assembly.scene.stages[0]
     assert isinstance(stage, DynamicStage)
     assert isinstance(stage.time_step, float)
-    system = System(world.comm, _model(world, stage, method[1]), Clock.new())
-    solver = world.scene.solver
-    newton = Newton(system, NewtonSettings(solver.tolerance, solver.max_iterations, world.scales.force_floor))
+    system = System(assembly.comm, _model(assembly, stage, method[1]), Clock.new())
+    solver = assembly.scene.solver
+    newton = Newton(system, NewtonSettings(solver.tolerance, solver.max_iterations, assembly.scales.force_floor))
     try:
-        rest = State.at_rest(0.0, world.size)
-        march = March(system, newton, SCHEMES[method[0]], rest, wrong_root=ALL_WELCOME)
-        energies.begin_stage(stage, march)
+        rest = State.at_rest(0.0, assembly.size)
+        stepper = TimeStepper(system, newton, SCHEMES[method[0]], rest, largest_gain=ALL_WELCOME)
+        energies.begin_stage(stage, stepper)
         control = StepControl(stage.duration, stage.time_step, SHORTEST * stage.time_step)
         while not control.finished:
-            step = march.advance(control)
-            march.commit(step, control)
-            energies.record(march, step, control.finished)
+            step = stepper.advance(control)
+            stepper.commit(step, control)
+            energies.record(stepper, step, control.finished)
     finally:
         newton.destroy()
         system.destroy()
 
 
-def _model(world: World, stage: DynamicStage, contact: str) -> Model:
+def _model(assembly: Assembly, stage: DynamicStage, contact: str) -> Model:
     """The stage's parts, its contact replaced."""
-    model = world.begin(stage)
-    parts = [part for part in model.parts if part is not world.seabed]
-    return Model(model.fields, [*parts, _contact(world, contact)])
+    model = assembly.begin(stage)
+    parts = [part for part in model.parts if part is not assembly.seabed]
+    return Model(model.fields, [*parts, _contact(assembly, contact)])
 
 
-def _contact(world: World, contact: str) -> Part:
-    assert world.seabed is not None
+def _contact(assembly: Assembly, contact: str) -> Part:
+    assert assembly.seabed is not None
     if contact == FULLY_IMPLICIT:
-        return world.seabed
+        return assembly.seabed
     if contact == AVERAGED:
-        return Averaged(world.seabed)
-    law = DiscreteGradient(Penalty(world.contact_stiffness["seabed"], 1e-3))
-    return SeabedContact(world.line, contact_radius(world.scene, world.elements), Plane.level(-DROP), law, gauss(5))
+        return Averaged(assembly.seabed)
+    law = DiscreteGradient(Penalty(assembly.contact_stiffness["seabed"], 1e-3))
+    radius = contact_radius(assembly.scene, assembly.elements)
+    return SeabedContact(assembly.line, radius, Plane.level(-DROP), law, gauss(5))
 
 
 def over_all(method: Method, pairs: Iterable[tuple[float, float]]) -> list[Outcome]:

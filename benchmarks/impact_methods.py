@@ -46,8 +46,8 @@ class Averaged:
     def commit(self, state: State) -> None:
         self._contact.commit(state)
 
-    def improve(self, guess: State) -> Array:
-        return self._contact.improve(guess)
+    def predict(self, guess: State) -> Array:
+        return self._contact.predict(guess)
 
 
 @dataclass(frozen=True)
@@ -65,13 +65,13 @@ class DiscreteGradient:
     def start(self) -> float:
         return self.penalty.start
 
-    def fresh(self, shape: tuple[int, ...]) -> Array:
+    def initial_history(self, shape: tuple[int, ...]) -> Array:
         return np.full((*shape, 1), -1e3)
 
-    def touched(self, penetration: Array, history: Array) -> BoolArray:
+    def active(self, penetration: Array, history: Array) -> BoolArray:
         return np.maximum(penetration, history[..., 0]) > -self.penalty.smoothing
 
-    def respond(self, penetration: Array, history: Array) -> tuple[Array, Array]:
+    def force_and_stiffness(self, penetration: Array, history: Array) -> tuple[Array, Array]:
         before = history[..., 0]
         way = penetration - before
         near = np.abs(way) < NEAR
@@ -85,5 +85,5 @@ class DiscreteGradient:
     def stored(self, penetration: Array, history: Array) -> Array:
         return self.penalty.potential(penetration)
 
-    def renewed(self, penetration: Array, history: Array) -> Array:
+    def update(self, penetration: Array, history: Array) -> Array:
         return np.asarray(penetration[..., None])

@@ -5,6 +5,7 @@ Everything is measured in turn, step by step, so that a machine whose speed drif
 
 from __future__ import annotations
 
+import functools
 import tempfile
 import time
 from collections import defaultdict
@@ -49,8 +50,9 @@ def measure(dimension: int, elements: int) -> dict[str, float]:
     stage = surging(dimension, elements)
     bench = Bench(stage)
     taken = defaultdict[str, list[float]](list)
-    with tempfile.TemporaryDirectory() as folder, Observer.open(stage.world, Clock.new(), Path(folder), True) as seen:
-        seen.begin_stage(stage.stage, stage.march)
+    opened = functools.partial(Observer.open, stage.assembly, Clock.new(), force=True)
+    with tempfile.TemporaryDirectory() as folder, opened(Path(folder)) as seen:
+        seen.begin_stage(stage.stage, stage.stepper)
         for _ in range(STEPS):
             for name, action in bench.actions().items():
                 taken[name].append(1e6 * timed(action))
@@ -95,7 +97,7 @@ class Bench:
         """bare: force, tangent, and factorisation with one solve. full: Newton's method with a new tangent in each
         iteration. snes: as a run solves it. plain: the same in a plain loop.
         """
-        step = self.stage.march.next_step(self.stage.control)
+        step = self.stage.stepper.next_step(self.stage.control)
         return {
             "bare": self._bare,
             "full": lambda: self._solve_fully(step),
@@ -104,8 +106,8 @@ class Bench:
         }
 
     def _bare(self) -> None:
-        system, march = self.system, self.stage.march
-        state, weights = State(0.0, self._tiny.copy(), march.before.v, march.before.a), march.scheme.weights(0.1)
+        system, stepper = self.system, self.stage.stepper
+        state, weights = State(0.0, self._tiny.copy(), stepper.before.v, stepper.before.a), stepper.scheme.weights(0.1)
         forces = Forces.zeros(len(self._tiny))
         for part in system.model.parts:
             part.residual(state, forces)

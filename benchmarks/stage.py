@@ -11,7 +11,7 @@ from statistics import median
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil.assembly import World, build
+from riser_soil.assembly import Assembly, build
 from riser_soil.assembly.stage import scheme_of
 from riser_soil.core.part import State
 from riser_soil.core.system import Clock, System
@@ -20,37 +20,37 @@ from riser_soil.run import steps_of
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
 from riser_soil.solve.newton import Newton, NewtonSettings
-from riser_soil.solve.time_stepper import March
+from riser_soil.solve.time_stepper import TimeStepper
 
 
 class TimedStage:
-    """One stage's system and march; `iterations` and `seconds` of all its Newton solves."""
+    """One stage's system and time stepper; `iterations` and `seconds` of all its Newton solves."""
 
-    def __init__(self, world: World, stage: Stage, before: State, clock: Clock) -> None:
-        self.world, self.stage = world, stage
-        solver = world.scene.solver
-        self.system = System(world.comm, world.begin(stage), clock)
-        settings = NewtonSettings(solver.tolerance, solver.max_iterations, world.scales.force_floor)
+    def __init__(self, assembly: Assembly, stage: Stage, before: State, clock: Clock) -> None:
+        self.assembly, self.stage = assembly, stage
+        solver = assembly.scene.solver
+        self.system = System(assembly.comm, assembly.begin(stage), clock)
+        settings = NewtonSettings(solver.tolerance, solver.max_iterations, assembly.scales.force_floor)
         self.newton = Newton(self.system, settings)
-        self.march = March(self.system, self.newton, scheme_of(stage), replace(before, t=0.0))
-        self.control = steps_of(world, stage, self.march)
+        self.stepper = TimeStepper(self.system, self.newton, scheme_of(stage), replace(before, t=0.0))
+        self.control = steps_of(assembly, stage, self.stepper)
         self.iterations, self.seconds = 0, 0.0
 
     def walk(self, steps: int | None = None) -> State:
         """Take this many steps, or all."""
         while not self.control.finished and (steps is None or steps > 0):
             began = time.perf_counter()
-            step = self.march.advance(self.control)
+            step = self.stepper.advance(self.control)
             self.seconds += time.perf_counter() - began
             self.iterations += step.solution.iterations
-            self.march.commit(step, self.control)
+            self.stepper.commit(step, self.control)
             self._taken = step
             steps = None if steps is None else steps - 1
-        return self.march.before
+        return self.stepper.before
 
     def tell(self, observer: Observer) -> None:
         """Record the step just taken."""
-        observer.record(self.march, self._taken, last=False)
+        observer.record(self.stepper, self._taken, last=False)
 
     def destroy(self) -> None:
         self.newton.destroy()
@@ -60,13 +60,13 @@ class TimedStage:
 def last_stage(scene_file: Path, overrides: tuple[str, ...], clock: Clock) -> TimedStage:
     """The last stage of a scene, all before it computed."""
     scene = read_scene(scene_file, overrides)
-    world = build(scene, MPI.COMM_SELF)
-    before = State.at_rest(0.0, world.size)
+    assembly = build(scene, MPI.COMM_SELF)
+    before = State.at_rest(0.0, assembly.size)
     for stage in scene.stages[:-1]:
-        timed = TimedStage(world, stage, before, Clock.new())
+        timed = TimedStage(assembly, stage, before, Clock.new())
         before = timed.walk()
         timed.destroy()
-    return TimedStage(world, scene.stages[-1], before, clock)
+    return TimedStage(assembly, scene.stages[-1], before, clock)
 
 
 def typical_seconds(action: Callable[[], object], repeats: int) -> float:

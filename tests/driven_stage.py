@@ -11,7 +11,7 @@ import pytest
 from mpi4py import MPI
 from scipy.sparse import csr_matrix
 
-from riser_soil.assembly import World, build
+from riser_soil.assembly import Assembly, build
 from riser_soil.assembly.stage import scheme_of
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
@@ -24,13 +24,13 @@ from riser_soil.solve.dynamic_relaxation import Relaxed
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_scheme import Static
-from riser_soil.solve.time_stepper import Accepted, March
+from riser_soil.solve.time_stepper import Accepted, TimeStepper
 from tests.coupled_scenes import Mapping
 
 Watch = Callable[[System, Accepted], None]
 
 
-def built(mapping: Mapping) -> World:
+def built(mapping: Mapping) -> Assembly:
     """The parts of a scene, on this process alone."""
     return build(scene_from_mapping(mapping), MPI.COMM_SELF)
 
@@ -38,60 +38,60 @@ def built(mapping: Mapping) -> World:
 @contextmanager
 def before_commit(watch: Watch | None) -> Iterator[None]:
     """Show every accepted step to a function before it is committed."""
-    usual = March.commit
+    usual = TimeStepper.commit
 
-    def commit(march: March, step: Accepted, control: Control) -> None:
+    def commit(stepper: TimeStepper, step: Accepted, control: Control) -> None:
         if watch is not None:
-            watch(march.system, step)
-        usual(march, step, control)
+            watch(stepper.system, step)
+        usual(stepper, step, control)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(March, "commit", commit)
+        patch.setattr(TimeStepper, "commit", commit)
         yield
 
 
 class Watcher(Observer):
     """Shows every committed step to a function; writes nothing."""
 
-    def __init__(self, after: Callable[[March, Accepted], None] | None = None) -> None:
+    def __init__(self, after: Callable[[TimeStepper, Accepted], None] | None = None) -> None:
         self._after = after
         self.relaxations = 0
 
-    def begin_stage(self, stage: Stage, march: March) -> None:
-        self.energy_at_start = march.energy
+    def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
+        self.energy_at_start = stepper.energy
 
-    def record(self, march: March, step: Accepted, last: bool) -> None:
+    def record(self, stepper: TimeStepper, step: Accepted, last: bool) -> None:
         if self._after is not None:
-            self._after(march, step)
+            self._after(stepper, step)
 
     def relaxed(self, relaxed: Relaxed) -> None:
         self.relaxations += 1
 
 
-def take(world: World, stage: Stage, before: State | None = None, watch: Watch | None = None) -> State:
+def take(assembly: Assembly, stage: Stage, before: State | None = None, watch: Watch | None = None) -> State:
     """Take a stage to its end; the state that it leaves, increments zero."""
-    rest = State.at_rest(0.0, world.size) if before is None else before
+    rest = State.at_rest(0.0, assembly.size) if before is None else before
     with before_commit(watch):
-        return run_stage(world, stage, rest, Watcher(), Clock.new())
+        return run_stage(assembly, stage, rest, Watcher(), Clock.new())
 
 
 class FirstStep:
-    """The first step of a world's last stage, all stages before it taken: residual and matrix as functions of
+    """The first step of a scene's last stage, all stages before it taken: residual and matrix as functions of
     the system's unknowns x (free,).
     """
 
-    def __init__(self, world: World) -> None:
-        self.world = world
-        *first, stage = world.scene.stages
-        before = State.at_rest(0.0, world.size)
+    def __init__(self, assembly: Assembly) -> None:
+        self.assembly = assembly
+        *first, stage = assembly.scene.stages
+        before = State.at_rest(0.0, assembly.size)
         for earlier in first:
-            before = take(world, earlier, before)
-        self.system = System(world.comm, world.begin(stage), Clock.new())
+            before = take(assembly, earlier, before)
+        self.system = System(assembly.comm, assembly.begin(stage), Clock.new())
         self.scheme = scheme_of(stage)
-        solver = world.scene.solver
-        settings = NewtonSettings(solver.tolerance, solver.max_iterations, world.scales.force_floor)
+        solver = assembly.scene.solver
+        settings = NewtonSettings(solver.tolerance, solver.max_iterations, assembly.scales.force_floor)
         newton = Newton(self.system, settings)
-        self._before = March(self.system, newton, self.scheme, replace(before, t=0.0)).before
+        self._before = TimeStepper(self.system, newton, self.scheme, replace(before, t=0.0)).before
         newton.destroy()
         self._dt = float(stage.time_step) if isinstance(stage, DynamicStage) else 1.0
         self._start = None if isinstance(self.scheme, Static) else self.system.forces(self._before)

@@ -9,7 +9,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.scene.stages import Stage
 from riser_soil.solve.dynamic_relaxation import Relaxed
-from riser_soil.solve.time_stepper import Accepted, March
+from riser_soil.solve.time_stepper import Accepted, TimeStepper
 from tests.coupled_scenes import Mapping
 
 WEIGHT, LENGTH, DROP = 700.0, 20.0, 1.0  # N/m, m, m
@@ -63,13 +63,13 @@ class Energies:
         self._rows: list[tuple[float, float, float, float]] = []
         self.cuts = 0
 
-    def begin_stage(self, stage: Stage, march: March) -> None:
-        self._begun = march.energy.total
+    def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
+        self._begun = stepper.energy.total
 
-    def record(self, march: March, step: Accepted, last: bool) -> None:
+    def record(self, stepper: TimeStepper, step: Accepted, last: bool) -> None:
         """A step just committed; its kinetic energy is that of the pipe as it moves."""
         by_contact = step.turned["seabed"].dissipated
-        self._rows.append((march.energy.total, step.work, step.dissipated, by_contact))
+        self._rows.append((stepper.energy.total, step.work, step.dissipated, by_contact))
         self.cuts += step.cuts
 
     def relaxed(self, relaxed: Relaxed) -> None:

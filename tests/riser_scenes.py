@@ -18,7 +18,7 @@ from riser_soil.results.observer import riser_snapshot
 from riser_soil.run import run_stage
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
-from riser_soil.solve.time_stepper import Accepted, March
+from riser_soil.solve.time_stepper import Accepted, TimeStepper
 from tests.coupled_scenes import Mapping
 from tests.driven_stage import Watcher
 
@@ -91,21 +91,21 @@ class Told:
 
 def tell(scene: Mapping | Scene) -> list[Told]:
     """Take all stages of a scene without files."""
-    world = build(scene if isinstance(scene, Scene) else scene_from_mapping(scene), MPI.COMM_SELF)
-    before, told = State.at_rest(0.0, world.size), list[Told]()
-    for stage in world.scene.stages:
+    assembly = build(scene if isinstance(scene, Scene) else scene_from_mapping(scene), MPI.COMM_SELF)
+    before, told = State.at_rest(0.0, assembly.size), list[Told]()
+    for stage in assembly.scene.stages:
         now = Told()
 
-        def watch(march: March, step: Accepted, now: Told = now) -> None:
+        def watch(stepper: TimeStepper, step: Accepted, now: Told = now) -> None:
             now.t.append(step.t)
             now.dt.append(step.dt)
             now.cuts.append(step.cuts)
             now.energy.append(step.energy.total)
             now.work.append(step.work - step.dissipated)
-            now.position.append(world.line.positions3(march.now))
-            now.last = riser_snapshot(world, march)
+            now.position.append(assembly.line.positions3(stepper.now))
+            now.last = riser_snapshot(assembly, stepper)
 
-        before = run_stage(world, stage, before, Watcher(watch), Clock.new())
+        before = run_stage(assembly, stage, before, Watcher(watch), Clock.new())
         told.append(now)
     return told
 

@@ -17,19 +17,19 @@ def through(*turns: float, steps: int = 80) -> Array:
 
 def after(law: NormalLaw, path: Array) -> Array:
     """History (1, nh) of one point at the end of a path."""
-    history = law.fresh((1,))
+    history = law.initial_history((1,))
     for z in path:
-        history = law.renewed(np.array([z]), history)
+        history = law.update(np.array([z]), history)
     return history
 
 
 def forces(law: NormalLaw, path: Array, history: Array | None = None) -> Array:
     """Force at each point of a path that is taken step by step."""
-    history = law.fresh((1,)) if history is None else history
+    history = law.initial_history((1,)) if history is None else history
     found = np.empty(path.size)
     for i, z in enumerate(path):
-        found[i] = law.respond(np.array([z]), history)[0][0]
-        history = law.renewed(np.array([z]), history)
+        found[i] = law.force_and_stiffness(np.array([z]), history)[0][0]
+        history = law.update(np.array([z]), history)
     return found
 
 
@@ -40,4 +40,4 @@ def work(path: Array, force: Array, begin: float = 0.0) -> Array:
 
 def at(law: NormalLaw, z: Array, history: Array) -> tuple[Array, Array]:
     """Force and slope of one step from a history to each of some penetrations."""
-    return law.respond(z, np.repeat(history, z.size, axis=0))
+    return law.force_and_stiffness(z, np.repeat(history, z.size, axis=0))

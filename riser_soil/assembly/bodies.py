@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from riser_soil.sea.buoyancy import Dry
     from riser_soil.sea.pipe import Pipe
     from riser_soil.sea.still_water import Resistance
-    from riser_soil.sea.wetting import Surface, Wetting
+    from riser_soil.sea.wetting import WaterSurface, Wetting
 
 
 class Body(Protocol):
@@ -54,11 +54,11 @@ class Body(Protocol):
         """Mass of the water in its place (ne,)."""
         ...
 
-    def wetting(self, surface: Surface) -> Wetting:
+    def wetting(self, surface: WaterSurface) -> Wetting:
         """How wet its stations are."""
         ...
 
-    def dry(self, surface: Surface, gravity: float) -> Dry:
+    def dry(self, surface: WaterSurface, gravity: float) -> Dry:
         """What of it is dry."""
         ...
 
@@ -103,12 +103,12 @@ class PipeInWater:
     def displaced(self) -> Array:
         return np.asarray(self.rho * 0.25 * np.pi * self.elements.outer_diameter**2)
 
-    def wetting(self, surface: Surface) -> Wetting:
+    def wetting(self, surface: WaterSurface) -> Wetting:
         from riser_soil.sea.wetting import Wetting
 
         return Wetting(self.pipe, surface)
 
-    def dry(self, surface: Surface, gravity: float) -> Dry:
+    def dry(self, surface: WaterSurface, gravity: float) -> Dry:
         from riser_soil.sea.dry_pipe import DryPipe
 
         return DryPipe(self.pipe, surface, gravity * self.displaced)
@@ -150,13 +150,13 @@ class ModulesInWater:
     def displaced(self) -> Array:
         return self.rho * self._of("volume")
 
-    def wetting(self, surface: Surface) -> Wetting:
+    def wetting(self, surface: WaterSurface) -> Wetting:
         from riser_soil.sea.modules import diameters
         from riser_soil.sea.wetting import Wetting
 
         return Wetting(self.pipe, surface, diameters(self.modules)[:, None])
 
-    def dry(self, surface: Surface, gravity: float) -> Dry:
+    def dry(self, surface: WaterSurface, gravity: float) -> Dry:
         from riser_soil.sea.buoyancy import DryStations
 
         return DryStations(self.pipe, self.wetting(surface), gravity * self.displaced)

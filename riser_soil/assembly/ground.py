@@ -17,8 +17,7 @@ from riser_soil.scene.contact import Contact as ContactScene
 from riser_soil.scene.plane import vertical_plane
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed, Seabed, SpringSeabed
-from riser_soil.scene.soil import GeneratedMesh, MeshFile
-from riser_soil.scene.soil import Soil as SoilScene
+from riser_soil.scene.soil import GeneratedMesh, MeshFile, SoilScene
 
 if TYPE_CHECKING:
     from riser_soil.contact.friction import Friction
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
     from riser_soil.seabed.grounds import Ground
     from riser_soil.soil.grid import Grid
     from riser_soil.soil.soil import Soil
-    from riser_soil.soil.surface import Surface
+    from riser_soil.soil.surface import SoilTop
 
 GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within it, three leave ten times the error
 # Of the outer diameter: a penalty's corner, sharper ones cost Newton iterations; the slide that mobilises friction.
@@ -64,7 +63,7 @@ def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Gr
 
 
 def soil_contact_of(
-    scene: Scene, settings: ContactScene, line: Line, elements: Elements, surface: Surface, stiffness: float
+    scene: Scene, settings: ContactScene, line: Line, elements: Elements, surface: SoilTop, stiffness: float
 ) -> SoilContact:
     """Contact of the riser with the soil; evaluated on the first rank. stiffness: of the penalty [N/m2]."""
     from riser_soil.contact.law import Penalty

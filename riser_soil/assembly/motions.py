@@ -11,14 +11,14 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.riser.ends import End, Motion, Turning
 from riser_soil.riser.line import Line
-from riser_soil.scene.motions import Arc, Harmonic, Rotation, Table, Vessel, Way
+from riser_soil.scene.motions import ArcMotion, Harmonic, Rotation, Table, Vessel, Way
 from riser_soil.scene.quantities import Vector
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels
-    from riser_soil.motion.carried import Six
+    from riser_soil.motion.carried import SixDegreeMotion
 
 
 def vessels_of(scene: Scene) -> Vessels | None:
@@ -53,9 +53,9 @@ def set_motion(end: End, name: str, origin: Array, stage: Stage, vessels: Vessel
 
 def _move(end: End, origin: Array, target: Vector | None) -> None:
     if target is not None:
-        from riser_soil.motion.move import Move
+        from riser_soil.motion.move import SmoothMove
 
-        end.motion = Move(origin, np.asarray(target))
+        end.motion = SmoothMove(origin, np.asarray(target))
 
 
 def _set(end: End, name: str, origin: Array, stage: Stage, way: Way, vessels: Vessels | None) -> None:
@@ -63,7 +63,7 @@ def _set(end: End, name: str, origin: Array, stage: Stage, way: Way, vessels: Ve
     match way:
         case Harmonic():
             end.motion = _harmonic(origin, way)
-        case Arc():
+        case ArcMotion():
             end.motion = _arc(origin, way)
         case Rotation():
             end.turning = _rocking(way)
@@ -72,7 +72,7 @@ def _set(end: End, name: str, origin: Array, stage: Stage, way: Way, vessels: Ve
         case Vessel():
             assert vessels is not None
             vessel = vessels.motion(stage, name, origin)
-            _carry(end, vessel.berth.mean, vessel)
+            _carry(end, vessel.attachment.mean, vessel)
         case _:
             assert_never(way)
 
@@ -83,28 +83,28 @@ def _harmonic(origin: Array, given: Harmonic) -> Motion:
     return Harmonic(origin, np.array(given.amplitude), given.period, given.ramp, np.array(given.phases))
 
 
-def _arc(origin: Array, given: Arc) -> Motion:
-    from riser_soil.motion.swing import Arc, Swing
+def _arc(origin: Array, given: ArcMotion) -> Motion:
+    from riser_soil.motion.swing import AngleOscillation, SwingingEnd
 
-    swing = Swing(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
-    return Arc(origin, np.array(given.hub), np.array(given.axis), swing)
+    swing = AngleOscillation(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
+    return SwingingEnd(origin, np.array(given.hub), np.array(given.axis), swing)
 
 
 def _rocking(given: Rotation) -> Callable[[float], Turning]:
-    from riser_soil.motion.swing import Rocking, Swing
+    from riser_soil.motion.swing import AngleOscillation, Rocking
 
-    swing = Swing(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
+    swing = AngleOscillation(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
     return Rocking(np.array(given.axis) / np.linalg.norm(given.axis), swing)
 
 
-def _table(given: Table) -> Six:
+def _table(given: Table) -> SixDegreeMotion:
     from riser_soil.motion.table import Table
 
     values = np.hstack([given.displacements, given.rotations])
     return Table(np.array(given.columns.values["t"]), values, given.ramp)
 
 
-def _carry(end: End, origin: Array, six: Six) -> None:
+def _carry(end: End, origin: Array, six: SixDegreeMotion) -> None:
     from riser_soil.motion.carried import Displaced, Turned
 
     once = lru_cache(maxsize=2)(six)  # a step asks again and again for its beginning and its end

@@ -15,7 +15,7 @@ from riser_soil.scene.water import Current
 if TYPE_CHECKING:
     from riser_soil.sea.components import Components
     from riser_soil.sea.current import SteadyCurrent
-    from riser_soil.sea.sea import Flow
+    from riser_soil.sea.sea import FlowComponent
     from riser_soil.sea.water import Water
     from riser_soil.sea.wave_field import WaveField
 
@@ -72,7 +72,7 @@ def wave_age(scene: Scene, stage: Stage) -> float:
     return age
 
 
-def _flows(scene: Scene, stage: Stage) -> Iterator[Flow]:
+def _flows(scene: Scene, stage: Stage) -> Iterator[FlowComponent]:
     assert scene.water is not None
     if scene.water.current is not None:
         yield _current(scene, scene.water.current, stage)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from riser_soil.sea.morison import Morison
     from riser_soil.sea.moving_water import Stream
     from riser_soil.sea.still_water import StationLoads
-    from riser_soil.sea.wetting import Surface
+    from riser_soil.sea.wetting import WaterSurface
 
 
 def sea_loads(
@@ -76,7 +76,7 @@ class _Loads:
         return Stream(self.body.pipe, water)
 
     @cached_property
-    def surface(self) -> Surface | None:
+    def surface(self) -> WaterSurface | None:
         """Where the water has one; it is level without waves."""
         if self.water.surface_level is None:
             return None

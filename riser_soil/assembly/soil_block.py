@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.soil import GeneratedMesh, Soil
+from riser_soil.scene.soil import GeneratedMesh, SoilScene
 from riser_soil.soil.grading import BlockSpec, Point
 
 
-def block_of(scene: Scene, soil: Soil, riser: tuple[Point, Point]) -> BlockSpec:
+def block_of(scene: Scene, soil: SoilScene, riser: tuple[Point, Point]) -> BlockSpec:
     """A block that is fine under a line; riser: two points of it in plan [m]."""
     assert soil.block is not None  # the scene's checks have seen to it
     assert isinstance(soil.mesh, GeneratedMesh)

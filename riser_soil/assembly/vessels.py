@@ -13,7 +13,7 @@ from riser_soil.assembly.sea import components_of, wave_clock
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.errors import SceneError
 from riser_soil.motion.rao import RaoTable
-from riser_soil.motion.vessel import Berth, Response, Vessel
+from riser_soil.motion.vessel import Response, Vessel, VesselAttachment
 from riser_soil.scene.motions import Vessel as VesselScene
 from riser_soil.scene.quantities import Vector
 from riser_soil.scene.rao import MODES
@@ -65,10 +65,10 @@ class Vessels:
         since, first = _beginning(self._scene, stage, end, given)
         before = self._last.get(end)
         if before is None or since == 0.0:
-            berth, ramp = self._berth(first, end, origin), self._ramp(first, again=before is not None)
+            attachment, ramp = self._attachment(first, end, origin), self._ramp(first, again=before is not None)
         else:
-            berth, ramp = before[0].berth, before[0].ramp
-        vessel = Vessel(self._responses[_key(given)], berth, ramp, wave_clock(self._scene, stage), since)
+            attachment, ramp = before[0].attachment, before[0].ramp
+        vessel = Vessel(self._responses[_key(given)], attachment, ramp, wave_clock(self._scene, stage), since)
         self._last[end] = vessel, stage.duration if isinstance(stage, DynamicStage) else 0.0
         return vessel
 
@@ -76,17 +76,17 @@ class Vessels:
         """An end was moved in a static stage, by (3,) [m]: its berth goes along."""
         if end in self._last:
             vessel, duration = self._last[end]
-            berth = replace(vessel.berth, mean=vessel.berth.mean + by)
-            self._last[end] = replace(vessel, berth=berth), duration
+            attachment = replace(vessel.attachment, mean=vessel.attachment.mean + by)
+            self._last[end] = replace(vessel, attachment=attachment), duration
 
-    def _berth(self, vessel: VesselScene, end: str, origin: Array) -> Berth:
+    def _attachment(self, vessel: VesselScene, end: str, origin: Array) -> VesselAttachment:
         """Where the end was before a vessel first moved it; a vessel that moves it again finds it displaced."""
         reference = np.array(vessel.reference)
         if end not in self._last:
-            return Berth(origin, reference, np.zeros(6))
+            return VesselAttachment(origin, reference, np.zeros(6))
         last, duration = self._last[end]
-        mean = last.berth.mean
-        return Berth(mean, reference, np.concatenate([origin - mean, last(duration)[0][3:]]))
+        mean = last.attachment.mean
+        return VesselAttachment(mean, reference, np.concatenate([origin - mean, last(duration)[0][3:]]))
 
     def _ramp(self, vessel: VesselScene, again: bool) -> float:
         """Seconds to the full response: after a rest at least a (peak) period, as the end has to come back."""

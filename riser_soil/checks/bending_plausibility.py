@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from riser_soil.assembly import World
+from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array, IntArray
 
 # Elements longer than this share of the boundary layer sqrt(EI/H) blur the bending at touchdown and fixed ends.
@@ -18,27 +18,27 @@ MOMENT_ERROR = 0.1
 UNEVEN, WAVE_IN_ELEMENTS = 4.0, 6.0
 
 
-def bending_doubts(world: World) -> Iterator[str]:
+def bending_doubts(assembly: Assembly) -> Iterator[str]:
     """What an engineer would question about the elements' lengths, each with its numbers."""
-    yield from _long_in_boundary_layers(world)
-    yield from _long_in_the_bend(world)
-    yield from _uneven_neighbours(world)
+    yield from _long_in_boundary_layers(assembly)
+    yield from _long_in_the_bend(assembly)
+    yield from _uneven_neighbours(assembly)
 
 
-def lying(world: World) -> IntArray:
+def lying(assembly: Assembly) -> IntArray:
     """Nodes that lie on the ground in the first shape."""
-    heights = world.line.to_global(world.line.x)[:, 2]
-    lowest = heights.min() + 1e-6 * world.line.arc[-1]
-    return np.flatnonzero(heights < lowest) if world.contacts else np.zeros(0, dtype=np.int64)
+    heights = assembly.line.to_global(assembly.line.x)[:, 2]
+    lowest = heights.min() + 1e-6 * assembly.line.arc[-1]
+    return np.flatnonzero(heights < lowest) if assembly.contacts else np.zeros(0, dtype=np.int64)
 
 
-def _long_in_boundary_layers(world: World) -> Iterator[str]:
+def _long_in_boundary_layers(assembly: Assembly) -> Iterator[str]:
     """Elements beside a touchdown point or a held rotation against the boundary layer there."""
-    if world.catenary is None:
+    if assembly.catenary is None:
         return
-    H, line = world.catenary.H, world.line
-    layer = np.sqrt(_stiffness(world) / H)
-    for place, e in _boundary_layers(world):
+    H, line = assembly.catenary.H, assembly.line
+    layer = np.sqrt(_stiffness(assembly) / H)
+    for place, e in _boundary_layers(assembly):
         if line.length[e] > LONGEST_ELEMENT * layer[e]:
             yield (
                 f"elements {place} are {line.length[e]:.4g} m long, but bending varies there over sqrt(EI/H) = "
@@ -46,34 +46,34 @@ def _long_in_boundary_layers(world: World) -> Iterator[str]:
             )
 
 
-def _boundary_layers(world: World) -> Iterator[tuple[str, int]]:
+def _boundary_layers(assembly: Assembly) -> Iterator[tuple[str, int]]:
     """Where bending has boundary layers in the first shape, each with an element of the line."""
-    line = world.line
+    line = assembly.line
     if line.start.rotation_fixed:
         yield "at the start", 0
     if line.end.rotation_fixed:
         yield "at the end", line.length.size - 1
-    on_ground = lying(world)
+    on_ground = lying(assembly)
     if on_ground.size > 1:
         e = min(int(on_ground[-1]), line.length.size - 1)
         yield f"at the touchdown point (arc {line.arc[on_ground[-1]]:.4g} m)", e
 
 
-def _long_in_the_bend(world: World) -> Iterator[str]:
+def _long_in_the_bend(assembly: Assembly) -> Iterator[str]:
     """Elements whose cubic shape misses the catenary's.
 
     It is off by L^4 k''/384, k being the curvature, and the tension T makes a moment of that. With
     k = w H/T^2 and T^2 = H^2 + V^2, dV/ds = w, k'' = 2 w^3 H (3 V^2 - H^2)/T^6.
     """
-    if world.catenary is None:
+    if assembly.catenary is None:
         return
-    line, H, T = world.line, world.catenary.H, world.catenary.tension
-    w = np.abs(world.elements.weight)
+    line, H, T = assembly.line, assembly.catenary.H, assembly.catenary.tension
+    w = np.abs(assembly.elements.weight)
     middle = 0.5 * (T[1:] + T[:-1])
     second = 2.0 * w**3 * H * np.abs(3.0 * middle**2 - 4.0 * H**2) / middle**6
-    error = _hanging(world) * middle * line.length**4 * second / 384.0
-    moment = _stiffness(world) * w * H / np.minimum(T[1:], T[:-1]) ** 2
-    share = error / float((_hanging(world) * moment).max(initial=np.finfo(float).tiny))
+    error = _hanging(assembly) * middle * line.length**4 * second / 384.0
+    moment = _stiffness(assembly) * w * H / np.minimum(T[1:], T[:-1]) ** 2
+    share = error / float((_hanging(assembly) * moment).max(initial=np.finfo(float).tiny))
     e = int(share.argmax())
     if share[e] > MOMENT_ERROR:
         longest = line.length[e] * (0.9 * MOMENT_ERROR / share[e]) ** 0.25
@@ -84,21 +84,21 @@ def _long_in_the_bend(world: World) -> Iterator[str]:
         )
 
 
-def _hanging(world: World) -> Array:
+def _hanging(assembly: Assembly) -> Array:
     """Whether elements hang free in the first shape (ne,)."""
-    on_ground = np.zeros(world.line.nodes, dtype=bool)
-    on_ground[lying(world)] = lying(world).size > 1
+    on_ground = np.zeros(assembly.line.nodes, dtype=bool)
+    on_ground[lying(assembly)] = lying(assembly).size > 1
     return np.asarray(~(on_ground[1:] & on_ground[:-1]))
 
 
-def _stiffness(world: World) -> Array:
-    return np.maximum(world.elements.EI_y, world.elements.EI_z)
+def _stiffness(assembly: Assembly) -> Array:
+    return np.maximum(assembly.elements.EI_y, assembly.elements.EI_z)
 
 
-def _uneven_neighbours(world: World) -> Iterator[str]:
-    length, arc = world.line.length, world.line.arc
+def _uneven_neighbours(assembly: Assembly) -> Iterator[str]:
+    length, arc = assembly.line.length, assembly.line.arc
     ratio = np.maximum(length[1:] / length[:-1], length[:-1] / length[1:])
-    moves = any(stage.kind == "dynamic" for stage in world.scene.stages)
+    moves = any(stage.kind == "dynamic" for stage in assembly.scene.stages)
     if moves and ratio.size and ratio.max() > UNEVEN * (1.0 + 1e-9):
         e = int(ratio.argmax())
         shortest = WAVE_IN_ELEMENTS * max(length[e : e + 2])

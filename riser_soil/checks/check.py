@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from riser_soil.assembly import World, build
+from riser_soil.assembly import Assembly, build
 from riser_soil.checks.estimate import Size, riser_memory, soil_memory
 from riser_soil.checks.inventory import built, left_out, unknowns
 from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tell, too_long
@@ -19,9 +19,9 @@ def describe(scene: Scene) -> str:
     """The report of `riser-soil check`; collective. Raises SceneError or MeshError."""
     size = size_that_fits(scene, Path(), MPI.COMM_WORLD)
     tell(size, MPI.COMM_WORLD)
-    world = build(scene, MPI.COMM_WORLD)
-    lines = [*_parts(world), *_unknowns(world), _memory_line(world), *_results(size)]
-    doubts = [*physical_warnings(world), *too_long(size)]
+    assembly = build(scene, MPI.COMM_WORLD)
+    lines = [*_parts(assembly), *_unknowns(assembly), _memory_line(assembly), *_results(size)]
+    doubts = [*physical_warnings(assembly), *too_long(size)]
     return "\n".join([*lines, *(f"warning: {doubt}" for doubt in doubts), _verdict(doubts)])
 
 
@@ -33,31 +33,31 @@ def _counted(number: int, name: str) -> str:
     return f"{number} {name}" if number == 1 else f"{number} {name}s"
 
 
-def _parts(world: World) -> Iterator[str]:
-    stages = len(world.scene.stages)
-    yield f"{world.scene.title}: {_counted(stages, 'stage')}, riser in {world.line.dimension} dimensions"
-    yield "built: " + ", ".join(built(world.scene))
-    yield from (f"left out: {name}: {reason}" for name, reason in left_out(world.scene).items())
+def _parts(assembly: Assembly) -> Iterator[str]:
+    stages = len(assembly.scene.stages)
+    yield f"{assembly.scene.title}: {_counted(stages, 'stage')}, riser in {assembly.line.dimension} dimensions"
+    yield "built: " + ", ".join(built(assembly.scene))
+    yield from (f"left out: {name}: {reason}" for name, reason in left_out(assembly.scene).items())
 
 
-def _unknowns(world: World) -> Iterator[str]:
-    line = world.line
+def _unknowns(assembly: Assembly) -> Iterator[str]:
+    line = assembly.line
     yield (
         f"riser: {line.length.size} elements of {line.length.min():.4g} to {line.length.max():.4g} m, "
-        f"{unknowns(world.comm, line)} unknowns"
+        f"{unknowns(assembly.comm, line)} unknowns"
     )
-    if world.attachments:
-        net = sum(attachment.net_weight for attachment in world.attachments)
-        yield f"{_counted(len(world.attachments), 'attachment')}: weight less buoyancy {net:.4g} N in all"
-    if world.soil is not None:
-        cells = world.comm.allreduce(world.soil.blocks()["soil"].shape[0])
-        yield f"soil: {cells} cells, {unknowns(world.comm, world.soil.field)} unknowns"
-    for ground, stiffness in world.contact_stiffness.items():
+    if assembly.attachments:
+        net = sum(attachment.net_weight for attachment in assembly.attachments)
+        yield f"{_counted(len(assembly.attachments), 'attachment')}: weight less buoyancy {net:.4g} N in all"
+    if assembly.soil is not None:
+        cells = assembly.comm.allreduce(assembly.soil.blocks()["soil"].shape[0])
+        yield f"soil: {cells} cells, {unknowns(assembly.comm, assembly.soil.field)} unknowns"
+    for ground, stiffness in assembly.contact_stiffness.items():
         yield f"contact stiffness on the {ground}: {stiffness:.4g} N/m2"
 
 
-def _memory_line(world: World) -> str:
-    return f"estimated memory: {memory(world) / 1e6:.0f} MB on {_counted(world.comm.size, 'rank')}"
+def _memory_line(assembly: Assembly) -> str:
+    return f"estimated memory: {memory(assembly) / 1e6:.0f} MB on {_counted(assembly.comm.size, 'rank')}"
 
 
 def _results(size: Size) -> Iterator[str]:
@@ -65,11 +65,11 @@ def _results(size: Size) -> Iterator[str]:
     yield f"estimated time: {in_words(size.seconds)} on one core, {size.told_steps}"
 
 
-def memory(world: World) -> float:
+def memory(assembly: Assembly) -> float:
     """Estimated bytes over all ranks; collective."""
-    comm = world.comm
-    total = riser_memory(comm.size, unknowns(comm, world.line))
-    if world.soil is not None:
-        cells, rows, cols = world.soil.blocks()["soil"].shape
-        total += soil_memory(comm.size, comm.allreduce(cells), rows * cols, unknowns(comm, world.soil.field))
+    comm = assembly.comm
+    total = riser_memory(comm.size, unknowns(comm, assembly.line))
+    if assembly.soil is not None:
+        cells, rows, cols = assembly.soil.blocks()["soil"].shape
+        total += soil_memory(comm.size, comm.allreduce(cells), rows * cols, unknowns(comm, assembly.soil.field))
     return total

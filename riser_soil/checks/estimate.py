@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.soil import MeshFile
-from riser_soil.scene.soil import Soil as SoilScene
+from riser_soil.scene.soil import MeshFile, SoilScene
 from riser_soil.scene.stages import DynamicStage, Stage
 
 # Bytes of: a process with the packages that every scene needs, what dolfinx and gmsh add, element and matrix arrays of

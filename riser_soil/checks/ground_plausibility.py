@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from riser_soil.assembly import World
+from riser_soil.assembly import Assembly
 from riser_soil.assembly.ground import smoothing
 from riser_soil.assembly.scales import contact_radius
 from riser_soil.checks.bending_plausibility import lying
@@ -24,43 +24,43 @@ LOWERED, DRIVEN = 5.0, 0.1
 POINTS, OFF_LEVEL = 20, 1e-3
 
 
-def ground_doubts(world: World) -> Iterator[str]:
+def ground_doubts(assembly: Assembly) -> Iterator[str]:
     """What an engineer would question about the ground and contact with it, each with its numbers."""
-    yield from _penalty_against_soil(world)
-    yield from _corner_against_weight(world)
-    if world.soil is not None:
-        yield from _nothing_below(world)
-        yield from _no_friction_on_soil(world)
-        yield from _top_off_the_seabed(world)
-        yield from _out_of_reach(world)
+    yield from _penalty_against_soil(assembly)
+    yield from _corner_against_weight(assembly)
+    if assembly.soil is not None:
+        yield from _nothing_below(assembly)
+        yield from _no_friction_on_soil(assembly)
+        yield from _top_off_the_seabed(assembly)
+        yield from _out_of_reach(assembly)
 
 
-def _nothing_below(world: World) -> Iterator[str]:
+def _nothing_below(assembly: Assembly) -> Iterator[str]:
     """Nodes that lie beyond the soil where there is no seabed beside it."""
-    assert world.soil is not None
-    grid, nodes = world.soil.grid, lying(world)
-    xy = world.line.to_global(world.line.x)[nodes, :2]
-    beyond = world.line.arc[nodes[np.any((xy < grid.low[:2]) | (xy > grid.high[:2]), axis=1)]]
-    if world.scene.seabed is None and nodes.size > 1 and beyond.size:
+    assert assembly.soil is not None
+    grid, nodes = assembly.soil.grid, lying(assembly)
+    xy = assembly.line.to_global(assembly.line.x)[nodes, :2]
+    beyond = assembly.line.arc[nodes[np.any((xy < grid.low[:2]) | (xy > grid.high[:2]), axis=1)]]
+    if assembly.scene.seabed is None and nodes.size > 1 and beyond.size:
         yield (
             f"{beyond.size} nodes of the riser, from arc {beyond[0]:.4g} to {beyond[-1]:.4g} m, lie beyond the soil, "
             "where nothing bears them: add seabed, which acts beside the soil, or enlarge the soil"
         )
 
 
-def _no_friction_on_soil(world: World) -> Iterator[str]:
-    if world.friction is not None:
+def _no_friction_on_soil(assembly: Assembly) -> Iterator[str]:
+    if assembly.friction is not None:
         yield (
-            f"contact.friction acts on the seabed only: on the soil, {_extent(world)}, the riser slides without "
+            f"contact.friction acts on the seabed only: on the soil, {_extent(assembly)}, the riser slides without "
             "friction; leave the soil out where friction matters"
         )
 
 
-def _top_off_the_seabed(world: World) -> Iterator[str]:
+def _top_off_the_seabed(assembly: Assembly) -> Iterator[str]:
     """A mesh whose top is nowhere at the seabed; known where the soil's surface is."""
-    assert world.soil is not None
-    z, level = world.soil.surface.points[:, 2], world.scene.seabed_level
-    near = OFF_LEVEL * float(world.soil.grid.high[2] - world.soil.grid.low[2])
+    assert assembly.soil is not None
+    z, level = assembly.soil.surface.points[:, 2], assembly.scene.seabed_level
+    near = OFF_LEVEL * float(assembly.soil.grid.high[2] - assembly.soil.grid.low[2])
     if z.size and not z.min() - near <= level <= z.max() + near:
         yield (
             f"soil.mesh: the soil's top lies {z.min():.5g} to {z.max():.5g} m high and nowhere at the seabed, z = "
@@ -68,49 +68,49 @@ def _top_off_the_seabed(world: World) -> Iterator[str]:
         )
 
 
-def _out_of_reach(world: World) -> Iterator[str]:
+def _out_of_reach(assembly: Assembly) -> Iterator[str]:
     """Soil that the first shape is farther above than the ends' motions, loads and water may lower it."""
-    assert world.soil is not None
-    scene, grid = world.scene, world.soil.grid
-    points, underside = _along(world)
+    assert assembly.soil is not None
+    scene, grid = assembly.scene, assembly.soil.grid
+    points, underside = _along(assembly)
     above = np.all((points[:, :2] >= grid.low[:2]) & (points[:, :2] <= grid.high[:2]), axis=1)
     gap = float(np.min((underside - scene.seabed_level)[above], initial=np.inf))
     driven = any(stage.loads for stage in scene.stages) or (scene.water and (scene.water.current or scene.water.waves))
     moved = farthest_move(scene)
-    reach = LOWERED * moved + DRIVEN * scene.riser.length * bool(driven) + 2.0 * _diameter(world)
+    reach = LOWERED * moved + DRIVEN * scene.riser.length * bool(driven) + 2.0 * _diameter(assembly)
     if gap <= reach:
         return
     where = f"hangs {gap:.4g} m above it" if np.isfinite(gap) else "is not above it"
     down = points[underside.argmin()]
     yield (
-        f"the riser does not reach the soil, {_extent(world)}: in its first shape it {where}, and its ends move by no "
-        f"more than {moved:.4g} m; it is lowest at x = {down[0]:.5g}, y = {down[1]:.5g} m: move the soil there"
+        f"the riser does not reach the soil, {_extent(assembly)}: in its first shape it {where}, and its ends move by "
+        f"no more than {moved:.4g} m; it is lowest at x = {down[0]:.5g}, y = {down[1]:.5g} m: move the soil there"
     )
 
 
-def _along(world: World) -> tuple[Array, Array]:
+def _along(assembly: Assembly) -> tuple[Array, Array]:
     """Points (n, 3) of the line, straight between its nodes, and the height of its underside there (n,)."""
-    line = world.line
+    line = assembly.line
     share = np.linspace(0.0, 1.0, POINTS)[:, None]
     x = line.to_global(line.x)
     points = (x[:-1, None] + share * np.diff(x, axis=0)[:, None]).reshape(-1, 3)
-    return points, points[:, 2] - np.repeat(contact_radius(world.scene, world.elements), POINTS)
+    return points, points[:, 2] - np.repeat(contact_radius(assembly.scene, assembly.elements), POINTS)
 
 
-def _diameter(world: World) -> float:
-    return float(world.elements.outer_diameter.max())
+def _diameter(assembly: Assembly) -> float:
+    return float(assembly.elements.outer_diameter.max())
 
 
-def _extent(world: World) -> str:
-    assert world.soil is not None
-    (x0, y0, _), (x1, y1, _) = world.soil.grid.low, world.soil.grid.high
+def _extent(assembly: Assembly) -> str:
+    assert assembly.soil is not None
+    (x0, y0, _), (x1, y1, _) = assembly.soil.grid.low, assembly.soil.grid.high
     return f"x from {x0:.5g} to {x1:.5g} m and y from {y0:.5g} to {y1:.5g} m"
 
 
-def _penalty_against_soil(world: World) -> Iterator[str]:
-    if world.scene.soil is None:
+def _penalty_against_soil(assembly: Assembly) -> Iterator[str]:
+    if assembly.scene.soil is None:
         return
-    E, k = world.scene.soil.law.surface_modulus, world.contact_stiffness["soil"]
+    E, k = assembly.scene.soil.law.surface_modulus, assembly.contact_stiffness["soil"]
     if k < SOFT * E:
         yield (
             f"contact.stiffness {k:.4g} N/m2 is below the soil's Young's modulus at the surface, {E:.4g} Pa: the pipe "
@@ -123,13 +123,13 @@ def _penalty_against_soil(world: World) -> Iterator[str]:
         )
 
 
-def _corner_against_weight(world: World) -> Iterator[str]:
+def _corner_against_weight(assembly: Assembly) -> Iterator[str]:
     """A stiff penalty rounded over a long way pushes hard before anything touches."""
-    settings, weight = world.scene.contact, world.scales.weight
+    settings, weight = assembly.scene.contact, assembly.scales.weight
     if settings is None:
         return
-    for ground, k in world.contact_stiffness.items():
-        width = smoothing(settings, world.scales, ground, k)
+    for ground, k in assembly.contact_stiffness.items():
+        width = smoothing(settings, assembly.scales, ground, k)
         force = 0.25 * k * width
         if force > CORNER * weight:
             yield (

@@ -11,7 +11,7 @@ import numpy as np
 from riser_soil.assembly.motions import set_motion, vessels_of
 from riser_soil.core.arrays import Array
 from riser_soil.riser.ends import End
-from riser_soil.scene.motions import Arc, EndMotion, Harmonic, Rotation, Table, Vessel
+from riser_soil.scene.motions import ArcMotion, EndMotion, Harmonic, Rotation, Table, Vessel
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
@@ -186,7 +186,7 @@ def _periods(scene: Scene, stage: DynamicStage) -> Iterator[tuple[str, float]]:
 def _own_periods(motion: EndMotion) -> Iterator[tuple[str, float]]:
     for key, way in motion.ways.items():
         match way:
-            case Harmonic() | Arc() | Rotation():
+            case Harmonic() | ArcMotion() | Rotation():
                 yield key, way.period
             case Table() | Vessel():  # as fast as its file, or as the waves
                 pass

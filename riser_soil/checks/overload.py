@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
-from riser_soil.assembly import World
+from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.scene.soil import VonMises
@@ -41,13 +41,13 @@ class Overload(NamedTuple):
     meaning: str
 
 
-def overload(world: World) -> str:
+def overload(assembly: Assembly) -> str:
     """Where a ground is loaded most, beyond what it bears, as the end of a message; empty where none is. Collective.
 
     A riser that sinks may yet be caught, as by firmer ground beside: this explains a failure and foretells none.
     """
-    worst = max(_overloads(world), key=lambda each: each.load / each.capacity, default=None)
-    worst = world.comm.bcast(worst)
+    worst = max(_overloads(assembly), key=lambda each: each.load / each.capacity, default=None)
+    worst = assembly.comm.bcast(worst)
     if worst is None:
         return ""
     x, y, z = worst.position
@@ -58,32 +58,32 @@ def overload(world: World) -> str:
     )
 
 
-def _overloads(world: World) -> Iterator[Overload]:
+def _overloads(assembly: Assembly) -> Iterator[Overload]:
     """On the rank that holds contact, where the riser is now: what touches weighs down at least with its weight."""
-    if not world.line.active:
+    if not assembly.line.active:
         return
-    state = State.at_rest(0.0, world.size)
-    for contact, capacity, meaning in _limits(world):
+    state = State.at_rest(0.0, assembly.size)
+    for contact, capacity, meaning in _limits(assembly):
         force = contact.force_per_length(state)
-        load = np.where(force > 0.0, np.maximum(force, _weight(world)), 0.0)
+        load = np.where(force > 0.0, np.maximum(force, _weight(assembly)), 0.0)
         depth = np.where(load > capacity, contact.depth(state), -np.inf)
         node = int(np.argmax(depth))
         if load[node] > capacity:
-            place = world.line.arc[node], world.line.positions3(state)[node]
+            place = assembly.line.arc[node], assembly.line.positions3(state)[node]
             yield Overload(load[node], capacity, depth[node], *place, meaning)
 
 
-def _limits(world: World) -> Iterator[tuple[SoilContact | SeabedContact, float, str]]:
+def _limits(assembly: Assembly) -> Iterator[tuple[SoilContact | SeabedContact, float, str]]:
     """Grounds that bear so much only [N/m], and what that is."""
-    soil, D = world.scene.soil, world.scales.diameter
-    if soil is not None and world.soil_contact is not None and isinstance(soil.law, VonMises):
+    soil, D = assembly.scene.soil, assembly.scales.diameter
+    if soil is not None and assembly.soil_contact is not None and isinstance(soil.law, VonMises):
         clay = Strength(soil.law.su, soil.law.su_gradient)
-        yield world.soil_contact, strip_capacity(clay, D), f"(2 + pi) su D + su_gradient D^2/4 with D = {D:.4g} m"
-    if world.seabed is not None and isinstance(world.seabed.law, Bearing):
-        yield world.seabed, world.seabed.law.capacity, f"by its law at a depth of one diameter, {D:.4g} m"
+        yield assembly.soil_contact, strip_capacity(clay, D), f"(2 + pi) su D + su_gradient D^2/4 with D = {D:.4g} m"
+    if assembly.seabed is not None and isinstance(assembly.seabed.law, Bearing):
+        yield assembly.seabed, assembly.seabed.law.capacity, f"by its law at a depth of one diameter, {D:.4g} m"
 
 
-def _weight(world: World) -> Array:
+def _weight(assembly: Assembly) -> Array:
     """Of the riser at the nodes (nn,) [N/m], downwards."""
-    weight = world.elements.weight
+    weight = assembly.elements.weight
     return np.maximum(np.append(weight, weight[-1:]), np.append(weight[:1], weight))

@@ -7,30 +7,30 @@ from itertools import pairwise
 
 import numpy as np
 
-from riser_soil.assembly import World
+from riser_soil.assembly import Assembly
 from riser_soil.checks.bending_plausibility import bending_doubts
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Load, StaticStage
 
 
-def physical_warnings(world: World) -> Iterator[str]:
+def physical_warnings(assembly: Assembly) -> Iterator[str]:
     """What a riser engineer would question, each with its numbers; collective."""
-    yield from _light_pipes(world)
-    yield from bending_doubts(world)
-    if world.contacts:
+    yield from _light_pipes(assembly)
+    yield from bending_doubts(assembly)
+    if assembly.contacts:
         from riser_soil.checks.ground_plausibility import ground_doubts
 
-        yield from ground_doubts(world)
-    yield from _beyond_the_rao(world)
-    yield from _loads_that_end(world.scene)
-    if world.scene.water is not None and world.scene.water.waves is not None:
+        yield from ground_doubts(assembly)
+    yield from _beyond_the_rao(assembly)
+    yield from _loads_that_end(assembly.scene)
+    if assembly.scene.water is not None and assembly.scene.water.waves is not None:
         from riser_soil.checks.wave_plausibility import wave_doubts
 
-        yield from wave_doubts(world.scene)
-    if _moves(world.scene):
+        yield from wave_doubts(assembly.scene)
+    if _moves(assembly.scene):
         from riser_soil.checks.motion_plausibility import motion_doubts
 
-        yield from motion_doubts(world.scene)
+        yield from motion_doubts(assembly.scene)
 
 
 def _moves(scene: Scene) -> bool:
@@ -42,8 +42,8 @@ def _moves(scene: Scene) -> bool:
     )
 
 
-def _light_pipes(world: World) -> Iterator[str]:
-    weight, arc = world.elements.weight, world.line.arc
+def _light_pipes(assembly: Assembly) -> Iterator[str]:
+    weight, arc = assembly.elements.weight, assembly.line.arc
     light = np.flatnonzero(weight < 0.0)
     if light.size:
         yield (
@@ -52,9 +52,9 @@ def _light_pipes(world: World) -> Iterator[str]:
         )
 
 
-def _beyond_the_rao(world: World) -> Iterator[str]:
+def _beyond_the_rao(assembly: Assembly) -> Iterator[str]:
     """Waves outside the frequencies of a vessel's table."""
-    for path, beyond in (world.vessels.beyond if world.vessels is not None else {}).items():
+    for path, beyond in (assembly.vessels.beyond if assembly.vessels is not None else {}).items():
         yield (
             f"{path}: {100.0 * beyond.below:.3g} % of the waves' energy lies below the table's first frequency, "
             f"{beyond.first:.4g} rad/s, where the vessel moves as there, and {100.0 * beyond.above:.3g} % above its "

@@ -27,7 +27,7 @@ class Sliding(NamedTuple):
     by_position: Array
 
 
-class Grip(NamedTuple):
+class FrictionState(NamedTuple):
     """Where a step begins: positions (ne, ng, d), directions along the ground (ne, ng, d, r), axial and, in space,
     lateral; traction (ne, ng, d) on the riser.
     """
@@ -52,37 +52,37 @@ class Friction:
         self.contact, self.line = contact, contact.line
         self._mu = np.array([axial, lateral])[: self.line.dimension - 1]
         self._stiffness = stiffness[:, None, None]
-        self._begun: Grip | None = None
+        self._begun: FrictionState | None = None
         self._forces = StationForces(self.line, contact.at)
         self._slid: Array = np.zeros(contact.share.shape)
 
-    def see(self, trial: Trial) -> Sliding:
+    def evaluate(self, trial: Trial) -> Sliding:
         """Tractions of the elements that touch."""
-        seen: Sliding = trial.once((self, "seen"), self._see)
-        return seen
+        found: Sliding = trial.once((self, "seen"), self._evaluate)
+        return found
 
-    def _see(self, trial: Trial) -> Sliding:
-        seen = self.contact.see(trial)
-        touching, at = seen.touching, seen.touching.elements
-        position, along, t_n = (values[at] for values in self._grip(trial))
+    def _evaluate(self, trial: Trial) -> Sliding:
+        found = self.contact.evaluate(trial)
+        touching, at = found.touching, found.touching.elements
+        position, along, t_n = (values[at] for values in self._friction_state(trial))
         k = self._stiffness[at]
-        elastic = _components(along, t_n - k * (seen.position[at] - position))
+        elastic = _components(along, t_n - k * (found.position[at] - position))
         t, by_elastic, by_N = traction(elastic, np.maximum(touching.force, 0.0), self._mu)
         N_slope = np.where(touching.force > 0.0, touching.slope, 0.0)
         stuck = k[..., None] * along @ by_elastic @ np.swapaxes(along, -1, -2)
-        pressed = N_slope[..., None, None] * (along @ by_N[..., None]) * touching.away[..., None, :]
+        pressed = N_slope[..., None, None] * (along @ by_N[..., None]) * touching.normal[..., None, :]
         return Sliding(at, -(along @ t[..., None])[..., 0], stuck + pressed)
 
-    def _grip(self, trial: Trial) -> Grip:
+    def _friction_state(self, trial: Trial) -> FrictionState:
         if self._begun is None:
             start = self.line.trial(State.at_rest(trial.state.t, trial.state.u.size))
-            self._begun = self._grip_at(start, np.zeros_like(self.contact.see(start).position))
+            self._begun = self._friction_state_at(start, np.zeros_like(self.contact.evaluate(start).position))
         return self._begun
 
-    def _grip_at(self, trial: Trial, traction: Array) -> Grip:
-        seen = self.contact.see(trial)
+    def _friction_state_at(self, trial: Trial, traction: Array) -> FrictionState:
+        found = self.contact.evaluate(trial)
         tau, _ = stations.unit_tangents(self.contact.at, trial.chord, trial.turn.tangent)
-        return Grip(seen.position, directions(tau, seen.away), traction)
+        return FrictionState(found.position, directions(tau, found.normal), traction)
 
     def blocks(self) -> dict[str, Block]:
         return {"riser": self.line.element_block()} if self.line.active else {}
@@ -90,7 +90,7 @@ class Friction:
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
         trial = self.line.trial(state)
-        sliding = self.see(trial)
+        sliding = self.evaluate(trial)
         return None, self._forces.in_elements(trial, sliding.elements, sliding.resistance)
 
     def residual(self, state: State, forces: Forces) -> None:
@@ -101,13 +101,13 @@ class Friction:
         """Unweighted: friction stands at the end of the step."""
         if self.line.active:
             trial = self.line.trial(state)
-            self._forces.add_tangent(values["riser"], trial, *self.see(trial))
+            self._forces.add_tangent(values["riser"], trial, *self.evaluate(trial))
 
     def energy(self, state: State) -> Energy:
         """Stored in what the ground gives elastically along itself."""
         if not self.line.active:
             return Energy()
-        sliding = self.see(self.line.trial(state))
+        sliding = self.evaluate(self.line.trial(state))
         return Energy(potential=self._stored(sliding.elements, sliding.resistance))
 
     def _stored(self, elements: IntArray, traction: Array) -> float:
@@ -119,8 +119,8 @@ class Friction:
         if not self.line.active:
             return Work()
         trial = self.line.trial(after)
-        sliding, begun, at = self.see(trial), self._grip(trial), self.see(trial).elements
-        moved = self.contact.see(trial).position[at] - begun.position[at]
+        sliding, begun, at = self.evaluate(trial), self._friction_state(trial), self.evaluate(trial).elements
+        moved = self.contact.evaluate(trial).position[at] - begun.position[at]
         taken = float(np.sum(self.contact.share[at] * np.sum(sliding.resistance * moved, axis=2)))
         stored = self._stored(np.arange(self.line.length.size), begun.traction)
         return Work(dissipated=taken - self.energy(after).potential + stored)
@@ -129,30 +129,30 @@ class Friction:
         """Keep the traction, and the place and directions from which the next step slides."""
         if self.line.active:
             trial = self.line.trial(state)
-            sliding = self.see(trial)
-            traction = np.zeros_like(self.contact.see(trial).position)
+            sliding = self.evaluate(trial)
+            traction = np.zeros_like(self.contact.evaluate(trial).position)
             traction[sliding.elements] = -sliding.resistance
             slid = np.zeros_like(self._slid)
             slid[sliding.elements] = self._slide(trial, sliding)
-            self.memory = self._grip_at(trial, traction), self._slid + slid
+            self.memory = self._friction_state_at(trial, traction), self._slid + slid
 
     @property
-    def memory(self) -> tuple[Grip | None, Array]:
+    def memory(self) -> tuple[FrictionState | None, Array]:
         """Where the next step begins, and how far the stations have slid."""
         return self._begun, self._slid
 
     @memory.setter
-    def memory(self, kept: tuple[Grip | None, Array]) -> None:
+    def memory(self, kept: tuple[FrictionState | None, Array]) -> None:
         self._begun, self._slid = kept
 
     def _slide(self, trial: Trial, sliding: Sliding) -> Array:
         """What each station (m, ng) slides in the step beyond what the ground gives elastically [m]."""
         at = sliding.elements
-        position, along, t_n = (values[at] for values in self._grip(trial))
-        moved = self.contact.see(trial).position[at] - position
+        position, along, t_n = (values[at] for values in self._friction_state(trial))
+        moved = self.contact.evaluate(trial).position[at] - position
         elastic = (t_n + sliding.resistance) / self._stiffness[at]
         slid = np.linalg.norm(_components(along, moved - elastic), axis=2)
-        pressed = self.contact.see(trial).touching.force > 0.0
+        pressed = self.contact.evaluate(trial).touching.force > 0.0
         return np.where(pressed, slid, 0.0)
 
     def slip(self) -> Array:
@@ -163,7 +163,7 @@ class Friction:
         """Sum of the friction on the riser (3,) [N], global axes."""
         if not self.line.active:
             return np.zeros(3)
-        sliding = self.see(self.line.trial(state))
+        sliding = self.evaluate(self.line.trial(state))
         per_station = self.contact.share[sliding.elements][..., None] * sliding.resistance
         return np.asarray(-self.line.basis @ per_station.sum(axis=(0, 1)))
 
@@ -175,11 +175,11 @@ def mobilised_within(mobilisation: float, axial: float, lateral: float, weight: 
     return max(axial, lateral) * weight / mobilisation
 
 
-def directions(tau: Array, away: Array) -> Array:
+def directions(tau: Array, normal: Array) -> Array:
     """Unit vectors (ne, ng, d, d - 1) along the ground: axial, and in space lateral, from the riser's tangents and the
     ground's normals (ne, ng, d); zero where the riser stands upright on the ground.
     """
-    n = away / np.linalg.norm(away, axis=2, keepdims=True)
+    n = normal / np.linalg.norm(normal, axis=2, keepdims=True)
     axial = tau - np.sum(tau * n, axis=2, keepdims=True) * n
     length = np.linalg.norm(axial, axis=2, keepdims=True)
     axial = np.where(length > UPRIGHT, axial / np.maximum(length, UPRIGHT), 0.0)

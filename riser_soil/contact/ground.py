@@ -66,7 +66,7 @@ class ContactPoints:
         return ContactPoints(self.node[chosen], self.offset[chosen], self.length[chosen])
 
 
-class Soil:
+class DeformedSurface:
     """The deformed surface: what lies where, and the dofs behind it."""
 
     def __init__(self, surface: SoilSurface) -> None:

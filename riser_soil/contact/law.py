@@ -23,7 +23,7 @@ STIFFNESS_OVER_SOIL = 10.0
 class NormalLaw(Protocol):
     """Force per length of riser by its penetration, with a history of nh numbers a point, kept between steps.
 
-    Penetrations, forces and slopes have one shape (...); a history is (..., nh). Nothing is kept here: `renewed` gives
+    Penetrations, forces and slopes have one shape (...); a history is (..., nh). Nothing is kept here: `update` gives
     the history after a step that is accepted.
     """
 
@@ -32,15 +32,15 @@ class NormalLaw(Protocol):
         """Gap [m] at which a riser that comes down begins to feel the ground."""
         ...
 
-    def fresh(self, shape: tuple[int, ...]) -> Array:
+    def initial_history(self, shape: tuple[int, ...]) -> Array:
         """History of ground that has never been touched (*shape, nh)."""
         ...
 
-    def touched(self, penetration: Array, history: Array) -> BoolArray:
+    def active(self, penetration: Array, history: Array) -> BoolArray:
         """Where there may be a force."""
         ...
 
-    def respond(self, penetration: Array, history: Array) -> tuple[Array, Array]:
+    def force_and_stiffness(self, penetration: Array, history: Array) -> tuple[Array, Array]:
         """Force [N/m], positive where it pushes the riser away, and its derivative by the penetration [N/m2]."""
         ...
 
@@ -48,7 +48,7 @@ class NormalLaw(Protocol):
         """Energy per length that the ground gives back [N]."""
         ...
 
-    def renewed(self, penetration: Array, history: Array) -> Array:
+    def update(self, penetration: Array, history: Array) -> Array:
         """History after a step to this penetration."""
         ...
 
@@ -86,19 +86,19 @@ class Penalty:
     def start(self) -> float:
         return self.smoothing
 
-    def fresh(self, shape: tuple[int, ...]) -> Array:
+    def initial_history(self, shape: tuple[int, ...]) -> Array:
         return np.empty((*shape, 0))
 
-    def touched(self, penetration: Array, history: Array) -> BoolArray:
+    def active(self, penetration: Array, history: Array) -> BoolArray:
         return penetration > -self.smoothing
 
-    def respond(self, penetration: Array, history: Array) -> tuple[Array, Array]:
+    def force_and_stiffness(self, penetration: Array, history: Array) -> tuple[Array, Array]:
         return self.force(penetration), self.slope(penetration)
 
     def stored(self, penetration: Array, history: Array) -> Array:
         return self.potential(penetration)
 
-    def renewed(self, penetration: Array, history: Array) -> Array:
+    def update(self, penetration: Array, history: Array) -> Array:
         return history
 
     def _rounded(self, penetration: Array) -> BoolArray:

@@ -32,19 +32,19 @@ class Touching(NamedTuple):
     elements: IntArray
     force: Array
     slope: Array
-    away: Array
+    normal: Array
     bend: Array | None
     resistance: Array
 
 
-class Seen(NamedTuple):
+class StationContact(NamedTuple):
     """The line over the ground at a trial: position (ne, ng, d) and penetration (ne, ng) of the stations [m]; away
     (ne, ng, d): gradient of their distance from the ground.
     """
 
     position: Array
     penetration: Array
-    away: Array
+    normal: Array
     touching: Touching
 
 
@@ -76,26 +76,27 @@ class SeabedContact:
         self.share = line.length[:, None] * rule.weights
         self._arc = line.arc[:-1, None] + line.length[:, None] * rule.points
         self._linear = np.stack([1.0 - rule.points, rule.points])
-        self.memory = law.fresh((line.length.size, rule.points.size))
+        self.memory = law.initial_history((line.length.size, rule.points.size))
 
-    def see(self, trial: Trial) -> Seen:
+    def evaluate(self, trial: Trial) -> StationContact:
         """The stations over the ground, and what touches."""
-        seen: Seen = trial.once((self, "seen"), self._see)
-        return seen
+        found: StationContact = trial.once((self, "seen"), self._evaluate)
+        return found
 
-    def _see(self, trial: Trial) -> Seen:
+    def _evaluate(self, trial: Trial) -> StationContact:
         x = stations.interpolate(self.at, trial.q)
         value, gradient, hessian = self._distance(self.line.to_global(x).reshape(-1, 3))
         penetration = self._radius[:, None] - value.reshape(x.shape[:2])
-        touched = self.law.touched(penetration, self.memory).any(axis=1)
+        touched = self.law.active(penetration, self.memory).any(axis=1)
         at = np.flatnonzero(touched)
-        force, slope = self.law.respond(penetration[at], self.memory[at])
-        away = (gradient @ self.line.basis).reshape(x.shape)
+        force, slope = self.law.force_and_stiffness(penetration[at], self.memory[at])
+        normal = (gradient @ self.line.basis).reshape(x.shape)
         bend = None
         if hessian is not None:
             local = self.line.basis.T @ hessian @ self.line.basis
             bend = local.reshape(*x.shape, x.shape[2])[at]
-        return Seen(x, penetration, away, Touching(at, force, slope, away[at], bend, -force[..., None] * away[at]))
+        touching = Touching(at, force, slope, normal[at], bend, -force[..., None] * normal[at])
+        return StationContact(x, penetration, normal, touching)
 
     def _distance(self, x: Array) -> Distance:
         """From the ground, inf where something else covers it; x (n, 3) in global axes."""
@@ -110,7 +111,7 @@ class SeabedContact:
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
         trial = self.line.trial(state)
-        touching = self.see(trial).touching
+        touching = self.evaluate(trial).touching
         return None, self._forces.in_elements(trial, touching.elements, touching.resistance)
 
     def residual(self, state: State, forces: Forces) -> None:
@@ -121,19 +122,19 @@ class SeabedContact:
         """Unweighted: contact stands at the end of the step."""
         if self.line.active:
             trial = self.line.trial(state)
-            t = self.see(trial).touching
+            t = self.evaluate(trial).touching
             self._forces.add_tangent(values["riser"], trial, t.elements, t.resistance, self._by_position(t))
 
     def _by_position(self, t: Touching) -> Array:
         """Derivative (m, ng, d, d) of the resistance by the position."""
-        pushed = t.slope[..., None, None] * t.away[..., :, None] * t.away[..., None, :]
+        pushed = t.slope[..., None, None] * t.normal[..., :, None] * t.normal[..., None, :]
         return pushed if t.bend is None else pushed - t.force[..., None, None] * t.bend
 
     def energy(self, state: State) -> Energy:
         """What the law gives back."""
         if not self.line.active:
             return Energy()
-        penetration = self.see(self.line.trial(state)).penetration
+        penetration = self.evaluate(self.line.trial(state)).penetration
         return Energy(potential=float(np.sum(self.share * self.law.stored(penetration, self.memory))))
 
     def work(self, before: State, after: State) -> Work:
@@ -143,7 +144,7 @@ class SeabedContact:
         """
         if not self.line.active:
             return Work()
-        first, last = (self.see(self.line.trial(state)) for state in (before, after))
+        first, last = (self.evaluate(self.line.trial(state)) for state in (before, after))
         at = last.touching.elements
         moved = last.position[at] - first.position[at]
         taken = float(np.sum(self.share[at] * np.sum(last.touching.resistance * moved, axis=2)))
@@ -152,12 +153,12 @@ class SeabedContact:
     def commit(self, state: State) -> None:
         """Keep the law's history."""
         if self.line.active:
-            penetration = self.see(self.line.trial(state)).penetration
-            self.memory = self.law.renewed(penetration, self.memory)
+            penetration = self.evaluate(self.line.trial(state)).penetration
+            self.memory = self.law.update(penetration, self.memory)
 
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m]: the stations' forces, shared linearly by two nodes."""
-        touching = self.see(self.line.trial(state)).touching
+        touching = self.evaluate(self.line.trial(state)).touching
         force = np.zeros_like(self.share)
         force[touching.elements] = touching.force
         return self.at_nodes(force)
@@ -180,13 +181,13 @@ class SeabedContact:
 
     def max_penetration(self, state: State) -> float:
         """Deepest penetration of a station [m], >= 0: an error where the ground is rigid."""
-        return max(0.0, float(self.see(self.line.trial(state)).penetration.max())) if self.line.active else 0.0
+        return max(0.0, float(self.evaluate(self.line.trial(state)).penetration.max())) if self.line.active else 0.0
 
     def force_on_riser(self, state: State) -> Array:
         """Sum of the contact forces on the riser (3,) [N], global axes."""
         if not self.line.active:
             return np.zeros(3)
-        touching = self.see(self.line.trial(state)).touching
+        touching = self.evaluate(self.line.trial(state)).touching
         per_station = self.share[touching.elements][..., None] * touching.resistance
         return np.asarray(-self.line.basis @ per_station.sum(axis=(0, 1)))
 
@@ -202,12 +203,12 @@ class SeabedContact:
 
     def _lying(self, state: State) -> tuple[Array, Array, Array, Array]:
         """Arc, share of the length, clearance and force per length of the stations, all (ne ng,)."""
-        seen = self.see(self.line.trial(state))
+        found = self.evaluate(self.line.trial(state))
         force = np.zeros_like(self._arc)
-        force[seen.touching.elements] = seen.touching.force
-        return self._arc.ravel(), self.share.ravel(), -seen.penetration.ravel() - self.law.start, force.ravel()
+        force[found.touching.elements] = found.touching.force
+        return self._arc.ravel(), self.share.ravel(), -found.penetration.ravel() - self.law.start, force.ravel()
 
-    def improve(self, guess: State) -> Array:
+    def predict(self, guess: State) -> Array:
         """First guess of a step: the guess's increment, lifted where a node would sink below its present depth.
 
         The motion of the last step carries landing nodes deep into the ground, where the law is far stiffer than
@@ -217,9 +218,9 @@ class SeabedContact:
             return guess.u
         now = self._clearance(self.line.trial(State.at_rest(guess.t, guess.u.size)))
         lift = np.maximum(np.minimum(now, -0.5 * self.law.start) - self._clearance(self.line.trial(guess)), 0.0)
-        improved = guess.u.copy()
-        self.line.nodal(improved)[:, self.line.dimension - 1] += lift
-        return improved
+        predicted = guess.u.copy()
+        self.line.nodal(predicted)[:, self.line.dimension - 1] += lift
+        return predicted
 
     def _clearance(self, trial: Trial) -> Array:
         """Gap (nn,) of the nodes less that at which the force begins [m]."""

@@ -6,9 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.contact.encounter import SOIL, Encounter, Grounds, RiserNodes, Touching, add_blocks, add_shares
+from riser_soil.contact.detection import (
+    SOIL,
+    ContactDetection,
+    ContactState,
+    RiserNodes,
+    Touching,
+    add_blocks,
+    add_shares,
+)
 from riser_soil.contact.gap import heights
-from riser_soil.contact.ground import ASPECT, ContactPoints, Soil, SoilSurface
+from riser_soil.contact.ground import ASPECT, ContactPoints, DeformedSurface, SoilSurface
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.patch import Patch, around
 from riser_soil.contact.touchdown import Stretch, stretches, touchdown
@@ -64,21 +72,21 @@ class SoilContact:
         self._riser, self._radius, self._rounding = riser, radius, law.smoothing
         if not active:
             return
-        self._soil = Soil(surface)
+        self._soil = DeformedSurface(surface)
         self._reach = reach or _default_reach(riser, self._soil)
         self._footprint = FOOTPRINT * float(radius.mean()) if footprint is None else footprint
         axis = riser.basis[:2, 0] if along is None else along
         points = ContactPoints.of_nodes(riser.tributary_length, self._footprint, axis)
-        self._grounds = Grounds(riser, radius, points, law, self._soil, self._reach.above)
+        self._detection = ContactDetection(riser, radius, points, law, self._soil, self._reach.above)
         self._patch: Patch | None = None
         self._missed = Patch.none(len(self._soil.facets))
-        self._met: Encounter | None = None
+        self._detected: ContactState | None = None
 
-    def meet(self, state: State) -> Encounter:
+    def detect(self, state: State) -> ContactState:
         """Riser and ground at a state; kept for the state asked last, whose arrays must not change then."""
-        if self._met is None or self._met.state is not state:
-            self._met = self._grounds.meet(state)
-        return self._met
+        if self._detected is None or self._detected.state is not state:
+            self._detected = self._detection.detect(state)
+        return self._detected
 
     def blocks(self) -> dict[str, Block]:
         """Translations of a node and dofs of a facet, candidate pair by pair."""
@@ -98,20 +106,20 @@ class SoilContact:
     def residual(self, state: State, forces: Forces) -> None:
         """Add dψ/du: minus the force on the riser, minus the force on the soil."""
         if self.active:
-            touching = self.meet(state).touching
+            touching = self.detect(state).touching
             add_shares(forces.end, touching.rows, touching.gradient)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         """Add d²ψ/du², unweighted: contact stands at the end of the step."""
         if self.active:
-            touching = self.meet(state).touching
+            touching = self.detect(state).touching
             places = self._present_patch().places(touching.node, touching.facet)
             add_blocks(values[SOIL], places, touching.hessian)
             self._note_missed(touching, places < 0)
 
     def energy(self, state: State) -> Energy:
         """Potential of the penalty."""
-        return Energy(potential=self.meet(state).touching.potential) if self.active else Energy()
+        return Energy(potential=self.detect(state).touching.potential) if self.active else Energy()
 
     def work(self, before: State, after: State) -> Work:
         """What the force at the end of the step took out beyond the change of its potential.
@@ -121,19 +129,19 @@ class SoilContact:
         """
         if not self.active:
             return Work()
-        touching = self.meet(after).touching
+        touching = self.detect(after).touching
         taken = float(np.sum(touching.gradient * (after.u - before.u)[touching.rows]))
         return Work(dissipated=taken - self.energy(after).potential + self.energy(before).potential)
 
     def commit(self, state: State) -> None:
         """Nothing is kept but the pattern."""
-        self._met = None
+        self._detected = None
 
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m], ≥ 0."""
         total = np.zeros(len(self._riser.arc))
         if self.active:
-            touching = self.meet(state).touching
+            touching = self.detect(state).touching
             add_shares(total, touching.node[:, None], touching.force[:, None])
         return np.asarray(total / self._riser.tributary_length)
 
@@ -147,7 +155,7 @@ class SoilContact:
         """Depth (nn,) [m] of the nodes' undersides below the soil's surface before the riser came, 0 above it."""
         deepest = np.zeros(len(self._riser.arc))
         if self.active:
-            points, x, surface = self.meet(state).points, self._riser.positions3(state), self._soil.at_first
+            points, x, surface = self.detect(state).points, self._riser.positions3(state), self._soil.at_first
             facet, xi = self._soil.locate(x[points.node, :2] + points.offset, surface)
             underside = (x[:, 2] - self._radius)[points.node]
             np.maximum.at(deepest, points.node, heights(facet, xi, self._soil.facets, surface) - underside)
@@ -155,21 +163,21 @@ class SoilContact:
 
     def max_penetration(self, state: State) -> float:
         """Largest penetration [m], ≥ 0: an error."""
-        return max(0.0, -float(self.meet(state).gap.min(initial=np.inf))) if self.active else 0.0
+        return max(0.0, -float(self.detect(state).gap.min(initial=np.inf))) if self.active else 0.0
 
     def force_on_riser(self, state: State) -> Array:
         """Sum of the contact forces on the riser (3,) [N], global axes."""
         if not self.active:
             return np.zeros(3)
         d = self._riser.basis.shape[1]
-        return np.asarray(-self._riser.basis @ self.meet(state).touching.gradient[:, :d].sum(axis=0))
+        return np.asarray(-self._riser.basis @ self.detect(state).touching.gradient[:, :d].sum(axis=0))
 
     def force_on_soil(self, state: State) -> Array:
         """Sum of the contact forces on the soil (3,) [N], global axes."""
         if not self.active:
             return np.zeros(3)
         d = self._riser.basis.shape[1]
-        return np.asarray(-self.meet(state).touching.gradient[:, d:].reshape(-1, 3).sum(axis=0))
+        return np.asarray(-self.detect(state).touching.gradient[:, d:].reshape(-1, 3).sum(axis=0))
 
     def covers(self, xy: Array) -> BoolArray:
         """Which horizontal positions (n, 2) [m] lie over the soil as it is now."""
@@ -191,7 +199,7 @@ class SoilContact:
         arc, share = self._riser.arc, self._riser.tributary_length
         return arc, share, self._clearance(state), self.force_per_length(state)
 
-    def improve(self, guess: State) -> Array:
+    def predict(self, guess: State) -> Array:
         """First guess of a step: the guess's increment, lifted where a node would sink below its present depth.
 
         The motion of the last step carries landing nodes deep into the ground, where the law is far stiffer than
@@ -200,16 +208,16 @@ class SoilContact:
         if not self.active:
             return guess.u
         now = np.minimum(self._clearance(State.at_rest(guess.t, guess.u.size)), -0.5 * self._rounding)
-        improved = guess.u.copy()
+        predicted = guess.u.copy()
         lift = np.maximum(now - self._clearance(guess), 0.0)
-        improved[self._riser.translation_dofs[:, -1]] += lift
-        return improved
+        predicted[self._riser.translation_dofs[:, -1]] += lift
+        return predicted
 
     def _clearance(self, state: State) -> Array:
         """Gap (nn,) less that at which the force begins [m], the least of a node's points; inf far away."""
-        met = self.meet(state)
+        detected = self.detect(state)
         least = np.full(len(self._riser.arc), np.inf)
-        np.minimum.at(least, met.points.node, met.gap - self._rounding)
+        np.minimum.at(least, detected.points.node, detected.gap - self._rounding)
         return least
 
     def _note_missed(self, touching: Touching, missed: BoolArray) -> None:
@@ -225,13 +233,13 @@ class SoilContact:
         return self._patch
 
     def _patch_around(self, state: State) -> Patch:
-        met = self.meet(state)
-        nodes = np.unique(met.points.node[met.gap < self._reach.above])
+        detected = self.detect(state)
+        nodes = np.unique(detected.points.node[detected.gap < self._reach.above])
         xy = self._riser.positions3(state)[nodes, :2]
         distance = ASPECT * self._footprint + self._reach.around
-        return around(nodes, xy, met.surface, self._soil.facets, distance).joined(self._missed)
+        return around(nodes, xy, detected.surface, self._soil.facets, distance).joined(self._missed)
 
 
-def _default_reach(riser: RiserNodes, soil: Soil) -> Reach:
+def _default_reach(riser: RiserNodes, soil: DeformedSurface) -> Reach:
     length = float(riser.arc[-1] - riser.arc[0])
     return Reach(0.01 * length, 0.5 * soil.facet_size)

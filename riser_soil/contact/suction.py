@@ -45,15 +45,15 @@ class Sticking:
     def start(self) -> float:
         return self.penalty.start
 
-    def fresh(self, shape: tuple[int, ...]) -> Array:
+    def initial_history(self, shape: tuple[int, ...]) -> Array:
         return np.full((*shape, 1), np.inf)
 
-    def touched(self, penetration: Array, history: Array) -> BoolArray:
+    def active(self, penetration: Array, history: Array) -> BoolArray:
         stuck = (-penetration < self.reach) & (history[..., 0] < self.reach)
-        return self.penalty.touched(penetration, history) | stuck
+        return self.penalty.active(penetration, history) | stuck
 
-    def respond(self, penetration: Array, history: Array) -> tuple[Array, Array]:
-        force, slope = self.penalty.respond(penetration, history)
+    def force_and_stiffness(self, penetration: Array, history: Array) -> tuple[Array, Array]:
+        force, slope = self.penalty.force_and_stiffness(penetration, history)
         tension, stiffness = self._tension(self._opening(penetration), history[..., 0])
         return force - tension, slope + stiffness
 
@@ -62,7 +62,7 @@ class Sticking:
         tension, _ = self._tension(w, history[..., 0])
         return self.penalty.stored(penetration, history) + 0.5 * tension * w
 
-    def renewed(self, penetration: Array, history: Array) -> Array:
+    def update(self, penetration: Array, history: Array) -> Array:
         opened = np.maximum(-penetration[..., None], history)
         return np.where(penetration[..., None] >= 0.0, 0.0, opened)
 

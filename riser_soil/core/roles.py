@@ -1,4 +1,4 @@
-"""What parts, fields and step controls may do for the march beyond their contracts; see `riser_soil.core.part`."""
+"""What parts, fields and step controls may do for the time stepper beyond their contracts; see `core.part`."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ class Adaptive(Protocol):
 
 
 @runtime_checkable
-class Foreseeing(Protocol):
+class Predictor(Protocol):
     """A part or field that knows a better first guess of a step than the last increment."""
 
-    def improve(self, guess: State) -> Array: ...
+    def predict(self, guess: State) -> Array: ...
 
 
 @runtime_checkable
@@ -32,12 +32,12 @@ class Remembering(Protocol):
 
 
 @runtime_checkable
-class Carrying(Protocol):
+class MomentumCorrecting(Protocol):
     """A part whose rates at the end of a step are more than the state's; it starts each step from the state's."""
 
     def begin(self, state: State) -> None: ...
 
-    def add_excess(self, state: State, out: Array) -> None:
+    def add_momentum_correction(self, state: State, out: Array) -> None:
         """Add the momentum beyond that of the state's rates."""
         ...
 

@@ -13,7 +13,7 @@ from riser_soil.riser import rotations
 from riser_soil.riser.ends import Kinematics, Turning
 from riser_soil.riser.vectors import matrix, vector
 
-Six = Callable[[float], Kinematics]
+SixDegreeMotion = Callable[[float], Kinematics]
 """Seconds since the stage began -> displacement [m] and rotation vector [rad] in global axes (6,), and their first two
 derivatives.
 """
@@ -24,7 +24,7 @@ class Displaced:
     """`origin` (3,) [m], displaced by the first three of six."""
 
     origin: Array
-    six: Six
+    six: SixDegreeMotion
 
     def __call__(self, t: float) -> Kinematics:
         """Position [m], velocity [m/s] and acceleration [m/s2] at t [s]."""
@@ -36,7 +36,7 @@ class Displaced:
 class Turned:
     """A support turned by the last three of six, a rotation vector, from where it is at t = 0."""
 
-    six: Six
+    six: SixDegreeMotion
 
     def __call__(self, t: float) -> Turning:
         """Turning at t [s]."""

@@ -10,7 +10,7 @@ from riser_soil.core.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)
-class Move:
+class SmoothMove:
     """Straight from `origin` to `target` (3,) [m] as the load factor grows from 0 to 1."""
 
     origin: Array

@@ -13,7 +13,7 @@ from riser_soil.riser.ends import Kinematics, Turning
 
 
 @dataclass(frozen=True)
-class Swing:
+class AngleOscillation:
     """phi = r(t/ramp) amplitude sin(2 pi t/period + phase), in rad; r as in `smooth_step`; period, ramp [s]."""
 
     amplitude: float
@@ -29,7 +29,7 @@ class Swing:
 
 
 @dataclass(frozen=True, eq=False)
-class Arc:
+class SwingingEnd:
     """`origin` turned about the line through `hub` along the unit vector `axis` by the swing's angle, right-handed.
 
     origin, hub, axis: (3,), [m].
@@ -38,7 +38,7 @@ class Arc:
     origin: Array
     hub: Array
     axis: Array
-    swing: Swing
+    swing: AngleOscillation
 
     def __call__(self, t: float) -> Kinematics:
         """Position [m], velocity [m/s] and acceleration [m/s2] at t [s]."""
@@ -56,7 +56,7 @@ class Rocking:
     """A support that turns about a unit vector `axis` (3,) by the swing's angle, right-handed."""
 
     axis: Array
-    swing: Swing
+    swing: AngleOscillation
 
     def __call__(self, t: float) -> Turning:
         """Turning at t [s]."""

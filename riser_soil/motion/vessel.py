@@ -29,7 +29,7 @@ class Response:
 
 
 @dataclass(frozen=True, eq=False)
-class Berth:
+class VesselAttachment:
     """Where an end belongs on its vessel at rest, and where the vessel found it.
 
     mean: (3,) the end while the vessel is at rest [m]. reference: (3,) the point that the response belongs to, then
@@ -52,16 +52,16 @@ class Vessel:
     """
 
     response: Response
-    berth: Berth
+    attachment: VesselAttachment
     ramp: float
     clock: float
     since: float
 
     def __call__(self, t: float) -> Kinematics:
         response = self.response(self.clock + t)
-        x, v, a = (_carried(values, self.berth.mean - self.berth.reference) for values in response)
-        x, v, a = ramped(self.since + t, self.ramp, x - self.berth.found, v, a)
-        return x + self.berth.found, v, a
+        x, v, a = (_carried(values, self.attachment.mean - self.attachment.reference) for values in response)
+        x, v, a = ramped(self.since + t, self.ramp, x - self.attachment.found, v, a)
+        return x + self.attachment.found, v, a
 
 
 def _carried(values: Array, arm: Array) -> Array:

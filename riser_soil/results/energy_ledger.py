@@ -26,7 +26,7 @@ from riser_soil.solve.time_stepper import Accepted
 SPRINGS = ("start spring", "end spring")  # a spring works only as its support turns
 
 
-class Balance:
+class EnergyLedger:
     """Ledger of a stage that begins with some energy [J]. A static stage's does not balance.
 
     dissipating, working: names of what may dissipate and put in, as the scene has it. They are the ledger's accounts,

@@ -13,7 +13,7 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil import __version__
-from riser_soil.assembly import World
+from riser_soil.assembly import Assembly
 from riser_soil.checks.inventory import built, dissipating, left_out, unknowns, working
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, Model, State
@@ -21,7 +21,7 @@ from riser_soil.core.snapshot import RiserSnapshot, RunFacts, SoilSnapshot, Step
 from riser_soil.core.system import Clock
 from riser_soil.errors import Interruption, RiserSoilError, SolveError
 from riser_soil.interruption import undivided
-from riser_soil.results.energy_ledger import Balance
+from riser_soil.results.energy_ledger import EnergyLedger
 from riser_soil.results.plausibility import Plausibility
 from riser_soil.results.progress import Progress
 from riser_soil.results.record import Recorder
@@ -41,78 +41,78 @@ from riser_soil.riser.section_forces import (
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.solve.dynamic_relaxation import Relaxed
-from riser_soil.solve.time_stepper import Accepted, March
+from riser_soil.solve.time_stepper import Accepted, TimeStepper
 
 
 class Observer:
     """Follows a run: progress bar, energy ledger, files. recorder is None off rank 0."""
 
-    def __init__(self, world: World, clock: Clock, recorder: Recorder | None, progress: Progress) -> None:
-        self._world, self._clock, self._recorder, self._progress = world, clock, recorder, progress
-        output = world.scene.output
+    def __init__(self, assembly: Assembly, clock: Clock, recorder: Recorder | None, progress: Progress) -> None:
+        self._world, self._clock, self._recorder, self._progress = assembly, clock, recorder, progress
+        output = assembly.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
-        self._zone = TouchdownZone(world, _known_fields(world))
-        self._plausibility = Plausibility(world)
+        self._zone = TouchdownZone(assembly, _known_fields(assembly))
+        self._plausibility = Plausibility(assembly)
 
     @classmethod
     @contextmanager
-    def open(cls, world: World, clock: Clock, folder: Path, force: bool) -> Iterator[Observer]:
+    def open(cls, assembly: Assembly, clock: Clock, folder: Path, force: bool) -> Iterator[Observer]:
         """Take the run's folder over; collective. What was written stays when the block is left early."""
-        mesh = world.soil.output_mesh() if world.soil is not None else None
-        known = facts(world)
-        with Progress(enabled=world.comm.rank == 0) as progress:
+        mesh = assembly.soil.output_mesh() if assembly.soil is not None else None
+        known = facts(assembly)
+        with Progress(enabled=assembly.comm.rank == 0) as progress:
             recorder = None
-            with _on_all_ranks(world.comm), undivided():
-                if world.comm.rank == 0:
-                    text, fields = dump_scene(world.scene), _known_fields(world)
-                    recorder = Recorder.open(folder, known, world.line.arc, mesh, text, fields, force)
+            with _on_all_ranks(assembly.comm), undivided():
+                if assembly.comm.rank == 0:
+                    text, fields = dump_scene(assembly.scene), _known_fields(assembly)
+                    recorder = Recorder.open(folder, known, assembly.line.arc, mesh, text, fields, force)
             with recorder or nullcontext():
-                yield cls(world, clock, recorder, progress)
+                yield cls(assembly, clock, recorder, progress)
 
-    def begin_stage(self, stage: Stage, march: March) -> None:
-        """march: at the stage's beginning; collective."""
+    def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
+        """stepper: at the stage's beginning; collective."""
         self._stage = stage
         self._schedule.begin_stage(stage.kind)
         scene = self._world.scene
-        self._balance = Balance(march.energy, isinstance(stage, StaticStage), dissipating(scene), working(scene))
+        self._balance = EnergyLedger(stepper.energy, isinstance(stage, StaticStage), dissipating(scene), working(scene))
         self._relaxed = 0
         self._plausibility.begin_stage(stage)
         if self._recorder is not None:
             self._recorder.begin_stage(stage.name, stage.kind)
         if stage is self._world.scene.stages[0] and not isinstance(stage, StaticStage):
-            self._begin_at(march)
+            self._begin_at(stepper)
         self._progress.begin_stage(stage.name, stage.kind, 1.0 if isinstance(stage, StaticStage) else stage.duration)
 
-    def _begin_at(self, march: March) -> None:
+    def _begin_at(self, stepper: TimeStepper) -> None:
         """Records the state before all stages, which no static stage has brought about."""
         soil = self._soil()
         if self._recorder is not None:
-            self._recorder.begin_at(riser_snapshot(self._world, march), self._zone.look(march.now), soil)
+            self._recorder.begin_at(riser_snapshot(self._world, stepper), self._zone.look(stepper.now), soil)
 
-    def record(self, march: March, step: Accepted, last: bool) -> None:
+    def record(self, stepper: TimeStepper, step: Accepted, last: bool) -> None:
         """Tell the recorder of a step that has been committed; collective."""
         since = time.perf_counter()
         due = self._schedule.due(step.t, last)
         # Relaxation, in statics, commits states that are no steps: the soil must be known before it.
         soil = self._soil() if due.pictures or isinstance(self._stage, StaticStage) else None
-        change = self._balance.add(march.energy, step)
+        change = self._balance.add(stepper.energy, step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
         if self._recorder is not None:
             health = StepHealth(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
-            riser, touching = riser_snapshot(self._world, march), self._zone.look(march.now)
+            riser, touching = riser_snapshot(self._world, stepper), self._zone.look(stepper.now)
             self._recorder.accept(step.t, due, riser, touching, health, self._balance.ledger, soil)
             if due.series:
-                self._judge(self._recorder, march, riser, touching, closely=due.pictures)
+                self._judge(self._recorder, stepper, riser, touching, closely=due.pictures)
         self._relaxed = 0
         self._clock.add("output", since)
 
     def _judge(
-        self, recorder: Recorder, march: March, riser: RiserSnapshot, touching: Touch, closely: bool
+        self, recorder: Recorder, stepper: TimeStepper, riser: RiserSnapshot, touching: Touch, closely: bool
     ) -> None:
         """Look whether what was recorded is plausible; closely where it costs no more than what is written."""
-        self._plausibility.look(recorder.now, march.now, riser, touching)
+        self._plausibility.look(recorder.now, stepper.now, riser, touching)
         if closely:
-            self._plausibility.look_closely(recorder.now, march.now, elastic_residual(self._world, march))
+            self._plausibility.look_closely(recorder.now, stepper.now, elastic_residual(self._world, stepper))
         recorder.summary.stages[-1].doubts = self._plausibility.warnings()
 
     def record_last(self, end: SolveError | Interruption) -> None:
@@ -168,18 +168,18 @@ def _on_all_ranks(comm: MPI.Intracomm) -> Iterator[None]:
             raise met
 
 
-def _known_fields(world: World) -> tuple[str, ...]:
+def _known_fields(assembly: Assembly) -> tuple[str, ...]:
     """What the scene wants to be told of, as far as it is known."""
     unknown = set()
-    if world.pressures is None:
+    if assembly.pressures is None:
         unknown |= {"wall_tension"}
-    if not world.elements.min_bend_radius.any():
+    if not assembly.elements.min_bend_radius.any():
         unknown |= {"bend_utilisation"}
-    if not world.contacts:
+    if not assembly.contacts:
         unknown |= {"penetration", "embedment"}
-    if world.friction is None:
+    if assembly.friction is None:
         unknown |= {"slip"}
-    return tuple(name for name in world.scene.output.fields if name not in unknown)
+    return tuple(name for name in assembly.scene.output.fields if name not in unknown)
 
 
 class Acting(NamedTuple):
@@ -200,22 +200,22 @@ def _acting(model: Model) -> Acting:
     )
 
 
-def riser_snapshot(world: World, march: March) -> RiserSnapshot:
+def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
     """The riser at the accepted state; on the rank that holds it."""
-    line, state = world.line, march.now
-    parts = _acting(march.system.model)
+    line, state = assembly.line, stepper.now
+    parts = _acting(stepper.system.model)
     residual = element_residual(line, parts.within, state)
-    inside = section_forces(line, world.elements, state, residual, viscous_residual(line, parts.viscous, state))
-    start, end = end_reactions(line, state, residual, _on_nodes(world, march))
+    inside = section_forces(line, assembly.elements, state, residual, viscous_residual(line, parts.viscous, state))
+    start, end = end_reactions(line, state, residual, _on_nodes(assembly, stepper))
     tangent, position = line.trial(state).turn.tangent @ line.basis.T, line.positions3(state)
     return RiserSnapshot(
         position=position,
         effective_tension=inside.effective_tension,
-        wall_tension=_wall_tension(world, inside.effective_tension, position[:, 2]),
+        wall_tension=_wall_tension(assembly, inside.effective_tension, position[:, 2]),
         bending_moment=inside.bending_moment,
         curvature=inside.curvature,
-        bend_utilisation=_bend_utilisation(world, inside.curvature_beside),
-        contact_force=_contact_force(world, state),
+        bend_utilisation=_bend_utilisation(assembly, inside.curvature_beside),
+        contact_force=_contact_force(assembly, state),
         moment_vector=inside.moment,
         start_force=start.force,
         end_force=end.force,
@@ -226,50 +226,50 @@ def riser_snapshot(world: World, march: March) -> RiserSnapshot:
     )
 
 
-def elastic_residual(world: World, march: March) -> Array:
+def elastic_residual(assembly: Assembly, stepper: TimeStepper) -> Array:
     """Of the elements (ne, 2 ndof), less what follows from strain rates."""
-    parts = _acting(march.system.model)
-    residual = element_residual(world.line, parts.within, march.now)
-    viscous = viscous_residual(world.line, parts.viscous, march.now)
+    parts = _acting(stepper.system.model)
+    residual = element_residual(assembly.line, parts.within, stepper.now)
+    viscous = viscous_residual(assembly.line, parts.viscous, stepper.now)
     return residual if viscous is None else residual - viscous
 
 
-def _bend_utilisation(world: World, curvature: Array) -> Array:
+def _bend_utilisation(assembly: Assembly, curvature: Array) -> Array:
     """curvature (ne, 2): at the elements' ends."""
-    allowed = world.elements.min_bend_radius
-    return at_most(allowed[:, None] * curvature) if allowed.any() else np.full(world.line.nodes, np.nan)
+    allowed = assembly.elements.min_bend_radius
+    return at_most(allowed[:, None] * curvature) if allowed.any() else np.full(assembly.line.nodes, np.nan)
 
 
-def _wall_tension(world: World, effective: Array, z: Array) -> Array:
-    if world.pressures is None:
-        return np.full(world.line.nodes, np.nan)
-    return world.pressures.wall_tension(effective, z)
+def _wall_tension(assembly: Assembly, effective: Array, z: Array) -> Array:
+    if assembly.pressures is None:
+        return np.full(assembly.line.nodes, np.nan)
+    return assembly.pressures.wall_tension(effective, z)
 
 
-def _on_nodes(world: World, march: March) -> Array:
+def _on_nodes(assembly: Assembly, stepper: TimeStepper) -> Array:
     """Residual (nn, ndof) of what acts on nodes but isn't a support: contact with soil, and loads at nodes."""
-    forces = Forces.zeros(march.now.u.size)
-    if world.soil_contact is not None:
-        world.soil_contact.residual(march.now, forces)
-    loads = [p.nodal_forces(march.now) for p in _acting(march.system.model).on_nodes]
-    return np.asarray(sum(loads, world.line.nodal(forces.end)))
+    forces = Forces.zeros(stepper.now.u.size)
+    if assembly.soil_contact is not None:
+        assembly.soil_contact.residual(stepper.now, forces)
+    loads = [p.nodal_forces(stepper.now) for p in _acting(stepper.system.model).on_nodes]
+    return np.asarray(sum(loads, assembly.line.nodal(forces.end)))
 
 
-def _contact_force(world: World, state: State) -> Array:
-    forces = (contact.force_per_length(state) for contact in world.contacts)
-    return np.asarray(sum(forces, np.zeros(world.line.nodes)))
+def _contact_force(assembly: Assembly, state: State) -> Array:
+    forces = (contact.force_per_length(state) for contact in assembly.contacts)
+    return np.asarray(sum(forces, np.zeros(assembly.line.nodes)))
 
 
-def facts(world: World) -> RunFacts:
+def facts(assembly: Assembly) -> RunFacts:
     """What is known of a run before its first step; collective."""
     return RunFacts(
-        title=world.scene.title,
+        title=assembly.scene.title,
         version=__version__,
-        ranks=world.comm.size,
-        built=built(world.scene),
-        left_out=left_out(world.scene),
-        dissipating=dissipating(world.scene),
-        working=working(world.scene),
-        riser_dofs=unknowns(world.comm, world.line),
-        soil_dofs=unknowns(world.comm, world.soil.field) if world.soil is not None else 0,
+        ranks=assembly.comm.size,
+        built=built(assembly.scene),
+        left_out=left_out(assembly.scene),
+        dissipating=dissipating(assembly.scene),
+        working=working(assembly.scene),
+        riser_dofs=unknowns(assembly.comm, assembly.line),
+        soil_dofs=unknowns(assembly.comm, assembly.soil.field) if assembly.soil is not None else 0,
     )

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.assembly import World
+from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.snapshot import RiserSnapshot, Touch
@@ -44,13 +44,13 @@ class Plausibility:
     EA [N] and radius [m] (nn,): the smaller and the larger of what the two elements beside a node have.
     """
 
-    def __init__(self, world: World) -> None:
-        elements = world.elements
-        self._world = world
+    def __init__(self, assembly: Assembly) -> None:
+        elements = assembly.elements
+        self._world = assembly
         self.EA = -at_most(np.repeat(-elements.EA[:, None], 2, axis=1))
         self.radius = at_most(np.repeat(0.5 * elements.outer_diameter[:, None], 2, axis=1))
-        self._middle = 0.5 * (world.line.arc[1:] + world.line.arc[:-1])
-        self._touched = world.soil_contact is None
+        self._middle = 0.5 * (assembly.line.arc[1:] + assembly.line.arc[:-1])
+        self._touched = assembly.soil_contact is None
 
     def begin_stage(self, stage: Stage) -> None:
         self._last_stage = stage.name == self._world.scene.stages[-1].name

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.assembly import World
+from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.snapshot import Touch
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 class TouchdownZone:
     """What the rank that holds contact tells of it. fields: those of `Touch` along the riser that are wanted."""
 
-    def __init__(self, world: World, fields: Sequence[str] = ()) -> None:
-        self._world, self._fields = world, fields
-        self._embedment = np.zeros(world.line.nodes)
+    def __init__(self, assembly: Assembly, fields: Sequence[str] = ()) -> None:
+        self._world, self._fields = assembly, fields
+        self._embedment = np.zeros(assembly.line.nodes)
 
     def look(self, state: State) -> Touch:
         """At each accepted state in turn: the embedment is the greatest depth yet."""

@@ -38,7 +38,7 @@ from riser_soil.riser.strain3d import (
     strain_change,
 )
 from riser_soil.riser.stress3d import energy, stress, stress_change
-from riser_soil.riser.swing_twist import Swing, moment, moment_variation, rate, split
+from riser_soil.riser.swing_twist import SwingTwist, moment, moment_variation, rate, split
 from riser_soil.riser.vectors import Mat, Vec, add, matrix, sub, vecmat, vector
 
 STILL = (0.0, 0.0, 0.0)
@@ -66,13 +66,13 @@ class Shape(NamedTuple):
     """Configuration of one element, seen from its own frame, and its strains."""
 
     frame: Corotated
-    end1: Swing
-    end2: Swing
+    end1: SwingTwist
+    end2: SwingTwist
     stations: tuple[Station, Station]
     strain: Strain
 
 
-class Move(NamedTuple):
+class SpatialChange(NamedTuple):
     """A change of an element's configuration, or its rate, in the element's frame."""
 
     stretch: float  # of the chord
@@ -176,21 +176,21 @@ def forces(chord: Array, frame1: Array, frame2: Array, ref: Reference, section: 
 
 
 @njit
-def move(at: Shape, u: Vec, w1: Vec, w2: Vec) -> Move:
+def move(at: Shape, u: Vec, w1: Vec, w2: Vec) -> SpatialChange:
     """What changes, to first order, when the nodes move by u = u2 - u1 and spin by w1, w2."""
     spin = frame_spin(at.frame.length, u)
     spin1, spin2 = sub(w1, spin), sub(w2, spin)
-    return Move(u[0], spin, spin1, spin2, rate(at.end1, spin1), rate(at.end2, spin2))
+    return SpatialChange(u[0], spin, spin1, spin2, rate(at.end1, spin1), rate(at.end2, spin2))
 
 
 @njit
-def strain_of(L: float, at: Shape, m: Move) -> Strain:
+def strain_of(L: float, at: Shape, m: SpatialChange) -> Strain:
     """Change of the strains in a move, or their rates."""
     return strain_change(L, at.end1.angles, at.end2.angles, at.stations, m.stretch, m.da, m.db)
 
 
 @njit
-def forces_change(L: float, at: Shape, response: Response, m: Move, change: Strain, ds: Stress) -> NodalForces:
+def forces_change(L: float, at: Shape, response: Response, m: SpatialChange, change: Strain, ds: Stress) -> NodalForces:
     """Change of an element's forces when it moves, its strains change and its stresses change by ds."""
     elastic1, elastic2 = conjugate(L, at.end1.angles, at.end2.angles, at.stations, ds)
     geometric1, geometric2 = conjugate_change(L, at.stations, response.stress, change, m.da, m.db)

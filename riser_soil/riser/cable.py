@@ -68,7 +68,7 @@ class Chain:
 
 
 @dataclass(frozen=True, eq=False)
-class Balance:
+class CableBalance:
     """Horizontal tension H [N], heights z (nb + 1,) m of the joints, vertical forces V (nb,) N in the bars, pushes
     q (nb - 1,) N of the seabed on the inner joints, which times the heights make mu [N m].
 
@@ -108,7 +108,7 @@ class Goal:
     least_H: float
 
 
-def fit(chain: Chain, h: float, least_H: float) -> Balance:
+def fit(chain: Chain, h: float, least_H: float) -> CableBalance:
     """The chain in balance with its ends h apart; with least_H [N] and its ends farther apart where it would need less.
 
     Raises SceneError when no balance is found.
@@ -127,7 +127,7 @@ def fit(chain: Chain, h: float, least_H: float) -> Balance:
     return _solved(near, near, goal)
 
 
-def _nearly(start: Balance, goal: Goal) -> Balance:
+def _nearly(start: CableBalance, goal: Goal) -> CableBalance:
     """With nearly the H that reaches the goal, or with its least H where that reaches it too; mu is left as it is."""
     low, high, h, least_H, chain = start, start, goal.h, goal.least_H, start.chain
     while high.reach < h:
@@ -142,30 +142,30 @@ def _nearly(start: Balance, goal: Goal) -> Balance:
     return low
 
 
-def _straight(chain: Chain) -> Balance:
+def _straight(chain: Chain) -> CableBalance:
     """A straight line over the seabed under a high tension; not in balance."""
     slope = (chain.z1 - chain.z0) / chain.L
     arc = np.append(0.0, np.cumsum(chain.l0))
     z, V = chain.z0 + slope * arc, np.full(chain.l0.size, slope * chain.load)
     if chain.hover is None:
-        return Balance(chain, chain.load, z, V, np.zeros(z.size - 2), 0.0)
+        return CableBalance(chain, chain.load, z, V, np.zeros(z.size - 2), 0.0)
     mu = max(FARTHEST * chain.L * chain.load / z.size, chain.hardest)
     z[1:-1] += FARTHEST * chain.L
-    return Balance(chain, chain.load, z, V, mu / z[1:-1], mu)
+    return CableBalance(chain, chain.load, z, V, mu / z[1:-1], mu)
 
 
-def _hardened(found: Balance, goal: Goal | None = None) -> Balance:
+def _hardened(found: CableBalance, goal: Goal | None = None) -> CableBalance:
     """The same with the mu that is wanted in the end; as it is where H falls far below the goal's least."""
     while found.mu > found.chain.hardest and not _is_slack(found, goal):
         found = _solved(found, replace(found, mu=max(HARDER * found.mu, found.chain.hardest)), goal)
     return found
 
 
-def _is_slack(found: Balance, goal: Goal | None) -> bool:
+def _is_slack(found: CableBalance, goal: Goal | None) -> bool:
     return goal is not None and goal.least_H > found.H
 
 
-def _solved(known: Balance, trial: Balance, goal: Goal | None = None) -> Balance:
+def _solved(known: CableBalance, trial: CableBalance, goal: Goal | None = None) -> CableBalance:
     """The trial's chain in balance at its mu, and at its H or at the one that meets the goal.
 
     Found by way of values of H and mu nearer to those of a known balance where theirs are far from it. Gives up where
@@ -181,7 +181,7 @@ def _solved(known: Balance, trial: Balance, goal: Goal | None = None) -> Balance
     return _solved(halfway, replace(halfway, H=trial.H, mu=trial.mu), goal)
 
 
-def _newton(trial: Balance, goal: Goal | None) -> Balance | None:
+def _newton(trial: CableBalance, goal: Goal | None) -> CableBalance | None:
     """Newton's method; None where it does not converge."""
     size = _misfit(trial, goal)
     for _ in range(MOST_ITERATIONS):
@@ -191,7 +191,7 @@ def _newton(trial: Balance, goal: Goal | None) -> Balance | None:
     return None
 
 
-def _improved(trial: Balance, size: float, goal: Goal | None) -> tuple[Balance, float]:
+def _improved(trial: CableBalance, size: float, goal: Goal | None) -> tuple[CableBalance, float]:
     """After a Newton step, shortened to stay inside and until the misfit falls; and its misfit."""
     step = _newton_step(trial, goal)
     fraction = min(1.0, *_ways_inside(trial, step))
@@ -209,7 +209,7 @@ def _improved(trial: Balance, size: float, goal: Goal | None) -> tuple[Balance, 
         fraction *= 0.5
 
 
-def _ways_inside(trial: Balance, step: Balance) -> Iterator[float]:
+def _ways_inside(trial: CableBalance, step: CableBalance) -> Iterator[float]:
     """Fractions of the step that leave H positive, and heights and pushes too where there is a seabed."""
     pairs = [(np.array([trial.H]), np.array([step.H]))]
     if trial.chain.hover is not None:
@@ -218,14 +218,14 @@ def _ways_inside(trial: Balance, step: Balance) -> Iterator[float]:
         yield TO_THE_EDGE / max(1e-300, float(np.max(-change / value)))
 
 
-def _misfits(trial: Balance) -> tuple[Array, Array]:
+def _misfits(trial: CableBalance) -> tuple[Array, Array]:
     """Spans beyond what the forces make of the bars (nb,) m; net upward force on the inner joints (nb - 1,) N."""
     chain, z, V = trial.chain, trial.z, trial.V
     spans = np.diff(z) - chain.l0 * V * (1.0 / np.hypot(trial.H, V) + 1.0 / chain.EA)
     return spans, np.diff(V) - chain.W[1:-1] + trial.q
 
 
-def _misfit(trial: Balance, goal: Goal | None) -> float:
+def _misfit(trial: CableBalance, goal: Goal | None) -> float:
     """Misfits of spans, reach and heights over the length, plus that of forces over the load.
 
     Where tensions exceed the load by far, their round-off counts less.
@@ -237,7 +237,7 @@ def _misfit(trial: Balance, goal: Goal | None) -> float:
     return float((np.abs(spans).sum() + beyond + resting / scale) / chain.L + np.abs(forces).sum() / scale)
 
 
-def _newton_step(trial: Balance, goal: Goal | None) -> Balance:
+def _newton_step(trial: CableBalance, goal: Goal | None) -> CableBalance:
     """Changes of H, heights, bar forces and pushes. Of a bar, k is dV/d(dz) at constant H, and c is d(dz)/dH = d(dx)/dV
     at constant V.
     """

@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import SceneError
-from riser_soil.riser.cable import Balance, Chain, fit
+from riser_soil.riser.cable import CableBalance, Chain, fit
 from riser_soil.riser.shapes import UP, Curve, X, from_nodes
 
 BARS = 2000  # error of H some 5e-8 of it
@@ -93,7 +93,7 @@ def _hang_on(chain: Chain, points: Array) -> None:
 
 
 def _in_space(
-    found: Balance, nodes: IntArray, start: Array, end: Array, direction: Array, slack: float
+    found: CableBalance, nodes: IntArray, start: Array, end: Array, direction: Array, slack: float
 ) -> Catenary:
     """The shape at the nodes; it ends where it is to end, beyond the round-off of its balance."""
     x, z, V = (values[nodes, None] for values in (found.x, found.z - found.chain.z0, found.V_at_joints))

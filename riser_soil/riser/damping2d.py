@@ -30,7 +30,7 @@ from riser_soil.riser.bending import bow_slopes
 STILL = (0.0, 0.0)
 
 
-class Move(NamedTuple):
+class PlanarChange(NamedTuple):
     """A change of an element's configuration, or its rate."""
 
     stretch: float  # of the chord
@@ -40,29 +40,29 @@ class Move(NamedTuple):
 
 
 @njit
-def _move(at: Corotated, u: Vec2, w1: float, w2: float) -> Move:
+def _move(at: Corotated, u: Vec2, w1: float, w2: float) -> PlanarChange:
     """What changes when the nodes move by u = u2 - u1, in the element's axes, and turn by w_i."""
     spin = u[1] / at.length
-    return Move(u[0], spin, w1 - spin, w2 - spin)
+    return PlanarChange(u[0], spin, w1 - spin, w2 - spin)
 
 
 @njit
-def _rates_of(at: Corotated, chord_rate: Array, w1: float, w2: float) -> Move:
+def _rates_of(at: Corotated, chord_rate: Array, w1: float, w2: float) -> PlanarChange:
     c, s = at.axis
     return _move(at, (c * chord_rate[0] + s * chord_rate[1], c * chord_rate[1] - s * chord_rate[0]), w1, w2)
 
 
 @njit
-def _rates_change(at: Corotated, rates: Move, m: Move, shift_v: float) -> Move:
+def _rates_change(at: Corotated, rates: PlanarChange, m: PlanarChange, shift_v: float) -> PlanarChange:
     """Change of the rates in a move that they follow by shift_v; the axes in which they are seen turn, too."""
     stretch = shift_v * m.stretch + m.spin * rates.spin * at.length
     lag = (m.spin * rates.stretch + m.stretch * rates.spin) / at.length
-    return Move(stretch, shift_v * m.spin - lag, shift_v * m.theta1 + lag, shift_v * m.theta2 + lag)
+    return PlanarChange(stretch, shift_v * m.spin - lag, shift_v * m.theta1 + lag, shift_v * m.theta2 + lag)
 
 
 @njit
 def _stress_change(
-    element: Element, at: Corotated, N: float, rates: Move, m: Move, d: Move
+    element: Element, at: Corotated, N: float, rates: PlanarChange, m: PlanarChange, d: PlanarChange
 ) -> tuple[float, float, float]:
     """Change of the viscous stresses when the element moves by m and the rates change by d."""
     slope1, slope2 = bow_slopes(m.theta1, m.theta2)
@@ -73,7 +73,7 @@ def _stress_change(
 
 @njit
 def _vary(
-    element: Element, at: Corotated, N: float, force: Vec2, rates: Move, m: Move, shift_v: float
+    element: Element, at: Corotated, N: float, force: Vec2, rates: PlanarChange, m: PlanarChange, shift_v: float
 ) -> NodalForces:
     dN, dm1, dm2 = _stress_change(element, at, N, rates, m, _rates_change(at, rates, m, shift_v))
     change = nodal_forces(at, dN, dm1, dm2)

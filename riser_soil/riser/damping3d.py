@@ -13,11 +13,11 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser.beam3d import (
     STILL,
-    Move,
     Reference,
     Response,
     Section,
     Shape,
+    SpatialChange,
     forces_change,
     move,
     put_forces,
@@ -46,13 +46,13 @@ from riser_soil.riser.vectors import (
 )
 
 
-class Flow(NamedTuple):
+class ElementVelocities(NamedTuple):
     """Velocities of an element in its frame, and what they do to it."""
 
     chord: Vec  # rate of the chord
     spin1: Vec  # angular velocities of the nodes
     spin2: Vec
-    rates: Move
+    rates: SpatialChange
 
 
 class Nodes(NamedTuple):
@@ -65,20 +65,20 @@ class Nodes(NamedTuple):
 
 
 @njit
-def _flow(at: Shape, chord_rate: Vec, spin1: Vec, spin2: Vec) -> Flow:
+def _flow(at: Shape, chord_rate: Vec, spin1: Vec, spin2: Vec) -> ElementVelocities:
     axes = at.frame.axes
     c, o1, o2 = matvec(axes, chord_rate), matvec(axes, spin1), matvec(axes, spin2)
-    return Flow(c, o1, o2, move(at, c, o1, o2))
+    return ElementVelocities(c, o1, o2, move(at, c, o1, o2))
 
 
 @njit
-def _respond(D: Stiffness, at: Shape, flow: Flow) -> Response:
+def _respond(D: Stiffness, at: Shape, flow: ElementVelocities) -> Response:
     strain_rates = strain_of(D.L, at, flow.rates)
     return respond(D.L, at, strain_rates, linear_stress(D, strain_rates))
 
 
 @njit
-def _rates_change(at: Shape, flow: Flow, m: Move, dc: Vec, do1: Vec, do2: Vec) -> Move:
+def _rates_change(at: Shape, flow: ElementVelocities, m: SpatialChange, dc: Vec, do1: Vec, do2: Vec) -> SpatialChange:
     """Change of the rates when the element moves by m and its velocities change by dc, do1 and do2.
 
     The axes in which they are seen turn, and so do the ends within them.
@@ -93,11 +93,13 @@ def _rates_change(at: Shape, flow: Flow, m: Move, dc: Vec, do1: Vec, do2: Vec) -
     spin1, spin2 = add(change.spin1, lag), add(change.spin2, lag)
     da = add(rate(at.end1, spin1), rate_variation(at.end1, flow.rates.spin1, m.spin1))
     db = add(rate(at.end2, spin2), rate_variation(at.end2, flow.rates.spin2, m.spin2))
-    return Move(change.stretch, sub(change.spin, lag), spin1, spin2, da, db)
+    return SpatialChange(change.stretch, sub(change.spin, lag), spin1, spin2, da, db)
 
 
 @njit
-def _vary(D: Stiffness, at: Shape, flow: Flow, response: Response, m: Move, d: Move) -> NodalForces:
+def _vary(
+    D: Stiffness, at: Shape, flow: ElementVelocities, response: Response, m: SpatialChange, d: SpatialChange
+) -> NodalForces:
     """Change of an element's forces when it moves by m and its rates change by d."""
     bending = strain_change_variation(D.L, at.stations, flow.rates.da, flow.rates.db, m.da, m.db)
     ds = linear_stress(D, total(strain_of(D.L, at, d), bending))
@@ -107,7 +109,7 @@ def _vary(D: Stiffness, at: Shape, flow: Flow, response: Response, m: Move, d: M
 @njit
 def _element(
     D: Stiffness, chord: Array, frame1: Array, frame2: Array, chord_rate: Array, spin1: Array, spin2: Array
-) -> tuple[Shape, Flow, Response]:
+) -> tuple[Shape, ElementVelocities, Response]:
     at = shape(D.L, vector(chord), matrix(frame1), matrix(frame2))
     flow = _flow(at, vector(chord_rate), vector(spin1), vector(spin2))
     return at, flow, _respond(D, at, flow)
@@ -131,7 +133,7 @@ def forces(
 
 @njit
 def _turn_column(
-    D: Stiffness, at: Shape, flow: Flow, response: Response, w: Vec, faster: Vec, end: int
+    D: Stiffness, at: Shape, flow: ElementVelocities, response: Response, w: Vec, faster: Vec, end: int
 ) -> NodalForces:
     """Change of the forces when one end spins by w and its angular velocity grows by `faster`, both in global axes."""
     axes = at.frame.axes
@@ -146,7 +148,9 @@ def _turn_column(
 
 
 @njit
-def _shift_columns(D: Stiffness, at: Shape, flow: Flow, response: Response, shift_v: float, K: Array) -> None:
+def _shift_columns(
+    D: Stiffness, at: Shape, flow: ElementVelocities, response: Response, shift_v: float, K: Array
+) -> None:
     """Write the columns of both nodes' displacements to K (12, 12)."""
     axes = at.frame.axes
     for k in range(3):

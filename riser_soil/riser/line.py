@@ -243,18 +243,18 @@ class Line:
         base = self._bases[node]
         return base if turning is None else self.frames.turned(base, turning(t).rotation @ self.turning_axes)
 
-    def improve(self, guess: State) -> Array:
+    def predict(self, guess: State) -> Array:
         """First guess of a step: the guess's increment, with what the held ends move beyond it spread along the line.
 
         Left to the last element alone, that remainder stretches it, and its false tension spoils the first
         iteration. The cube of the distance from the other end keeps the far part, often on the seabed, where it is.
         """
-        improved = guess.u.copy()
-        moved = self.nodal(improved)[:, : self.dimension]
+        predicted = guess.u.copy()
+        moved = self.nodal(predicted)[:, : self.dimension]
         for node, end in self._ends:
             if end.held and end.motion is not None:
                 moved += self._reach[node] * (self._to(end.motion(guess.t)[0], node) - moved[node])
-        return improved
+        return predicted
 
     @cached_property
     def _reach(self) -> dict[int, Array]:

@@ -29,8 +29,8 @@ from riser_soil.core.part import Block, Energy, Forces, Part, State, Traits, Wei
 from riser_soil.riser import hermite
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
+from riser_soil.riser.midpoint_directors import Carried, Secant, directors
 from riser_soil.riser.rotary_inertia import RotaryInertia
-from riser_soil.riser.secants import Carried, Secant, directors
 from riser_soil.riser.trial import Trial
 
 
@@ -85,7 +85,7 @@ class MidpointInertia:
             hermite.add_geometric(K, weights.inertia, G, self.line.dimension)
             hermite.add_mass(K, weights.inertia, secant.P, 0.5 * shift * secant.by_end, shift, self.instant.M)
 
-    def add_excess(self, state: State, out: Array) -> None:
+    def add_momentum_correction(self, state: State, out: Array) -> None:
         """Add P^T M (q' - q'(v)) at an accepted state to a local array [N s, N m s]."""
         if self.line.active:
             trial = self.line.trial(state)
@@ -160,7 +160,7 @@ class MidpointRotaryInertia:
         element[:, :, self.line.dimension :] = np.sum(moments, axis=0)
         self.line.scatter(element.reshape(len(element), -1), out)
 
-    def add_excess(self, state: State, out: Array) -> None:
+    def add_momentum_correction(self, state: State, out: Array) -> None:
         """Add P^T M (d' - d'(v)) at an accepted state to a local array [N m s]."""
         if self.line.active:
             v = _turning(self.line, state.v)

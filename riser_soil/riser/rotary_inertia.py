@@ -6,7 +6,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
-from riser_soil.riser import spinning
+from riser_soil.riser import rotary_moments
 from riser_soil.riser.directors import PlanarFrames, SpatialFrames
 from riser_soil.riser.line import Line
 
@@ -42,14 +42,14 @@ class SpatialSections:
 
     def forces(self, u: Array, v: Array, a: Array) -> Array:
         """Moments (ne, 2, 3) from the nodes' rotation dofs, increments and rates (nn, 3)."""
-        return np.asarray(spinning.moments(self._J, u, v, a))
+        return np.asarray(rotary_moments.moments(self._J, u, v, a))
 
     def add_tangent(self, K: Array, weights: Weights, u: Array, v: Array, a: Array) -> None:
         """Add to K (ne, 12, 12)."""
-        spinning.add_tangent(K, weights.inertia, self._J, u, v, a, weights.shift_v, weights.shift_a)
+        rotary_moments.add_tangent(K, weights.inertia, self._J, u, v, a, weights.shift_v, weights.shift_a)
 
     def kinetic_energy(self, v: Array) -> float:
-        return float(spinning.kinetic_energy(self._J, v))
+        return float(rotary_moments.kinetic_energy(self._J, v))
 
 
 class RotaryInertia:

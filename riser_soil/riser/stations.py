@@ -181,7 +181,7 @@ def _follow_slope(A: Array, tau: Array, stretch: Array, D: Size) -> Array:
     return out
 
 
-class Columns(NamedTuple):
+class ByDofs(NamedTuple):
     """Derivatives by the dofs: of tangents in q, q' and q'' (ne, 2, d, r), of positions in q' and q'' the shifts."""
 
     q: Array
@@ -200,7 +200,7 @@ class Derivatives(NamedTuple):
     acceleration: Array
 
 
-def add_tangent(out: Array, at: Stations, by: Derivatives, columns: Columns) -> None:
+def add_tangent(out: Array, at: Stations, by: Derivatives, columns: ByDofs) -> None:
     """Add to out (ne, n, n) the derivative by the dofs of the residual of a force per length, P = dt/dTheta held."""
     _add_tangent(out, *at, *by, *columns, fixed(by.slope.shape[2]), fixed(columns.q.shape[3]))
 

@@ -16,7 +16,7 @@ from riser_soil.riser.angle_over_sine import angle_over_sine
 from riser_soil.riser.vectors import Mat, Vec, add, cross, dot, scale
 
 
-class Swing(NamedTuple):
+class SwingTwist(NamedTuple):
     """A rotation split into twist and swing."""
 
     angles: Vec  # (tau, y, z), rad
@@ -27,16 +27,16 @@ class Swing(NamedTuple):
 
 
 @njit
-def split(A: Mat) -> Swing:
+def split(A: Mat) -> SwingTwist:
     """Twist and swing of the rotation matrix A."""
     t = (A[0][0], A[1][0], A[2][0])
     f, df, ddf = angle_over_sine(t[0], math.sqrt(t[1] * t[1] + t[2] * t[2]))
     tau = math.atan2(A[2][1] - A[1][2], A[1][1] + A[2][2])
-    return Swing((tau, -f * t[2], f * t[1]), t, f, df, ddf)
+    return SwingTwist((tau, -f * t[2], f * t[1]), t, f, df, ddf)
 
 
 @njit
-def rate(at: Swing, w: Vec) -> Vec:
+def rate(at: SwingTwist, w: Vec) -> Vec:
     """Change of (tau, y, z) for the spin w."""
     dt = cross(w, at.t)
     df = at.df * dt[0]
@@ -45,7 +45,7 @@ def rate(at: Swing, w: Vec) -> Vec:
 
 
 @njit
-def rate_variation(at: Swing, w: Vec, spin: Vec) -> Vec:
+def rate_variation(at: SwingTwist, w: Vec, spin: Vec) -> Vec:
     """Change of `rate` at fixed w when A spins by `spin`."""
     t, dt, et, edt = at.t, cross(w, at.t), cross(spin, at.t), cross(w, cross(spin, at.t))
     df, ef = at.df * dt[0], at.df * et[0]
@@ -59,26 +59,26 @@ def rate_variation(at: Swing, w: Vec, spin: Vec) -> Vec:
 
 
 @njit
-def _twist_direction(at: Swing) -> Vec:
+def _twist_direction(at: SwingTwist) -> Vec:
     """(e1 + t)/(1 + t_x)."""
     per = 1.0 / (1.0 + at.t[0])
     return (1.0, per * at.t[1], per * at.t[2])
 
 
 @njit
-def _swing_force(at: Swing, mu: Vec) -> Vec:
+def _swing_force(at: SwingTwist, mu: Vec) -> Vec:
     """Gradient of mu_y y + mu_z z by t."""
     return (at.df * (mu[2] * at.t[1] - mu[1] * at.t[2]), at.f * mu[2], -at.f * mu[1])
 
 
 @njit
-def moment(at: Swing, mu: Vec) -> Vec:
+def moment(at: SwingTwist, mu: Vec) -> Vec:
     """m = the transpose of `rate` times mu."""
     return add(scale(mu[0], _twist_direction(at)), cross(at.t, _swing_force(at, mu)))
 
 
 @njit
-def moment_variation(at: Swing, mu: Vec, w: Vec) -> Vec:
+def moment_variation(at: SwingTwist, mu: Vec, w: Vec) -> Vec:
     """Change of m at fixed mu for the spin w."""
     dt = cross(w, at.t)
     per = mu[0] / (1.0 + at.t[0])

@@ -15,7 +15,7 @@ from riser_soil.riser import hermite
 from riser_soil.riser.directors import Turn
 
 
-class Columns(NamedTuple):
+class ByIncrements(NamedTuple):
     """Derivatives of q, q' or q'' by the dofs: `tangent` (ne, 2, d, r) for the tangents, `shift` for the
     positions.
     """
@@ -30,7 +30,7 @@ class Trial:
     def __init__(self, state: State, x: Array, chord: Array, turn: Turn, rates: tuple[Array, Array]) -> None:
         self.state, self.x, self.chord, self.turn = state, x, chord, turn
         self._v, self._a = rates
-        self._columns: dict[tuple[float, float], tuple[Columns, Columns, Columns]] = {}
+        self._columns: dict[tuple[float, float], tuple[ByIncrements, ByIncrements, ByIncrements]] = {}
         self._kept: dict[Hashable, Any] = {}
 
     def once(self, key: Hashable, make: Callable[[Trial], Any]) -> Any:
@@ -62,13 +62,13 @@ class Trial:
         """Element residual in the dofs (ne, 2 ndof) of F (ne, 4, d) conjugate to q."""
         return np.asarray(hermite.pull_back(F, self.turn.P))
 
-    def columns(self, weights: Weights) -> tuple[Columns, Columns, Columns]:
+    def columns(self, weights: Weights) -> tuple[ByIncrements, ByIncrements, ByIncrements]:
         """Derivatives of q, q' and q'' by the dofs, rates following by the shifts."""
         shifts = float(weights.shift_v), float(weights.shift_a)
         if shifts not in self._columns:
             d = self.x.shape[1]
             maps = self.turn.maps(self._v[:, d:], self._a[:, d:], *shifts)
-            q, rate, acceleration = map(Columns, maps, (1.0, *shifts))
+            q, rate, acceleration = map(ByIncrements, maps, (1.0, *shifts))
             self._columns[shifts] = q, rate, acceleration
         return self._columns[shifts]
 

@@ -30,7 +30,7 @@ _Line = tuple[int, list[str]]
 
 
 @dataclass(frozen=True)
-class Columns:
+class CsvColumns:
     """A file's columns by name, in SI units, and the lines of its header and of each row in the file."""
 
     file: Path
@@ -47,7 +47,7 @@ class Columns:
         return self.values.get(name, (0.0,) * self.rows)
 
 
-def read_columns(file: Path, known: Known, required: tuple[str, ...]) -> Columns:
+def read_columns(file: Path, known: Known, required: tuple[str, ...]) -> CsvColumns:
     """Read a file that may have the known columns and must have the required ones; PydanticCustomError, with the file
     and its line, for what is wrong."""
     lines = list(_lines(file))
@@ -60,7 +60,7 @@ def read_columns(file: Path, known: Known, required: tuple[str, ...]) -> Columns
         raise wrong_file(f"{file}:{lines[0][0]}: {text}")
     rows = [_row(file, line, names) for line in lines[1:]]
     values = {name: tuple(row[i] * units[i] for row in rows) for i, name in enumerate(names)}
-    return Columns(file, lines[0][0], values, tuple(number for number, _ in lines[1:]))
+    return CsvColumns(file, lines[0][0], values, tuple(number for number, _ in lines[1:]))
 
 
 def _lines(file: Path) -> Iterator[_Line]:

@@ -4,7 +4,7 @@ import math
 
 from riser_soil.scene.quantities import Vector
 from riser_soil.scene.riser import Riser, Support
-from riser_soil.scene.shapes import Arc, ArcShape, PointsShape
+from riser_soil.scene.shapes import ArcShape, CircularArc, PointsShape
 from riser_soil.scene.vectors import cross, dot, minus, plus, times
 
 _ORIGIN = (0.0, 0.0, 0.0)
@@ -34,7 +34,7 @@ def _straight(start: Vector | None, end: Vector | None, length: float) -> tuple[
     return first, plus(first, times(length, direction))
 
 
-def _far_end(arc: Arc) -> Vector:
+def _far_end(arc: CircularArc) -> Vector:
     """The arc's last point, by Rodrigues' formula."""
     axis = times(1.0 / math.hypot(*arc.axis), arc.axis)
     arm, angle = minus(arc.from_point, arc.centre), math.radians(arc.angle_deg)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import assert_never
 
-from riser_soil.scene.motions import Arc, Harmonic, Rotation, Table, Vessel, Way
+from riser_soil.scene.motions import ArcMotion, Harmonic, Rotation, Table, Vessel, Way
 from riser_soil.scene.problem import Path
 from riser_soil.scene.quantities import Vector
 from riser_soil.scene.rao import ROTATIONS, TRANSLATIONS
@@ -26,7 +26,7 @@ def displacements(scene: Scene) -> Iterator[tuple[Path, Vector]]:
                 yield from ((path, row) for row in _felt(way.displacements))
             case Vessel():
                 yield from _modes(scene, path, way, TRANSLATIONS)
-            case Arc() | Rotation():  # their axes tell
+            case ArcMotion() | Rotation():  # their axes tell
                 pass
             case _:
                 assert_never(way)
@@ -36,7 +36,7 @@ def rotation_axes(scene: Scene) -> Iterator[tuple[Path, Vector]]:
     """Axes about which motions turn the ends or their supports."""
     for path, way in _ways(scene):
         match way:
-            case Arc():
+            case ArcMotion():
                 yield (*path, "plane"), way.axis
             case Rotation():
                 yield (*path, "axis"), way.axis

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
-from riser_soil.scene.columns import ANGLE, LENGTH, TIME, Columns, read_columns
+from riser_soil.scene.columns import ANGLE, LENGTH, TIME, CsvColumns, read_columns
 from riser_soil.scene.files import NamedFile, wrong_file
 from riser_soil.scene.quantities import (
     FLATTEST,
@@ -60,7 +60,7 @@ class Harmonic(BaseModel):
         return math.radians(given[0]), math.radians(given[1]), math.radians(given[2])
 
 
-class Arc(BaseModel):
+class ArcMotion(BaseModel):
     """The end turns about its hub by amplitude · sin(2π t/period + phase), from where it is at the stage's beginning.
 
     The axis runs through the hub, across the plane; positive angles turn the plane's first axis towards its second, so
@@ -130,7 +130,7 @@ class Table(BaseModel):
         return self
 
     @cached_property
-    def columns(self) -> Columns:
+    def columns(self) -> CsvColumns:
         """What the file holds."""
         known = {"t": TIME, **dict.fromkeys("xyz", LENGTH), **dict.fromkeys(("rx", "ry", "rz"), ANGLE)}
         return read_columns(self.file, known, required=("t", "x", "y", "z"))
@@ -186,7 +186,7 @@ class Vessel(BaseModel):
         return ((forward, across, 0.0), (-across, forward, 0.0), (0.0, 0.0, 1.0))[MODES.index(mode) % 3]
 
 
-Way = Harmonic | Arc | Table | Vessel | Rotation
+Way = Harmonic | ArcMotion | Table | Vessel | Rotation
 
 
 class EndMotion(BaseModel):
@@ -199,7 +199,7 @@ class EndMotion(BaseModel):
     harmonic: Harmonic | None = Field(
         default=None, description="harmonic motion: amplitude, period, ramp, phase_deg"
     )
-    arc: Arc | None = Field(
+    arc: ArcMotion | None = Field(
         default=None, description="motion on an arc about a hub: hub, amplitude_deg, period, ramp, plane, phase_deg"
     )
     table: Table | None = Field(

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from riser_soil.scene.columns import ANGLE, Columns, Known, read_columns
+from riser_soil.scene.columns import ANGLE, CsvColumns, Known, read_columns
 from riser_soil.scene.files import wrong_file
 from riser_soil.scene.quantities import NEAREST
 
@@ -82,7 +82,7 @@ def read_rao(file: Path) -> Rao:
     return _on_a_grid(columns, modes, {wave: values for wave, (_, values) in found.items()})
 
 
-def _modes(columns: Columns) -> list[str]:
+def _modes(columns: CsvColumns) -> list[str]:
     """The modes that have columns, each with its phase."""
     place = f"{columns.file}:{columns.header}"
     modes = [mode for mode in MODES if mode in columns.values or f"{mode} phase" in columns.values]
@@ -99,7 +99,7 @@ def _modes(columns: Columns) -> list[str]:
     return modes
 
 
-def _frequencies(columns: Columns) -> list[float]:
+def _frequencies(columns: CsvColumns) -> list[float]:
     """Of each row [rad/s]."""
     name = "frequency" if "frequency" in columns.values else "period"
     for line, value in zip(columns.lines, columns.values[name], strict=True):
@@ -109,12 +109,12 @@ def _frequencies(columns: Columns) -> list[float]:
     return list(given) if name == "frequency" else [TURN / period for period in given]
 
 
-def _directions(columns: Columns) -> list[float]:
+def _directions(columns: CsvColumns) -> list[float]:
     """Of each row, from 0 to below 2 pi [rad]; to 12 digits, so that 360 deg are 0."""
     return [round(value % TURN, 12) % round(TURN, 12) for value in columns.values["direction"]]
 
 
-def _responses(columns: Columns, mode: str) -> list[complex]:
+def _responses(columns: CsvColumns, mode: str) -> list[complex]:
     for line, amplitude in zip(columns.lines, columns.values[mode], strict=True):
         if amplitude < 0.0:
             text = f"{mode} must not be negative; write its size and add 180 deg to {mode} phase"
@@ -123,7 +123,7 @@ def _responses(columns: Columns, mode: str) -> list[complex]:
     return [amplitude * cmath.exp(-1j * lag) for amplitude, lag in pairs]
 
 
-def _on_a_grid(columns: Columns, modes: list[str], found: dict[tuple[float, float], list[complex]]) -> Rao:
+def _on_a_grid(columns: CsvColumns, modes: list[str], found: dict[tuple[float, float], list[complex]]) -> Rao:
     frequency = tuple(sorted({w for w, _ in found}))
     direction = tuple(sorted({angle for _, angle in found}))
     missing = [(w, angle) for angle in direction for w in frequency if (w, angle) not in found]

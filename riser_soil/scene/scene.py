@@ -11,7 +11,7 @@ from riser_soil.scene.output import Output
 from riser_soil.scene.quantities import FROZEN, Gravity, Text
 from riser_soil.scene.riser import Riser
 from riser_soil.scene.seabed import ContactAt, Seabed
-from riser_soil.scene.soil import Soil
+from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.solver import Solver
 from riser_soil.scene.stages import Stage
 from riser_soil.scene.water import Water
@@ -33,7 +33,7 @@ class Scene(BaseModel):
     line_types: dict[str, LineType] = Field(min_length=1, description="the kinds of pipe by name")
     riser: Riser = Field(description="the riser")
     seabed: Seabed | None = Field(default=None, description="seabed; with soil it acts outside the block")
-    soil: Soil | None = Field(default=None, description="continuum of soil under the touchdown zone")
+    soil: SoilScene | None = Field(default=None, description="continuum of soil under the touchdown zone")
     contact: Contact | None = Field(
         default=None, description="contact with seabed and soil; its defaults hold when there is one of them"
     )

@@ -25,7 +25,7 @@ class PointsShape(BaseModel):
         return self
 
 
-class Arc(BaseModel):
+class CircularArc(BaseModel):
     """An arc of a circle about an axis."""
 
     model_config = FROZEN
@@ -66,7 +66,7 @@ class ArcShape(BaseModel):
 
     model_config = FROZEN
 
-    arc: Arc = Field(description="the circle's centre, the first point, the angle and the axis")
+    arc: CircularArc = Field(description="the circle's centre, the first point, the angle and the axis")
 
 
 Unstressed = Annotated[

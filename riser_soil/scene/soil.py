@@ -125,7 +125,7 @@ Law = Annotated[
 ]
 
 
-class Soil(BaseModel):
+class SoilScene(BaseModel):
     """A continuum of soil under the touchdown zone; quasi-static."""
 
     model_config = FROZEN

@@ -83,7 +83,7 @@ class Load(BaseModel):
         return self
 
 
-class Move(BaseModel):
+class MovedEnds(BaseModel):
     """New positions of held ends, reached linearly with the stage's load factor."""
 
     model_config = FROZEN
@@ -160,7 +160,7 @@ class StaticStage(BaseModel):
 
     name: Text = Field(min_length=1, description="name of the stage, different from the others")
     kind: Literal["static"] = Field(description="static or dynamic")
-    move: Move | None = Field(default=None, description="new positions of held ends, {start, end}")
+    move: MovedEnds | None = Field(default=None, description="new positions of held ends, {start, end}")
     loads: tuple[Load, ...] = Field(default=(), description="loads on the riser during this stage")
 
 

@@ -12,7 +12,7 @@ from riser_soil.core.part import Weights
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import waterline
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.wetting import Surface
+from riser_soil.sea.wetting import WaterSurface
 
 # Fine points that a section's width holds at least, so that an upright pipe gets wet evenly; an element has no more
 # than MOST of them, and the width of its sections follows where its diameter is too small for that.
@@ -38,7 +38,7 @@ class DryPipe:
     displaced: weight of the water in the pipe's place [N/m] (ne,).
     """
 
-    def __init__(self, pipe: Pipe, surface: Surface, displaced: Array) -> None:
+    def __init__(self, pipe: Pipe, surface: WaterSurface, displaced: Array) -> None:
         self._pipe, self._surface, self._displaced = pipe, surface, displaced
         # neighbours of n Gauss-Legendre points lie at most pi L/(2 n) apart
         self._length, D = pipe.line.length, pipe.line.outer_diameter

@@ -22,7 +22,7 @@ from riser_soil.riser.attachments import Attachment, places
 from riser_soil.riser.line import Line
 from riser_soil.riser.stations import Derivatives
 from riser_soil.riser.trial import Trial
-from riser_soil.sea.pipe import Flow, Pipe, Points
+from riser_soil.sea.pipe import Pipe, Points, StationFlow
 
 
 def pipe_at(line: Line, modules: Sequence[Attachment]) -> Pipe:
@@ -50,16 +50,16 @@ class StillWaterOnModules:
         return self.resist(self.pipe.flow(trial))
 
     def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
-        return self.yielding(self.pipe.flow(trial), weights)
+        return self.linearise(self.pipe.flow(trial), weights)
 
     def momentum(self, trial: Trial, v: Array) -> Array:
         return np.asarray(self._mass * v)
 
-    def resist(self, flow: Flow) -> tuple[Array, Array]:
+    def resist(self, flow: StationFlow) -> tuple[Array, Array]:
         """Resistance to a motion through the water."""
         return self._mass * flow.a, self._drag * np.linalg.norm(flow.v, axis=-1, keepdims=True) * flow.v
 
-    def yielding(self, flow: Flow, weights: Weights) -> Derivatives:
+    def linearise(self, flow: StationFlow, weights: Weights) -> Derivatives:
         """Derivatives of `resist` by the motion through the water, weighed and summed."""
         speed, one = np.linalg.norm(flow.v, axis=-1)[..., None, None], np.eye(flow.v.shape[-1])
         dyad = flow.v[..., :, None] * flow.v[..., None, :] / np.where(speed > 0.0, speed, 1.0)

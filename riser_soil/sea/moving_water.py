@@ -24,7 +24,7 @@ from riser_soil.riser import stations
 from riser_soil.riser.stations import Derivatives
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import morison_law as law
-from riser_soil.sea.pipe import Flow, Pipe
+from riser_soil.sea.pipe import Pipe, StationFlow
 from riser_soil.sea.still_water import Resistance, StationLoads
 from riser_soil.sea.water import Water, WaterMotion
 
@@ -37,7 +37,7 @@ class Stream:
 
     def at(self, trial: Trial) -> WaterMotion:
         """The water's motion at the stations: arrays (ne, ng, ...) in the line's axes."""
-        motion: WaterMotion = trial.once((self, "motion"), self._see)
+        motion: WaterMotion = trial.once((self, "motion"), self._evaluate)
         return motion
 
     def immersion(self, trial: Trial) -> tuple[Array, Array]:
@@ -45,7 +45,7 @@ class Stream:
         motion = self.at(trial)
         return motion.immersion, motion.immersion_gradient
 
-    def _see(self, trial: Trial) -> WaterMotion:
+    def _evaluate(self, trial: Trial) -> WaterMotion:
         x, basis = self.pipe.position(trial), self.pipe.line.basis
         found = self._water(trial.state.t, self.pipe.line.to_global(x).reshape(-1, 3))
         both = np.kron(basis, basis)  # basis^T G basis for all points in one product
@@ -72,17 +72,17 @@ class RelativeDrag:
         return self._still.resist(self._through(trial))
 
     def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
-        by = self._still.yielding(self._through(trial), weights)
+        by = self._still.linearise(self._through(trial), weights)
         return by._replace(position=-by.rate @ self._stream.at(trial).velocity_gradient)
 
     def momentum(self, trial: Trial, v: Array) -> Array:
         return self._still.momentum(trial, v)
 
-    def _through(self, trial: Trial) -> Flow:
-        flow: Flow = trial.once((self, "flow"), self._see)
+    def _through(self, trial: Trial) -> StationFlow:
+        flow: StationFlow = trial.once((self, "flow"), self._evaluate)
         return flow
 
-    def _see(self, trial: Trial) -> Flow:
+    def _evaluate(self, trial: Trial) -> StationFlow:
         flow = self._still.pipe.flow(trial)
         return flow._replace(v=flow.v - self._stream.at(trial).velocity)
 

@@ -15,7 +15,7 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.trial import Trial
 
 
-class Flow(NamedTuple):
+class StationFlow(NamedTuple):
     """Velocity v and acceleration a (ne, ng, d) of the pipe, unit tangent tau (ne, ng, d) and stretch |x'| (ne, ng)."""
 
     v: Array
@@ -66,14 +66,14 @@ class Pipe:
         found: Array = trial.once((self, "position"), lambda trial: stations.interpolate(self.at, self._own(trial.q)))
         return found
 
-    def flow(self, trial: Trial) -> Flow:
+    def flow(self, trial: Trial) -> StationFlow:
         """The pipe's own motion, as still water meets it."""
-        flow: Flow = trial.once((self, "flow"), self._see)
+        flow: StationFlow = trial.once((self, "flow"), self._evaluate)
         return flow
 
-    def _see(self, trial: Trial) -> Flow:
+    def _evaluate(self, trial: Trial) -> StationFlow:
         seen = (trial.q_rate, trial.q_acceleration, trial.chord, trial.turn.tangent)
-        return Flow(*stations.motion(self.at, *(self._own(values) for values in seen)))
+        return StationFlow(*stations.motion(self.at, *(self._own(values) for values in seen)))
 
     def integrate(self, density: Array) -> Array:
         """Residual conjugate to q (ne, 4, d) of a force per length (ne, ng, d)."""
@@ -88,7 +88,7 @@ class Pipe:
         q, rate, acceleration = trial.columns(weights)
         own = K if self._points is None else np.zeros((len(self.at.N), *K.shape[1:]))
         first, second, third = (self._own(c.tangent) for c in (q, rate, acceleration))
-        stations.add_tangent(own, self.at, by, stations.Columns(first, second, third, rate.shift, acceleration.shift))
+        stations.add_tangent(own, self.at, by, stations.ByDofs(first, second, third, rate.shift, acceleration.shift))
         if self._points is not None:
             np.add.at(K, self._points.element, own)
 

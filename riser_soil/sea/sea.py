@@ -11,7 +11,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.sea.water import WaterMotion
 
 
-class Flow(Protocol):
+class FlowComponent(Protocol):
     """Something that moves the water."""
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
@@ -25,7 +25,7 @@ class Sea:
     Flows don't act on each other: waves run as in still water, and the current isn't stretched with the surface.
     """
 
-    def __init__(self, surface_level: float | None, flows: Sequence[Flow] = ()) -> None:
+    def __init__(self, surface_level: float | None, flows: Sequence[FlowComponent] = ()) -> None:
         self._level, self._flows = surface_level, tuple(flows)
 
     def __call__(self, t: float, x: Array) -> WaterMotion:

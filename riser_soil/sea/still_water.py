@@ -12,7 +12,7 @@ from riser_soil.riser import stations
 from riser_soil.riser.stations import Derivatives
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import morison_law as law
-from riser_soil.sea.pipe import Flow, Pipe
+from riser_soil.sea.pipe import Pipe, StationFlow
 
 
 class StationLoads(Protocol):
@@ -41,11 +41,11 @@ class Resistance(StationLoads, Protocol):
 
     pipe: Pipe
 
-    def resist(self, flow: Flow) -> tuple[Array, Array]:
+    def resist(self, flow: StationFlow) -> tuple[Array, Array]:
         """Groups I and F, each (ne, ng, d), of a motion through the water."""
         ...
 
-    def yielding(self, flow: Flow, weights: Weights) -> Derivatives:
+    def linearise(self, flow: StationFlow, weights: Weights) -> Derivatives:
         """Derivatives of `resist` by that motion, weighed and summed."""
         ...
 
@@ -66,16 +66,16 @@ class StillWater:
         return self.resist(self.pipe.flow(trial))
 
     def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
-        return self.yielding(self.pipe.flow(trial), weights)
+        return self.linearise(self.pipe.flow(trial), weights)
 
     def momentum(self, trial: Trial, v: Array) -> Array:
         return law.added(v, self.pipe.flow(trial).tau, self.mass)
 
-    def resist(self, flow: Flow) -> tuple[Array, Array]:
+    def resist(self, flow: StationFlow) -> tuple[Array, Array]:
         """Resistance to a motion through the water."""
         return law.resistance(flow.v, flow.a, flow.tau, self._drag, self.mass)
 
-    def yielding(self, flow: Flow, weights: Weights) -> Derivatives:
+    def linearise(self, flow: StationFlow, weights: Weights) -> Derivatives:
         """Derivatives of `resist` by the motion through the water, weighed and summed."""
         drag, mass = weights.force * self._drag, weights.inertia * self.mass
         by_v, by_a, by_tau = law.resistance_derivatives(flow.v, flow.a, flow.tau, drag, mass)

@@ -15,7 +15,7 @@ from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.still_water import StationLoads
 
 
-class Surface(Protocol):
+class WaterSurface(Protocol):
     """The water's surface above the stations."""
 
     def immersion(self, trial: Trial) -> tuple[Array, Array]:
@@ -50,16 +50,16 @@ class Wetting:
     station stands for, along which an upright pipe gets wet.
     """
 
-    def __init__(self, pipe: Pipe, surface: Surface, span: Array | None = None) -> None:
+    def __init__(self, pipe: Pipe, surface: WaterSurface, span: Array | None = None) -> None:
         self._surface = surface
         given = np.maximum(pipe.line.outer_diameter[:, None], pipe.share) if span is None else span
         self._span = np.ascontiguousarray(np.broadcast_to(given, pipe.share.shape))
 
     def at(self, trial: Trial) -> Wet:
-        wet: Wet = trial.once((self, "wet"), self._see)
+        wet: Wet = trial.once((self, "wet"), self._evaluate)
         return wet
 
-    def _see(self, trial: Trial) -> Wet:
+    def _evaluate(self, trial: Trial) -> Wet:
         h, gradient = self._surface.immersion(trial)
         share, slope = wet_section.wet_shares(h, self._span)
         return Wet(share, slope[..., None] * gradient)

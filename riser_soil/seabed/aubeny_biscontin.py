@@ -97,15 +97,15 @@ class AubenyBiscontin:
     def start(self) -> float:
         return 0.0
 
-    def fresh(self, shape: tuple[int, ...]) -> Array:
+    def initial_history(self, shape: tuple[int, ...]) -> Array:
         history = np.zeros((*shape, len(Past._fields)))
         history[..., 0] = 1.0
         return history
 
-    def touched(self, penetration: Array, history: Array) -> BoolArray:
+    def active(self, penetration: Array, history: Array) -> BoolArray:
         return penetration > 0.0
 
-    def respond(self, penetration: Array, history: Array) -> tuple[Array, Array]:
+    def force_and_stiffness(self, penetration: Array, history: Array) -> tuple[Array, Array]:
         return self._riser(*self._way(penetration, history))
 
     def stored(self, penetration: Array, history: Array) -> Array:
@@ -114,7 +114,7 @@ class AubenyBiscontin:
         P, _ = self._riser(z, now)
         return 0.5 * P**2 / self._loop(np.maximum(now.z1, z)).k
 
-    def renewed(self, penetration: Array, history: Array) -> Array:
+    def update(self, penetration: Array, history: Array) -> Array:
         z, now = self._way(penetration, history)
         return np.stack(now._replace(z=z, P=self._riser(z, now)[0]), axis=-1)
 

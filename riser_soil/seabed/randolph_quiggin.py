@@ -95,13 +95,13 @@ class RandolphQuiggin:
     def start(self) -> float:
         return 0.0
 
-    def fresh(self, shape: tuple[int, ...]) -> Array:
+    def initial_history(self, shape: tuple[int, ...]) -> Array:
         return _out_of_contact(np.zeros(shape))
 
-    def touched(self, penetration: Array, history: Array) -> BoolArray:
+    def active(self, penetration: Array, history: Array) -> BoolArray:
         return penetration > 0.0
 
-    def respond(self, penetration: Array, history: Array) -> tuple[Array, Array]:
+    def force_and_stiffness(self, penetration: Array, history: Array) -> tuple[Array, Array]:
         P, slope = self._clay(*self._way(penetration, history))
         weight = self.f_b * self.unit_weight
         _, area, width = displaced(penetration, self.diameter)
@@ -114,7 +114,7 @@ class RandolphQuiggin:
         rebound = 0.5 * P**2 / np.maximum(self._per_metre * Pu, TINY)
         return rebound + self.f_b * self.unit_weight * displaced(penetration, self.diameter)[0]
 
-    def renewed(self, penetration: Array, history: Array) -> Array:
+    def update(self, penetration: Array, history: Array) -> Array:
         z, now = self._way(penetration, history)
         there = np.stack(now._replace(z=z, P=self._clay(z, now)[0]), axis=-1)
         return np.where((z > 0.0)[..., None], there, _out_of_contact(now.zm))

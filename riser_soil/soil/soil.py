@@ -17,7 +17,7 @@ from riser_soil.soil.field import SoilField, components
 from riser_soil.soil.gathered import Gathered, gather, gather_rows
 from riser_soil.soil.grid import Grid, on_all_ranks
 from riser_soil.soil.law import Law
-from riser_soil.soil.surface import Surface
+from riser_soil.soil.surface import SoilTop
 
 
 class Soil:
@@ -46,7 +46,7 @@ class Soil:
         self.grid = grid
         self.field = SoilField(grid)
         self.mesh: Gathered = gather(grid)
-        self.surface = Surface(grid, self.mesh)
+        self.surface = SoilTop(grid, self.mesh)
         self._cells = np.ascontiguousarray(grid.nodes.cells)
         self._gradients = on_all_ranks(
             grid.nodes.comm, lambda: cell_gradients(grid.family, grid.nodes.points, self._cells)

@@ -11,7 +11,7 @@ from riser_soil.soil.gathered import Gathered, top_facets
 from riser_soil.soil.grid import Grid
 
 
-class Surface:
+class SoilTop:
     """Field "surface": views, on rank 0, of the soil's dofs at the top; it owns none.
 
     kind: "quad4" or "tri6". points (np, 3) [m]: undeformed. facets (nf, nv): indexes into points,

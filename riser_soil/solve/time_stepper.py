@@ -9,7 +9,7 @@ from mpi4py import MPI
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Work
-from riser_soil.core.roles import Adaptive, Carrying, Demanding, Foreseeing, Turning
+from riser_soil.core.roles import Adaptive, Demanding, MomentumCorrecting, Predictor, Turning
 from riser_soil.core.system import System, total
 from riser_soil.errors import SolveError
 from riser_soil.solve.local_error import LocalError
@@ -19,7 +19,7 @@ from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
 
-WRONG_ROOT = 0.2  # of the energy in motion: what a step may make out of nothing
+LARGEST_ENERGY_GAIN = 0.2  # of the energy in motion: what a step may make out of nothing
 ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away
 EASY = 6  # Newton iterations up to which a step that was cut may grow again
 
@@ -49,22 +49,22 @@ class Accepted:
         return sum(work.external for work in self.turned.values())
 
 
-class March:
+class TimeStepper:
     """A stage on its way.
 
     before: the accepted state that the next step starts from, its increments zero; its rates leave out what contact
     adds to them (see `time_scheme`). now: the same state as the riser moves; energy: stored in it [J].
-    wrong_root: share of the energy in motion that a step may make out of nothing.
+    largest_gain: share of the energy in motion that a step may make out of nothing.
     """
 
     def __init__(
-        self, system: System, newton: Newton, scheme: Scheme, before: State, wrong_root: float = WRONG_ROOT
+        self, system: System, newton: Newton, scheme: Scheme, before: State, largest_gain: float = LARGEST_ENERGY_GAIN
     ) -> None:
-        self.system, self.newton, self.scheme, self._wrong_root = system, newton, scheme, wrong_root
+        self.system, self.newton, self.scheme, self._largest_gain = system, newton, scheme, largest_gain
         self._mass: RiserMass | None = None
         self._error: LocalError | None = None
         owners = (*system.model.fields, *system.model.parts)
-        self._foreseeing = [owner for owner in owners if isinstance(owner, Foreseeing)]
+        self._predictors = [owner for owner in owners if isinstance(owner, Predictor)]
         self._turning = [field for field in system.model.fields if isinstance(field, Turning)]
         self._adaptive = [part for part in system.model.parts if isinstance(part, Adaptive)]
         self.before = self.now = before
@@ -72,7 +72,7 @@ class March:
         if not isinstance(scheme, Static):
             self._mass = RiserMass(system)
             self._start_rates(before)
-        self._carrying = [part for part in system.model.parts if isinstance(part, Carrying)]
+        self._momentum_correcting = [part for part in system.model.parts if isinstance(part, MomentumCorrecting)]
         self._begin_step()
         self._history = self.system.forces(self.before) if self._needs_history else None
         self.energy = system.energy(self.before)
@@ -150,8 +150,8 @@ class March:
     def _guess(self, t: float, dt: float) -> Array:
         """The motion of the last steps continued, as fields and parts improve it."""
         guess = self._past.increments(dt)
-        for owner in self._foreseeing:
-            guess = owner.improve(State(t, guess, self.before.v, self.before.a))
+        for owner in self._predictors:
+            guess = owner.predict(State(t, guess, self.before.v, self.before.a))
         return guess
 
     def _renew_pattern(self) -> bool:
@@ -175,11 +175,11 @@ class March:
         braking = against - supports - sum(work.inertial for work in turned.values())
         turned["supports"] = Work(external=supports)
         step = Accepted(control.target, control.dt, solution, cuts, self.system.energy(state), turned, braking)
-        self._refuse_wrong_root(step)
+        self._refuse_energy_gain(step)
         self._refuse_inaccurate(step, control)
         return step
 
-    def _refuse_wrong_root(self, step: Accepted) -> None:
+    def _refuse_energy_gain(self, step: Accepted) -> None:
         """A dynamic step that adds much to the energy in motion out of nothing is a root of the equations far from the
         motion that it continues, or too long for it: NotConvergedError, so that it is cut.
         """
@@ -190,9 +190,9 @@ class March:
         in_motion = was.kinetic + was.strain + max(0.0, was.potential - now.potential) + abs(step.work)
         # Over an element's length the least force that counts does negligible work, as where a motion starts from rest.
         negligible = ENERGY_ROUND_OFF * abs(was.potential) + self.newton.settings.floor * self.system.lever
-        if appeared > self._wrong_root * in_motion + negligible:
+        if appeared > self._largest_gain * in_motion + negligible:
             appeared += self._kinetic(step) - now.kinetic
-        if appeared > self._wrong_root * in_motion + negligible:
+        if appeared > self._largest_gain * in_motion + negligible:
             raise NotConvergedError(
                 f"the step's solution makes {appeared:.3g} J out of nothing, beside {in_motion:.3g} J in motion"
             )
@@ -234,7 +234,7 @@ class March:
         solved, forces = step.solution.state, step.solution.forces
         state = State(solved.t, np.zeros_like(solved.u), solved.v, solved.a)
         if isinstance(self.scheme, Midpoint):
-            now = self._in_balance(self._with_momentum(state))
+            now = self._in_balance(self._corrected_momentum(state))
             return now, now
         if self.system.smooth or self._mass is None or not isinstance(self.scheme, GeneralizedAlpha):
             return state, state
@@ -243,15 +243,15 @@ class March:
         return bulk, State(bulk.t, bulk.u, bulk.v, bulk.a + contact)
 
     def _begin_step(self) -> None:
-        for part in self._carrying:
+        for part in self._momentum_correcting:
             part.begin(self.before)
 
-    def _with_momentum(self, state: State) -> State:
+    def _corrected_momentum(self, state: State) -> State:
         """An accepted state with the rates that have the momentum of the step's end."""
         assert self._mass is not None
         excess = np.zeros_like(state.v)
-        for part in self._carrying:
-            part.add_excess(state, excess)
+        for part in self._momentum_correcting:
+            part.add_momentum_correction(state, excess)
         return State(state.t, state.u, state.v + self._mass.accelerations(state.t, excess), state.a)
 
     def _in_balance(self, state: State) -> State:

@@ -20,7 +20,7 @@ Y3 = Y2 - 0.661 * (Y1 - Y2)
 def test_backbone_begins_with_the_stiffness_and_then_follows_the_power_law() -> None:
     z = np.array([1e-4, 0.01, 0.09])
     expected = [K * 1e-4, *(6.73 * (z[1:] / D) ** 0.29 * SU * D)]
-    np.testing.assert_allclose(at(LAW, z, LAW.fresh((1,)))[0], expected, rtol=1e-13)
+    np.testing.assert_allclose(at(LAW, z, LAW.initial_history((1,)))[0], expected, rtol=1e-13)
 
 
 def test_slope_of_the_backbone_where_the_clay_hardens_fast() -> None:

@@ -13,22 +13,22 @@ from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_scheme import Static
-from riser_soil.solve.time_stepper import Accepted, March
+from riser_soil.solve.time_stepper import Accepted, TimeStepper
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown
 
 
 @pytest.fixture
 def failing_after(monkeypatch: pytest.MonkeyPatch) -> list[BaseException]:
     """The run ends at its 8th step in motion, by what the test puts into the list."""
-    usual, taken, ends = March.advance, [0], list[BaseException]()
+    usual, taken, ends = TimeStepper.advance, [0], list[BaseException]()
 
-    def advance(march: March, control: Control, most_cuts: int | None = None) -> Accepted:
-        taken[0] += not isinstance(march.scheme, Static)
+    def advance(stepper: TimeStepper, control: Control, most_cuts: int | None = None) -> Accepted:
+        taken[0] += not isinstance(stepper.scheme, Static)
         if taken[0] == 8:
             raise ends[0]
-        return usual(march, control, most_cuts)
+        return usual(stepper, control, most_cuts)
 
-    monkeypatch.setattr(March, "advance", advance)
+    monkeypatch.setattr(TimeStepper, "advance", advance)
     return ends
 
 

@@ -188,8 +188,8 @@ def test_any_hanging_line_ends_where_it_should(h: float, v: float, heading: floa
         return
     end = np.array([h * np.cos(heading), h * np.sin(heading), v])
     found = catenary(ARC[::50], ORIGIN, end, W, W * 350.0 * 10.0**log_EA)
-    away = np.array([np.cos(heading), np.sin(heading), 0.0])
-    assert found.curve.position[-1] == pytest.approx(end + found.slack * away, abs=1e-8)
+    normal = np.array([np.cos(heading), np.sin(heading), 0.0])
+    assert found.curve.position[-1] == pytest.approx(end + found.slack * normal, abs=1e-8)
     assert found.slack == 0.0 or h < 5.0
 
 
@@ -222,9 +222,9 @@ def test_any_line_finds_its_balance(
 def test_slack_line_is_laid_with_the_least_tension(end: list[float], level: float) -> None:
     found = catenary(ARC[::50], ORIGIN, np.array(end), W, 1e9, level, least_H=10.0 * W)
     assert pytest.approx(10.0 * W) == found.H
-    away = np.array([0.6, 0.8, 0.0]) if end[0] else np.array([1.0, 0.0, 0.0])
+    normal = np.array([0.6, 0.8, 0.0]) if end[0] else np.array([1.0, 0.0, 0.0])
     assert found.slack > 1.0
-    assert found.curve.position[-1] == pytest.approx(end + found.slack * away, abs=1e-8)
+    assert found.curve.position[-1] == pytest.approx(end + found.slack * normal, abs=1e-8)
     assert np.linalg.norm(found.curve.chord, axis=1).sum() == pytest.approx(350.0, rel=2e-2)
 
 

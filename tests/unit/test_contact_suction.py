@@ -25,8 +25,8 @@ def test_tension_rises_to_the_cap_and_falls_to_nothing_at_its_reach() -> None:
 
 
 def test_ground_that_was_never_touched_does_not_hold() -> None:
-    assert not at(SHARP, -np.linspace(0.0, REACH, 9), SHARP.fresh((1,)))[0].any()
-    assert not SHARP.touched(np.array([-0.001]), SHARP.fresh((1,))).any()
+    assert not at(SHARP, -np.linspace(0.0, REACH, 9), SHARP.initial_history((1,)))[0].any()
+    assert not SHARP.active(np.array([-0.001]), SHARP.initial_history((1,))).any()
 
 
 def test_what_is_broken_stays_so_until_the_next_touch() -> None:
@@ -64,10 +64,10 @@ def test_every_step_dissipates_unless_it_tears(law: Sticking, path: list[float])
     """Sum over any path from the first touch: taken less stored is never negative, step by step."""
     history, begin = after(law, np.array([0.0])), np.array([0.0])
     for z in np.array(path)[:, None]:
-        taken = law.respond(z, history)[0] * (z - begin)
+        taken = law.force_and_stiffness(z, history)[0] * (z - begin)
         change = law.stored(z, history) - law.stored(begin, history)
         assert taken[0] - change[0] >= -1e-12
-        history, begin = law.renewed(z, history), z
+        history, begin = law.update(z, history), z
 
 
 def test_a_reach_short_of_the_peak_is_refused() -> None:

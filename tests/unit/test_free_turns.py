@@ -8,7 +8,7 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
-from riser_soil.assembly import World
+from riser_soil.assembly import Assembly
 from riser_soil.core.part import State
 from riser_soil.core.system import Clock, System
 from riser_soil.riser.ends import End
@@ -63,42 +63,42 @@ def test_a_straight_line_turns_about_itself_as_its_sections_spin(axis: tuple[flo
     shape: Mapping = {"riser": {"unstressed": {"points": [[0.0, 0.0, 0.0], [12.0 * a for a in axis]]}}, "gravity": 9.81}
     pipe: Mapping = {"EA": 1e8, "EI": 1e3, "GJ": 1e3, "submerged_weight": 500.0}
     ends: Mapping = {"start": held(0.0, 0.0, 0.0), "end": "free"}
-    world = built(riser_scene(static(), pipe=pipe, length=12.0, elements=6, **ends, dimension=3, **shape))
-    world.begin(world.scene.stages[0])
-    line = world.line
+    assembly = built(riser_scene(static(), pipe=pipe, length=12.0, elements=6, **ends, dimension=3, **shape))
+    assembly.begin(assembly.scene.stages[0])
+    line = assembly.line
     line.hold_spin(True)
-    turns = line.free_turns(State.at_rest(0.0, world.size))
+    turns = line.free_turns(State.at_rest(0.0, assembly.size))
     sizes = np.linalg.svd(turns / np.linalg.norm(turns, axis=1)[:, None], compute_uv=False)
     assert len(turns) == 2
     assert sizes.min() > 1e-3
 
 
 @contextmanager
-def started(world: World) -> Iterator[tuple[System, Newton]]:
-    system = System(world.comm, world.begin(world.scene.stages[-1]), Clock.new())
-    newton = Newton(system, NewtonSettings(1e-8, 25, world.scales.force_floor))
+def started(assembly: Assembly) -> Iterator[tuple[System, Newton]]:
+    system = System(assembly.comm, assembly.begin(assembly.scene.stages[-1]), Clock.new())
+    newton = Newton(system, NewtonSettings(1e-8, 25, assembly.scales.force_floor))
     yield system, newton
     newton.destroy()
     system.destroy()
 
 
-def judged(world: World, forces: float) -> tuple[int, int]:
+def judged(assembly: Assembly, forces: float) -> tuple[int, int]:
     """Free turns that meet no force where the riser is, and its unstable modes."""
-    with started(world) as (system, newton):
-        state = State.at_rest(1.0, world.size)
+    with started(assembly) as (system, newton):
+        state = State.at_rest(1.0, assembly.size)
         system.assemble(state, Static().weights(0.0))
         neutral = stability._neutral(system, state, stability.NO_STIFFNESS * forces)
         return len(neutral), newton.unstable_modes(state)
 
 
-def hanging(x: float) -> World:
+def hanging(x: float) -> Assembly:
     """A slack riser at rest, its end 11 m above the start and x aside."""
     scene = hinged(4.0, 9.0, {"gravity": 9.81}, submerged_weight=500.0)
     scene["stages"] = [static("hang"), static("move", move={"end": [x, 0.0, 11.0]})]
-    world = built(scene)
-    before = take(world, world.scene.stages[0])
-    take(world, world.scene.stages[1], before)
-    return world
+    assembly = built(scene)
+    before = take(assembly, assembly.scene.stages[0])
+    take(assembly, assembly.scene.stages[1], before)
+    return assembly
 
 
 @pytest.mark.parametrize(("x", "neutral"), [(0.0, 1), (0.1, 0), (4.0, 0)])
@@ -113,15 +113,15 @@ def test_a_mode_of_buckling_is_no_free_turn(bow: float) -> None:
     thrust = 2.0 * np.pi**2 * 1e3 / 12.0**2
     squeezed = np.array(points) * (1.0 - thrust / 1e8, 1.0, 1.0)
     shapes: Mapping = {"unstressed": {"points": points}, "initial": {"points": squeezed.tolist()}}
-    world = built(hinged(12.0 * (1.0 - thrust / 1e8), 0.0, {"riser": shapes}))
-    assert judged(world, thrust) == (0, 2)
+    assembly = built(hinged(12.0 * (1.0 - thrust / 1e8), 0.0, {"riser": shapes}))
+    assert judged(assembly, thrust) == (0, 2)
 
 
 def test_a_held_turn_leaves_newton_a_regular_matrix() -> None:
     """The smallest eigenvalue of the scaled tangent is one of bending, and not that of the turn."""
-    world = hanging(0.0)
-    with started(world) as (system, _):
-        state, found = State.at_rest(1.0, world.size), list[float]()
+    assembly = hanging(0.0)
+    with started(assembly) as (system, _):
+        state, found = State.at_rest(1.0, assembly.size), list[float]()
         for least in (0.0, 1e-4 * 6e3):
             system.assemble(state, Static().weights(0.0))
             stability.hold_free_turns(system, state, least)

@@ -40,12 +40,12 @@ def with_mesh(**mesh: object) -> Mapping:
 )
 def test_numbers_are_those_of_what_is_built(scene: Mapping, within: float) -> None:
     read = scene_from_mapping(scene)
-    size, world = size_of(read), build(read, COMM)
-    assert world.soil is not None
-    assert size.elements == world.line.length.size
-    assert size.cells == pytest.approx(world.soil.blocks()["soil"].shape[0], rel=within or 1e-15)
-    assert size.soil_unknowns == pytest.approx(unknowns(COMM, world.soil.field), rel=within or 0.3)
-    assert size.memory(1) == pytest.approx(memory(world), rel=0.1)
+    size, assembly = size_of(read), build(read, COMM)
+    assert assembly.soil is not None
+    assert size.elements == assembly.line.length.size
+    assert size.cells == pytest.approx(assembly.soil.blocks()["soil"].shape[0], rel=within or 1e-15)
+    assert size.soil_unknowns == pytest.approx(unknowns(COMM, assembly.soil.field), rel=within or 0.3)
+    assert size.memory(1) == pytest.approx(memory(assembly), rel=0.1)
 
 
 def timed(**changes: object) -> Mapping:

@@ -11,7 +11,7 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, Part, State, Traits, Weights
-from riser_soil.riser import hermite, loads, spinning, springs, stations
+from riser_soil.riser import hermite, loads, rotary_moments, springs, stations
 from riser_soil.riser.directors import PlanarTurn, SpatialTurn
 from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.section_forces import HasElementForces, HasNodalForces, element_residual
@@ -151,14 +151,14 @@ def without(name: str, change: Callable[[Array], Array]) -> Callable[[pytest.Mon
     """Leaves a state's increments, rates or accelerations out of the tangent of rotary inertia."""
 
     def leave_out(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
-        original = spinning.add_tangent
+        original = rotary_moments.add_tangent
 
         def changed(K: Array, weight: float, J: Array, *rest: Any) -> None:
             values = dict(zip(("Theta", "W", "A", "shift_v", "shift_a"), rest, strict=True))
             values[name] = change(values[name])
             original(K, weight, J, *values.values())
 
-        monkeypatch.setattr(spinning, "add_tangent", changed)
+        monkeypatch.setattr(rotary_moments, "add_tangent", changed)
 
     return leave_out
 

@@ -14,7 +14,7 @@ from riser_soil.core.system import Clock, System
 from riser_soil.solve.local_error import LocalError, first_step
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.time_scheme import GeneralizedAlpha
-from riser_soil.solve.time_stepper import March
+from riser_soil.solve.time_stepper import TimeStepper
 from tests.toy_chain import Chain, Floor, Inertia, Springs
 
 SCHEMES = [GeneralizedAlpha.newmark(), GeneralizedAlpha.from_rho_inf(0.8), GeneralizedAlpha.from_rho_inf(0.3)]
@@ -57,11 +57,11 @@ def walk(
     """Heights and velocities after each step, the beginning first."""
     system = System(MPI.COMM_SELF, Model([chain], parts), Clock.new())
     newton = Newton(system, NewtonSettings(1e-10, 30, 1e-11))
-    march = March(system, newton, scheme, State(0.0, 0.0 * v0, v0.copy(), 0.0 * v0))
+    stepper = TimeStepper(system, newton, scheme, State(0.0, 0.0 * v0, v0.copy(), 0.0 * v0))
     seen = [(chain.z.copy(), v0.copy())]
     while not steps.finished:
-        march.commit(march.advance(steps), steps)
-        seen.append((chain.z.copy(), march.before.v.copy()))
+        stepper.commit(stepper.advance(steps), steps)
+        seen.append((chain.z.copy(), stepper.before.v.copy()))
     newton.destroy()
     system.destroy()
     return seen

@@ -11,8 +11,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State, Weights
 from riser_soil.riser.directors import SpatialTurn
 from riser_soil.riser.line import Line
+from riser_soil.riser.midpoint_directors import Carried
 from riser_soil.riser.midpoint_inertia import MidpointInertia, MidpointRotaryInertia, over_steps
-from riser_soil.riser.secants import Carried
 from riser_soil.solve.time_scheme import Midpoint
 from tests.dense_chain import residual, tangent
 from tests.sample_line import Sample, sample

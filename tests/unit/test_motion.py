@@ -12,8 +12,8 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.motion.carried import Displaced, Turned
 from riser_soil.motion.harmonic import Harmonic
-from riser_soil.motion.move import Move
-from riser_soil.motion.swing import Arc, Rocking, Swing
+from riser_soil.motion.move import SmoothMove
+from riser_soil.motion.swing import AngleOscillation, Rocking, SwingingEnd
 from riser_soil.motion.table import Table
 from riser_soil.riser import rotations
 from riser_soil.riser.ends import Motion, Turning
@@ -21,14 +21,14 @@ from riser_soil.riser.ends import Motion, Turning
 ORIGIN, AMPLITUDE = np.array([1.0, 2.0, 3.0]), np.array([0.5, 0.0, -1.5])
 PHASES = np.array([0.7, -0.2, 2.0])
 RAMP = 4.0
-SWING = Swing(0.6, period=8.0, ramp=RAMP, phase=0.7)
+SWING = AngleOscillation(0.6, period=8.0, ramp=RAMP, phase=0.7)
 TIMES = np.array([0.0, 1.0, 2.5, 4.0, 5.5, 7.0, 9.0, 12.0])
 ROWS = np.random.default_rng(5).normal(size=(TIMES.size, 6))
 TABLE = Table(TIMES, ROWS, ramp=RAMP)
 MOTIONS: dict[str, Motion] = {
     "harmonic": Harmonic(ORIGIN, AMPLITUDE, 8.0, RAMP, 0.7),
     "harmonic with phases": Harmonic(ORIGIN, AMPLITUDE, 8.0, RAMP, PHASES),
-    "arc": Arc(ORIGIN, np.array([0.5, -1.0, 4.0]), np.array([0.0, -1.0, 0.0]), SWING),
+    "arc": SwingingEnd(ORIGIN, np.array([0.5, -1.0, 4.0]), np.array([0.0, -1.0, 0.0]), SWING),
     "table": Displaced(ORIGIN, TABLE),
 }
 TURNINGS: dict[str, Callable[[float], Turning]] = {
@@ -110,7 +110,7 @@ def test_supports_turn_from_where_they_are(name: str) -> None:
 def test_arc_turns_the_first_axis_of_its_plane_towards_the_second(plane: str, axis: Array) -> None:
     first, second = (np.eye(3)["xyz".index(letter)] for letter in plane)
     hub = np.array([4.0, 5.0, 6.0])
-    arc = Arc(hub - 2.0 * second + 0.3 * np.asarray(axis), hub, np.asarray(axis), Swing(0.35, 10.0))
+    arc = SwingingEnd(hub - 2.0 * second + 0.3 * np.asarray(axis), hub, np.asarray(axis), AngleOscillation(0.35, 10.0))
     phi = 0.35 * np.sin(0.2 * np.pi * 3.7)
     expected = hub + 2.0 * (np.sin(phi) * first - np.cos(phi) * second) + 0.3 * np.asarray(axis)
     assert arc(3.7)[0] == pytest.approx(expected, abs=1e-14)
@@ -138,6 +138,6 @@ def test_table_is_of_fourth_order() -> None:
 
 
 def test_move_is_linear_in_the_load_factor() -> None:
-    assert Move(ORIGIN, ORIGIN + AMPLITUDE)(0.25)[0] == pytest.approx(ORIGIN + 0.25 * AMPLITUDE)
+    assert SmoothMove(ORIGIN, ORIGIN + AMPLITUDE)(0.25)[0] == pytest.approx(ORIGIN + 0.25 * AMPLITUDE)
 
 

@@ -39,10 +39,10 @@ def scene(folder: Path, text: str | None, table: Any = "motion.csv", rotation: A
 
 def at(scene: Scene, t: float) -> Kinematics:
     """The end at a time of the first stage."""
-    world = build(scene, MPI.COMM_SELF)
-    world.begin(scene.stages[0])
-    assert world.line.end.motion is not None
-    return world.line.end.motion(t)
+    assembly = build(scene, MPI.COMM_SELF)
+    assembly.begin(scene.stages[0])
+    assert assembly.line.end.motion is not None
+    return assembly.line.end.motion(t)
 
 
 def refusal(folder: Path, text: str | None, **more: Any) -> str:
@@ -78,9 +78,9 @@ def test_rotations_turn_the_support(tmp_path: Path) -> None:
     header = "t [s], x [m], y [m], z [m], ry [deg]\n"
     rows = "".join(f"{t}, 0, 0, 0, {10.0 * t}\n" for t in range(5))
     moved = scene(tmp_path, header + rows, rotation="fixed")
-    world = build(moved, MPI.COMM_SELF)
-    world.begin(moved.stages[0])
-    turning = world.line.end.turning
+    assembly = build(moved, MPI.COMM_SELF)
+    assembly.begin(moved.stages[0])
+    turning = assembly.line.end.turning
     assert turning is not None
     assert turning(3.0).rotation == pytest.approx(np.radians([0.0, 30.0, 0.0]))
     assert turning(3.0).angular_velocity == pytest.approx(np.radians([0.0, 10.0, 0.0]))
@@ -180,9 +180,9 @@ def test_a_support_rocks_while_a_table_moves_it(tmp_path: Path) -> None:
     moving = dynamic(4.0, 0.1, motion={"end": {"table": "motion.csv", "rotation": rocking}})
     ends = held(0.0, 0.0, 0.0), held(30.0, 0.0, 0.0, rotation="fixed")
     both = riser_scene(moving, pipe=PIPE, length=30.0, elements=3, start=ends[0], end=ends[1])
-    world = build(scene_from_mapping(both, tmp_path), MPI.COMM_SELF)
-    world.begin(world.scene.stages[0])
-    end = world.line.end
+    assembly = build(scene_from_mapping(both, tmp_path), MPI.COMM_SELF)
+    assembly.begin(assembly.scene.stages[0])
+    end = assembly.line.end
     assert end.motion is not None
     assert end.turning is not None
     assert end.motion(1.0)[0] == pytest.approx([30.1, 0.0, 0.2])

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from riser_soil.assembly import World
+from riser_soil.assembly import Assembly
 from riser_soil.checks.overload import Bearing, overload
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
@@ -36,13 +36,13 @@ def test_capacity_of_hysteretic_clay(law: type[RandolphQuiggin] | type[AubenyBis
     assert clay.capacity == pytest.approx(a * (500.0 + 1000.0 * D) * D)
 
 
-def lying(seabed: dict[str, object]) -> World:
+def lying(seabed: dict[str, object]) -> Assembly:
     """A pipe on a seabed, its end held 8 m above."""
     pipe = {"EA": 3e8, "EI": 5e4, "outer_diameter": D, "submerged_weight": W}
     ends = {"start": held(0.0, 0.0, 0.5 * D), "end": held(30.0, 0.0, 8.0)}
-    world = built(riser_scene(static(), pipe=pipe, length=32.0, elements=64, gravity=9.81, seabed=seabed, **ends))
-    run_stage(world, world.scene.stages[0], State.at_rest(0.0, world.size), Watcher(), Clock.new())
-    return world
+    assembly = built(riser_scene(static(), pipe=pipe, length=32.0, elements=64, gravity=9.81, seabed=seabed, **ends))
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(), Clock.new())
+    return assembly
 
 
 def clay(su: float) -> dict[str, object]:
@@ -51,29 +51,29 @@ def clay(su: float) -> dict[str, object]:
 
 def test_place_load_and_capacity() -> None:
     """The deepest place, some diameters deep, of a law that goes on beyond its range."""
-    world = lying(clay(300.0))
-    said = overload(world)
+    assembly = lying(clay(300.0))
+    said = overload(assembly)
     found = re.search(
         r"at arc (\S+) m, at \(\S+, \S+, (\S+)\) m, the riser puts (\S+) N/m .* bears about (\S+) N/m", said
     )
     assert found, said
     arc, z, load, capacity = (float(each) for each in found.groups())
-    at_rest = State.at_rest(0.0, world.size)
-    depth = _depth(world, at_rest)
-    assert arc == pytest.approx(world.line.arc[depth.argmax()], rel=1e-3)
+    at_rest = State.at_rest(0.0, assembly.size)
+    depth = _depth(assembly, at_rest)
+    assert arc == pytest.approx(assembly.line.arc[depth.argmax()], rel=1e-3)
     assert z == pytest.approx(0.5 * D - depth.max(), abs=1e-3)
     assert load >= W
     assert capacity == pytest.approx(6.73 * 300.0 * D, rel=1e-3)
 
 
-def _depth(world: World, state: State) -> Array:
-    assert world.seabed is not None
-    return world.seabed.depth(state)
+def _depth(assembly: Assembly, state: State) -> Array:
+    assert assembly.seabed is not None
+    return assembly.seabed.depth(state)
 
 
 @pytest.mark.parametrize("seabed", [clay(1500.0), {"kind": "spring", "stiffness": 1.0e3}, {"kind": "rigid"}])
 def test_nothing_where_the_ground_bears_it(seabed: dict[str, object]) -> None:
     """Or has no limit: springs that the pipe sinks into by its diameter and more do."""
-    world = lying(seabed)
-    assert np.any(_depth(world, State.at_rest(0.0, world.size)) > 0.0)
-    assert overload(world) == ""
+    assembly = lying(seabed)
+    assert np.any(_depth(assembly, State.at_rest(0.0, assembly.size)) > 0.0)
+    assert overload(assembly) == ""

@@ -104,5 +104,5 @@ def test_a_riser_scaled_by_a_million_is_read_and_built(s: float) -> None:
     scene: Mapping = scaled(deepcopy(touchdown(LAY, heave(1.0))), s)
     scene["solver"]["min_time_step"] = 1e-5 * math.sqrt(s)
     scene["contact"] = {"smoothing": 1e-3 * s}
-    world = build(scene_from_mapping(scene), MPI.COMM_SELF)
-    assert world.line.arc[-1] == pytest.approx(30.0 * s)
+    assembly = build(scene_from_mapping(scene), MPI.COMM_SELF)
+    assert assembly.line.arc[-1] == pytest.approx(30.0 * s)

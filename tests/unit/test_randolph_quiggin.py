@@ -20,14 +20,16 @@ def ultimate(z: float | np.ndarray) -> np.ndarray:
 def test_first_penetration_tends_to_the_ultimate_resistance() -> None:
     z = np.array([0.03, 0.06, 0.3])
     zeta = z * K_MAX / D
-    np.testing.assert_allclose(at(EVEN, z, EVEN.fresh((1,)))[0], ultimate(z) * zeta / (1.0 + zeta), rtol=1e-13)
+    force, _ = at(EVEN, z, EVEN.initial_history((1,)))
+    np.testing.assert_allclose(force, ultimate(z) * zeta / (1.0 + zeta), rtol=1e-13)
 
 
 def test_strength_that_grows_with_depth_and_buoyancy_add_up() -> None:
     law = RandolphQuiggin(D, SU, 1500.0, unit_weight=4.0e3)
     z = np.array([0.15])
-    expected = EVEN.respond(z, EVEN.fresh((1,)))[0] * (1.0 + 1500.0 * 0.15 / SU) + 1.5 * 4.0e3 * np.pi * D**2 / 8.0
-    np.testing.assert_allclose(law.respond(z, law.fresh((1,)))[0], expected, rtol=1e-13)
+    even, _ = EVEN.force_and_stiffness(z, EVEN.initial_history((1,)))
+    expected = even * (1.0 + 1500.0 * 0.15 / SU) + 1.5 * 4.0e3 * np.pi * D**2 / 8.0
+    np.testing.assert_allclose(law.force_and_stiffness(z, law.initial_history((1,)))[0], expected, rtol=1e-13)
 
 
 def test_uplift_follows_its_hyperbola() -> None:
@@ -65,10 +67,10 @@ def test_there_is_no_suction_without_its_parameter() -> None:
 def test_repenetration_is_softer_and_joins_the_first_curve_beyond_the_deepest_point() -> None:
     again = after(EVEN, through(0.0, DEEP, -0.01))
     z = np.array([DEEP, 1.2 * DEEP])
-    first = at(EVEN, z, EVEN.fresh((1,)))[0]
+    first = at(EVEN, z, EVEN.initial_history((1,)))[0]
     np.testing.assert_allclose(at(EVEN, z, again)[0], first * np.exp([-0.3, -0.1]), rtol=1e-9)
     later = np.array([1.3 * DEEP, 2.0 * DEEP])
-    np.testing.assert_allclose(at(EVEN, later, again)[0], at(EVEN, later, EVEN.fresh((1,)))[0], rtol=1e-2)
+    np.testing.assert_allclose(at(EVEN, later, again)[0], at(EVEN, later, EVEN.initial_history((1,)))[0], rtol=1e-2)
 
 
 def test_repenetration_after_a_small_uplift_starts_with_the_greatest_stiffness() -> None:
@@ -86,11 +88,11 @@ def test_suction_comes_back_when_pressed_again_not_by_trembling() -> None:
     assert trembled < -0.2 * ultimate(0.05)
     assert weak > -0.6 * ultimate(0.0011)
     assert lifted[0, 6] == 1.0  # of the uplift that goes on
-    assert EVEN.renewed(np.array([0.0011]), lifted)[0, 6] == pytest.approx(np.exp(-(DEEP - 0.001) / DEEP))
+    assert EVEN.update(np.array([0.0011]), lifted)[0, 6] == pytest.approx(np.exp(-(DEEP - 0.001) / DEEP))
 
 
 def test_the_first_half_millimetre_gives_back_no_more_than_it_took() -> None:
     """There the first curve is steeper than the greatest stiffness; the pipe comes back along it."""
     z = np.linspace(0.0, 2e-4, 21)
     history = after(EVEN, np.array([2e-4]))
-    np.testing.assert_array_less(at(EVEN, z, history)[0], at(EVEN, z, EVEN.fresh((1,)))[0] + 1e-9)
+    np.testing.assert_array_less(at(EVEN, z, history)[0], at(EVEN, z, EVEN.initial_history((1,)))[0] + 1e-9)

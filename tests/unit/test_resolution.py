@@ -13,7 +13,7 @@ from riser_soil.results.observer import elastic_residual
 from riser_soil.results.plausibility import SMOOTH_MISFIT, STEEP_MISFIT
 from riser_soil.riser.resolution import Misfit, misfit
 from riser_soil.run import run_stage
-from riser_soil.solve.time_stepper import Accepted, March
+from riser_soil.solve.time_stepper import Accepted, TimeStepper
 from tests.coupled_scenes import Mapping
 from tests.driven_stage import Watcher, built
 from tests.riser_scenes import held, riser_scene, static
@@ -21,17 +21,17 @@ from tests.riser_scenes import held, riser_scene, static
 
 def found(scene: Mapping) -> tuple[Misfit, float]:
     """At the end of the last stage, and the riser's largest bending moment then [N.m]."""
-    world = built(scene)
+    assembly = built(scene)
     told: list[tuple[Misfit, float]] = []
 
-    def watch(march: March, step: Accepted) -> None:
-        residual = elastic_residual(world, march)
-        moment = np.abs(residual[:, [world.line.dimension, -1]] if world.line.dimension == 2 else residual[:, [4, 10]])
-        told.append((misfit(world.line, world.elements, march.now, residual), float(moment.max())))
+    def watch(stepper: TimeStepper, step: Accepted) -> None:
+        residual = elastic_residual(assembly, stepper)
+        moment = np.abs(residual[:, [2, -1]] if assembly.line.dimension == 2 else residual[:, [4, 10]])
+        told.append((misfit(assembly.line, assembly.elements, stepper.now, residual), float(moment.max())))
 
-    before = State.at_rest(0.0, world.size)
-    for stage in world.scene.stages:
-        before = run_stage(world, stage, before, Watcher(watch), Clock.new())
+    before = State.at_rest(0.0, assembly.size)
+    for stage in assembly.scene.stages:
+        before = run_stage(assembly, stage, before, Watcher(watch), Clock.new())
     return told[-1]
 
 

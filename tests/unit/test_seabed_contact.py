@@ -52,13 +52,13 @@ def test_tangent_needs_all_its_terms(dimension: int, left_out: str, monkeypatch:
         monkeypatch.setattr(hermite, "add_geometric", no_operation)
     else:
         monkeypatch.setattr(
-            SeabedContact, "_by_position", lambda self, t: t.slope[..., None, None] * _dyads(t.away)
+            SeabedContact, "_by_position", lambda self, t: t.slope[..., None, None] * _dyads(t.normal)
         )
     assert error(tangent([part], state, WEIGHTS), expected) > 1e-4
 
 
-def _dyads(away: Array) -> Array:
-    return away[..., :, None] * away[..., None, :]
+def _dyads(normal: Array) -> Array:
+    return normal[..., :, None] * normal[..., None, :]
 
 
 @both_dimensions

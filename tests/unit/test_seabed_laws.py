@@ -47,7 +47,7 @@ trembling = st.lists(st.floats(-0.003, 0.003), min_size=2, max_size=40)
 @every_law
 @every_way
 def test_slope_is_the_derivative_but_where_branches_meet(law: NormalLaw, way: tuple[float, ...]) -> None:
-    history = after(law, through(*way)) if len(way) > 1 else law.fresh((1,))
+    history = after(law, through(*way)) if len(way) > 1 else law.initial_history((1,))
     z, h = np.linspace(-0.01, 0.12, 1001), 1e-8
     ahead, behind = at(law, z + h, history)[0], at(law, z - h, history)[0]
     error = np.abs(at(law, z, history)[1] - (ahead - behind) / (2 * h))
@@ -59,7 +59,7 @@ def test_slope_is_the_derivative_but_where_branches_meet(law: NormalLaw, way: tu
 @every_way
 def test_force_is_continuous_within_a_step(law: NormalLaw, way: tuple[float, ...]) -> None:
     """Turning back, leaving the ground and passing the deepest point within one step make no jump."""
-    history = after(law, through(*way)) if len(way) > 1 else law.fresh((1,))
+    history = after(law, through(*way)) if len(way) > 1 else law.initial_history((1,))
     z = np.linspace(-0.01, 0.12, 100_001)
     force, slope = at(law, z, history)
     rise = np.abs(np.diff(force))
@@ -72,7 +72,7 @@ def test_force_is_continuous_within_a_step(law: NormalLaw, way: tuple[float, ...
 @every_law
 @every_way
 def test_a_way_without_turns_does_not_depend_on_its_steps(law: NormalLaw, way: tuple[float, ...]) -> None:
-    history = after(law, through(*way)) if len(way) > 1 else law.fresh((1,))
+    history = after(law, through(*way)) if len(way) > 1 else law.initial_history((1,))
     for end in (0.11, 1e-3):
         once = at(law, np.array([end]), history)[0][0]
         begin = way[-1]
@@ -82,22 +82,22 @@ def test_a_way_without_turns_does_not_depend_on_its_steps(law: NormalLaw, way: t
 @every_law
 @every_way
 def test_a_response_keeps_nothing(law: NormalLaw, way: tuple[float, ...]) -> None:
-    history = after(law, through(*way)) if len(way) > 1 else law.fresh((1,))
+    history = after(law, through(*way)) if len(way) > 1 else law.initial_history((1,))
     kept, here = history.copy(), np.array([0.05])
-    before = law.respond(here, history)
-    law.respond(np.array([0.1]), history)
-    law.renewed(np.array([0.1]), history)
+    before = law.force_and_stiffness(here, history)
+    law.force_and_stiffness(np.array([0.1]), history)
+    law.update(np.array([0.1]), history)
     np.testing.assert_array_equal(history, kept)
-    np.testing.assert_array_equal(before, law.respond(here, history))
+    np.testing.assert_array_equal(before, law.force_and_stiffness(here, history))
 
 
 @every_law
 def test_force_is_zero_out_of_contact(law: NormalLaw) -> None:
-    away = np.array([-np.inf, -1.0, -1e-9, 0.0])
-    for history in (law.fresh((1,)), after(law, through(0.0, 0.07, 0.05))):
-        np.testing.assert_array_equal(at(law, away, history), np.zeros((2, 4)))
-        assert not law.touched(away, np.repeat(history, 4, axis=0)).any()
-        assert not law.stored(away, np.repeat(history, 4, axis=0)).any()
+    normal = np.array([-np.inf, -1.0, -1e-9, 0.0])
+    for history in (law.initial_history((1,)), after(law, through(0.0, 0.07, 0.05))):
+        np.testing.assert_array_equal(at(law, normal, history), np.zeros((2, 4)))
+        assert not law.active(normal, np.repeat(history, 4, axis=0)).any()
+        assert not law.stored(normal, np.repeat(history, 4, axis=0)).any()
 
 
 @every_law
@@ -111,9 +111,9 @@ def test_no_path_from_untouched_ground_gains_work(law: NormalLaw, path: list[flo
 def lost_per_cycle(law: NormalLaw, cycle: Array, times: int) -> Array:
     """Work of each repetition but the first, less the change of what is stored."""
     path = np.tile(cycle, times)
-    histories = [law.fresh((1,))]
+    histories = [law.initial_history((1,))]
     for z in path:
-        histories.append(law.renewed(np.array([z]), histories[-1]))
+        histories.append(law.update(np.array([z]), histories[-1]))
     ends = slice(cycle.size - 1, None, cycle.size)
     stored = [law.stored(cycle[-1:], h)[0] for h in histories[cycle.size :: cycle.size]]
     return np.asarray(np.diff(work(path, forces(law, path))[ends]) - np.diff(stored))

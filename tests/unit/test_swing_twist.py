@@ -21,7 +21,7 @@ def rotation(twist: float, y: float, z: float) -> Array:
     return np.array(rotations.exp((0.0, y, z))) @ np.array(rotations.exp((twist, 0.0, 0.0)))
 
 
-def by_spin(f: Callable[[swing_twist.Swing], Vec], A: Array, step: float = 5e-3) -> Array:
+def by_spin(f: Callable[[swing_twist.SwingTwist], Vec], A: Array, step: float = 5e-3) -> Array:
     """Sixth-order finite differences by the spin of A; the last index is its direction."""
     columns = []
     for unit in np.eye(3):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil.assembly import World, build
+from riser_soil.assembly import Assembly, build
 from riser_soil.assembly.sea import components_of, water_of
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.core.arrays import Array
@@ -75,20 +75,20 @@ def scene(folder: Path, text: str, *stages: Mapping, **more: Any) -> Scene:
     return scene_from_mapping(mapping(*(stages or (aboard(),)), **more), folder)
 
 
-def begun(scene: Scene, stage: int = 0) -> World:
-    world = build(scene, MPI.COMM_SELF)
-    world.begin(scene.stages[stage])
-    return world
+def begun(scene: Scene, stage: int = 0) -> Assembly:
+    assembly = build(scene, MPI.COMM_SELF)
+    assembly.begin(scene.stages[stage])
+    return assembly
 
 
-def displaced(world: World, t: float) -> Array:
-    assert world.line.end.motion is not None
-    return world.line.end.motion(t)[0] - END
+def displaced(assembly: Assembly, t: float) -> Array:
+    assert assembly.line.end.motion is not None
+    return assembly.line.end.motion(t)[0] - END
 
 
-def turned(world: World, t: float) -> Turning:
-    assert world.line.end.turning is not None
-    return world.line.end.turning(t)
+def turned(assembly: Assembly, t: float) -> Turning:
+    assert assembly.line.end.turning is not None
+    return assembly.line.end.turning(t)
 
 
 def surface(scene: Scene, t: float) -> float:
@@ -102,8 +102,8 @@ def surface(scene: Scene, t: float) -> float:
 def test_a_vessel_that_drives_too_far_is_told(surge: float, told: int, tmp_path: Path) -> None:
     """The ends are 40 m and 33 m apart at rest, the waves 1.5 m high: a surge of 6.7 m/m uses up the 60 m."""
     text = table(*EVERYWHERE, surge=(surge, 0.0))
-    world = begun(scene(tmp_path, text, aboard(duration=40.0)))
-    doubts = [doubt for doubt in physical_warnings(world) if "m apart" in doubt]
+    assembly = begun(scene(tmp_path, text, aboard(duration=40.0)))
+    doubts = [doubt for doubt in physical_warnings(assembly) if "m apart" in doubt]
     assert len(doubts) == told
     for doubt in doubts:
         assert doubt.startswith("stages.0.motion: the ends come to be ")
@@ -115,9 +115,9 @@ def test_a_vessel_that_drives_too_far_is_told(surge: float, told: int, tmp_path:
 def test_a_buoy_follows_the_surface_at_its_reference(waves: Mapping, tmp_path: Path) -> None:
     """From the first moment on, as it grows with the waves unless told otherwise."""
     floating = scene(tmp_path, table(*EVERYWHERE, heave=(1.0, 0.0)), waves=waves)
-    world = begun(floating)
+    assembly = begun(floating)
     for t in (0.3, 4.0, 9.1, 17.3):
-        assert displaced(world, t) == pytest.approx([0.0, 0.0, surface(floating, t)], abs=1e-12)
+        assert displaced(assembly, t) == pytest.approx([0.0, 0.0, surface(floating, t)], abs=1e-12)
     assert abs(surface(floating, 17.3)) > 0.1
 
 
@@ -134,17 +134,17 @@ def test_a_phase_is_a_lag(tmp_path: Path) -> None:
 def test_modes_move_along_and_about_the_vessels_axes(mode: str, axis: int, sign: float, tmp_path: Path) -> None:
     """x along the heading, y to port, z up; the end moves with its arm, its direction turns along."""
     text = table(*EVERYWHERE, **{mode: (0.02, 0.0)})
-    world = begun(floating := scene(tmp_path, text, aboard(heading_deg=30.0), rotation="fixed"))
+    assembly = begun(floating := scene(tmp_path, text, aboard(heading_deg=30.0), rotation="fixed"))
     heading = np.array(rotations.exp((0.0, 0.0, np.radians(30.0))))
     t, along = 17.3, heading[:, axis] * 0.02
     size = surface(floating, t)
     expected = np.cross(along, np.array(END) - REFERENCE) if sign else along
-    assert displaced(world, t) == pytest.approx(size * expected, abs=1e-13)
-    assert turned(world, t).rotation == pytest.approx(sign * size * along, abs=1e-14)
-    state = State.at_rest(t, world.line.size)
-    world.line.prescribe(t, state.u, state.v, state.a)
-    assert isinstance(world.line.frames, SpatialFrames)
-    spin = world.line.frames.R[-1] @ world.line.nodal(state.u)[-1, 3:]
+    assert displaced(assembly, t) == pytest.approx(size * expected, abs=1e-13)
+    assert turned(assembly, t).rotation == pytest.approx(sign * size * along, abs=1e-14)
+    state = State.at_rest(t, assembly.line.size)
+    assembly.line.prescribe(t, state.u, state.v, state.a)
+    assert isinstance(assembly.line.frames, SpatialFrames)
+    spin = assembly.line.frames.R[-1] @ assembly.line.nodal(state.u)[-1, 3:]
     assert spin == pytest.approx(sign * size * along, abs=1e-13)
 
 
@@ -169,8 +169,8 @@ def test_response_to_a_sea_is_the_rao_times_its_components(tmp_path: Path) -> No
 
 def test_rates_are_derivatives_and_it_starts_at_rest(tmp_path: Path) -> None:
     modes = {mode: (0.3 if n < 3 else 0.02, 50.0 * n) for n, mode in enumerate(MODES)}
-    world = begun(scene(tmp_path, table(*EVERYWHERE, **modes), waves=JONSWAP, rotation="fixed"))
-    motion, turning, h = world.line.end.motion, world.line.end.turning, 1e-3
+    assembly = begun(scene(tmp_path, table(*EVERYWHERE, **modes), waves=JONSWAP, rotation="fixed"))
+    motion, turning, h = assembly.line.end.motion, assembly.line.end.turning, 1e-3
     assert motion is not None
     assert turning is not None
     for values, first in zip(motion(0.0), (END, [0.0] * 3, [0.0] * 3), strict=True):
@@ -198,19 +198,19 @@ def test_a_vessel_sails_on_through_stages(tmp_path: Path) -> None:
     assert second.end.end_moment == pytest.approx(long.end.end_moment, rel=2e-2, abs=1.0)
 
 
-def ends(floating: Scene) -> tuple[World, list[tuple[Array, Array]]]:
+def ends(floating: Scene) -> tuple[Assembly, list[tuple[Array, Array]]]:
     """Where each stage's motion puts the end as it begins and as it ends."""
-    world, found = build(floating, MPI.COMM_SELF), []
-    line, state = world.line, State.at_rest(0.0, world.line.size)
+    assembly, found = build(floating, MPI.COMM_SELF), []
+    line, state = assembly.line, State.at_rest(0.0, assembly.line.size)
     for stage in floating.stages:
-        world.begin(stage)
+        assembly.begin(stage)
         times = (0.0, 1.0 if stage.kind == "static" else stage.duration)
         motion, here = line.end.motion, line.to_global(line.x[-1])
         found.append((motion(times[0])[0], motion(times[1])[0]) if motion else (here, here))
         line.prescribe(times[1], state.u, state.v, state.a)
         line.commit(state)
         state = State.at_rest(0.0, line.size)
-    return world, found
+    return assembly, found
 
 
 BREAKS: dict[str, tuple[Mapping, dict[str, Any]]] = {
@@ -227,8 +227,8 @@ def test_after_a_break_it_swings_about_the_same_mean(name: str, tmp_path: Path) 
     modes = {mode: (0.3 if n < 3 else 0.02, 50.0 * n) for n, mode in enumerate(MODES)}
     between, change = BREAKS[name]
     stages = static(), aboard(12.6), between, aboard(30.0, "again", **change, ramp=2.0)
-    world, found = ends(scene(tmp_path, table(*EVERYWHERE, **modes), *stages))
-    motion, turning = world.line.end.motion, world.line.end.turning
+    assembly, found = ends(scene(tmp_path, table(*EVERYWHERE, **modes), *stages))
+    motion, turning = assembly.line.end.motion, assembly.line.end.turning
     assert motion is not None
     assert turning is not None
     assert np.abs(found[2][1] - END).max() > 0.1
@@ -238,7 +238,7 @@ def test_after_a_break_it_swings_about_the_same_mean(name: str, tmp_path: Path) 
     period = map(float, np.arange(9.0, 18.0, 0.25))
     assert np.mean([motion(t)[0] for t in period], axis=0) == pytest.approx(END, abs=1e-9)
     if "reference" not in change:
-        late = displaced(world, 12.0)
+        late = displaced(assembly, 12.0)
         whole = begun(scene(tmp_path, table(*EVERYWHERE, **modes), static(), aboard(60.0)), 1)
         clock = 12.6 + (7.0 if between["kind"] == "dynamic" else 0.0)
         assert late == pytest.approx(displaced(whole, clock + 12.0), abs=1e-12)
@@ -259,9 +259,9 @@ def test_a_move_in_a_static_stage_takes_the_berth_along(tmp_path: Path) -> None:
     _, found = ends(scene(tmp_path, text, static(), aboard(12.6), static("rest"), aboard(30.0, "again")))
     target = [float(value) for value in found[1][1] + by]
     moved = static(), aboard(12.6), static("rest", move={"end": target}), aboard(30.0, "again")
-    world, found = ends(scene(tmp_path, text, *moved))
-    assert displaced(world, 0.0) == pytest.approx(np.array(target) - END, abs=1e-12)
-    mean = np.mean([displaced(world, t) for t in map(float, np.arange(9.0, 18.0, 0.25))], axis=0)
+    assembly, found = ends(scene(tmp_path, text, *moved))
+    assert displaced(assembly, 0.0) == pytest.approx(np.array(target) - END, abs=1e-12)
+    mean = np.mean([displaced(assembly, t) for t in map(float, np.arange(9.0, 18.0, 0.25))], axis=0)
     assert mean == pytest.approx(by, abs=1e-9)
 
 
@@ -297,14 +297,14 @@ def test_waves_beyond_the_table(decay: float, warnings: int, tmp_path: Path) -> 
 
     text = table(np.linspace(0.3, 1.1, 27), [180.0], heave=rao)
     floating = scene(tmp_path, text, aboard(), aboard(name="sail on"), waves=JONSWAP)
-    world = begun(floating)
-    assert world.vessels is not None
-    response = world.vessels.motion(floating.stages[0], "end", np.array(END)).response
+    assembly = begun(floating)
+    assert assembly.vessels is not None
+    response = assembly.vessels.motion(floating.stages[0], "end", np.array(END)).response
     above = response.frequency > 1.1
     assert np.count_nonzero(above) == 5  # of 40 waves of equal energy
     assert not np.any(response.amplitude[above])
     assert np.all(response.amplitude[~above, 2])
-    told = [doubt for doubt in physical_warnings(world) if "vessel" in doubt]
+    told = [doubt for doubt in physical_warnings(assembly) if "vessel" in doubt]
     assert len(told) == warnings
     assert all(doubt.startswith("stages.0.motion.end.vessel.rao: 0 % of the waves' energy") for doubt in told)
     assert all("12.5 % above its last, 1.1 rad/s" in doubt for doubt in told)

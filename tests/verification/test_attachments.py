@@ -10,7 +10,7 @@ import pytest
 from scipy.linalg import eigh
 from scipy.special import ellipk
 
-from riser_soil.assembly import World
+from riser_soil.assembly import Assembly
 from riser_soil.core.part import State, Weights
 from riser_soil.riser import shapes
 from riser_soil.riser.attachments import Attachment, masses
@@ -37,13 +37,13 @@ def scene(*stages: Mapping, attachments: list[Mapping], riser: Mapping | None = 
     return riser_scene(*stages, riser={"attachments": attachments} | (riser or {}), **(settings | more))
 
 
-def inside(world: World) -> SectionForces:
+def inside(assembly: Assembly) -> SectionForces:
     """Section forces at the end of the world's only, static stage."""
-    (stage,) = world.scene.stages
-    state = take(world, stage)
-    parts = [p for p in world.begin(stage).parts if isinstance(p, HasElementForces)]
+    (stage,) = assembly.scene.stages
+    state = take(assembly, stage)
+    parts = [p for p in assembly.begin(stage).parts if isinstance(p, HasElementForces)]
     at = State.at_rest(1.0, state.u.size)
-    return section_forces(world.line, world.elements, at, element_residual(world.line, parts, at))
+    return section_forces(assembly.line, assembly.elements, at, element_residual(assembly.line, parts, at))
 
 
 @both_dimensions
@@ -51,10 +51,10 @@ def test_tension_jumps_by_the_weight_of_what_hangs(dimension: int) -> None:
     """A line hangs from its start with clumps at a node, within an element and at its end."""
     clumps: list[Mapping] = [{"at": [6.0, 20.0], "mass": 50.0}, {"at": 10.7, "mass": 300.0, "volume": 0.1}]
     down = {"unstressed": {"points": [[0.0, 0.0, 20.0], [0.0, 0.0, 0.0]]}}
-    world = built(
+    assembly = built(
         scene(static(), attachments=clumps, riser=down, start=held(0.0, 0.0, 20.0), end="free", dimension=dimension)
     )
-    arc, tension = world.line.arc, inside(world).effective_tension
+    arc, tension = assembly.line.arc, inside(assembly).effective_tension
     weights = {6.0: 50.0 * G, 10.7: (300.0 - 0.1 * RHO) * G, 20.0: 50.0 * G}
     expected = 100.0 * (20.0 - arc) + sum(w * (arc <= s + 1e-9) for s, w in weights.items())
     assert tension == pytest.approx(expected, rel=1e-9)
@@ -64,21 +64,21 @@ def test_tension_jumps_by_the_weight_of_what_hangs(dimension: int) -> None:
 def test_a_buoy_holds_its_mooring_straight_up(dimension: int) -> None:
     buoy = [{"at": 20.0, "mass": 200.0, "volume": 1.0}]
     up = {"unstressed": {"points": [[0.0, 0.0, 0.0], [0.0, 0.0, 20.0]]}}
-    world = built(
+    assembly = built(
         scene(static(), attachments=buoy, riser=up, start=held(0.0, 0.0, 0.0), end="free", dimension=dimension)
     )
     lift = (RHO - 200.0) * G
-    found = inside(world)
-    assert found.effective_tension == pytest.approx(lift - 100.0 * (20.0 - world.line.arc), rel=1e-9)
+    found = inside(assembly)
+    assert found.effective_tension == pytest.approx(lift - 100.0 * (20.0 - assembly.line.arc), rel=1e-9)
     assert found.force[0] == pytest.approx([0.0, 0.0, lift - 2000.0], rel=1e-9, abs=1e-6)
-    assert world.line.to_global(world.line.x)[-1] == pytest.approx([0.0, 0.0, 20.0], abs=1e-3)
+    assert assembly.line.to_global(assembly.line.x)[-1] == pytest.approx([0.0, 0.0, 20.0], abs=1e-3)
 
 
 def test_a_lazy_wave_balances_at_every_node() -> None:
     """The horizontal force is the same all along; the vertical one grows by all weight and buoyancy on the way."""
     places = [float(s) for s in np.linspace(35.0, 64.5, 11)]
     modules = [{"at": places, "mass": 60.0, "volume": 0.12}]
-    world = built(
+    assembly = built(
         scene(
             static(),
             attachments=modules,
@@ -89,12 +89,12 @@ def test_a_lazy_wave_balances_at_every_node() -> None:
             riser={"initial": "catenary"},
         )
     )
-    found, arc = inside(world), world.line.arc
+    found, arc = inside(assembly), assembly.line.arc
     net = (60.0 - 0.12 * RHO) * G
     below = sum(net * (arc > s + 1e-9) for s in places)
     assert found.force[:, 0] == pytest.approx(np.full(61, found.force[0, 0]), rel=1e-7)
     assert found.force[:, 2] - found.force[0, 2] == pytest.approx(100.0 * arc + below, rel=1e-7, abs=1e-3)
-    height = world.line.to_global(world.line.x)[:, 2]
+    height = assembly.line.to_global(assembly.line.x)[:, 2]
     turns = [i for i in range(1, 60) if (height[i] - height[i - 1]) * (height[i + 1] - height[i]) < 0.0]
     assert len(turns) == 3  # sag bend, hog bend, sag bend
 

@@ -12,7 +12,7 @@ from petsc4py import PETSc
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from riser_soil.assembly import World, build
+from riser_soil.assembly import Assembly, build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Clock, System
@@ -96,21 +96,21 @@ def test_columns_of_many_elements_buckle(EA: float, dimension: int, elements: in
 
 def unstable_modes(scene: Mapping) -> int:
     """At the equilibrium that Newton's method finds in one step from the first shape."""
-    world: World = build(scene_from_mapping(scene), MPI.COMM_WORLD)
-    system = System(world.comm, world.begin(world.scene.stages[0]), Clock.new())
-    newton = Newton(system, NewtonSettings(world.scene.solver.tolerance, 25, world.scales.force_floor))
-    weights, still = Static().weights(1.0), State.at_rest(1.0, world.size)
+    assembly: Assembly = build(scene_from_mapping(scene), MPI.COMM_WORLD)
+    system = System(assembly.comm, assembly.begin(assembly.scene.stages[0]), Clock.new())
+    newton = Newton(system, NewtonSettings(assembly.scene.solver.tolerance, 25, assembly.scales.force_floor))
+    weights, still = Static().weights(1.0), State.at_rest(1.0, assembly.size)
     system.assemble(still, weights)
     forces, increment = system.forces(still), system.numbering.vector.duplicate()
     right = increment.duplicate()
     system.numbering.add_to_global(-forces.force, right)
-    solver = PETSc.KSP().create(world.comm)
+    solver = PETSc.KSP().create(assembly.comm)
     solver.setType("preonly")
     solver.getPC().setType("lu")
     solver.getPC().setFactorSolverType("mumps")
     solver.setOperators(system.matrix.mat)
     solver.solve(right, increment)
-    u = np.zeros(world.size)
+    u = np.zeros(assembly.size)
     system.numbering.to_local(increment, u)
     found = newton.unstable_modes(State(1.0, u, 0.0 * u, 0.0 * u))
     for thing in (solver, right, increment, newton, system):

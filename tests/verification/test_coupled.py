@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil.assembly import World, build
+from riser_soil.assembly import Assembly, build
 from riser_soil.core.arrays import Array
 from riser_soil.core.system import System, total
 from riser_soil.results import Run
@@ -27,33 +27,33 @@ class Laid:
     """A scene laid down: the last step of its static stage, before it is committed."""
 
     def __init__(self, scene: Mapping) -> None:
-        self.world: World = built(scene)
+        self.assembly: Assembly = built(scene)
 
         def keep(system: System, step: Accepted) -> None:
             self.step, self.system = step, system
             self.forces = total(step.solution.forces)
             state = step.solution.state
-            self.on_riser = np.sum([c.force_on_riser(state) for c in self.world.contacts], axis=0)
-            assert self.world.soil_contact is not None
-            self.on_soil = self.world.soil_contact.force_on_soil(state)
+            self.on_riser = np.sum([c.force_on_riser(state) for c in self.assembly.contacts], axis=0)
+            assert self.assembly.soil_contact is not None
+            self.on_soil = self.assembly.soil_contact.force_on_soil(state)
 
-        take(self.world, self.world.scene.stages[0], watch=keep)
+        take(self.assembly, self.assembly.scene.stages[0], watch=keep)
 
     @property
     def weight(self) -> float:
         """Submerged weight of the whole riser [N]."""
-        return float(self.world.elements.weight @ self.world.line.length)
+        return float(self.assembly.elements.weight @ self.assembly.line.length)
 
     @property
     def supports(self) -> Array:
         """Force (3,) of both supports on the riser [N], global axes."""
-        line = self.world.line
+        line = self.assembly.line
         return np.asarray(self.forces[line.translation_dofs[[0, -1]]].sum(axis=0) @ line.basis.T)
 
     @property
     def soil_reactions(self) -> Array:
         """Force (3,) of the bottom and the sides on the soil [N]; contact pushes the upper edges of the sides, too."""
-        soil = self.world.soil
+        soil = self.assembly.soil
         assert soil is not None
         out = np.zeros(3)
         for field in (soil.field, soil.surface):
@@ -136,12 +136,12 @@ def pressed(kind: str) -> list[Array]:
 
     scene = touchdown(LAY, PRESS, kind=kind, su=1000.0, tolerance=1e-13)
     scene["solver"]["load_steps"] = 8
-    world = built(scene)
-    assert world.soil is not None
-    before = take(world, world.scene.stages[0])
-    yielded = world.soil.output_fields().plastic_strain.max()
-    take(world, world.scene.stages[1], before, watch)
-    assert world.soil.output_fields().plastic_strain.max() > yielded + 1e-3
+    assembly = built(scene)
+    assert assembly.soil is not None
+    before = take(assembly, assembly.scene.stages[0])
+    yielded = assembly.soil.output_fields().plastic_strain.max()
+    take(assembly, assembly.scene.stages[1], before, watch)
+    assert assembly.soil.output_fields().plastic_strain.max() > yielded + 1e-3
     return histories
 
 
@@ -159,12 +159,12 @@ def test_demo_needs_few_newton_iterations(demo: WatchedRun) -> None:
 def test_demo_lays_down_the_weight_that_does_not_hang(demo: WatchedRun) -> None:
     """Contact and the start's support bear the weight of what lies; the catenary says how much that is."""
     final = Run(demo.folder).summary["stages"][0]["final"]
-    world = built_demo()
-    w = float(world.elements.weight[0])
+    assembly = built_demo()
+    w = float(assembly.elements.weight[0])
     lying = (final["contact_force"] + final["start"]["force"][2]) / w
-    shape = catenary(world.line.arc, np.array([0.0, 0.0, 0.15]), np.array([80.0, 0.0, 100.0]), w, 3.0e8, 0.15)
+    shape = catenary(assembly.line.arc, np.array([0.0, 0.0, 0.15]), np.array([80.0, 0.0, 100.0]), w, 3.0e8, 0.15)
     hanging = np.sqrt(shape.tension[-1] ** 2 - shape.H**2) / w
-    assert lying == pytest.approx(world.line.arc[-1] - hanging, rel=0.01)
+    assert lying == pytest.approx(assembly.line.arc[-1] - hanging, rel=0.01)
 
 
 @pytest.mark.parametrize("part", ["contact", "soil"])
@@ -186,5 +186,5 @@ def test_demo_balances_its_energy(demo: WatchedRun) -> None:
 
 
 @cache
-def built_demo() -> World:
+def built_demo() -> Assembly:
     return build(read_scene(DEMO), MPI.COMM_SELF)

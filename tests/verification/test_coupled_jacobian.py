@@ -21,9 +21,9 @@ class Case:
     """The first step after laying, looked at in a state away from balance; x the unknowns there."""
 
     def __init__(self, kind: str, dimension: int, stage: str) -> None:
-        world = built(touchdown(LAY, NEXT[stage], kind=kind, dimension=dimension, su=1000.0))
-        self.step = FirstStep(world)
-        self.world = world
+        assembly = built(touchdown(LAY, NEXT[stage], kind=kind, dimension=dimension, su=1000.0))
+        self.step = FirstStep(assembly)
+        self.assembly = assembly
         self._random = np.random.default_rng(5)
         self.x = self.direction()
 
@@ -36,7 +36,7 @@ class Case:
 
     @property
     def riser(self) -> IntArray:
-        line = self.world.line
+        line = self.assembly.line
         return self.step.rows(line.offset + np.arange(line.size))
 
     @property
@@ -44,17 +44,17 @@ class Case:
         return np.setdiff1d(np.arange(self.step.free), self.riser)
 
     @property
-    def touched(self) -> dict[str, IntArray]:
+    def active(self) -> dict[str, IntArray]:
         """Rows of the riser's and of the soil's dofs on which contact acts at x."""
-        assert self.world.soil_contact is not None
-        rows = self.step.rows(self.world.soil_contact.meet(self.step.state(self.x)).touching.rows.ravel())
+        assert self.assembly.soil_contact is not None
+        rows = self.step.rows(self.assembly.soil_contact.detect(self.step.state(self.x)).touching.rows.ravel())
         return {
             "touched riser": np.intersect1d(rows, self.riser),
             "touched soil": np.intersect1d(rows, self.soil),
         }
 
     def groups(self) -> dict[str, IntArray]:
-        return {"riser": self.riser, "soil": self.soil} | self.touched
+        return {"riser": self.riser, "soil": self.soil} | self.active
 
     def differences(self, direction: Array) -> Array:
         """Directional derivative of the residual at x, of fourth order in the step."""
@@ -74,7 +74,7 @@ class Case:
 
     def plastic_share(self) -> float:
         """Share of the soil's cells in which some point yields on the way to x; x is accepted by this."""
-        soil = self.world.soil
+        soil = self.assembly.soil
         assert soil is not None
         before = soil.output_fields().plastic_strain
         state = self.step.state(self.x)

@@ -19,7 +19,7 @@ from riser_soil.core.part import State
 from riser_soil.core.system import Clock
 from riser_soil.run import run_stage
 from riser_soil.solve.step_control import StepControl
-from riser_soil.solve.time_stepper import Accepted, March
+from riser_soil.solve.time_stepper import Accepted, TimeStepper
 from tests.coupled_scenes import Mapping
 from tests.driven_stage import Watcher, built
 from tests.momentum import momentum
@@ -55,17 +55,17 @@ class Flight:
     """What is seen after each step: time, momenta (n, 3), energy, and at the end the tips' positions (2, 3)."""
 
     def __init__(self, dimension: int, dt: float, duration: float = 15.0, scheme: Any = MIDPOINT) -> None:
-        world = built(spaghetti(dimension, dt, duration, scheme))
+        assembly = built(spaghetti(dimension, dt, duration, scheme))
         rows = list[tuple[float, Array, Array, float, int]]()
 
-        def watch(march: March, step: Accepted) -> None:
-            rows.append((step.t, *momentum(world, march), march.energy.total, step.solution.iterations))
+        def watch(stepper: TimeStepper, step: Accepted) -> None:
+            rows.append((step.t, *momentum(assembly, stepper), stepper.energy.total, step.solution.iterations))
 
-        run_stage(world, world.scene.stages[0], State.at_rest(0.0, world.size), Watcher(watch), Clock.new())
+        run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Clock.new())
         columns = zip(*rows, strict=True)
         self.t, self.linear, self.angular, self.energy, self.iterations = (np.array(c) for c in columns)
         self.quiet = self.t > QUIET[dimension]
-        self.tips = world.line.to_global(world.line.x)[[0, -1]]
+        self.tips = assembly.line.to_global(assembly.line.x)[[0, -1]]
 
     def drift(self, values: Array) -> float:
         """Largest change of a momentum after the pulse, relative to what it is then."""
@@ -189,17 +189,17 @@ def test_frames_stay_orthonormal_through_a_hundred_turns() -> None:
     stage = dynamic(10.0, dt, scheme=MIDPOINT)
     points = {"initial": {"points": [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0]]}}
     more = {"riser": points, "dimension": 3, "solver": {"tolerance": 1e-10}}
-    world = built(riser_scene(stage, pipe=TOP, length=2.0, elements=2, start="free", end="free", **more))
-    before = State.at_rest(0.0, world.size)
+    assembly = built(riser_scene(stage, pipe=TOP, length=2.0, elements=2, start="free", end="free", **more))
+    before = State.at_rest(0.0, assembly.size)
     rates = before.v.reshape(-1, 6)
     rates[:, 2], rates[:, 3:] = [-0.5, 0.0, 0.5], [spin, -0.5, 0.0]
     momenta = list[Array]()
 
-    def watch(march: March, step: Accepted) -> None:
-        momenta.append(momentum(world, march)[1])
+    def watch(stepper: TimeStepper, step: Accepted) -> None:
+        momenta.append(momentum(assembly, stepper)[1])
 
-    after = run_stage(world, world.scene.stages[0], before, Watcher(watch), Clock.new())
-    turns = np.array([world.line.frames.turn(np.zeros((3, 3))).at(node) for node in range(3)])
+    after = run_stage(assembly, assembly.scene.stages[0], before, Watcher(watch), Clock.new())
+    turns = np.array([assembly.line.frames.turn(np.zeros((3, 3))).at(node) for node in range(3)])
     assert np.abs(turns @ np.swapaxes(turns, 1, 2) - np.eye(3)).max() < 1e-13
     assert np.linalg.norm(momenta[-1] - momenta[0]) < 1e-9 * np.linalg.norm(momenta[0])
     assert after.v.reshape(-1, 6)[:, 3] == pytest.approx(np.full(3, spin), rel=1e-2)
@@ -207,15 +207,15 @@ def test_frames_stay_orthonormal_through_a_hundred_turns() -> None:
 
 def test_steps_of_changing_size_keep_momentum(monkeypatch: pytest.MonkeyPatch) -> None:
     """As where Newton's method needs cuts: here every third step is a quarter of the others."""
-    usual, count = March.advance, iter(range(10000))
+    usual, count = TimeStepper.advance, iter(range(10000))
 
-    def advance(march: March, control: StepControl) -> Accepted:
+    def advance(stepper: TimeStepper, control: StepControl) -> Accepted:
         if next(count) % 3 == 0:
             assert control.cut()
             assert control.cut()
-        return usual(march, control)
+        return usual(stepper, control)
 
-    monkeypatch.setattr(March, "advance", advance)
+    monkeypatch.setattr(TimeStepper, "advance", advance)
     flight = Flight(3, 0.05, 10.0)
     assert np.unique(np.round(np.diff(flight.t), 9)).size > 1
     assert flight.drift(flight.angular) < 1e-10

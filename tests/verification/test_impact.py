@@ -47,8 +47,8 @@ PAIRS = list(product((1e6, 1e7, 1e8), (0.1, 0.02, 0.005)))
 
 def energies(scene: Mapping) -> Energies:
     """Those of a scene's only stage."""
-    world, seen = built(scene), Energies()
-    run_stage(world, world.scene.stages[0], State.at_rest(0.0, world.size), seen, Clock.new())
+    assembly, seen = built(scene), Energies()
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), seen, Clock.new())
     return seen
 
 
@@ -86,8 +86,8 @@ def test_step_that_makes_energy_out_of_nothing_is_cut(monkeypatch: pytest.Monkey
         return Solution(far, self.system.forces(far), solution.norms)
 
     monkeypatch.setattr(Newton, "solve", solve)
-    world, cuts = built(pinned(1e6, 0.1)), list[int]()
-    take(world, world.scene.stages[0], watch=lambda _, step: cuts.append(step.cuts))
+    assembly, cuts = built(pinned(1e6, 0.1)), list[int]()
+    take(assembly, assembly.scene.stages[0], watch=lambda _, step: cuts.append(step.cuts))
     assert cuts[:5] == [0, 0, 0, 1, 0]
     np.testing.assert_allclose(calls[3:5], [0.4, 0.35], atol=1e-12)
 
@@ -156,10 +156,10 @@ def top_tension(dt: float) -> Array:
     """Of the hose in the tank through the first seconds of its swing [N]."""
     tension = list[float]()
     scene = tank(1e6, dt, duration=2.4, ramp=2.4)
-    world = build(scene, MPI.COMM_SELF)
-    before = take(world, scene.stages[0])
-    watcher = Watcher(lambda march, _: tension.append(float(riser_snapshot(world, march).effective_tension[-1])))
-    run_stage(world, scene.stages[1], before, watcher, Clock.new())
+    assembly = build(scene, MPI.COMM_SELF)
+    before = take(assembly, scene.stages[0])
+    watcher = Watcher(lambda stepper, _: tension.append(float(riser_snapshot(assembly, stepper).effective_tension[-1])))
+    run_stage(assembly, scene.stages[1], before, watcher, Clock.new())
     return np.array(tension)
 
 
@@ -194,9 +194,9 @@ def test_tank_gains_no_energy_at_any_step(k: float) -> None:
 def no_energy_appears_in_the_tank(k: float, dt: float) -> None:
     """Beyond the work of the arm; the hose's own motion is integrated to (dt/period)^2."""
     scene = tank(k, dt, duration=6.0, ramp=2.0)
-    world, seen = build(scene, MPI.COMM_SELF), Energies()
-    before = take(world, scene.stages[0])
-    run_stage(world, scene.stages[1], before, seen, Clock.new())
+    assembly, seen = build(scene, MPI.COMM_SELF), Energies()
+    before = take(assembly, scene.stages[0])
+    run_stage(assembly, scene.stages[1], before, seen, Clock.new())
     print(f"tank, k {k:.0e} N/m2, dt {dt:g} s: {seen.report()}")
     turned_over = np.ptp(seen.gain)
     assert seen.gain.max() < 1e-4 * turned_over

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.assembly import World
+from riser_soil.assembly import Assembly
 from riser_soil.core.system import Clock, System
 from tests.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.driven_stage import built
@@ -92,17 +92,17 @@ def test_hanging_riser_starts_at_once(tmp_path: Path) -> None:
     assert not SLOW_TO_IMPORT & set(again["modules"])
 
 
-def system(world: World, stage: int) -> System:
-    return System(world.comm, world.begin(world.scene.stages[stage]), Clock.new())
+def system(assembly: Assembly, stage: int) -> System:
+    return System(assembly.comm, assembly.begin(assembly.scene.stages[stage]), Clock.new())
 
 
 @pytest.mark.parametrize(("dimension", "dofs"), [(2, 3), (3, 6)])
 @pytest.mark.parametrize("scene", [hanging, over_springs])
 def test_matrix_holds_the_free_dofs_alone(scene: Any, dimension: int, dofs: int) -> None:
     """Held are the ends' positions and, in space, the spin that nothing else holds at rest; contact adds no row."""
-    world = built(scene(LAY, heave(0.2), dimension=dimension))
+    assembly = built(scene(LAY, heave(0.2), dimension=dimension))
     for stage, spin in ((0, dimension == 3), (1, False)):
-        rows, columns = system(world, stage).matrix.mat.getSize()
+        rows, columns = system(assembly, stage).matrix.mat.getSize()
         assert rows == columns == dofs * NODES - 2 * dimension - spin
 
 
@@ -114,14 +114,14 @@ def test_hanging_riser_has_no_entries_for_contact() -> None:
     assert sprung.getInfo()["nz_used"] == hung.getInfo()["nz_used"]
 
 
-def names(world: World, stage: int) -> list[str]:
-    return [part.name for part in world.begin(world.scene.stages[stage]).parts]
+def names(assembly: Assembly, stage: int) -> list[str]:
+    return [part.name for part in assembly.begin(assembly.scene.stages[stage]).parts]
 
 
 def test_static_stages_build_nothing_of_dynamics() -> None:
-    world = built(touchdown(LAY, heave(0.2)))
-    assert names(world, 0) == ["riser", "soil", "contact", "seabed"]
-    assert names(world, 1) == ["riser", "inertia", "morison", "soil", "contact", "seabed"]
+    assembly = built(touchdown(LAY, heave(0.2)))
+    assert names(assembly, 0) == ["riser", "soil", "contact", "seabed"]
+    assert names(assembly, 1) == ["riser", "inertia", "morison", "soil", "contact", "seabed"]
 
 
 def test_water_is_built_as_far_as_it_goes() -> None:
@@ -130,19 +130,19 @@ def test_water_is_built_as_far_as_it_goes() -> None:
     current = {"current": {"profile": [[0.0, 1.0, 0.0]]}}
     built_of = {"sea": ["riser", "buoyancy"], "current": ["riser", "morison"]}
     for name, water in (("sea", sea), ("current", current)):
-        world = built(hanging(LAY, heave(0.2)) | {"water": water})
-        assert names(world, 0) == built_of[name]
-        assert names(world, 1) == ["riser", "inertia", "morison", *(["buoyancy"] if name == "sea" else [])]
+        assembly = built(hanging(LAY, heave(0.2)) | {"water": water})
+        assert names(assembly, 0) == built_of[name]
+        assert names(assembly, 1) == ["riser", "inertia", "morison", *(["buoyancy"] if name == "sea" else [])]
 
 
 def test_without_water_nothing_of_the_sea() -> None:
     scene = hanging(LAY, heave(0.2))
     line = scene["line_types"]["flexible"]
     del scene["water"], line["drag"], line["added_mass"]
-    world = built(scene)
-    assert names(world, 1) == ["riser", "inertia"]
-    assert world.soil is None
-    assert world.contacts == []
+    assembly = built(scene)
+    assert names(assembly, 1) == ["riser", "inertia"]
+    assert assembly.soil is None
+    assert assembly.contacts == []
 
 
 def test_motion_is_smooth_unless_something_may_jump() -> None:
@@ -155,6 +155,6 @@ def test_motion_is_smooth_unless_something_may_jump() -> None:
 
 
 def test_symmetric_where_nothing_makes_it_unsymmetric() -> None:
-    world = built(touchdown(LAY, heave(0.2)))
-    assert system(world, 0).symmetric
-    assert not system(world, 1).symmetric
+    assembly = built(touchdown(LAY, heave(0.2)))
+    assert system(assembly, 0).symmetric
+    assert not system(assembly, 1).symmetric

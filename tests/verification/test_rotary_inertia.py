@@ -91,13 +91,13 @@ def tossed(time_step: float) -> tuple[Array, Array]:
     points = [[0.0, 0.0, 0.0], [ROD_LENGTH, 0.0, 0.0]]
     stage = dynamic(DURATION, time_step, scheme=AVERAGE)
     more = {"riser": {"initial": {"points": points}}, "solver": {"tolerance": 1e-11}, "dimension": 3}
-    world = built(riser_scene(stage, pipe=ROD, length=ROD_LENGTH, elements=1, start="free", end="free", **more))
-    before, energies = State.at_rest(0.0, world.size), list[float]()
+    assembly = built(riser_scene(stage, pipe=ROD, length=ROD_LENGTH, elements=1, start="free", end="free", **more))
+    before, energies = State.at_rest(0.0, assembly.size), list[float]()
     rates = before.v.reshape(-1, 6)
     rates[:, 2], rates[:, 3:] = [-1.0, 1.0], [SPIN, -TUMBLE, 0.0]
     rates[:, 2] *= 0.5 * ROD_LENGTH * TUMBLE
-    take(world, world.scene.stages[-1], before, lambda system, step: energies.append(step.energy.total))
-    return world.line.chord[0] / np.linalg.norm(world.line.chord[0]), np.array(energies)
+    take(assembly, assembly.scene.stages[-1], before, lambda system, step: energies.append(step.energy.total))
+    return assembly.line.chord[0] / np.linalg.norm(assembly.line.chord[0]), np.array(energies)
 
 
 def test_free_spinning_top_precesses() -> None:

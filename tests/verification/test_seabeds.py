@@ -130,7 +130,7 @@ def test_riser_at_rest_on_clay_that_remembers(law: str) -> None:
     assert found.contact_force[at] == pytest.approx(W, rel=1e-4)
     known = {"randolph-quiggin": RandolphQuiggin, "aubeny-biscontin": AubenyBiscontin}[law](0.3, 2e3, 1.5e3)
     depth = -found.position[at, 2]
-    force, _ = known.respond(depth, known.fresh(depth.shape))
+    force, _ = known.force_and_stiffness(depth, known.initial_history(depth.shape))
     assert force == pytest.approx(W, rel=1e-3)
 
 

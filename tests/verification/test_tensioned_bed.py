@@ -24,7 +24,7 @@ from riser_soil.core.part import State
 from riser_soil.core.system import Clock
 from riser_soil.results.observer import riser_snapshot
 from riser_soil.run import run_stage
-from riser_soil.solve.time_stepper import Accepted, March
+from riser_soil.solve.time_stepper import Accepted, TimeStepper
 from tests.driven_stage import Watcher, built
 from tests.riser_scenes import held, riser_scene, static
 
@@ -62,17 +62,17 @@ def lying(k: float, length: float, size: float, method: str, *loads: Any, tensio
         gravity=9.81,
         water={"density": 1000.0},
     )
-    world, found = built(scene), list[Found]()
+    assembly, found = built(scene), list[Found]()
 
-    def watch(march: March, step: Accepted) -> None:
-        riser, line = riser_snapshot(world, march), world.line
-        assert world.seabed is not None
-        tangent = line.trial(march.now).turn.tangent
+    def watch(stepper: TimeStepper, step: Accepted) -> None:
+        riser, line = riser_snapshot(assembly, stepper), assembly.line
+        assert assembly.seabed is not None
+        tangent = line.trial(stepper.now).turn.tangent
         slope = np.append(tangent[:, 0, 1] / tangent[:, 0, 0], tangent[-1, 1, 1] / tangent[-1, 1, 0])
-        touchdown = world.seabed.touchdown_arc(march.now)
+        touchdown = assembly.seabed.touchdown_arc(stepper.now)
         found.append(Found(line.arc, riser.position[:, 2], slope, riser.bending_moment, touchdown))
 
-    run_stage(world, world.scene.stages[0], State.at_rest(0.0, world.size), Watcher(watch), Clock.new())
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Clock.new())
     return found[-1]
 
 

@@ -15,7 +15,7 @@ from riser_soil.core.part import State
 from riser_soil.core.system import Clock
 from riser_soil.riser import stations
 from riser_soil.run import run_stage
-from riser_soil.solve.time_stepper import Accepted, March
+from riser_soil.solve.time_stepper import Accepted, TimeStepper
 from tests.coupled_scenes import Mapping
 from tests.driven_stage import Watcher, built
 from tests.riser_scenes import held, riser_scene, static
@@ -62,23 +62,23 @@ def laid(seabed: Mapping, size: float, *stages: Mapping, **more: Mapping) -> lis
         dimension=2,
         **more,
     )
-    world, found = built(scene), list[Laid]()
-    seabed_contact = world.seabed
+    assembly, found = built(scene), list[Laid]()
+    seabed_contact = assembly.seabed
     assert seabed_contact is not None
     law = seabed_contact.law
-    arc = world.line.arc[:-1, None] + world.line.length[:, None] * stations.gauss(GAUSS_POINTS).points
+    arc = assembly.line.arc[:-1, None] + assembly.line.length[:, None] * stations.gauss(GAUSS_POINTS).points
 
-    def watch(march: March, step: Accepted) -> None:
-        seen = seabed_contact.see(world.line.trial(march.now))
+    def watch(stepper: TimeStepper, step: Accepted) -> None:
+        seen = seabed_contact.evaluate(assembly.line.trial(stepper.now))
         force = np.zeros_like(seabed_contact.share)
         force[seen.touching.elements] = seen.touching.force
-        first, _ = law.respond(seen.penetration, law.fresh(seen.penetration.shape))
+        first, _ = law.force_and_stiffness(seen.penetration, law.initial_history(seen.penetration.shape))
         at = (x.ravel() for x in (arc, seabed_contact.share, force, first))
-        found.append(Laid(seabed_contact.touchdown_arc(march.now), *at))
+        found.append(Laid(seabed_contact.touchdown_arc(stepper.now), *at))
 
-    before = State.at_rest(0.0, world.size)
-    for stage in world.scene.stages:
-        before = run_stage(world, stage, before, Watcher(watch), Clock.new())
+    before = State.at_rest(0.0, assembly.size)
+    for stage in assembly.scene.stages:
+        before = run_stage(assembly, stage, before, Watcher(watch), Clock.new())
     return found
 
 

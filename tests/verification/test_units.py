@@ -20,7 +20,7 @@ from riser_soil.core.system import Clock
 from riser_soil.results.observer import riser_snapshot
 from riser_soil.run import run_stage
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.solve.time_stepper import Accepted, March
+from riser_soil.solve.time_stepper import Accepted, TimeStepper
 from tests.coupled_scenes import Mapping
 from tests.driven_stage import Watcher
 from tests.riser_scenes import dynamic, held, riser_scene, static
@@ -66,19 +66,20 @@ def hose(s: float, seabed: str, dimension: int, time_step: float | str) -> Mappi
 
 def told(s: float, seabed: str, dimension: int = 2, time_step: float | str = 0.1) -> Array:
     """By step, without units: time; H and top tension, largest moment, touchdown arc, lowest node; iterations."""
-    world, rows = build(scene_from_mapping(hose(s, seabed, dimension, time_step)), MPI.COMM_SELF), list[list[float]]()
+    assembly = build(scene_from_mapping(hose(s, seabed, dimension, time_step)), MPI.COMM_SELF)
+    rows = list[list[float]]()
 
-    def watch(march: March, step: Accepted) -> None:
-        riser, contact = riser_snapshot(world, march), world.seabed
+    def watch(stepper: TimeStepper, step: Accepted) -> None:
+        riser, contact = riser_snapshot(assembly, stepper), assembly.seabed
         assert contact is not None
         forces = [riser.start_force[0] / s**3, riser.effective_tension[-1] / s**3, riser.bending_moment.max() / s**4]
-        places = [contact.touchdown_arc(march.now) / s, float(riser.position[:, 2].min()) / s]
+        places = [contact.touchdown_arc(stepper.now) / s, float(riser.position[:, 2].min()) / s]
         time = 0.0 if len(rows) == 0 else step.t / s**0.5
         rows.append([time, *forces, *places, step.solution.iterations])
 
-    before = State.at_rest(0.0, world.size)
-    for stage in world.scene.stages:
-        before = run_stage(world, stage, before, Watcher(watch), Clock.new())
+    before = State.at_rest(0.0, assembly.size)
+    for stage in assembly.scene.stages:
+        before = run_stage(assembly, stage, before, Watcher(watch), Clock.new())
     return np.array(rows)
 
 

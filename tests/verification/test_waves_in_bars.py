@@ -19,7 +19,7 @@ from riser_soil.core.part import State
 from riser_soil.core.system import Clock
 from riser_soil.results.observer import riser_snapshot
 from riser_soil.run import run_stage
-from riser_soil.solve.time_stepper import Accepted, March
+from riser_soil.solve.time_stepper import Accepted, TimeStepper
 from tests.coupled_scenes import Mapping
 from tests.driven_stage import Watcher, built
 from tests.riser_scenes import dynamic, held, riser_scene
@@ -44,17 +44,17 @@ def scene(steps: int, duration: float, elements: int, rho_inf: float, **more: An
     )
 
 
-def seen(mapping: Mapping, axis: int, v: Array, look: Callable[[Any, March], tuple[float, ...]]) -> Array:
+def seen(mapping: Mapping, axis: int, v: Array, look: Callable[[Any, TimeStepper], tuple[float, ...]]) -> Array:
     """Time and what `look` sees after each step; v (nn,): the nodes' first speeds along an axis of the plane [m/s]."""
-    world, rows = built(mapping), list[tuple[float, ...]]()
-    rates = np.zeros(world.size)
-    world.line.nodal(rates)[:, axis] = v
-    before = State(0.0, np.zeros(world.size), rates, np.zeros(world.size))
+    assembly, rows = built(mapping), list[tuple[float, ...]]()
+    rates = np.zeros(assembly.size)
+    assembly.line.nodal(rates)[:, axis] = v
+    before = State(0.0, np.zeros(assembly.size), rates, np.zeros(assembly.size))
 
-    def watch(march: March, step: Accepted) -> None:
-        rows.append((step.t / PASS, *look(world, march)))
+    def watch(stepper: TimeStepper, step: Accepted) -> None:
+        rows.append((step.t / PASS, *look(assembly, stepper)))
 
-    run_stage(world, world.scene.stages[0], before, Watcher(watch), Clock.new())
+    run_stage(assembly, assembly.scene.stages[0], before, Watcher(watch), Clock.new())
     return np.array(rows).T
 
 
@@ -79,9 +79,9 @@ class Strike:
             contact={"method": "node", "stiffness": 2.0 * EA / h**2, "smoothing": 0.0},
         )
 
-        def look(world: Any, march: March) -> tuple[float, ...]:
-            up = world.line.nodal(march.now.v)[:, 1] @ world.line.tributary_length / L
-            return float(world.seabed.force_on_riser(march.now)[2]), up, march.energy.total
+        def look(assembly: Any, stepper: TimeStepper) -> tuple[float, ...]:
+            up = assembly.line.nodal(stepper.now.v)[:, 1] @ assembly.line.tributary_length / L
+            return float(assembly.seabed.force_on_riser(stepper.now)[2]), up, stepper.energy.total
 
         t, force, up, energy = seen(bar, 1, np.full(steps + 1, -V), look)
         between = (t > 0.5) & (t < 1.8)
@@ -135,12 +135,12 @@ def taut_peak(folder: Path, steps: int, elements: int, rho_inf: float = 0.8) -> 
         riser={"initial": "straight"},
         stage={"motion": {"end": {"table": str(_moving_off(folder / "motion.csv"))}}},
     )
-    _, force = seen(line, 0, np.zeros(elements + 1), lambda world, march: (_start_force(world, march),))
+    _, force = seen(line, 0, np.zeros(elements + 1), lambda assembly, stepper: (_start_force(assembly, stepper),))
     return float(force.max()) / (2.0 * FORCE)
 
 
-def _start_force(world: Any, march: March) -> float:
-    return -float(riser_snapshot(world, march).start_force[0])
+def _start_force(assembly: Any, stepper: TimeStepper) -> float:
+    return -float(riser_snapshot(assembly, stepper).start_force[0])
 
 
 def _moving_off(file: Path) -> Path:
@@ -178,7 +178,7 @@ def test_tether_that_snaps_taut_in_no_time_overshoots_by_a_sixth() -> None:
         line = scene(steps, 1.8, steps, 0.8, start=held(0.0, 0.0, 0.0), end="free", riser={"initial": "straight"})
         speeds = np.full(steps + 1, V)
         speeds[0] = 0.0
-        t, force = seen(line, 0, speeds, lambda world, march: (_start_force(world, march),))
+        t, force = seen(line, 0, speeds, lambda assembly, stepper: (_start_force(assembly, stepper),))
         after = (t > 0.3) & (t < 1.7)
         assert abs(force[after].mean() / FORCE - 1.0) < 1e-3
         peaks.append(force.max() / FORCE)

@@ -17,7 +17,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Midpoint, Scheme
-from riser_soil.solve.time_stepper import Accepted, March
+from riser_soil.solve.time_stepper import Accepted, TimeStepper
 from tests.toy_chain import Chain, Floor, Inertia, Springs
 
 AVERAGE = GeneralizedAlpha.newmark()
@@ -29,12 +29,12 @@ def march_through(
     system = System(MPI.COMM_SELF, Model([chain], parts), Clock.new())
     newton = Newton(system, NewtonSettings(tolerance, 20, 1e-12))
     nothing = np.zeros_like(v0)
-    march = March(system, newton, scheme, State(0.0, nothing, v0.copy(), nothing))
+    stepper = TimeStepper(system, newton, scheme, State(0.0, nothing, v0.copy(), nothing))
     control = StepControl(end, dt, dt / 8)
     steps = []
     while not control.finished:
-        steps.append(march.advance(control))
-        march.commit(steps[-1], control)
+        steps.append(stepper.advance(control))
+        stepper.commit(steps[-1], control)
     newton.destroy()
     system.destroy()
     return steps

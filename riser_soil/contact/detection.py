@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from riser_soil.contact.gap import gap_forms, heights, penalty_hessian
-from riser_soil.contact.ground import ContactPoints, Soil
+from riser_soil.contact.ground import ContactPoints, DeformedSurface
 from riser_soil.contact.law import Penalty
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
@@ -84,7 +84,7 @@ class Touching:
 
 
 @dataclass(frozen=True, eq=False)
-class Encounter:
+class ContactState:
     """Contact points near the ground at a state.
 
     facet (n,): soil facet below, −1 where there is none. gap (n,): height [m] of the riser's underside over
@@ -100,20 +100,20 @@ class Encounter:
     touching: Touching
 
 
-class Grounds:
-    """Riser and soil, and the law by which they push: `meet` brings them together at a state.
+class ContactDetection:
+    """Riser and soil, and the law by which they push: `detect` brings them together at a state.
 
     radius (nn,): [m] from the axis to the line that touches. near: height [m] over the soil's highest point up to which
     nodes are looked at.
     """
 
     def __init__(
-        self, riser: RiserNodes, radius: Array, points: ContactPoints, law: Penalty, soil: Soil, near: float
+        self, riser: RiserNodes, radius: Array, points: ContactPoints, law: Penalty, soil: DeformedSurface, near: float
     ) -> None:
         self._riser, self._radius, self._points = riser, radius, points
         self._law, self._soil, self._near = law, soil, near
 
-    def meet(self, state: State) -> Encounter:
+    def detect(self, state: State) -> ContactState:
         """Gaps at a state, and forces where the riser touches."""
         x, surface = self._riser.positions3(state), self._soil.deformed(state)
         points = self._points.of_chosen(x[:, 2] - self._radius < surface[:, 2].max() + self._near)
@@ -121,7 +121,7 @@ class Grounds:
         ground = heights(facet, xi, self._soil.facets, surface)
         gap = x[points.node, 2] - self._radius[points.node] - ground
         at = np.flatnonzero(gap < self._law.smoothing)
-        return Encounter(state, points, facet, gap, surface, self._touch(points, facet, gap, surface, at, xi[at]))
+        return ContactState(state, points, facet, gap, surface, self._touch(points, facet, gap, surface, at, xi[at]))
 
     def _touch(
         self, points: ContactPoints, facet: IntArray, gap: Array, surface: Array, at: IntArray, xi: Array

@@ -22,7 +22,7 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, Move, Stage, StaticStage
+from riser_soil.scene.stages import DynamicStage, MovedEnds, Stage, StaticStage
 
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels
@@ -39,7 +39,7 @@ AUTO_SMALLEST, AUTO_SMALLEST_OF_STAGE = 1e-4, 1e-7  # of a given time step; of a
 
 
 @dataclass(eq=False)
-class World:
+class Assembly:
     """A scene's fields and lasting parts; what the scene lacks is None.
 
     catenary: the first shape, None for other ones.
@@ -125,7 +125,7 @@ class World:
         end = self.scene.riser.end
         if self.slack == 0.0 or not isinstance(end, Support):
             return None
-        return StaticStage(name="laying", kind="static", move=Move(end=end.position))
+        return StaticStage(name="laying", kind="static", move=MovedEnds(end=end.position))
 
     def begin_laying(self, stage: StaticStage) -> Model:
         """Set the end in motion and name the parts: without a current's drag."""
@@ -145,30 +145,30 @@ class World:
         return Model(self.fields, [*parts, *soil, *self.contacts, *friction])
 
 
-def build(scene: Scene, comm: MPI.Intracomm) -> World:
+def build(scene: Scene, comm: MPI.Intracomm) -> Assembly:
     """Build the parts of a scene; collective. Raises SceneError or MeshError."""
     elements = elements_of(scene)
     attachments = attachments_of(scene)
     line, catenary = line_of(scene, elements, attachments, active=comm.rank == 0)
     parts = [Beam(line, elements), *springs_of(scene.riser, line), *attached_weight(line, attachments)]
     pressures, vessels = pressures_of(scene, line, elements), vessels_of(scene)
-    world = World(scene, comm, line, elements, parts, catenary, attachments, pressures, vessels=vessels)
+    assembly = Assembly(scene, comm, line, elements, parts, catenary, attachments, pressures, vessels=vessels)
     if scene.contact is not None:
-        _add_ground(world)
-    return world
+        _add_ground(assembly)
+    return assembly
 
 
-def _add_ground(world: World) -> None:
+def _add_ground(assembly: Assembly) -> None:
     from riser_soil.assembly import ground
 
-    scene, settings = world.scene, world.scene.contact
+    scene, settings = assembly.scene, assembly.scene.contact
     assert settings is not None
-    stiffness = ground.stiffnesses(scene, settings, world.scales)
-    line, elements, world.contact_stiffness = world.line, world.elements, stiffness
+    stiffness = ground.stiffnesses(scene, settings, assembly.scales)
+    line, elements, assembly.contact_stiffness = assembly.line, assembly.elements, stiffness
     if scene.soil is not None:
-        world.soil = soil = ground.soil_of(scene, scene.soil, line, world.comm)
-        world.soil_contact = ground.soil_contact_of(scene, settings, line, elements, soil.surface, stiffness["soil"])
+        assembly.soil = soil = ground.soil_of(scene, scene.soil, line, assembly.comm)
+        assembly.soil_contact = ground.soil_contact_of(scene, settings, line, elements, soil.surface, stiffness["soil"])
     if scene.seabed is not None:
         law = ground.seabed_law(scene.seabed, settings, elements, stiffness)
-        world.seabed = ground.seabed_contact_of(scene, settings, line, elements, law, world.soil_contact)
-        world.friction = ground.friction_of(settings, world.seabed, elements)
+        assembly.seabed = ground.seabed_contact_of(scene, settings, line, elements, law, assembly.soil_contact)
+        assembly.friction = ground.friction_of(settings, assembly.seabed, elements)

@@ -12,11 +12,11 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, Model, Part, State, Work
 from riser_soil.core.snapshot import Ledger
 from riser_soil.core.system import Clock, System
-from riser_soil.results.energy_ledger import Balance
+from riser_soil.results.energy_ledger import EnergyLedger
 from riser_soil.solve.newton import Newton, NewtonSettings, Solution
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
-from riser_soil.solve.time_stepper import Accepted, March
+from riser_soil.solve.time_stepper import Accepted, TimeStepper
 from tests.toy_chain import Chain, Floor, Inertia, Springs
 
 ALPHA = GeneralizedAlpha.from_rho_inf(0.6)
@@ -37,15 +37,15 @@ def balanced(chain: Chain, parts: list[Part], scheme: Scheme, v0: list[float], e
     system = System(MPI.COMM_SELF, Model([chain], parts), Clock.new())
     newton = Newton(system, NewtonSettings(1e-12, 30, 1e-14))  # the springs' forces are rounded to some 1e-14 of them
     nothing = np.zeros(chain.size)
-    march = March(system, newton, scheme, State(0.0, nothing, np.array(v0), nothing))
-    control, balance = StepControl(end, dt, dt / 8), Balance(march.energy, False, ("contact",), ("supports",))
-    ledgers, path = [], [(chain.z, march.before.v, march.before.a)]
+    stepper = TimeStepper(system, newton, scheme, State(0.0, nothing, np.array(v0), nothing))
+    control, balance = StepControl(end, dt, dt / 8), EnergyLedger(stepper.energy, False, ("contact",), ("supports",))
+    ledgers, path = [], [(chain.z, stepper.before.v, stepper.before.a)]
     while not control.finished:
-        step = march.advance(control)
-        march.commit(step, control)
-        balance.add(march.energy, step)
+        step = stepper.advance(control)
+        stepper.commit(step, control)
+        balance.add(stepper.energy, step)
         ledgers.append(balance.ledger)
-        path.append((chain.z, march.now.v, march.now.a))
+        path.append((chain.z, stepper.now.v, stepper.now.a))
     newton.destroy()
     system.destroy()
     return Seen(ledgers, *(np.array(column) for column in zip(*path, strict=True)))
@@ -103,7 +103,7 @@ def test_sums_are_those_of_the_parts() -> None:
 
 @pytest.mark.parametrize("lost", [0.0, 1e-21, 1.0])
 def test_accounts_follow_from_what_is_built_and_not_from_what_is_booked(lost: float) -> None:
-    balance = Balance(Energy(), True, ("seabed", "morison"), ("supports",))
+    balance = EnergyLedger(Energy(), True, ("seabed", "morison"), ("supports",))
     assert balance.ledger.dissipated_by == {"seabed": 0.0, "morison": 0.0}
     balance.add(Energy(), step({"inertia": Work(), "seabed": Work(dissipated=lost), "supports": Work()}))
     assert balance.ledger.dissipated_by == {"seabed": lost, "morison": 0.0}
@@ -112,7 +112,7 @@ def test_accounts_follow_from_what_is_built_and_not_from_what_is_booked(lost: fl
 
 
 def test_what_has_no_account_can_t_be_booked() -> None:
-    balance = Balance(Energy(), True, ("seabed",), ("supports",))
+    balance = EnergyLedger(Energy(), True, ("seabed",), ("supports",))
     with pytest.raises(KeyError, match="friction"):
         balance.add(Energy(), step({"friction": Work(dissipated=1e-21)}))
 
