@@ -1,4 +1,4 @@
-"""The pages in docs: their pieces of scenes fit into a scene, and what they point to is there."""
+"""README.md and the pages in docs: pieces of scenes fit into a scene, and what the pages point to is there."""
 
 from __future__ import annotations
 
@@ -10,16 +10,30 @@ from typing import Any
 import pytest
 from ruamel.yaml import YAML
 
+from riser_soil.results.netcdf import SERIES
+from riser_soil.results.record import FIELDS
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.scene import Scene
 from tests.on_ranks import ROOT
+from tests.pages import DEMOS, DOCS, README, blocks, text
 
-PAGES = sorted((ROOT / "docs").glob("*.md"))
+PAGES = [README, *DOCS]
+LONGEST_FRONT_PAGE = 150  # lines
+PLACES = "riser_soil|tests|demos|docker|benchmarks|meshes|scripts|requirements"
+
+
+def found(pattern: str, pages: list[Path]) -> list[Any]:
+    """What a pattern with one group finds in pages, each once: page and finding."""
+    return [
+        pytest.param(page, what, id=f"{page.relative_to(ROOT)}: {what}")
+        for page in pages
+        for what in sorted(set(re.findall(pattern, text(page))))
+    ]
 
 
 def pieces(page: Path) -> Iterator[dict[str, Any]]:
     """The page's YAML blocks as data."""
-    text = page.read_text(encoding="utf-8")
-    yield from (YAML(typ="safe").load(block) for block in re.findall(r"^```yaml\n(.*?)^```$", text, re.M | re.S))
+    yield from (YAML(typ="safe").load(block) for block in blocks(page, "yaml"))
 
 
 def joined(base: Any, piece: Any) -> Any:
@@ -52,12 +66,54 @@ BASE = {
 }
 
 
-@pytest.mark.parametrize(("page", "n"), [(page, n) for page in PAGES for n, _ in enumerate(pieces(page))])
+@pytest.mark.parametrize(("page", "n"), [(page, n) for page in DOCS for n, _ in enumerate(pieces(page))])
 def test_pieces_of_scenes_are_valid(page: Path, n: int) -> None:
     scene_from_mapping(joined(BASE, list(pieces(page))[n]))
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_links_lead_somewhere(page: Path) -> None:
-    links = re.findall(r"\]\((?!http)([^)#]+)", page.read_text(encoding="utf-8"))
-    assert [link for link in links if not (page.parent / link).exists()] == []
+def anchors(page: Path) -> set[str]:
+    """What links to a page may name in it: its headings."""
+    headings = re.findall(r"^#+ (.+)$", text(page), re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize(("page", "target"), found(r"\]\(([^)]+)\)", [*PAGES, *DEMOS]))
+def test_link(page: Path, target: str) -> None:
+    path, _, anchor = target.partition("#")
+    place = (page.parent / path).resolve() if path else page
+    assert place.exists()
+    assert not anchor or anchor in anchors(place)
+
+
+@pytest.mark.parametrize(("page", "path"), found(rf"`((?:{PLACES})/[\w/.]*)`", PAGES))
+def test_path(page: Path, path: str) -> None:
+    assert (ROOT / path).exists() or path == "demos/touchdown_clay/results"
+
+
+def test_front_page_is_short_and_leads_to_all_others() -> None:
+    assert len(text(README).splitlines()) <= LONGEST_FRONT_PAGE
+    assert [page.name for page in DOCS if f"](docs/{page.name})" not in text(README)] == []
+
+
+def test_layout_names_every_folder_and_module_of_the_package() -> None:
+    package = ROOT / "riser_soil"
+    folders = {f"`riser_soil/{place.parent.name}/`" for place in package.glob("*/__init__.py")}
+    modules = {f"`riser_soil/{place.name}`" for place in package.glob("*.py") if place.name != "__init__.py"}
+    table = text(ROOT / "docs/contributing.md").split("| place | content |")[1].split("\n\n")[0]
+    assert {name for name in folders | modules if name not in table} == set()
+
+
+def test_words_of_the_table_are_known() -> None:
+    table = text(ROOT / "docs/conventions.md").split("| word | symbol | unit | meaning |")[1].split("\n\n")[0]
+    words = {w for row in table.splitlines()[2:] for w in re.findall(r"\w+", row.split("|")[1]) if w != "or"}
+    assert len(words) > 30
+    assert words <= {*keys_of(Scene.model_json_schema(by_alias=True)), *SERIES, *FIELDS}
+
+
+def keys_of(schema: Any) -> Iterator[str]:
+    """All keys of the scene language."""
+    if isinstance(schema, dict):
+        yield from schema.get("properties", {})
+    values = schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ()
+    for value in values:
+        yield from keys_of(value)

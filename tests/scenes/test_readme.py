@@ -1,4 +1,4 @@
-"""The README's commands run, its scenes compute what it says, and what it points to is there."""
+"""The commands of README.md and of the pages in docs run, and their scenes compute what the pages say."""
 
 from __future__ import annotations
 
@@ -6,32 +6,25 @@ import json
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from riser_soil.results import Run
-from riser_soil.results.netcdf import SERIES
-from riser_soil.results.record import FIELDS
-from riser_soil.scene.scene import Scene
 from tests.on_ranks import ROOT, SHARED_CORES, environment, finished
+from tests.pages import DOCS, README, blocks, flowing, text
 
 pytestmark = pytest.mark.xdist_group("readme")
 
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGES = [README, *DOCS]
+EXPLAINED = ROOT / "docs/first_scene.md"
 FIRST_SCENE = ROOT / "demos/first_scene.yaml"
 CLOSE = 1e-3
 
-
-def blocks(language: str) -> list[str]:
-    """The README's code blocks of a language."""
-    return re.findall(rf"^```{language}\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
-
-
-COMMANDS = [line for block in blocks("sh") for line in block.splitlines()]
+COMMANDS = [line for page in PAGES for block in blocks(page, "sh") for line in block.splitlines()]
 RUNNABLE = [c for c in COMMANDS if not c.startswith(("make ", "docker "))]
+GOALS = sorted({goal for page in PAGES for goal in re.findall(r"`(make [\w-]+)`", text(page))})
 
 
 def bash(command: str, folder: Path) -> subprocess.CompletedProcess[str]:
@@ -41,7 +34,7 @@ def bash(command: str, folder: Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope="module")
 def newcomer(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with what the README's commands need."""
+    """A folder with what the pages' commands need."""
     folder = tmp_path_factory.mktemp("newcomer")
     (folder / "demos").symlink_to(ROOT / "demos")
     (folder / ".venv").symlink_to(sys.prefix)
@@ -50,7 +43,7 @@ def newcomer(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def done(newcomer: Path) -> dict[str, subprocess.CompletedProcess[str]]:
-    """All commands that can be run here, in their order."""
+    """All commands that can be run here, the README's first, in their order."""
     return {command: bash(command, newcomer) for command in RUNNABLE}
 
 
@@ -76,7 +69,7 @@ def test_commands_leave_what_they_promise(done: object, newcomer: Path) -> None:
     assert (newcomer / "results/first.png").read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.parametrize("command", [c for c in COMMANDS if c.startswith("make ")])
+@pytest.mark.parametrize("command", sorted({*GOALS, *(c for c in COMMANDS if c.startswith("make "))}))
 def test_goal_of_make(command: str) -> None:
     assert bash(command.replace("make", "make -n", 1), ROOT).returncode == 0
 
@@ -100,12 +93,12 @@ def test_echo_of_the_scene_runs_to_the_same_numbers(first: Run, newcomer: Path) 
 
 
 def test_first_scene_is_the_file() -> None:
-    assert blocks("yaml")[0] == FIRST_SCENE.read_text(encoding="utf-8")
+    assert blocks(README, "yaml") == [FIRST_SCENE.read_text(encoding="utf-8")]
 
 
 def quoted(row: str) -> list[float]:
     """The numbers of a row of the first scene's table."""
-    line = next(line for line in README.splitlines() if line.startswith(f"| {row} |"))
+    line = next(line for line in text(README).splitlines() if line.startswith(f"| {row} |"))
     return [float(number) for number in re.findall(r"\d+\.\d+", line)]
 
 
@@ -128,9 +121,9 @@ def test_first_scene_gives_the_quoted_numbers(first: Run, row: str, path: tuple[
 
 
 def test_check_by_hand(first: Run) -> None:
-    """The catenary's top tension H + w h with the numbers as the README has them."""
-    found = re.search(r"With H = ([\d.]+) kN.*?h = ([\d.]+) m this gives ([\d.]+) kN", README, re.DOTALL)
-    weight = re.search(r"= ([\d.]+) N/m here", README)
+    """The catenary's top tension H + w h with the numbers as the page has them."""
+    found = re.search(r"With H = ([\d.]+) kN.*?h = ([\d.]+) m this gives ([\d.]+) kN", flowing(EXPLAINED))
+    weight = re.search(r"= ([\d.]+) N/m here", flowing(EXPLAINED))
     assert found
     assert weight
     H, h, top = (float(number) for number in found.groups())
@@ -147,48 +140,20 @@ def below(tree: dict[str, Any], path: tuple[str, ...]) -> Any:
 
 
 def test_clay_under_the_first_scene(newcomer: Path) -> None:
-    first, clay = blocks("yaml")
+    (first,), (clay,) = blocks(README, "yaml"), blocks(EXPLAINED, "yaml")
     (newcomer / "clay.yaml").write_text(first + clay, encoding="utf-8")
     ended = bash(".venv/bin/riser-soil run clay.yaml --set stages.1.duration=0.1", newcomer)
     assert ended.returncode == 0, ended.stderr
     run = Run(newcomer / "clay")
-    found = re.search(r"the touchdown point moves to ([\d.]+) m", README)
+    found = re.search(r"the touchdown point moves to ([\d.]+) m", flowing(EXPLAINED))
     assert found
     assert run.summary["stages"][0]["final"]["touchdown_arc"] == pytest.approx(float(found[1]), rel=CLOSE)
-    assert f"{len(run.soil_frame().cells):,} hexahedra" in README
+    assert f"{len(run.soil_frame().cells):,} hexahedra" in flowing(EXPLAINED)
 
 
 def test_python(first: Run, newcomer: Path) -> None:
-    (code,) = blocks("python")
+    (code,) = (block for page in PAGES for block in blocks(page, "python"))
     (newcomer / "read.py").write_text(code, encoding="utf-8")
     ended = bash(".venv/bin/python read.py", newcomer)
     assert ended.returncode == 0, ended.stderr
     assert ended.stdout == "largest moment 3837 N.m at arc 36.5 m; stages ['hang', 'heave']\n"
-
-
-@pytest.mark.parametrize("target", sorted(set(re.findall(r"\]\(([^)]+)\)", README))))
-def test_link(target: str) -> None:
-    headings = re.findall(r"^#+ (.+)$", README, re.MULTILINE)
-    anchors = ["#" + re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings]
-    assert target in anchors or (ROOT / target).exists()
-
-
-@pytest.mark.parametrize("path", sorted(set(re.findall(r"`((?:riser_soil|tests|demos|docker)/[\w/.]*)`", README))))
-def test_path(path: str) -> None:
-    assert (ROOT / path).exists() or path == "demos/touchdown_clay/results"
-
-
-def test_words_of_the_table_are_known() -> None:
-    table = README.split("| word | symbol | unit | meaning |")[1].split("\n\n")[0]
-    words = {w for row in table.splitlines()[2:] for w in re.findall(r"\w+", row.split("|")[1]) if w != "or"}
-    assert len(words) > 30
-    assert words <= {*keys_of(Scene.model_json_schema(by_alias=True)), *SERIES, *FIELDS}
-
-
-def keys_of(schema: Any) -> Iterator[str]:
-    """All keys of the scene language."""
-    if isinstance(schema, dict):
-        yield from schema.get("properties", {})
-    values = schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ()
-    for value in values:
-        yield from keys_of(value)
