@@ -27,7 +27,7 @@ from typing import Any
 import numba
 from numba.core import event
 
-PACKAGE = Path(__file__).parent
+PACKAGE = Path(__file__).parents[1]
 NAME = PACKAGE.name
 KEPT = 4  # cache folders of other versions, the latest ones, for those who go back and forth
 IN_USE = 3600.0  # s since its last start within which a run of another version may still need its folder
@@ -59,7 +59,7 @@ def fingerprint(package: Path) -> str:
 
 def _sources(package: Path) -> dict[Path, str]:
     texts = {path: path.read_text(encoding="utf-8") for path in package.rglob("*.py")}
-    needed, todo = set[Path](), {path for path, text in texts.items() if f"{NAME}.compiled import" in text}
+    needed, todo = set[Path](), {path for path, text in texts.items() if f"{NAME}.core.compiled import" in text}
     while todo:
         needed |= todo
         imported = (path for known in todo for path in _imports(package, texts[known]))

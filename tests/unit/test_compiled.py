@@ -53,8 +53,8 @@ def test_versions_of_numba_have_their_own_caches(package: Path, monkeypatch: pyt
 
 def test_the_package_depends_on_all_its_kernels() -> None:
     names = {str(path.relative_to(compiled.PACKAGE)) for path in compiled._sources(compiled.PACKAGE)}
-    assert {"riser/beam3d.py", "riser/bending.py", "sea/morison_law.py", "matrix.py"} <= names
-    assert not {"run.py", "__main__.py", "observe.py"} & names
+    assert {"riser/beam3d.py", "riser/bending.py", "sea/morison_law.py", "core/matrix.py"} <= names
+    assert not {"run.py", "__main__.py", "results/observer.py"} & names
 
 
 def test_cache_is_where_the_user_keeps_caches(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
