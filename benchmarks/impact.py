@@ -29,8 +29,8 @@ from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha
 from riser_soil.solve.time_stepper import TimeStepper
-from tests.coupled_scenes import Mapping
-from tests.falling_pipe import DROP, LENGTH, WEIGHT, Energies, flat, tilted
+from tests.support.coupled_scenes import Mapping
+from tests.support.falling_pipe import DROP, LENGTH, WEIGHT, Energies, flat, tilted
 
 Fall = Callable[[float, float, float], Mapping]
 STIFFNESSES = tuple(10.0**p for p in range(4, 10))  # N/m2

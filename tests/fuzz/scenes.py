@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any
 
 from riser_soil.scene.document import parse
-from tests.bad_scenes import GOOD
-from tests.coupled_scenes import LAY, heave, touchdown
-from tests.riser_scenes import IN_WAVES, dynamic, held, in_waves, riser_scene, static
+from tests.support.bad_scenes import GOOD
+from tests.support.coupled_scenes import LAY, heave, touchdown
+from tests.support.riser_scenes import IN_WAVES, dynamic, held, in_waves, riser_scene, static
 
 ROOT = Path(__file__).parents[2]
 WRITTEN = (

@@ -10,8 +10,8 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from riser_soil.__main__ import app
-from tests.bad_scenes import ALL, GOOD, Bad
-from tests.on_ranks import HANGS
+from tests.support.bad_scenes import ALL, GOOD, Bad
+from tests.support.on_ranks import HANGS
 
 
 def run(arguments: list[str]) -> Result:

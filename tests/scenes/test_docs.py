@@ -14,8 +14,8 @@ from riser_soil.results.netcdf import SERIES
 from riser_soil.results.record import FIELDS
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
-from tests.on_ranks import ROOT
-from tests.pages import DEMOS, DOCS, README, blocks, text
+from tests.support.on_ranks import ROOT
+from tests.support.pages import DEMOS, DOCS, README, blocks, text
 
 PAGES = [README, *DOCS]
 LONGEST_FRONT_PAGE = 150  # lines

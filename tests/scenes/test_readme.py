@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 
 from riser_soil.results import Run
-from tests.on_ranks import ROOT, SHARED_CORES, environment, finished
-from tests.pages import DOCS, README, blocks, flowing, text
+from tests.support.on_ranks import ROOT, SHARED_CORES, environment, finished
+from tests.support.pages import DOCS, README, blocks, flowing, text
 
 pytestmark = pytest.mark.xdist_group("readme")
 

@@ -8,7 +8,7 @@ import pytest
 
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import read_scene
-from tests.bad_scenes import GOOD
+from tests.support.bad_scenes import GOOD
 
 Changes = tuple[tuple[str, str], ...]
 

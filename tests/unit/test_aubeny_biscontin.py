@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
-from tests.soil_loops import after, at, forces, through
+from tests.support.soil_loops import after, at, forces, through
 
 D, SU = 0.3, 2000.0
 LAW = AubenyBiscontin(D, SU)

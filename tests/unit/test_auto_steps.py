@@ -11,7 +11,7 @@ from riser_soil.assembly.stage import times_to_hit
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.solve.automatic_steps import AIM, AutoSteps
-from tests.riser_scenes import dynamic, held, riser_scene
+from tests.support.riser_scenes import dynamic, held, riser_scene
 
 TOLERANCE = 1e-3
 

@@ -14,7 +14,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from tests.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 
 
 @pytest.fixture

@@ -12,8 +12,8 @@ import pytest
 from meshes.block import main as mesh
 from riser_soil.checks.check import describe
 from riser_soil.scene.reader import scene_from_mapping
-from tests.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.riser_scenes import held, riser_scene
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.riser_scenes import held, riser_scene
 
 
 def report(mapping: Mapping) -> str:

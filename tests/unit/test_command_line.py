@@ -17,7 +17,7 @@ from typer.testing import CliRunner, Result
 from riser_soil.__main__ import app
 from riser_soil.errors import Interruption, MeshError, ResultsError, RiserSoilError, SceneError, SolveError
 from riser_soil.scene.scene import Scene
-from tests.on_ranks import HANGS
+from tests.support.on_ranks import HANGS
 
 ROOT = Path(__file__).parents[2]
 SCENE = ROOT / "tests/scenes/catenary.yaml"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.on_ranks import Job, mpirun
+from tests.support.on_ranks import Job, mpirun
 
 ROOT = Path(__file__).parents[2]
 SCENE = ROOT / "tests/scenes/catenary.yaml"

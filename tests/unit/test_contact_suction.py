@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.suction import Sticking
-from tests.soil_loops import after, at, forces, through, work
+from tests.support.soil_loops import after, at, forces, through, work
 
 K, CAP, REACH = 1.0e5, 500.0, 0.02
 SHARP = Sticking(Penalty(K), CAP, REACH)

@@ -8,7 +8,7 @@ import pytest
 from riser_soil.plots.curves import along_arc, end_reactions, end_tension, envelope, instants, save, shapes, sheet
 from riser_soil.results import Run
 from riser_soil.results.netcdf import SERIES
-from tests.recorded_run import record
+from tests.support.recorded_run import record
 
 
 @pytest.fixture

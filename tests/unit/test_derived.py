@@ -7,7 +7,7 @@ import pytest
 
 from riser_soil.results import Run
 from riser_soil.results.derived import along, peak, reactions
-from tests.recorded_run import WEIGHT, Catenary, record
+from tests.support.recorded_run import WEIGHT, Catenary, record
 
 
 def test_peak_of_a_parabola_is_exact_on_uneven_samples() -> None:

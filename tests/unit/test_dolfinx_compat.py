@@ -19,7 +19,7 @@ from riser_soil.soil import dolfinx_compat
 from riser_soil.soil.block import BlockSpec, make_block
 from riser_soil.soil.dolfinx_compat import Nodes
 from riser_soil.soil.grid import silent_gmsh
-from tests.on_ranks import HANGS
+from tests.support.on_ranks import HANGS
 
 COMPILES = dolfinx.__version__.startswith("0.5.")  # code that numbers nodes; later versions need no compiler for it
 REFERENCE_EDGES = {4: (2, 3), 5: (1, 3), 6: (1, 2), 7: (0, 3), 8: (0, 2), 9: (0, 1)}

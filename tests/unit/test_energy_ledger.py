@@ -17,7 +17,7 @@ from riser_soil.solve.newton import Newton, NewtonSettings, Solution
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from tests.toy_chain import Chain, Floor, Inertia, Springs
+from tests.support.toy_chain import Chain, Floor, Inertia, Springs
 
 ALPHA = GeneralizedAlpha.from_rho_inf(0.6)
 DAMPED = GeneralizedAlpha.newmark(0.4225, 0.8)

@@ -15,10 +15,10 @@ from riser_soil.riser.ends import End
 from riser_soil.solve import stability
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.time_scheme import Static
-from tests.coupled_scenes import Mapping
-from tests.driven_stage import built, take
-from tests.riser_scenes import held, riser_scene, static
-from tests.sample_line import sample
+from tests.support.coupled_scenes import Mapping
+from tests.support.driven_stage import built, take
+from tests.support.riser_scenes import held, riser_scene, static
+from tests.support.sample_line import sample
 
 FREE, HINGED, CLAMPED = End(False), End(True), End(True, rotation_fixed=True)
 

@@ -17,9 +17,9 @@ from riser_soil.riser import hermite, shapes, stations
 from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
 from riser_soil.seabed.grounds import Ground, Plane, Profile
-from tests.dense_chain import residual, tangent
-from tests.sample_line import DIRECTION, START, sample
-from tests.unit.test_line_parts import WEIGHTS, difference_tangent, error
+from tests.support.dense_chain import residual, tangent
+from tests.support.differences import WEIGHTS, difference_tangent, error
+from tests.support.sample_line import DIRECTION, START, sample
 
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 MU = np.array([0.3, 0.7])

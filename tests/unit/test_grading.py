@@ -12,7 +12,7 @@ from riser_soil.assembly.riser import elements_of
 from riser_soil.errors import SceneError
 from riser_soil.scene.grading import graded_lengths
 from riser_soil.scene.reader import scene_from_mapping
-from tests.riser_scenes import held, riser_scene, static
+from tests.support.riser_scenes import held, riser_scene, static
 
 
 def test_doubling() -> None:

@@ -14,8 +14,8 @@ import pytest
 
 from riser_soil.results import growing_file
 from riser_soil.results.growing_file import GrowingFile, appending, reading
-from tests.recorded_run import CATENARY_ARC, a_recorder, step
-from tests.small_disk import files_of_at_most
+from tests.support.recorded_run import CATENARY_ARC, a_recorder, step
+from tests.support.small_disk import files_of_at_most
 
 
 def numbers(path: Path) -> list[int]:

@@ -14,7 +14,7 @@ import pytest
 from riser_soil.errors import Interruption
 from riser_soil.interruption import agreeing, check, listening, undivided
 from riser_soil.results import Run
-from tests.on_ranks import environment
+from tests.support.on_ranks import environment
 
 ROOT = Path(__file__).parents[2]
 # The command in a scene that goes on for ever, which sends itself a signal after some accepted steps.

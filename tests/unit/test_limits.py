@@ -17,8 +17,8 @@ from riser_soil.checks.estimate import size_of
 from riser_soil.checks.inventory import unknowns
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
-from tests.bad_scenes import GOOD
-from tests.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.bad_scenes import GOOD
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 
 COMM = MPI.COMM_SELF
 

@@ -18,8 +18,8 @@ from riser_soil.riser.loads import Load, PointLoads
 from riser_soil.riser.section_forces import element_residual, end_reactions, section_forces
 from riser_soil.riser.sections import Elements, LineType, Segment, Surroundings, elements
 from riser_soil.riser.springs import EndSpring
-from tests.dense_chain import solve
-from tests.sample_line import DIRECTION, START, sample
+from tests.support.dense_chain import solve
+from tests.support.sample_line import DIRECTION, START, sample
 
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 

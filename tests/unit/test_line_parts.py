@@ -20,11 +20,11 @@ from riser_soil.riser.trial import Trial
 from riser_soil.sea import waterline, wet_section
 from riser_soil.sea.moving_water import Stream
 from riser_soil.sea.water import WaterMotion
-from tests import sample_water
-from tests.dense_chain import residual, tangent
-from tests.sample_line import Sample, sample
+from tests.support import sample_water
+from tests.support.dense_chain import residual, tangent
+from tests.support.differences import WEIGHTS, difference_tangent, error, moved, no_operation, slope
+from tests.support.sample_line import Sample, sample
 
-WEIGHTS = Weights(inertia=0.7, force=1.3, shift_v=4.0, shift_a=9.0)
 MAKERS: dict[str, Callable[[Sample], Part]] = {
     "beam": Sample.beam,
     "inertia": Sample.inertia,
@@ -52,32 +52,6 @@ WITHIN_ELEMENTS = [
 ]
 every_part = pytest.mark.parametrize("name", list(MAKERS))
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
-STENCIL = ((1, 3.0 / 4.0), (2, -3.0 / 20.0), (3, 1.0 / 60.0))
-
-
-def moved(state: State, du: Array, weights: Weights) -> State:
-    return State(state.t, state.u + du, state.v + weights.shift_v * du, state.a + weights.shift_a * du)
-
-
-def slope(f: Callable[[float], Array], h: float) -> Array:
-    """Central difference of sixth order."""
-    return np.asarray(sum(c * (f(k * h) - f(-k * h)) for k, c in STENCIL) / h)
-
-
-def difference_tangent(part: Part, state: State, weights: Weights, h: float = 1e-5) -> Array:
-    """dR/du by differences, rates following by the shifts."""
-    columns = []
-    for direction in np.eye(state.u.size):
-
-        def along(s: float, direction: Array = direction) -> Array:
-            return residual([part], moved(state, s * direction, weights), weights)
-
-        columns.append(slope(along, h))
-    return np.stack(columns, axis=1)
-
-
-def error(K: Array, expected: Array) -> float:
-    return float(np.abs(K - expected).max() / np.abs(expected).max())
 
 
 @both_dimensions
@@ -118,10 +92,6 @@ def test_forces_are_in_the_groups_that_a_part_declares(name: str, dimension: int
 def test_a_part_is_in_a_group_that_there_is(groups: str) -> None:
     with pytest.raises(ValueError, match="groups of a part are letters"):
         Traits(groups, symmetric=True)
-
-
-def no_operation(*_: object) -> None:
-    pass
 
 
 def without_geometric(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:

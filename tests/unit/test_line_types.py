@@ -9,7 +9,7 @@ from riser_soil.assembly.riser import elements_of
 from riser_soil.checks.inventory import built, left_out
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
-from tests.riser_scenes import dynamic, held, riser_scene, static
+from tests.support.riser_scenes import dynamic, held, riser_scene, static
 
 PIPE = {"EA": 1.0e8, "EI": 1.0e4, "GJ": 1.0e4, "mass": 50.0, "outer_diameter": 0.4, "inner_diameter": 0.2}
 

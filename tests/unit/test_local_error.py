@@ -15,7 +15,7 @@ from riser_soil.solve.local_error import LocalError, first_step
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.time_scheme import GeneralizedAlpha
 from riser_soil.solve.time_stepper import TimeStepper
-from tests.toy_chain import Chain, Floor, Inertia, Springs
+from tests.support.toy_chain import Chain, Floor, Inertia, Springs
 
 SCHEMES = [GeneralizedAlpha.newmark(), GeneralizedAlpha.from_rho_inf(0.8), GeneralizedAlpha.from_rho_inf(0.3)]
 

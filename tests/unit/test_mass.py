@@ -9,7 +9,7 @@ from mpi4py import MPI
 from riser_soil.core.part import Model
 from riser_soil.core.system import Clock, System
 from riser_soil.solve.riser_mass import RiserMass
-from tests.toy_chain import Chain, Inertia, Springs
+from tests.support.toy_chain import Chain, Inertia, Springs
 
 
 @pytest.mark.parametrize("held", [False, True])

@@ -11,8 +11,8 @@ from mpi4py import MPI
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import Block
-from tests.on_ranks import mpirun
-from tests.toy_chain import Chain
+from tests.support.on_ranks import mpirun
+from tests.support.toy_chain import Chain
 
 
 def test_rows_are_the_free_dofs() -> None:
@@ -45,7 +45,7 @@ import numpy as np
 from mpi4py import MPI
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.numbering import Numbering
-from tests.toy_chain import Chain
+from tests.support.toy_chain import Chain
 
 comm = MPI.COMM_WORLD
 # All ranks hold the chain, the first one owns it, and every rank adds a share of every block.

@@ -10,7 +10,7 @@ from mpi4py import MPI
 
 from riser_soil.errors import MeshError
 from riser_soil.soil.grid import Grid, file_grid
-from tests.mesh_drawings import LEFT, RIGHT, Drawing, msh
+from tests.support.mesh_drawings import LEFT, RIGHT, Drawing, msh
 
 COMM = MPI.COMM_SELF
 

@@ -14,8 +14,8 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.midpoint_directors import Carried
 from riser_soil.riser.midpoint_inertia import MidpointInertia, MidpointRotaryInertia, over_steps
 from riser_soil.solve.time_scheme import Midpoint
-from tests.dense_chain import residual, tangent
-from tests.sample_line import Sample, sample
+from tests.support.dense_chain import residual, tangent
+from tests.support.sample_line import Sample, sample
 
 DT, BEGUN = 0.4, 2.0
 WEIGHTS = Midpoint().weights(DT)

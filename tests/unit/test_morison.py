@@ -14,8 +14,8 @@ from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.still_water import StillWater
-from tests.dense_chain import residual
-from tests.sample_line import sample
+from tests.support.dense_chain import residual
+from tests.support.sample_line import sample
 
 RHO, D, L = 1025.0, 0.3, 6.0
 CD, CDT, CA, CAT = 1.1, 0.05, 0.9, 0.1

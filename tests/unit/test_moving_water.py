@@ -20,9 +20,9 @@ from riser_soil.sea.sea import Sea
 from riser_soil.sea.still_water import StationLoads, StillWater
 from riser_soil.sea.water import Water, WaterMotion
 from riser_soil.sea.wave_field import WaveField
-from tests import sample_water
-from tests.dense_chain import residual
-from tests.sample_line import Sample, sample
+from tests.support import sample_water
+from tests.support.dense_chain import residual
+from tests.support.sample_line import Sample, sample
 
 RHO, G, CD, CA = 1025.0, 9.81, 1.1, 0.9
 ALL = Weights(1.0, 1.0, 0.0, 0.0)

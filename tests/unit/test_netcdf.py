@@ -10,7 +10,7 @@ import xarray as xr
 
 from riser_soil.results import Run
 from riser_soil.results.netcdf import HEALTH, SERIES, SeriesFile
-from tests.recorded_run import Catenary, record
+from tests.support.recorded_run import Catenary, record
 
 ARC = np.linspace(0.0, 100.0, 11)
 

@@ -16,8 +16,8 @@ from riser_soil.run import run_stage
 from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
 from riser_soil.seabed.bearing import Strength, strip_capacity
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
-from tests.driven_stage import Watcher, built
-from tests.riser_scenes import held, riser_scene, static
+from tests.support.driven_stage import Watcher, built
+from tests.support.riser_scenes import held, riser_scene, static
 
 W, D = 700.0, 0.3
 

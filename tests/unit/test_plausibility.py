@@ -11,9 +11,9 @@ import pytest
 from riser_soil.results.plausibility import Plausibility, Worst
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
-from tests.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.driven_stage import built
-from tests.riser_scenes import dynamic, held, riser_scene, static
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.driven_stage import built
+from tests.support.riser_scenes import dynamic, held, riser_scene, static
 
 ONE_CELL: Mapping = {"kind": "hex", "size_at_riser": 9.0, "size_far": 9.0}
 ROPE: Mapping = {"EA": 1.0e4, "EI": 1.0, "mass": 5.0, "outer_diameter": 0.02}

@@ -12,7 +12,7 @@ from riser_soil.errors import ResultsError
 from riser_soil.plots import picture
 from riser_soil.plots.scales import colour_scale, magnification
 from riser_soil.results.record import Recorder
-from tests.recorded_run import FACTS, SCENE, block, record
+from tests.support.recorded_run import FACTS, SCENE, block, record
 
 
 def pixels(png: Path) -> np.ndarray:

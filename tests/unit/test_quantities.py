@@ -13,8 +13,8 @@ from mpi4py import MPI
 from riser_soil.assembly import build
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import read_scene, scene_from_mapping
-from tests.bad_scenes import GOOD
-from tests.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.bad_scenes import GOOD
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 
 OUTSIDE = [
     ("gravity=1.0e-300", "gravity: value 1e-300: must be 0, or from 1e-09 to 1e+09 m/s2"),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
-from tests.soil_loops import after, at, forces, through
+from tests.support.soil_loops import after, at, forces, through
 
 D, SU, K_MAX = 0.3, 2000.0, 200.0
 EVEN = RandolphQuiggin(D, SU)

@@ -21,7 +21,7 @@ from riser_soil.results.progress import Progress
 from riser_soil.results.schedule import Due, Schedule
 from riser_soil.results.screen import print_summary
 from riser_soil.results.simulated_time import TICK, SimulatedTime
-from tests.recorded_run import (
+from tests.support.recorded_run import (
     CATENARY_ARC,
     NOWHERE,
     SCENE,
@@ -32,8 +32,8 @@ from tests.recorded_run import (
     soil,
     step,
 )
-from tests.small_disk import files_of_at_most
-from tests.vtk_reading import read_by_vtk
+from tests.support.small_disk import files_of_at_most
+from tests.support.vtk_reading import read_by_vtk
 
 ROOT = Path(__file__).parents[2]
 
@@ -267,7 +267,7 @@ def test_a_disk_that_is_full_ends_the_run_in_one_line(tmp_path: Path) -> None:
 def test_a_killed_run_leaves_a_readable_folder(tmp_path: Path) -> None:
     endless = (
         "from pathlib import Path\n"
-        "from tests.recorded_run import block, record\n"
+        "from tests.support.recorded_run import block, record\n"
         f"folder = Path({str(tmp_path / 'run')!r})\n"
         "record(folder, duration=1e4, interval=0.1, picture_interval=5.0, mesh=block(8, 4, 2))\n"
     )

@@ -7,7 +7,7 @@ import pytest
 
 from riser_soil.core.part import Forces, State, Weights
 from riser_soil.riser.relaxation import Relaxation
-from tests.sample_line import sample
+from tests.support.sample_line import sample
 
 DRAG = 700.0
 STATIC = Weights(inertia=0.0, force=1.0, shift_v=0.0, shift_a=0.0)

@@ -11,7 +11,7 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from tests.on_ranks import ROOT
+from tests.support.on_ranks import ROOT
 
 DEBIAN = {"numpy", "scipy"}  # as its PETSc was compiled with them
 pythons = pytest.mark.parametrize("python", ["3.11", "3.13", "3.14"])

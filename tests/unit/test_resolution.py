@@ -14,9 +14,9 @@ from riser_soil.results.plausibility import SMOOTH_MISFIT, STEEP_MISFIT
 from riser_soil.riser.resolution import Misfit, misfit
 from riser_soil.run import run_stage
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from tests.coupled_scenes import Mapping
-from tests.driven_stage import Watcher, built
-from tests.riser_scenes import held, riser_scene, static
+from tests.support.coupled_scenes import Mapping
+from tests.support.driven_stage import Watcher, built
+from tests.support.riser_scenes import held, riser_scene, static
 
 
 def found(scene: Mapping) -> tuple[Misfit, float]:

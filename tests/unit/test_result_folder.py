@@ -15,7 +15,7 @@ import pytest
 from riser_soil.errors import SceneError, WriteError
 from riser_soil.results.folder import NAMES, Claim
 from riser_soil.results.ownership import prepare, refuse, sealed
-from tests.recorded_run import a_recorder, block, record, step
+from tests.support.recorded_run import a_recorder, block, record, step
 
 ROOT = Path(__file__).parents[2]
 

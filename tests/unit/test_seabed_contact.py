@@ -12,9 +12,9 @@ from riser_soil.core.part import Forces, State
 from riser_soil.riser import hermite, shapes, stations
 from riser_soil.riser.line import End, Line
 from riser_soil.seabed.grounds import Ground, Plane, Profile
-from tests.dense_chain import tangent
-from tests.sample_line import DIRECTION, START, Sample, sample
-from tests.unit.test_line_parts import WEIGHTS, difference_tangent, error, no_operation
+from tests.support.dense_chain import tangent
+from tests.support.differences import WEIGHTS, difference_tangent, error, no_operation
+from tests.support.sample_line import DIRECTION, START, Sample, sample
 
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 ROUND = Penalty(4.0e4, smoothing=30.0)  # its rounded corner holds the whole sample, so that differences are smooth

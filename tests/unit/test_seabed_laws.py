@@ -16,10 +16,10 @@ from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
 from riser_soil.seabed.bearing import PowerLaw, Strength, displaced
 from riser_soil.seabed.grounds import Plane
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
-from tests.dense_chain import tangent
-from tests.sample_line import START, Sample, sample
-from tests.soil_loops import after, at, forces, through, work
-from tests.unit.test_line_parts import WEIGHTS, difference_tangent, error
+from tests.support.dense_chain import tangent
+from tests.support.differences import WEIGHTS, difference_tangent, error
+from tests.support.sample_line import START, Sample, sample
+from tests.support.soil_loops import after, at, forces, through, work
 
 D, SU, GRADIENT = 0.3, 2000.0, 1500.0
 LAWS: dict[str, NormalLaw] = {

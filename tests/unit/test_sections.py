@@ -18,8 +18,8 @@ from riser_soil.riser.sections import (
     rotary_inertia,
     submerged_weight,
 )
-from tests.dense_chain import residual
-from tests.sample_line import sample
+from tests.support.dense_chain import residual
+from tests.support.sample_line import sample
 
 FLEXIBLE = LineType(
     EA=15.38e8, EI_y=20.96e3, EI_z=20.96e3, outer_diameter=0.26, inner_diameter=0.20, mass=57.5

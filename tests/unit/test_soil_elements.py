@@ -13,8 +13,8 @@ from riser_soil.soil import kernels, mandel
 from riser_soil.soil.element import cell_gradients
 from riser_soil.soil.grid import Grid
 from riser_soil.soil.soil import Soil
-from tests.soil_bench import assemble
-from tests.soil_cases import CLAY, ELASTIC, KINDS, clay_block, distorted, inner, moved, small_block
+from tests.support.soil_bench import assemble
+from tests.support.soil_cases import CLAY, ELASTIC, KINDS, clay_block, distorted, inner, moved, small_block
 
 EPS = np.finfo(float).eps
 GRADIENT = 1e-3 * np.array([[1.0, 0.4, -0.2], [0.7, -0.5, 0.3], [-0.6, 0.1, 0.8]])

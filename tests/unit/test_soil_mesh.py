@@ -16,7 +16,7 @@ from riser_soil.soil.block import BlockSpec, graded
 from riser_soil.soil.element import cell_gradients
 from riser_soil.soil.grid import Grid, block_grid, file_grid, silent_gmsh
 from riser_soil.soil.soil import Soil
-from tests.soil_cases import CLAY, ELASTIC, KINDS, clay_block, small_block
+from tests.support.soil_cases import CLAY, ELASTIC, KINDS, clay_block, small_block
 
 COMM = MPI.COMM_SELF
 DEMO = BlockSpec((10.0, 50.0), (-2.5, 2.5), 2.5, 0.5, 1.5, riser=((0.0, 0.0), (80.0, 0.0)))

@@ -15,8 +15,8 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
 from riser_soil.riser.sections import Segment, Surroundings, elements
 from riser_soil.riser.structural_damping import StructuralDamping
-from tests.dense_chain import residual, tangent
-from tests.sample_line import DIRECTION, START, THICK, THIN, UP, sample
+from tests.support.dense_chain import residual, tangent
+from tests.support.sample_line import DIRECTION, START, THICK, THIN, UP, sample
 
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 NORMAL = np.cross(DIRECTION, UP)

@@ -11,7 +11,7 @@ import pytest
 
 from riser_soil.core.snapshot import Ledger, Touch
 from riser_soil.results.summary import Extremes, StageTally, Summary, angle_deg, final_state, pack, plain_json, unpack
-from tests.recorded_run import EI, FACTS, WEIGHT, Catenary, record
+from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary, record
 
 ARC = np.linspace(0.0, 150.0, 301)
 LINE = Catenary(32.0, 30.0)

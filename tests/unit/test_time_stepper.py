@@ -18,7 +18,7 @@ from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Midpoint, Scheme
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from tests.toy_chain import Chain, Floor, Inertia, Springs
+from tests.support.toy_chain import Chain, Floor, Inertia, Springs
 
 AVERAGE = GeneralizedAlpha.newmark()
 

@@ -14,7 +14,7 @@ from riser_soil.riser import rotations
 from riser_soil.riser.ends import End, Turning
 from riser_soil.riser.line import Line
 from riser_soil.riser.springs import EndSpring
-from tests.sample_line import DIRECTION, UP, Sample, sample
+from tests.support.sample_line import DIRECTION, UP, Sample, sample
 
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 NORMAL = np.cross(DIRECTION, UP)

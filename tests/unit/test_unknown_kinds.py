@@ -25,7 +25,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import RandolphQuiggin
 from riser_soil.scene.soil import LinearElastic, VonMises
 from riser_soil.soil.block import BlockSpec, make_block
-from tests.coupled_scenes import LAY, heave, touchdown
+from tests.support.coupled_scenes import LAY, heave, touchdown
 
 CLAY: dict[str, Any] = {"su": 4.0e3, "su_gradient": 1.5e3, "E_over_su": 300.0, "nu": 0.49}
 

@@ -16,7 +16,7 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
-from tests.riser_scenes import dynamic, held, riser_scene, static
+from tests.support.riser_scenes import dynamic, held, riser_scene, static
 
 PIPE = {"outer_diameter": 0.3, "mass": 120.0, "EA": 3.0e8, "EI": 5.0e4, "GJ": 4.0e4}
 AIRY = {"airy": {"height": 3.0, "period": 8.0}}

@@ -17,7 +17,7 @@ from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope
 from riser_soil.sea.wetting import FlatSurface
-from tests.dense_chain import residual
+from tests.support.dense_chain import residual
 
 D, L, LEVEL, WEIGHT = 0.6, 6.0, 2.0, 2000.0
 

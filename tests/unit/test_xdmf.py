@@ -8,8 +8,8 @@ import pytest
 
 from riser_soil.core.arrays import IntArray
 from riser_soil.results.xdmf import Frame, XdmfFile, polyline
-from tests.recorded_run import block, record
-from tests.vtk_reading import read_by_vtk
+from tests.support.recorded_run import block, record
+from tests.support.vtk_reading import read_by_vtk
 
 LINE = np.random.default_rng(1).uniform(-1e5, 1e5, (7, 3))
 POLY_LINE, TETRA, HEXAHEDRON, QUADRATIC_TETRA = 4, 10, 12, 24  # VTK's numbers for cell types

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.coupled_scenes import DEMO
-from tests.on_ranks import HANGS
+from tests.support.coupled_scenes import DEMO
+from tests.support.on_ranks import HANGS
 
 if TYPE_CHECKING:
-    from tests.watched_run import WatchedRun
+    from tests.support.watched_run import WatchedRun
 
 
 @pytest.fixture(scope="session")
@@ -35,7 +35,7 @@ def demo(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureReques
 def compute(place: Path) -> None:
     # Imported here: what pytest imports to collect tests would start MPI in the process whose children run them.
     from riser_soil.scene.reader import read_scene
-    from tests.watched_run import watched_run
+    from tests.support.watched_run import watched_run
 
     found = watched_run(read_scene(DEMO), place / "results")
     (place / "watched").write_bytes(pickle.dumps(found))

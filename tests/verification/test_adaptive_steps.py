@@ -12,7 +12,7 @@ from riser_soil.errors import SolveError
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
-from tests.riser_scenes import AVERAGE, dynamic, held, riser_scene, tell
+from tests.support.riser_scenes import AVERAGE, dynamic, held, riser_scene, tell
 
 CATENARY = Path(__file__).parents[1] / "scenes/catenary.yaml"
 AUTO = ("stages.1.time_step=auto", "riser.segments.0.elements=30")

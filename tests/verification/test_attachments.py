@@ -21,11 +21,11 @@ from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.section_forces import HasElementForces, SectionForces, element_residual, section_forces
 from riser_soil.riser.sections import LineType, Segment, Surroundings, elements
-from tests.coupled_scenes import Mapping
-from tests.dense_chain import solve, tangent
-from tests.driven_stage import built, take
-from tests.riser_scenes import AVERAGE, dynamic, held, riser_scene, static, tell
-from tests.sample_line import sample
+from tests.support.coupled_scenes import Mapping
+from tests.support.dense_chain import solve, tangent
+from tests.support.driven_stage import built, take
+from tests.support.riser_scenes import AVERAGE, dynamic, held, riser_scene, static, tell
+from tests.support.sample_line import sample
 
 G, RHO = 9.81, 1025.0
 PIPE = {"EA": 1.0e9, "EI": 1.0e3, "GJ": 1.0e3, "mass": 20.0, "submerged_weight": 100.0}

@@ -7,8 +7,8 @@ from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
 from riser_soil.core.arrays import Array
 from riser_soil.riser import beam2d
-from tests.verification.beam_chain import Element2d, arc_space, load, straight_plane, straight_space
-from tests.verification.rod_reference import Rod, tip
+from tests.support.beam_chain import Element2d, arc_space, load, straight_plane, straight_space
+from tests.support.rod_reference import Rod, tip
 
 STIFF = 1e9  # EA L^2 / EI of a cantilever that hardly stretches
 

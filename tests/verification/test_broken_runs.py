@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.broken_runs import ON_A_SMALL_DISK, look, start, start_on_a_filled_disk
+from tests.support.broken_runs import ON_A_SMALL_DISK, look, start, start_on_a_filled_disk
 
 AT_ONCE = 4
 

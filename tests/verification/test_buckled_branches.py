@@ -22,11 +22,10 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.buckling import _largest, stabilising_drag
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.time_scheme import Static
-from tests.coupled_scenes import Mapping
-from tests.on_ranks import mpirun
-from tests.riser_scenes import held, riser_scene, static
-from tests.verification.rod_reference import Rod
-from tests.verification.test_space_beams import first_buckling
+from tests.support.coupled_scenes import Mapping
+from tests.support.on_ranks import mpirun
+from tests.support.riser_scenes import held, riser_scene, static
+from tests.support.rod_reference import Rod, first_buckling
 
 EULER = 0.25 * np.pi**2  # of a cantilever of unit length and bending stiffness
 ALONG, SLANTING = (1.0, 0.0, 0.0), (0.6, 0.0, 0.8)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.verification.flexible_riser import LENGTH, elastica_H, guess, hang, properties
+from tests.support.flexible_riser import LENGTH, elastica_H, guess, hang, properties
 
 ORDER = 3.5
 

@@ -16,9 +16,9 @@ from riser_soil.results import Run
 from riser_soil.riser.catenary import catenary
 from riser_soil.scene.reader import read_scene
 from riser_soil.solve.time_stepper import Accepted
-from tests.coupled_scenes import DEMO, LAY, Mapping, touchdown
-from tests.driven_stage import built, take
-from tests.watched_run import WatchedRun
+from tests.support.coupled_scenes import DEMO, LAY, Mapping, touchdown
+from tests.support.driven_stage import built, take
+from tests.support.watched_run import WatchedRun
 
 KINDS = [("hex", 2), ("hex", 3), ("tet", 2), ("tet", 3)]
 

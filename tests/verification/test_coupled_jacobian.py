@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array, IntArray
-from tests.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.driven_stage import FirstStep, built
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.driven_stage import FirstStep, built
 
 LIFT: Mapping = {"name": "lift", "kind": "static", "move": {"end": [22.5, 0.0, 15.1]}}
 NEXT = {"static": LIFT, "dynamic": heave(1.0, time_step=0.01)}

@@ -11,8 +11,8 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
-from tests.coupled_scenes import Mapping
-from tests.riser_scenes import AVERAGE, Told, distance, dynamic, held, riser_scene, static, tell
+from tests.support.coupled_scenes import Mapping
+from tests.support.riser_scenes import AVERAGE, Told, distance, dynamic, held, riser_scene, static, tell
 
 SCENES = Path(__file__).parents[1] / "scenes"
 FLEXIBLE = {

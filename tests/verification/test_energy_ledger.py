@@ -11,8 +11,8 @@ import pytest
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
-from tests.coupled_scenes import Mapping
-from tests.riser_scenes import dynamic, held, in_waves, riser_scene, static
+from tests.support.coupled_scenes import Mapping
+from tests.support.riser_scenes import dynamic, held, in_waves, riser_scene, static
 
 DENSITY, DRAG, WEIGHT, MASS, DIAMETER, LENGTH, DROP = 1025.0, 1.2, 700.0, 200.0, 0.3, 10.0, 2.0
 

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from riser_soil.results import Run
-from tests.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.on_ranks import HANGS, Job, mpirun
-from tests.vtk_reading import read_by_vtk
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.on_ranks import HANGS, Job, mpirun
+from tests.support.vtk_reading import read_by_vtk
 
 RANKS = pytest.mark.parametrize("ranks", [1, 2])
 FAILED, REFUSED = 3, 2

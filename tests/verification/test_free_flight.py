@@ -20,10 +20,10 @@ from riser_soil.core.system import Clock
 from riser_soil.run import run_stage
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from tests.coupled_scenes import Mapping
-from tests.driven_stage import Watcher, built
-from tests.momentum import momentum
-from tests.riser_scenes import AVERAGE, dynamic, held, riser_scene, tell
+from tests.support.coupled_scenes import Mapping
+from tests.support.driven_stage import Watcher, built
+from tests.support.momentum import momentum
+from tests.support.riser_scenes import AVERAGE, dynamic, held, riser_scene, tell
 
 MIDPOINT: Mapping = {"midpoint": {}}
 PULSE = {

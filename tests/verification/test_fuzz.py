@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.fuzz.mutations import cases
-from tests.on_ranks import ROOT, environment
+from tests.support.on_ranks import ROOT, environment
 
 COUNT, SEED = 600, 1
 

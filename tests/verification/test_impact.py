@@ -34,10 +34,10 @@ from riser_soil.run import run_stage
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
 from riser_soil.solve.newton import Newton, Solution, Step
-from tests.coupled_scenes import Mapping
-from tests.driven_stage import Watcher, built, take
-from tests.falling_pipe import FALL, Energies, flat, pinned, tilted
-from tests.riser_scenes import tell
+from tests.support.coupled_scenes import Mapping
+from tests.support.driven_stage import Watcher, built, take
+from tests.support.falling_pipe import FALL, Energies, flat, pinned, tilted
+from tests.support.riser_scenes import tell
 
 AVERAGE = {"newmark": {"beta": 0.25, "gamma": 0.5}}
 PAGE = Path(__file__).parents[2] / "docs" / "impact.md"

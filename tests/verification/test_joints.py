@@ -19,7 +19,7 @@ from riser_soil.riser.loads import Load, PointLoads
 from riser_soil.riser.section_forces import element_residual, section_forces
 from riser_soil.riser.sections import Elements, LineType, Segment, Surroundings, elements
 from riser_soil.scene.grading import graded_lengths
-from tests.dense_chain import solve
+from tests.support.dense_chain import solve
 
 UP = np.array([0.0, 0.0, 1.0])
 NOTHING = Surroundings(gravity=0.0)

@@ -13,9 +13,9 @@ import pytest
 
 from riser_soil.assembly import Assembly
 from riser_soil.core.system import Clock, System
-from tests.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.driven_stage import built
-from tests.on_ranks import HANGS, environment
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.driven_stage import built
+from tests.support.on_ranks import HANGS, ROOT, environment
 
 FOR_SOIL = {"dolfinx", "dolfinx_cpp", "ufl", "ffcx", "basix", "gmsh"}
 FOR_PICTURES = {"pyvista", "vtk", "vtkmodules", "matplotlib"}
@@ -51,7 +51,7 @@ def ran(name: str, folder: Path) -> dict[str, Any]:
         "on soil": touchdown(LAY),
     }
     (folder / "scene.yaml").write_text(json.dumps(scenes[name]), encoding="utf-8")
-    script = Path(__file__).with_name("imports_of_run.py")
+    script = ROOT / "tests/support/imports_of_run.py"
     call = [sys.executable, str(script), str(folder / "scene.yaml"), str(folder)]
     subprocess.run(call, env=environment(), check=True, capture_output=True, timeout=HANGS)
     found: dict[str, Any] = json.loads((folder / "found.json").read_text(encoding="utf-8"))

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from riser_soil.sea.wet_section import wet_share
-from tests.coupled_scenes import Mapping
-from tests.riser_scenes import Told, dynamic, held, riser_scene, static, tell
+from tests.support.coupled_scenes import Mapping
+from tests.support.riser_scenes import Told, dynamic, held, riser_scene, static, tell
 
 G, RHO = 9.81, 1025.0
 ROD: Mapping = {"EA": 1.0e9, "EI": 1.0e8, "GJ": 1.0e8, "mass": 1.0, "submerged_weight": 0.0}

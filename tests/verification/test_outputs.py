@@ -16,10 +16,10 @@ from scipy.interpolate import griddata
 from riser_soil import __version__
 from riser_soil.core.arrays import Array
 from riser_soil.results import Run
-from tests.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.on_ranks import HANGS, environment, mpirun
-from tests.vtk_reading import read_by_vtk
-from tests.watched_run import WatchedRun
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.on_ranks import HANGS, ROOT, environment, mpirun
+from tests.support.vtk_reading import read_by_vtk
+from tests.support.watched_run import WatchedRun
 
 HEXAHEDRON, POLYLINE = 12, 4
 ON_NODES = ("effective_tension", "bending_moment", "curvature", "contact_force")
@@ -190,7 +190,7 @@ def test_resolved_scene_computes_the_same_again(tmp_path: Path) -> None:
 def resident_memory(scene: Mapping, folder: Path) -> Array:
     """Resident memory [MB] of a run at each of its accepted steps."""
     (folder / "scene.yaml").write_text(json.dumps(scene), encoding="utf-8")
-    script = Path(__file__).with_name("memory_of_run.py")
+    script = ROOT / "tests/support/memory_of_run.py"
     call = [sys.executable, str(script), str(folder / "scene.yaml"), str(folder / "out")]
     done = subprocess.run(call, env=environment(), capture_output=True, text=True, timeout=HANGS, check=False)
     assert done.returncode == 0, done.stderr

@@ -15,9 +15,9 @@ from ruamel.yaml import YAML
 
 from riser_soil.core.arrays import Array
 from riser_soil.results import Run
-from tests.coupled_scenes import DEMO, LAY, Mapping, heave, touchdown
-from tests.on_ranks import mpirun
-from tests.riser_scenes import in_waves
+from tests.support.coupled_scenes import DEMO, LAY, Mapping, heave, touchdown
+from tests.support.on_ranks import mpirun
+from tests.support.riser_scenes import in_waves
 
 SCENES = Path(__file__).parents[1] / "scenes"
 CATENARY, CLAY = SCENES / "catenary.yaml", SCENES / "hysteretic.yaml"

@@ -9,8 +9,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from riser_soil.core.arrays import Array
-from tests.coupled_scenes import Mapping
-from tests.riser_scenes import AVERAGE, Told, distance, dynamic, held, in_waves, riser_scene, static, tell
+from tests.support.coupled_scenes import Mapping
+from tests.support.riser_scenes import AVERAGE, Told, distance, dynamic, held, in_waves, riser_scene, static, tell
 
 RHO, D, CD, CA, MASS = 1025.0, 0.3, 1.1, 1.0, 120.0
 PIPE: Mapping = {"EA": 1.0e6, "EI": 2.0e3, "GJ": 2.0e3, "outer_diameter": D, "mass": MASS}

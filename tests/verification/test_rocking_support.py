@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from tests.riser_scenes import AVERAGE, Told, distance, dynamic, held, riser_scene, tell
+from tests.support.riser_scenes import AVERAGE, Told, distance, dynamic, held, riser_scene, tell
 
 PIPE = {"EA": 1.0e7, "EI": 2.0e5, "GJ": 1.5e5, "mass": 40.0, "outer_diameter": 0.3, "rotary_inertia": True}
 ARM = 8.0

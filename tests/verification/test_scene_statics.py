@@ -15,10 +15,10 @@ from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
-from tests.coupled_scenes import Mapping
-from tests.riser_scenes import held, riser_scene, static
-from tests.verification.flexible_riser import elastica_H, guess, properties
-from tests.verification.rod_reference import Rod, tip
+from tests.support.coupled_scenes import Mapping
+from tests.support.flexible_riser import elastica_H, guess, properties
+from tests.support.riser_scenes import held, riser_scene, static
+from tests.support.rod_reference import Rod, tip
 
 SCENES = Path(__file__).parents[1] / "scenes"
 Solve = Callable[..., Run]

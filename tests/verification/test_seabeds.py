@@ -15,8 +15,8 @@ from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
 from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
-from tests.coupled_scenes import Mapping
-from tests.riser_scenes import distance, held, riser_scene, static, tell
+from tests.support.coupled_scenes import Mapping
+from tests.support.riser_scenes import distance, held, riser_scene, static, tell
 
 SCENES = Path(__file__).parents[1] / "scenes"
 W, SLOPE = 700.0, 2.0  # N/m, deg; steeper, the riser would be pushed at its start, and lie down beside its plane

@@ -12,8 +12,8 @@ from riser_soil.errors import SolveError
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
-from tests.coupled_scenes import Mapping
-from tests.riser_scenes import dynamic, held, riser_scene, static
+from tests.support.coupled_scenes import Mapping
+from tests.support.riser_scenes import dynamic, held, riser_scene, static
 
 W, PIPE = 500.0, {"EA": 1e8, "EI": 1e4, "GJ": 1e4, "submerged_weight": 500.0, "outer_diameter": 0.2, "mass": 60.0}
 

@@ -17,9 +17,9 @@ from riser_soil.soil.families import Family
 from riser_soil.soil.grid import Grid, block_grid
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.von_mises import VonMises
-from tests.on_ranks import mpirun
-from tests.soil_bench import Bench
-from tests.soil_cases import ELASTIC, KINDS, small_block
+from tests.support.on_ranks import mpirun
+from tests.support.soil_bench import Bench
+from tests.support.soil_cases import ELASTIC, KINDS, small_block
 
 ROOT = Path(__file__).parents[2]
 PRANDTL = 2.0 + np.pi
@@ -131,7 +131,7 @@ def test_any_number_of_ranks_agrees(ranks: int, kind: str, size: float) -> None:
 
 
 def on_ranks(ranks: int, kind: str, size: float) -> dict[str, float]:
-    script = Path(__file__).with_name("soil_on_ranks.py")
+    script = ROOT / "tests/support/soil_on_ranks.py"
     done = mpirun(ranks, str(script), kind, str(size))
     assert done.returncode == 0, done.stderr
     result: dict[str, float] = json.loads(done.stdout.splitlines()[-1])

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import jv
 
@@ -15,8 +14,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.riser import beam3d
 from riser_soil.riser.rotations import exp
 from riser_soil.riser.vectors import vector
-from tests.verification.beam_chain import SpaceChain, load, straight_space
-from tests.verification.rod_reference import TOLERANCES, Rod, equations, tip
+from tests.support.beam_chain import SpaceChain, load, straight_space
+from tests.support.rod_reference import Rod, first_buckling, tip
 
 FOURTH = 3.6  # least order that counts as fourth on coarse meshes
 
@@ -116,43 +115,6 @@ def critical_load(chain: Callable[[], SpaceChain], direction: Array, low: float,
         return float(np.linalg.eigvalsh(0.5 * (free + free.T))[0])
 
     return float(brentq(smallest, low, high, xtol=1e-11 * high))
-
-
-def moments_at_tip(legs: Sequence[tuple[Rod, Array]], force: Array) -> Callable[[Array], Array]:
-    """Moments (3,) left at the free end of rods joined rigidly, from those at the clamp, by the rod's equations.
-
-    legs: rods with their unstressed section axes (3, 3).
-    """
-
-    def at_tip(clamp: Array) -> Array:
-        state, before = np.concatenate([np.zeros(3), legs[0][1].ravel(), clamp]), legs[0][1]
-        for rod, axes in legs:
-            state[3:12] = (state[3:12].reshape(3, 3) @ before.T @ axes).ravel()
-            state = solve_ivp(equations(rod, force), (0.0, rod.length), state, **TOLERANCES).y[:, -1]
-            before = axes
-        return np.asarray(state[12:])
-
-    return at_tip
-
-
-def first_buckling(legs: Sequence[tuple[Rod, Array]], direction: Array, low: float, high: float) -> float:
-    """Tip force [N] at which the planar (x-y) solution of the shooting problem has another beside it."""
-
-    def determinant(force: float) -> float:
-        at_tip, clamp = moments_at_tip(legs, force * direction), np.zeros(3)
-        scale = force * legs[0][0].length
-        for _ in range(5):  # Newton's method for the clamp's in-plane moment
-            clamp[2] -= at_tip(clamp)[2] / _slope(at_tip, clamp, 2, 1e-4 * scale)[2]
-        across = [_slope(at_tip, clamp, k, 1e-4 * scale)[:2] for k in range(2)]
-        return float(np.linalg.det(across))
-
-    return float(brentq(determinant, low, high, xtol=1e-9 * high))
-
-
-def _slope(f: Callable[[Array], Array], x: Array, k: int, h: float) -> Array:
-    """Derivative of f by x[k]."""
-    step = h * np.eye(x.size)[k]
-    return (f(x + step) - f(x - step)) / (2.0 * h)
 
 
 BLADE_EI = (1.0, 1e3)  # of a cantilever of unit length; it hardly bends in its plane

@@ -14,8 +14,8 @@ from riser_soil.errors import SolveError
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
-from tests.coupled_scenes import Mapping
-from tests.riser_scenes import held, riser_scene, static
+from tests.support.coupled_scenes import Mapping
+from tests.support.riser_scenes import held, riser_scene, static
 
 SCENES = Path(__file__).parents[1] / "scenes"
 DISTANCE, W = 100.0, 500.0

@@ -12,7 +12,7 @@ import pytest
 
 from demos.compute import compute
 from demos.tank.statics import ELEMENTS, METHODS, STIFFNESSES, Rest, at_rest, mesh_errors, orders, reference
-from tests.verification.touchdown_reference import AtRest, Hose, Rigid, Winkler
+from tests.support.touchdown_reference import AtRest, Hose, Rigid, Winkler
 
 WEIGHT = 147.09975
 ANGLES = (0.0, 20.0, -20.0)

@@ -18,7 +18,7 @@ from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.still_water import StillWater
-from tests.dense_chain import solve, tangent
+from tests.support.dense_chain import solve, tangent
 
 LENGTH, EA, EI, MASS, TENSION = 30.0, 1.0e10, 5.0e5, 80.0, 4.0e4
 DIAMETER, RHO = 0.3, 1025.0

@@ -25,8 +25,8 @@ from riser_soil.core.system import Clock
 from riser_soil.results.observer import riser_snapshot
 from riser_soil.run import run_stage
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from tests.driven_stage import Watcher, built
-from tests.riser_scenes import held, riser_scene, static
+from tests.support.driven_stage import Watcher, built
+from tests.support.riser_scenes import held, riser_scene, static
 
 EI, H, WEIGHT = 1.0e3, 1.0e3, 0.1  # l = 1 m; slopes of some thousandths
 PIPE = {"outer_diameter": 0.1, "mass": 1.0, "submerged_weight": WEIGHT, "EA": 1.0e9, "EI": EI}

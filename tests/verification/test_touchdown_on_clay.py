@@ -16,10 +16,10 @@ from riser_soil.core.system import Clock
 from riser_soil.riser import stations
 from riser_soil.run import run_stage
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from tests.coupled_scenes import Mapping
-from tests.driven_stage import Watcher, built
-from tests.riser_scenes import held, riser_scene, static
-from tests.verification.touchdown_reference import equivalent_point
+from tests.support.coupled_scenes import Mapping
+from tests.support.driven_stage import Watcher, built
+from tests.support.riser_scenes import held, riser_scene, static
+from tests.support.touchdown_reference import equivalent_point
 
 D, AREA, INERTIA = 0.27, 1.71405e-2, 1.32801e-4  # m, m2, m4 of a steel pipe whose wall is 22 mm
 PIPE: Mapping = {"outer_diameter": D, "EA": 2.07e11 * AREA, "EI": 2.07e11 * INERTIA, "submerged_weight": 1060.0}

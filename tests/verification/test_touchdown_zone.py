@@ -14,8 +14,8 @@ from riser_soil.results import Run
 from riser_soil.results.touchdown_zone import joined
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
-from tests.coupled_scenes import LAY, Mapping, touchdown
-from tests.riser_scenes import dynamic, held, riser_scene, static
+from tests.support.coupled_scenes import LAY, Mapping, touchdown
+from tests.support.riser_scenes import dynamic, held, riser_scene, static
 
 EI, ALLOWED, RADIUS = 2.0e4, 4.0, 0.1
 PIPE: Mapping = {"EA": 1e7, "EI": EI, "mass": 60.0, "outer_diameter": 2.0 * RADIUS, "submerged_weight": 300.0}

@@ -21,9 +21,9 @@ from riser_soil.results.observer import riser_snapshot
 from riser_soil.run import run_stage
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from tests.coupled_scenes import Mapping
-from tests.driven_stage import Watcher
-from tests.riser_scenes import dynamic, held, riser_scene, static
+from tests.support.coupled_scenes import Mapping
+from tests.support.driven_stage import Watcher
+from tests.support.riser_scenes import dynamic, held, riser_scene, static
 
 SCALES = (1e-6, 1e-3, 1e3, 1e6)
 SEABEDS: dict[str, Mapping] = {

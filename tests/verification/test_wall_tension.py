@@ -12,8 +12,8 @@ from riser_soil.core.snapshot import RiserSnapshot
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
-from tests.coupled_scenes import Mapping
-from tests.riser_scenes import held, riser_scene, static, tell
+from tests.support.coupled_scenes import Mapping
+from tests.support.riser_scenes import held, riser_scene, static, tell
 
 G, RHO, OIL, L = 9.81, 1025.0, 850.0, 40.0
 OUTER, INNER, MASS = 0.3, 0.2, 120.0

@@ -20,9 +20,9 @@ from riser_soil.core.system import Clock
 from riser_soil.results.observer import riser_snapshot
 from riser_soil.run import run_stage
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from tests.coupled_scenes import Mapping
-from tests.driven_stage import Watcher, built
-from tests.riser_scenes import dynamic, held, riser_scene
+from tests.support.coupled_scenes import Mapping
+from tests.support.driven_stage import Watcher, built
+from tests.support.riser_scenes import dynamic, held, riser_scene
 
 L, MASS, EA, V = 10.0, 100.0, 1e8, 1.0
 C = float(np.sqrt(EA / MASS))

@@ -7,7 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-from tests.watched_run import watched_run
+from tests.support.watched_run import watched_run
 
 
 def resident() -> float:

@@ -19,8 +19,8 @@ from riser_soil.run import run_stage
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from tests.coupled_scenes import Mapping
-from tests.driven_stage import Watcher
+from tests.support.coupled_scenes import Mapping
+from tests.support.driven_stage import Watcher
 
 AVERAGE = {"newmark": {"beta": 0.25, "gamma": 0.5}}
 

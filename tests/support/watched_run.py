@@ -16,7 +16,7 @@ from riser_soil.core.system import System
 from riser_soil.run import run
 from riser_soil.scene.scene import Scene
 from riser_soil.solve.time_stepper import Accepted
-from tests.driven_stage import before_commit
+from tests.support.driven_stage import before_commit
 
 
 @dataclass(frozen=True)

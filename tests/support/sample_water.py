@@ -18,7 +18,7 @@ from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.still_water import StationLoads, StillWater
 from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wetting import FlatSurface, PartlyWet, Wetting
-from tests.sample_line import DIRECTION, RHO, UP, Sample
+from tests.support.sample_line import DIRECTION, RHO, UP, Sample
 
 LEVEL = 5.2
 SECTION = np.stack([DIRECTION, UP])

@@ -12,8 +12,8 @@ import numpy as np
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
 from riser_soil.results.ownership import refuse
-from tests.on_ranks import ROOT, environment
-from tests.vtk_reading import times_by_vtk
+from tests.support.on_ranks import ROOT, environment
+from tests.support.vtk_reading import times_by_vtk
 
 SCENE = ROOT / "demos" / "first_scene.yaml"
 # Every step is recorded, and the files grow all the time.

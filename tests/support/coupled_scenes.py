@@ -8,7 +8,7 @@ from typing import Any
 
 Mapping = dict[str, Any]
 
-DEMO = Path(__file__).parents[1] / "demos" / "touchdown_clay" / "scene.yaml"
+DEMO = Path(__file__).parents[2] / "demos" / "touchdown_clay" / "scene.yaml"
 
 LINE = {
     "outer_diameter": 0.30,

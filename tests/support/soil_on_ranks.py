@@ -17,8 +17,8 @@ from riser_soil.errors import MeshError
 from riser_soil.soil.block import BlockSpec
 from riser_soil.soil.grid import block_grid, file_grid
 from riser_soil.soil.soil import Soil
-from tests.mesh_drawings import LEFT, RIGHT, Drawing, msh
-from tests.soil_cases import CLAY
+from tests.support.mesh_drawings import LEFT, RIGHT, Drawing, msh
+from tests.support.soil_cases import CLAY
 
 COMM = MPI.COMM_WORLD
 

@@ -10,7 +10,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.scene.stages import Stage
 from riser_soil.solve.dynamic_relaxation import Relaxed
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from tests.coupled_scenes import Mapping
+from tests.support.coupled_scenes import Mapping
 
 WEIGHT, LENGTH, DROP = 700.0, 20.0, 1.0  # N/m, m, m
 FALL = WEIGHT * LENGTH * DROP  # J, a measure of the energy in play

@@ -24,7 +24,7 @@ from riser_soil.riser.section_forces import (
     section_forces,
 )
 from riser_soil.riser.sections import Elements, LineType, Segment, Surroundings, elements
-from tests.dense_chain import solve
+from tests.support.dense_chain import solve
 
 LENGTH, TOP = 350.0, np.array([150.0, 0.0, 150.0])
 EI, EA = 20.96e3, 15.38e8

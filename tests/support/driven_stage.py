@@ -25,7 +25,7 @@ from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from tests.coupled_scenes import Mapping
+from tests.support.coupled_scenes import Mapping
 
 Watch = Callable[[System, Accepted], None]
 
