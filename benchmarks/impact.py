@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -113,7 +113,7 @@ def _model(assembly: Assembly, stage: DynamicStage, contact: str) -> Model:
     """The stage's parts, its contact replaced."""
     model = assembly.begin(stage)
     parts = [part for part in model.parts if part is not assembly.seabed]
-    return Model(model.fields, [*parts, _contact(assembly, contact)])
+    return replace(model, parts=[*parts, _contact(assembly, contact)])
 
 
 def _contact(assembly: Assembly, contact: str) -> Part:

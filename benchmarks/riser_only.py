@@ -135,7 +135,7 @@ class Bench:
             x.axpy(-1.0, dx)
             newton._function(None, x, f)
             iteration += 1
-        newton.judge(newton._trial(x))
+        newton.require_admissible(newton._trial(x))
 
     def destroy(self) -> None:
         for thing in (self._full, self._pc, self._x, self._f, self._dx):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -130,7 +130,7 @@ class Assembly:
     def begin_laying(self, stage: StaticStage) -> Model:
         """Set the end in motion and name the parts: without a current's drag."""
         model = self.begin(stage)
-        return Model(model.fields, [part for part in model.parts if not part.traits.follows])
+        return replace(model, parts=[part for part in model.parts if not part.traits.follows])
 
     def begin(self, stage: Stage) -> Model:
         """Set the ends in motion and name the parts of a stage."""
@@ -142,7 +142,7 @@ class Assembly:
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
         soil = [self.soil] if self.soil is not None else []
         friction = [self.friction] if self.friction is not None else []
-        return Model(self.fields, [*parts, *soil, *self.contacts, *friction])
+        return Model([self.line], [*parts, *soil, *self.contacts, *friction], self.fields[1:])
 
 
 def build(scene: Scene, comm: MPI.Intracomm) -> Assembly:

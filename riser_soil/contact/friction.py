@@ -11,6 +11,7 @@ from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.contact.station_forces import StationForces
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.roles import Remembering
 from riser_soil.riser import stations
 from riser_soil.riser.trial import Trial
 
@@ -46,7 +47,7 @@ class Friction:
     """
 
     name = "friction"
-    traits = Traits("E", symmetric=False)
+    traits = Traits("E", symmetric=False, roles=(Remembering,))
 
     def __init__(self, contact: SeabedContact, axial: float, lateral: float, stiffness: Array) -> None:
         self.contact, self.line = contact, contact.line
@@ -85,7 +86,7 @@ class Friction:
         return FrictionState(found.position, directions(tau, found.normal), traction)
 
     def blocks(self) -> dict[str, Block]:
-        return {"riser": self.line.element_block()} if self.line.active else {}
+        return {self.line.name: self.line.element_block()} if self.line.active else {}
 
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
@@ -101,7 +102,7 @@ class Friction:
         """Unweighted: friction stands at the end of the step."""
         if self.line.active:
             trial = self.line.trial(state)
-            self._forces.add_tangent(values["riser"], trial, *self.evaluate(trial))
+            self._forces.add_tangent(values[self.line.name], trial, *self.evaluate(trial))
 
     def energy(self, state: State) -> Energy:
         """Stored in what the ground gives elastically along itself."""

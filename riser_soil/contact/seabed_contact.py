@@ -12,6 +12,7 @@ from riser_soil.contact.station_forces import StationForces
 from riser_soil.contact.touchdown import Stretch, stretches, touchdown
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.roles import Predictor, Remembering
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
 from riser_soil.riser.trial import Trial
@@ -58,7 +59,7 @@ class SeabedContact:
     """
 
     name = "seabed"
-    traits = Traits("E", symmetric=True)
+    traits = Traits("E", symmetric=True, roles=(Predictor, Remembering))
 
     def __init__(
         self,
@@ -106,7 +107,7 @@ class SeabedContact:
         return found._replace(value=np.where(self._covered(x[:, :2]), np.inf, found.value))
 
     def blocks(self) -> dict[str, Block]:
-        return {"riser": self.line.element_block()} if self.line.active else {}
+        return {self.line.name: self.line.element_block()} if self.line.active else {}
 
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
@@ -123,7 +124,7 @@ class SeabedContact:
         if self.line.active:
             trial = self.line.trial(state)
             t = self.evaluate(trial).touching
-            self._forces.add_tangent(values["riser"], trial, t.elements, t.resistance, self._by_position(t))
+            self._forces.add_tangent(values[self.line.name], trial, t.elements, t.resistance, self._by_position(t))
 
     def _by_position(self, t: Touching) -> Array:
         """Derivative (m, ng, d, d) of the resistance by the position."""

@@ -22,6 +22,7 @@ from riser_soil.contact.patch import Patch, around
 from riser_soil.contact.touchdown import Stretch, stretches, touchdown
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.roles import Adaptive, Predictor
 
 FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
 
@@ -54,7 +55,7 @@ class SoilContact:
     """
 
     name = "contact"
-    traits = Traits("E", symmetric=True)
+    traits = Traits("E", symmetric=True, roles=(Adaptive, Predictor))
 
     def __init__(
         self,

@@ -11,8 +11,9 @@ A residual has no memory: it depends on the trial state alone. History changes o
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Protocol, runtime_checkable
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -117,16 +118,18 @@ class Work:
 
 @dataclass(frozen=True)
 class Traits:
-    """What a part is; declared here, never guessed from its name or its blocks.
+    """What a part is; declared here, never guessed from its name, its blocks or its methods.
 
     groups: letters of those that its forces are in. In E they may jump from step to step, as where the riser lands.
     symmetric: its tangent.
     follows: its forces follow the line, but hardly stiffen or soften it, such as the drag of a current.
+    roles: what it does beyond the contract of a part, see `roles`.
     """
 
     groups: str
     symmetric: bool
     follows: bool = False
+    roles: tuple[type, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.groups or set(self.groups) - set(GROUPS):
@@ -164,20 +167,6 @@ class Part(Protocol):
         ...
 
 
-@runtime_checkable
-class Slender(Protocol):
-    """A field with rotations beside its translations (nn, d), local numbers.
-
-    lever: arm [m] by which a moment is weighed as the forces of a couple, so that nothing hangs on the unit of length.
-    """
-
-    @property
-    def lever(self) -> float: ...
-
-    @property
-    def translation_dofs(self) -> IntArray: ...
-
-
 class Field(Protocol):
     """Owner of dofs. Fields of one `space` share a numbering (the soil and its surface as seen by contact)."""
 
@@ -202,9 +191,54 @@ class Field(Protocol):
         ...
 
 
+class LineField(Field, Protocol):
+    """A field of translations (nn, d) and rotations along a line; it may turn as a whole.
+
+    lever: arm [m] by which a moment is weighed as the forces of a couple, so that nothing hangs on the unit of length.
+    """
+
+    @property
+    def lever(self) -> float: ...
+
+    @property
+    def translation_dofs(self) -> IntArray:
+        """Local numbers (nn, d)."""
+        ...
+
+    def predict(self, guess: State) -> Array:
+        """A better first guess of a step than the increments of `guess`, as its prescribed motion tells; a copy."""
+        ...
+
+    def inadmissible(self, state: State) -> str:
+        """Why a state in balance is none of the thing modelled, the same on all ranks; empty for a good one."""
+        ...
+
+    def in_new_axes(self, conjugate: Array, increments: Array) -> Array:
+        """Forces (field's slice) conjugate to the increments, as those of the step after these increments have them."""
+        ...
+
+    def free_turns(self, state: State) -> Array:
+        """Motions (k, size) as a whole that move no support, their largest displacement the line's own length."""
+        ...
+
+    def in_newtons(self, forces: Array) -> Array:
+        """Forces and moments (size,) of the field, moments over the line's length."""
+        ...
+
+
 @dataclass(eq=False)
 class Model:
-    """What a stage solves: the dof owners and the parts that act on them."""
+    """What a stage solves: the lines, the parts that act on them, and the other owners of dofs, such as the soil."""
 
-    fields: list[Field]
-    parts: list[Part] = field(default_factory=list)
+    lines: Sequence[LineField]
+    parts: Sequence[Part] = ()
+    others: Sequence[Field] = ()
+
+    @property
+    def fields(self) -> list[Field]:
+        return [*self.lines, *self.others]
+
+
+def local(field: Field) -> slice:
+    """The field's slice of local arrays."""
+    return slice(field.offset, field.offset + field.size)

@@ -1,11 +1,17 @@
-"""What parts, fields and step controls may do for the time stepper beyond their contracts; see `core.part`."""
+"""What parts may do for the time stepper beyond their contract, each declared in the part's traits.
+
+A role that is declared without its methods, such as one that is misspelt, is an error at the stage's start, and so is
+one that is there and not declared.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from inspect import get_annotations
 from typing import Any, Protocol, runtime_checkable
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import State
+from riser_soil.core.part import Part, State
 
 
 @runtime_checkable
@@ -19,7 +25,7 @@ class Adaptive(Protocol):
 
 @runtime_checkable
 class Predictor(Protocol):
-    """A part or field that knows a better first guess of a step than the last increment."""
+    """A part that knows a better first guess of a step than the increments of `guess`."""
 
     def predict(self, guess: State) -> Array: ...
 
@@ -42,22 +48,23 @@ class MomentumCorrecting(Protocol):
         ...
 
 
-@runtime_checkable
-class Turning(Protocol):
-    """A field whose dofs refer to axes that turn with it."""
-
-    offset: int
-    size: int
-
-    def in_new_axes(self, conjugate: Array, increments: Array) -> Array:
-        """Forces (field's slice) conjugate to the increments, as those of the step after these increments have them."""
-        ...
+ROLES = (Adaptive, Predictor, Remembering, MomentumCorrecting)
 
 
-@runtime_checkable
-class Demanding(Protocol):
-    """Steps that only go on when their local error [m] is small."""
+def with_role(parts: Iterable[Part], role: type) -> list[Any]:
+    """The parts that have declared a role."""
+    return [part for part in parts if role in part.traits.roles]
 
-    def fault(self, error: float) -> str:
-        """What is wrong with a step of this error; empty for a good one."""
-        ...
+
+def require_roles(parts: Iterable[Part]) -> None:
+    """TypeError where a part's methods are not those of the roles that it declares."""
+    for part in parts:
+        for role in ROLES:
+            declared = role in part.traits.roles
+            if declared != isinstance(part, role):
+                said = "is declared and not there" if declared else "is there and not declared"
+                raise TypeError(f'part "{part.name}": the role {role.__name__}, {", ".join(_members(role))}, {said}')
+
+
+def _members(role: type) -> list[str]:
+    return sorted({*get_annotations(role), *(name for name in vars(role) if not name.startswith("_"))})

@@ -13,7 +13,8 @@ from mpi4py import MPI
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.numbering import Numbering
-from riser_soil.core.part import Block, Energy, Field, Forces, Model, Part, Slender, State, Weights, Work
+from riser_soil.core.part import Block, Energy, Field, Forces, Model, Part, State, Weights, Work, local
+from riser_soil.core.roles import require_roles
 
 
 @dataclass
@@ -40,14 +41,15 @@ class System:
     """Residual and matrix over the free dofs of the model's fields; collective over `comm`.
 
     smooth: whether no forces are taken at the end of the step alone, so that none may jump, as contact's do.
-    lever: see `Slender`; levers (size,): that of each local dof, 1 for translations.
+    lever: the longest one of a line, see `LineField`; levers (size,): of each local dof, 1 for translations.
     """
 
     def __init__(self, comm: MPI.Intracomm, model: Model, clock: Clock) -> None:
         self.comm, self.model, self.clock = comm, model, clock
+        require_roles(model.parts)
         self.numbering = Numbering(comm, model.fields)
         self.prescribed: BoolArray = self._gather_prescribed()
-        self.held: IntArray = np.flatnonzero(self.prescribed)
+        self.prescribed_dofs: IntArray = np.flatnonzero(self.prescribed)
         self.lever, self.levers = self._weigh_moments()
         self.symmetric: bool = comm.allreduce(all(p.traits.symmetric for p in model.parts), MPI.LAND)
         self.smooth: bool = not comm.allreduce(any("E" in p.traits.groups for p in model.parts), MPI.LOR)
@@ -57,12 +59,11 @@ class System:
         return np.concatenate([f.prescribed for f in self.model.fields])
 
     def _weigh_moments(self) -> tuple[float, Array]:
-        riser, levers = self.model.fields[0], np.ones(self.numbering.size)
-        if not isinstance(riser, Slender):
-            return 1.0, levers
-        levers[riser.offset : riser.offset + riser.size] = riser.lever
-        levers[riser.translation_dofs] = 1.0
-        return riser.lever, levers
+        levers = np.ones(self.numbering.size)
+        for line in self.model.lines:
+            levers[local(line)] = line.lever
+            levers[line.translation_dofs] = 1.0
+        return max(line.lever for line in self.model.lines), levers
 
     def _new_matrix(self) -> Matrix:
         blocks: dict[str, Block] = {}
@@ -78,8 +79,8 @@ class System:
     def prescribe(self, state: State) -> None:
         """Write the prescribed motion at state.t into the state's arrays."""
         for field in self.model.fields:
-            part = slice(field.offset, field.offset + field.size)
-            field.prescribe(state.t, state.u[part], state.v[part], state.a[part])
+            at = local(field)
+            field.prescribe(state.t, state.u[at], state.v[at], state.a[at])
 
     def forces(self, state: State) -> Forces:
         """This rank's residual by group (local arrays; shares of shared dofs are summed by the numbering)."""
@@ -120,11 +121,11 @@ class System:
 
     def work_of_supports(self, reactions: Array, u: Array) -> float:
         """Work [J] that prescribed motions put in over a step: mean reactions times increment."""
-        return self.sum([float(reactions @ u[self.held])])[0]
+        return self.sum([float(reactions @ u[self.prescribed_dofs])])[0]
 
     def reactions(self, forces: Forces) -> Array:
         """What the supports of this rank's prescribed dofs exert [N, N.m]."""
-        at = self.held
+        at = self.prescribed_dofs
         return forces.inertia[at] + forces.force[at] + forces.end[at]
 
     def commit(self, state: State) -> None:

@@ -102,7 +102,7 @@ class Attachments:
         self._F = self._along + self._ends
 
     def blocks(self) -> dict[str, Block]:
-        return {"riser": self.line.element_block()} if self.line.active else {}
+        return {self.line.name: self.line.element_block()} if self.line.active else {}
 
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None, of what sits along the line."""
@@ -118,7 +118,7 @@ class Attachments:
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:
-            self.line.trial(state).add_turning(values["riser"], weights.force, self._F)
+            self.line.trial(state).add_turning(values[self.line.name], weights.force, self._F)
 
     def energy(self, state: State) -> Energy:
         """Potential of weight less buoyancy, zero at the origin of the axes."""

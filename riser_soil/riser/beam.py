@@ -37,7 +37,7 @@ class Beam:
         self._load = np.ascontiguousarray(per_length @ line.basis)
 
     def blocks(self) -> dict[str, Block]:
-        return {"riser": self.line.element_block()} if self.line.active else {}
+        return {self.line.name: self.line.element_block()} if self.line.active else {}
 
     def _loaded(self, trial: Trial) -> tuple[Array, Array, Array, Array]:
         """Arguments of `uniform_load`: chords, tangents, lengths and load."""
@@ -62,7 +62,7 @@ class Beam:
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:
-            trial, K, at = self.line.trial(state), values["riser"], self._loaded(self.line.trial(state))
+            trial, K, at = self.line.trial(state), values[self.line.name], self._loaded(self.line.trial(state))
             self._elastic.add_tangent(K, weights.force, trial)
             trial.add_turning(K, weights.force, trial.once((self, "load"), self._load_forces))
             uniform_load.add_tangent(K, weights.force, trial.turn.P, *at)

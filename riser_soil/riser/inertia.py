@@ -29,7 +29,7 @@ class Inertia:
             self.M += attached.along + attached.ends
 
     def blocks(self) -> dict[str, Block]:
-        return {"riser": self.line.element_block()} if self.line.active else {}
+        return {self.line.name: self.line.element_block()} if self.line.active else {}
 
     def _F(self, trial: Trial) -> Array:
         """Residual conjugate to q (ne, 4, d)."""
@@ -62,7 +62,7 @@ class Inertia:
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:
-            trial, K = self.line.trial(state), values["riser"]
+            trial, K = self.line.trial(state), values[self.line.name]
             trial.add_turning(K, weights.inertia, trial.once((self, "F"), self._F))
             columns, shift = trial.columns(weights)[2]
             add_mass(K, weights.inertia, trial.turn.P, columns, shift, self.M)

@@ -275,7 +275,7 @@ class Line:
         """Forces and moments (size,), moments over the line's length."""
         return forces * (unit_lengths(self.x.shape, self.ndof, float(self.arc[-1])) / self.arc[-1]).ravel()
 
-    def fault(self, state: State) -> str:
+    def inadmissible(self, state: State) -> str:
         """Where an element is folded (an end's tangent points against its chord) or wound up by whole turns.
 
         A step of Newton's method that goes far astray ends in such a tangle; it balances the loads, even stably, but a

@@ -79,7 +79,7 @@ class PointLoads:
         return load.distributed is not None or self.line.place(load.arc)[1] not in (0.0, 1.0)
 
     def blocks(self) -> dict[str, Block]:
-        return {"riser": self.line.element_block()} if self.line.active else {}
+        return {self.line.name: self.line.element_block()} if self.line.active else {}
 
     def _F(self, t: float, loads: list[Load]) -> Array:
         """Residual of some of the loads, conjugate to q (ne, 4, d)."""
@@ -125,7 +125,7 @@ class PointLoads:
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if not self.line.active:
             return
-        trial, K = self.line.trial(state), values["riser"]
+        trial, K = self.line.trial(state), values[self.line.name]
         trial.add_turning(K, weights.force, self._F(state.t, self._loads))
         if isinstance(trial.turn, SpatialTurn):
             for load, node in self._moments:

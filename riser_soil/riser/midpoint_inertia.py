@@ -26,6 +26,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed
 from riser_soil.core.part import Block, Energy, Forces, Part, State, Traits, Weights, Work
+from riser_soil.core.roles import MomentumCorrecting
 from riser_soil.riser import hermite
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
@@ -40,7 +41,7 @@ class MidpointInertia:
     instant: the same mass as it acts at an instant, which is asked for at accepted states.
     """
 
-    name, traits = "inertia", Traits("I", symmetric=False)
+    name, traits = "inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting,))
 
     def __init__(self, instant: Inertia) -> None:
         self.instant, self.line = instant, instant.line
@@ -80,7 +81,7 @@ class MidpointInertia:
             self.instant.tangent(state, weights, values)
         elif self.line.active:
             secant, F = self.line.trial(state).once((self, "step"), self._step)
-            K, shift = values["riser"], weights.shift_a
+            K, shift = values[self.line.name], weights.shift_a
             G = self._tangents.geometric(secant, _turning(self.line, state.u), F[:, 1::2])
             hermite.add_geometric(K, weights.inertia, G, self.line.dimension)
             hermite.add_mass(K, weights.inertia, secant.P, 0.5 * shift * secant.by_end, shift, self.instant.M)
@@ -121,7 +122,7 @@ class MidpointRotaryInertia:
     on each of the directors [kg m2], (ne, 1, 1).
     """
 
-    name, traits = "rotary inertia", Traits("I", symmetric=False)
+    name, traits = "rotary inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting,))
 
     def __init__(self, instant: RotaryInertia) -> None:
         self.instant, self.line = instant, instant.line
@@ -176,7 +177,7 @@ class MidpointRotaryInertia:
             for director, mass, (secant, F) in zip(self._directors, self.masses, steps, strict=True):
                 block = np.swapaxes(secant.P, 2, 3) @ (half * mass[..., None] * secant.by_end)
                 block += director.geometric(secant, middle, F)
-                hermite.add_geometric(values["riser"], weights.inertia, block, self.line.dimension)
+                hermite.add_geometric(values[self.line.name], weights.inertia, block, self.line.dimension)
 
     def element_forces(self, state: State) -> tuple[Array, None]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None, at an accepted state."""

@@ -23,7 +23,7 @@ class Relaxation:
         self._line, self.drag = line, drag
 
     def blocks(self) -> dict[str, Block]:
-        return {"riser": self._line.element_block()}
+        return {self._line.name: self._line.element_block()}
 
     def residual(self, state: State, forces: Forces) -> None:
         line = self._line
@@ -43,7 +43,7 @@ class Relaxation:
                 dofs = np.arange(end, end + line.ndof)
                 share = (0.5 * line.length / line.tributary_length[nodes])[:, None]
                 whole = self.drag * self._shares(line.tributary_length)[nodes]
-                values["riser"][:, dofs, dofs] += weights.force * share * whole
+                values[self._line.name][:, dofs, dofs] += weights.force * share * whole
 
     def energy(self, state: State) -> Energy:
         return Energy()

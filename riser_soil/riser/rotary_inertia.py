@@ -85,7 +85,7 @@ class RotaryInertia:
         return {0: on_tangent} | masses if on_tangent.any() else masses
 
     def blocks(self) -> dict[str, Block]:
-        return {"riser": self.line.element_block()} if self.line.active else {}
+        return {self.line.name: self.line.element_block()} if self.line.active else {}
 
     def _turning(self, values: Array) -> Array:
         """Rotation dofs of the nodes (nn, r)."""
@@ -104,7 +104,8 @@ class RotaryInertia:
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:
-            self._sections.add_tangent(values["riser"], weights, *map(self._turning, (state.u, state.v, state.a)))
+            turning = map(self._turning, (state.u, state.v, state.a))
+            self._sections.add_tangent(values[self.line.name], weights, *turning)
 
     def energy(self, state: State) -> Energy:
         if not self.line.active:

@@ -75,7 +75,7 @@ class StructuralDamping:
         self._damping = _damping(elastic_elements(line, elements), elements.damping)
 
     def blocks(self) -> dict[str, Block]:
-        return {"riser": self.line.element_block()} if self.line.active else {}
+        return {self.line.name: self.line.element_block()} if self.line.active else {}
 
     def viscous_forces(self, state: State) -> Array:
         """Element residuals (ne, 2 ndof)."""
@@ -96,7 +96,7 @@ class StructuralDamping:
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:
             trial, v = self.line.trial(state), self.line.nodal(state.v)
-            values["riser"] += weights.force * self._damping.tangent(trial, v, float(weights.shift_v))
+            values[self.line.name] += weights.force * self._damping.tangent(trial, v, float(weights.shift_v))
 
     def energy(self, state: State) -> Energy:
         return Energy()

@@ -66,7 +66,7 @@ class Buoyancy:
         self.traits = Traits("F", symmetric=flat)
 
     def blocks(self) -> dict[str, Block]:
-        return {"riser": self.line.element_block()} if self.line.active else {}
+        return {self.line.name: self.line.element_block()} if self.line.active else {}
 
     def _F(self, trial: Trial) -> Array:
         found: Array = trial.once((self, "F"), self._dry.residual)
@@ -87,7 +87,7 @@ class Buoyancy:
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if self.line.active:
-            trial, K = self.line.trial(state), values["riser"]
+            trial, K = self.line.trial(state), values[self.line.name]
             self._dry.add_tangent(K, trial, weights)
             trial.add_turning(K, weights.force, self._F(trial))
 

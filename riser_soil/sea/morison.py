@@ -19,7 +19,7 @@ class Morison:
         self.line, self._pipe, self._loads = pipe.line, pipe, loads
 
     def blocks(self) -> dict[str, Block]:
-        return {"riser": self.line.element_block()} if self.line.active else {}
+        return {self.line.name: self.line.element_block()} if self.line.active else {}
 
     def element_forces(self, state: State) -> tuple[Array, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof)."""
@@ -36,7 +36,7 @@ class Morison:
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if not self.line.active:
             return
-        trial, K = self.line.trial(state), values["riser"]
+        trial, K = self.line.trial(state), values[self.line.name]
         self._pipe.add_tangent(K, trial, weights, self._loads.derivatives(trial, weights))
         inertia, force = self._q_forces(trial)
         trial.add_turning(K, 1.0, weights.inertia * inertia + weights.force * force)

@@ -27,6 +27,8 @@ class AutoSteps:
     up to the next one all steps are equal unless the error changes.
     """
 
+    judges_error = True
+
     def __init__(
         self, end: float, tolerance: float, smallest: float, first: float, stops: Iterable[float] = ()
     ) -> None:
@@ -53,8 +55,8 @@ class AutoSteps:
     def dt(self) -> float:
         return self.target - self._now
 
-    def fault(self, error: float) -> str:
-        """What is wrong with a step of this local error [m]; empty for a good one."""
+    def rejection(self, error: float) -> str:
+        """Why a step of this local error [m] is not accepted; empty for a good one. The size follows from it."""
         self._error = error
         if error <= self.tolerance:
             return ""

@@ -14,7 +14,7 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.core.part import Model, State
-from riser_soil.core.roles import Remembering
+from riser_soil.core.roles import Remembering, with_role
 from riser_soil.core.system import Clock, System
 from riser_soil.errors import SolveError
 from riser_soil.riser.line import Line
@@ -49,7 +49,7 @@ def relax(
     weight: typical force per length [N/m]. Raises SolveError when no equilibrium is found.
     """
     part = Relaxation(line, weight / (FREE_FALL * line.length.min()))
-    system = System(comm, Model(model.fields, [*model.parts, part]), clock)
+    system = System(comm, replace(model, parts=[*model.parts, part]), clock)
     newton = Newton(system, replace(settings, least_iterations=1))  # a slow move's forces may pass for balance
     try:
         return _descend(system, newton, part, line, t)
@@ -168,7 +168,7 @@ def _step(system: System, newton: Newton, part: Relaxation, t: float, drag: floa
 
 def _pass_through(system: System, state: State) -> None:
     """Commit a state that is none of the stage's, so that its forces leave no trace."""
-    remembering = [part for part in system.model.parts if isinstance(part, Remembering)]
+    remembering = with_role(system.model.parts, Remembering)
     kept = [part.memory for part in remembering]
     system.commit(state)
     for part, memory in zip(remembering, kept, strict=True):

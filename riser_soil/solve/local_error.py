@@ -18,34 +18,25 @@ Computational and Nonlinear Dynamics 3, 2008, on the first). It moves velocities
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import System
 from riser_soil.solve.newton import Solution
 from riser_soil.solve.riser_mass import RiserMass
-from riser_soil.solve.time_scheme import Dynamic, GeneralizedAlpha
+from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
 
 CONTACT = GeneralizedAlpha.newmark(0.5, 1.0)
 FAR = 4.0  # times the last step: how far ahead its jerk is trusted
 SAME = 1e-9  # of a step: two steps that differ by round-off
 
 
-@runtime_checkable
-class Extended(Protocol):
-    """A field with places; (nn, d) local numbers of their translations [m]."""
-
-    @property
-    def translation_dofs(self) -> IntArray: ...
-
-
 class LocalError:
     """Local error of the steps of a stage, in the displacements of the riser [m]; collective."""
 
-    def __init__(self, system: System, scheme: Dynamic, mass: RiserMass) -> None:
+    def __init__(self, system: System, scheme: Scheme, mass: RiserMass) -> None:
         self._system, self._scheme, self._mass = system, scheme, mass
         self._jerk: Array | None = None
         self._dt = 0.0
@@ -62,7 +53,7 @@ class LocalError:
     def accept(self, start: State, after: State, dt: float) -> None:
         """Keep how fast the accelerations changed in a step from `start` to the accepted state `after`."""
         self._jerk, self._dt = (after.a - start.a) / dt, dt
-        self._jerk[self._system.held] = 0.0
+        self._jerk[self._system.prescribed_dofs] = 0.0
 
     def of(self, start: State, moving: State, solution: Solution, dt: float) -> float:
         """Largest local error of a place [m] in a step from `start` that is solved, but not committed.
@@ -70,26 +61,27 @@ class LocalError:
         moving: the state at the start as the riser moves, contact's share of the accelerations included.
         """
         missed = self._missed(start, moving, solution)
-        missed[self._system.held] = 0.0
-        riser = self._system.model.fields[0]
-        assert isinstance(riser, Extended)
-        largest = dt**2 * np.linalg.norm(missed[riser.translation_dofs], axis=1).max()
-        return float(self._system.comm.bcast(largest))
+        missed[self._system.prescribed_dofs] = 0.0
+        return dt**2 * _farthest(self._system, missed)
 
     def _missed(self, start: State, moving: State, solution: Solution) -> Array:
         """Local error of the displacements, relative to dt^2 [m/s2]."""
         scheme, end = self._scheme, solution.state
-        if self._system.smooth or not isinstance(scheme, GeneralizedAlpha):
+        if self._system.smooth:
             return scheme.error_constant * (end.a - start.a)
         contact = self._mass.accelerations(start.t, -solution.forces.end)
-        bulk = end.a - contact / (2.0 * scheme.beta)
+        bulk = scheme.split_contact(end, contact, 0.0).a
         change = contact - (moving.a - start.a)
         return scheme.error_constant * (bulk - start.a) + CONTACT.error_constant * change
 
 
 def first_step(system: System, moving: State, tolerance: float) -> float:
     """Time [s] in which the accelerations at the start move the riser by the tolerance [m]; inf where it rests."""
-    riser = system.model.fields[0]
-    assert isinstance(riser, Extended)
-    largest = system.comm.bcast(np.linalg.norm(moving.a[riser.translation_dofs], axis=1).max())
+    largest = _farthest(system, moving.a)
     return float(np.sqrt(2.0 * tolerance / largest)) if largest > 0.0 else float("inf")
+
+
+def _farthest(system: System, values: Array) -> float:
+    """Largest norm of a translation of the lines among local values; the same on all ranks."""
+    largest = max(np.linalg.norm(values[line.translation_dofs], axis=1).max() for line in system.model.lines)
+    return float(system.comm.bcast(largest))

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass, field
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Forces, State
+from riser_soil.core.part import Forces, State, local
 from riser_soil.core.system import System
 from riser_soil.solve.linear_solver import PREFIX, defaults, factorise_directly
 from riser_soil.solve.stability import hold_free_turns, unstable_modes
@@ -35,15 +34,6 @@ class UnstableError(NotConvergedError):
     def __init__(self, text: str, solution: Solution) -> None:
         super().__init__(text)
         self.solution = solution
-
-
-@runtime_checkable
-class Judging(Protocol):
-    """A field that knows states in balance that are none of the thing modelled."""
-
-    def fault(self, state: State) -> str:
-        """What is wrong with a state, the same on all ranks; empty for a good one."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -104,7 +94,6 @@ class Newton:
         self._f = system.numbering.vector.duplicate()
         self._levers = system.numbering.vector.duplicate()
         system.numbering.to_global(system.levers, self._levers)
-        self._judging = [owner for owner in system.model.fields if isinstance(owner, Judging)]
         self._snes = self._create()
 
     def _create(self) -> PETSc.SNES:
@@ -131,14 +120,14 @@ class Newton:
         if self._snes.getConvergedReason() <= 0:
             raise NotConvergedError(self._reason())
         state = self._trial(self._x)
-        self.judge(state)
+        self.require_admissible(state)
         return Solution(state, self._forces, self._norms)
 
-    def judge(self, state: State) -> None:
-        """Raise NotConvergedError where a field finds fault with a state in balance."""
-        for owner in self._judging:
-            if fault := owner.fault(state):
-                raise NotConvergedError(fault)
+    def require_admissible(self, state: State) -> None:
+        """Raise NotConvergedError where a state in balance is none of the line."""
+        for line in self.system.model.lines:
+            if reason := line.inadmissible(state):
+                raise NotConvergedError(reason)
 
     def require_stable(self, solution: Solution) -> None:
         """Raise UnstableError where a static solution is an unstable equilibrium, such as an unbuckled strut.
@@ -169,9 +158,9 @@ class Newton:
         self._step, self._norms = step, list[float]()
         self._weights, self._past = step.scheme.weights(step.dt), step.scheme.past(step.start)
         self._still = step.scheme.trial(step.before, step.t, step.dt, np.zeros_like(step.guess))
-        held = State(step.t, *(x.copy() for x in (step.guess, self._still.v, self._still.a)))
-        self.system.prescribe(held)
-        self._held = [x[self.system.held] for x in (held.u, held.v, held.a)]
+        prescribed = State(step.t, *(x.copy() for x in (step.guess, self._still.v, self._still.a)))
+        self.system.prescribe(prescribed)
+        self._prescribed = [x[self.system.prescribed_dofs] for x in (prescribed.u, prescribed.v, prescribed.a)]
         self._state: State | None = None
         self.system.numbering.to_global(step.guess, self._x)
 
@@ -179,7 +168,7 @@ class Newton:
         """State of the unknowns x; the same object while x stays the same, so that parts need not look twice."""
         u = np.zeros(self.system.numbering.size)
         self.system.numbering.to_local(x, u)
-        u[self.system.held] = self._held[0]
+        u[self.system.prescribed_dofs] = self._prescribed[0]
         if self._state is None or (u != self._state.u).any():
             self._state = self._follow(u)
             self._balanced = self._step.scheme.balanced_at(self._step.before, self._state, self._step.dt)
@@ -189,7 +178,7 @@ class Newton:
         """State of the increments u: rates follow them by the scheme's shifts, but for the prescribed ones."""
         v = self._still.v + self._weights.shift_v * u
         a = self._still.a + self._weights.shift_a * u
-        v[self.system.held], a[self.system.held] = self._held[1:]
+        v[self.system.prescribed_dofs], a[self.system.prescribed_dofs] = self._prescribed[1:]
         return State(self._step.t, u, v, a)
 
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
@@ -236,12 +225,11 @@ class Newton:
         return ITERATING
 
     def _scale(self, forces: Forces) -> float:
-        """Norm of the forces in play: reactions, inertia, contact on the riser."""
+        """Norm of the forces in play: reactions, inertia, contact on the lines."""
         system = self.system
-        riser = system.model.fields[0]
-        at = slice(riser.offset, riser.offset + riser.size)
-        reactions, inertia = system.reactions(forces) / system.levers[system.held], forces.inertia / system.levers
-        contact = forces.end[at] / system.levers[at]
+        reactions = system.reactions(forces) / system.levers[system.prescribed_dofs]
+        inertia = forces.inertia / system.levers
+        contact = np.concatenate([(forces.end / system.levers)[local(line)] for line in system.model.lines])
         mine = [float(f @ f) for f in (reactions, inertia, contact)]
         return math.sqrt(max(system.sum(mine)))
 

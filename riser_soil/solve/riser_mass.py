@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import solveh_banded
 
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.core.part import Field, Part, State, Weights
+from riser_soil.core.part import LineField, Part, State, Weights, local
 from riser_soil.core.system import System
 
 MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
@@ -17,51 +17,63 @@ MASSLESS = 1e-12  # of a node's largest mass
 
 
 class RiserMass:
-    """Inverse of the riser's mass (its own and the added one) on its free dofs; collective over the system's ranks."""
+    """Inverse of the lines' mass, their own and the added one, on their free dofs; collective over all ranks."""
 
     def __init__(self, system: System) -> None:
         self._system = system
-        self._riser: Field = system.model.fields[0]
-        self._parts: list[Part] = [part for part in system.model.parts if "I" in part.traits.groups]
-        self._moving: Array | None = None
+        self._lines = [_LineMass(system, line) for line in system.model.lines]
+        self._parts = _with_inertia(system)
 
     def accelerations(self, t: float, force: Array) -> Array:
-        """a with M a = force, in the accepted configuration at time t; local arrays, zero outside the riser.
+        """a with M a = force, in the accepted configuration at time t; local arrays, zero outside the lines.
 
         What has no mass (as the twist of a line without inertia about its axis) and prescribed dofs get none.
         """
-        at = slice(self._riser.offset, self._riser.offset + self._riser.size)
-        mine = self._solve(t, force[at]) if self._system.comm.rank == 0 else None
         out = np.zeros_like(force)
-        out[at] = self._system.comm.bcast(mine)
+        for mass in self._lines:
+            at = local(mass.line)
+            mine = mass.solve(t, force[at]) if self._system.comm.rank == 0 else None
+            out[at] = self._system.comm.bcast(mine)
         return out
 
     def kinetic_energy(self, state: State) -> float:
-        """Kinetic energy [J] of the riser at an accepted state."""
+        """Kinetic energy [J] of the lines at an accepted state."""
         mine = sum(part.energy(state).kinetic for part in self._parts)
         return float(self._system.comm.allreduce(mine))
 
-    def _solve(self, t: float, force: Array) -> Array:
+
+def _with_inertia(system: System) -> list[Part]:
+    return [part for part in system.model.parts if "I" in part.traits.groups]
+
+
+class _LineMass:
+    """The mass of one line."""
+
+    def __init__(self, system: System, line: LineField) -> None:
+        self.line, self._system, self._parts = line, system, _with_inertia(system)
+        self._moving: Array | None = None
+
+    def solve(self, t: float, force: Array) -> Array:
         """With rotations counted by the way of the lever's end, so that all masses are in kg."""
-        levers = self._system.levers[self._riser.offset : self._riser.offset + self._riser.size]
+        levers = self._system.levers[local(self.line)]
         blocks = self._element_matrices(t)
         of_element = levers[: blocks.shape[1]]
         return self._solve_weighed(blocks / np.outer(of_element, of_element), force / levers) / levers
 
     def _solve_weighed(self, blocks: Array, force: Array) -> Array:
         if self._moving is None:
-            self._moving = _moving(blocks, ~self._riser.prescribed)
-        banded = _banded(_projected(blocks, self._moving), self._riser.size)
+            self._moving = _moving(blocks, ~self.line.prescribed)
+        banded = _banded(_projected(blocks, self._moving), self.line.size)
         _add_nodal(banded, (blocks.max() or 1.0) * (np.eye(self._moving.shape[1]) - self._moving))
         nodal = force.reshape(len(self._moving), -1, 1)
         return np.asarray(solveh_banded(banded, (self._moving @ nodal).ravel(), overwrite_ab=True))
 
     def _element_matrices(self, t: float) -> Array:
         state = State.at_rest(t, self._system.numbering.size)
-        values = {"riser": np.zeros_like(self._system.matrix.values["riser"])}
+        values = {self.line.name: np.zeros_like(self._system.matrix.values[self.line.name])}
         for part in self._parts:
             part.tangent(state, MASS_ONLY, values)
-        return values["riser"]
+        return values[self.line.name]
 
 
 def _moving(blocks: Array, free: BoolArray) -> Array:

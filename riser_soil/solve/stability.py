@@ -16,33 +16,16 @@ dof that it moves takes it away and leaves all else as it is: v - c t, with that
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.part import Part, State, Weights
+from riser_soil.core.part import LineField, Part, State, Weights, local
 from riser_soil.core.system import System
 from riser_soil.solve.linear_solver import negative_pivots
 
 EPS = float(np.finfo(float).eps)
 NO_STIFFNESS = 1e-4  # of the forces in play, for a turn that moves the riser by its length; a residual makes much less
-
-
-@runtime_checkable
-class TurningFreely(Protocol):
-    """A field that may move as a whole without moving its supports."""
-
-    offset: int
-    size: int
-
-    def free_turns(self, state: State) -> Array:
-        """Such motions (k, size), their largest displacement the field's own length."""
-        ...
-
-    def in_newtons(self, forces: Array) -> Array:
-        """Forces and moments (size,) of the field, moments over that length."""
-        ...
 
 
 def judged_parts(system: System) -> Sequence[Part] | None:
@@ -101,32 +84,33 @@ def _row_bounds(system: System, diagonal: Array) -> Array:
 
 
 def _neutral(system: System, state: State, least: float) -> Array:
-    """Free turns of the riser (k, size) that meet less than `least` [N]; the same on all ranks."""
-    riser = system.model.fields[0]
-    if not isinstance(riser, TurningFreely):
-        return np.zeros((0, 0))
-    turns = riser.free_turns(state)
+    """Free turns of the lines (k, size) that meet less than `least` [N]; the same on all ranks."""
+    return np.concatenate([_neutral_turns(system, line, state, least) for line in system.model.lines])
+
+
+def _neutral_turns(system: System, line: LineField, state: State, least: float) -> Array:
+    turns, at = line.free_turns(state), local(line)
+    whole = np.zeros((len(turns), system.numbering.size))
+    whole[:, at] = turns
     if not turns.size:
-        return turns
-    met = np.array([riser.in_newtons(force) for force in _products(system, turns)]).reshape(turns.shape)
+        return whole
+    met = np.array([line.in_newtons(force[at]) for force in _products(system, whole)]).reshape(turns.shape)
     _, sizes, combined = np.linalg.svd(met.T, full_matrices=False)
-    return np.asarray(combined[sizes < least] @ turns)
+    return np.asarray(combined[sizes < least] @ whole)
 
 
-def _products(system: System, turns: Array) -> list[Array]:
-    """The assembled matrix times increments of the riser (k, size); the riser's slice of each."""
-    at = slice(system.model.fields[0].offset, system.model.fields[0].offset + system.model.fields[0].size)
-    increment, product = (system.numbering.vector.duplicate() for _ in range(2))
+def _products(system: System, increments: Array) -> list[Array]:
+    """The assembled matrix times increments (k, size)."""
+    x, product = (system.numbering.vector.duplicate() for _ in range(2))
     found = list[Array]()
-    for turn in turns:
-        local, met = np.zeros(system.numbering.size), np.zeros(system.numbering.size)
-        local[at] = turn
-        increment.set(0.0)
-        system.numbering.to_global(local, increment)
-        system.matrix.mat.mult(increment, product)
+    for increment in increments:
+        met = np.zeros(system.numbering.size)
+        x.set(0.0)
+        system.numbering.to_global(increment, x)
+        system.matrix.mat.mult(x, product)
         system.numbering.to_local(product, met)
-        found.append(met[at])
-    for vector in (increment, product):
+        found.append(met)
+    for vector in (x, product):
         vector.destroy()
     return found
 
@@ -139,5 +123,5 @@ def _one_dof_each(system: System, turns: Array) -> IntArray:
         pivot = rest[chosen] / rest[chosen, dof]
         rest -= np.outer(rest[:, dof], pivot)
         rest[:, dof] = 0.0
-        rows.append(int(system.numbering.index[system.model.fields[0].offset + dof]))
+        rows.append(int(system.numbering.index[dof]))
     return np.array(rows, dtype=np.int64)

@@ -13,9 +13,13 @@ LEVELS = 20
 
 
 class Control(Protocol):
-    """Says how far the next step goes. Times in s; in a static stage load factors."""
+    """Says how far the next step goes. Times in s; in a static stage load factors.
+
+    judges_error: whether it asks for the local error of each step.
+    """
 
     end: float
+    judges_error: bool
 
     @property
     def finished(self) -> bool: ...
@@ -28,6 +32,10 @@ class Control(Protocol):
     @property
     def dt(self) -> float: ...
 
+    def rejection(self, error: float) -> str:
+        """Why a step of this local error [m] is not accepted; empty for a good one."""
+        ...
+
     def accept(self, easy: bool) -> None:
         """Move on from a step that has been taken, with little effort or with much."""
         ...
@@ -39,6 +47,8 @@ class Control(Protocol):
 
 class StepControl:
     """Walks from 0 to `end` in nominal steps of size `step`; never below `smallest`."""
+
+    judges_error = False
 
     def __init__(self, end: float, step: float, smallest: float) -> None:
         self.end, self.step = end, step
@@ -59,6 +69,9 @@ class StepControl:
     @property
     def dt(self) -> float:
         return self.target - self._time(self._at)
+
+    def rejection(self, error: float) -> str:
+        return ""
 
     def accept(self, easy: bool) -> None:
         """Move on; after an easy step on the coarser grid, try twice the step."""

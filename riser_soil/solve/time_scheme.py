@@ -23,12 +23,63 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Weights
 
 
-class Scheme(Protocol):
-    """What a step needs to know of the time integration."""
+class StepEnd(Protocol):
+    """An accepted step at its end, and what may be asked of the system there.
+
+    state: increments zero, rates as solved. contact: accelerations that contact causes [m/s2]; None where no forces may
+    jump.
+    """
+
+    dt: float
 
     @property
-    def needs_history(self) -> bool:
-        """Whether forces at the start of the step enter the residual."""
+    def state(self) -> State: ...
+
+    @property
+    def contact(self) -> Array | None: ...
+
+    def with_momentum(self, state: State) -> State:
+        """The state with the rates that have the momentum of the step's end."""
+        ...
+
+    def in_balance(self, state: State) -> State:
+        """The state with the accelerations that its forces cause."""
+        ...
+
+
+class Scheme(Protocol):
+    """What a step needs to know of the time integration. dynamic: whether there are rates and inertia."""
+
+    dynamic: bool
+
+    @property
+    def lag(self) -> float:
+        """Accelerations belong to a time this share of their step before its end."""
+        ...
+
+    @property
+    def stiff_lag(self) -> float:
+        """Velocities of motions that stiff forces prescribe are off by minus this times dt^2 times the jerk."""
+        ...
+
+    @property
+    def error_constant(self) -> float:
+        """Local error in displacements, relative to dt^2 times the change of the accelerations; see `local_error`."""
+        ...
+
+    def renews_history(self, smooth: bool) -> bool:
+        """Whether forces at the start of a step are not those at the end of the last, or enter the residual.
+
+        smooth: whether no forces may jump, see `System`.
+        """
+        ...
+
+    def split_contact(self, state: State, contact: Array, dt: float) -> State:
+        """A solved state, contact's accelerations [m/s2] out of its bulk ones and in full in its rate."""
+        ...
+
+    def rates_after(self, end: StepEnd) -> tuple[State, State]:
+        """The state that the next step starts from, with the bulk's rates alone, and the same as the riser moves."""
         ...
 
     def weights(self, dt: float) -> Weights: ...
@@ -54,30 +105,21 @@ class Scheme(Protocol):
         ...
 
 
-class Dynamic(Scheme, Protocol):
-    """What is known of the error of a scheme that goes through time."""
-
-    @property
-    def lag(self) -> float:
-        """Accelerations belong to a time this share of their step before its end."""
-        ...
-
-    @property
-    def stiff_lag(self) -> float:
-        """Velocities of motions that stiff forces prescribe are off by minus this times dt^2 times the jerk."""
-        ...
-
-    @property
-    def error_constant(self) -> float:
-        """Local error in displacements, relative to dt^2 times the change of the accelerations; see `local_error`."""
-        ...
-
-
 @dataclass(frozen=True)
 class Static:
     """Equilibrium: no rates, no inertia."""
 
-    needs_history = False
+    dynamic = False
+    lag = stiff_lag = error_constant = 0.0
+
+    def renews_history(self, smooth: bool) -> bool:
+        return False
+
+    def split_contact(self, state: State, contact: Array, dt: float) -> State:
+        return state
+
+    def rates_after(self, end: StepEnd) -> tuple[State, State]:
+        return end.state, end.state
 
     def weights(self, dt: float) -> Weights:
         return Weights(inertia=0.0, force=1.0, shift_v=0.0, shift_a=0.0)
@@ -107,6 +149,7 @@ class GeneralizedAlpha:
     alpha_f: float
     beta: float
     gamma: float
+    dynamic = True
 
     @classmethod
     def newmark(cls, beta: float = 0.25, gamma: float = 0.5) -> GeneralizedAlpha:
@@ -119,9 +162,9 @@ class GeneralizedAlpha:
         alpha_f = rho_inf / (rho_inf + 1.0)
         return cls(alpha_m, alpha_f, 0.25 * (1.0 - alpha_m + alpha_f) ** 2, 0.5 - alpha_m + alpha_f)
 
-    @property
-    def needs_history(self) -> bool:
-        return self.alpha_m != 0.0 or self.alpha_f != 0.0
+    def renews_history(self, smooth: bool) -> bool:
+        """Contact changes the rates after a step, and with them its forces."""
+        return self.alpha_m != 0.0 or self.alpha_f != 0.0 or not smooth
 
     @property
     def bulk_weight(self) -> float:
@@ -174,10 +217,15 @@ class GeneralizedAlpha:
         return out
 
     def split_contact(self, state: State, contact: Array, dt: float) -> State:
-        """The state with the contact's share `contact` [m/s2] out of its bulk acceleration and in full in its rate."""
         a = state.a - contact / (2.0 * self.beta)
         v = state.v + dt * (1.0 - self.gamma / (2.0 * self.beta)) * contact
         return State(state.t, state.u, v, a)
+
+    def rates_after(self, end: StepEnd) -> tuple[State, State]:
+        if end.contact is None:
+            return end.state, end.state
+        bulk = self.split_contact(end.state, end.contact, end.dt)
+        return bulk, State(bulk.t, bulk.u, bulk.v, bulk.a + end.contact)
 
 
 @dataclass(frozen=True)
@@ -189,9 +237,20 @@ class Midpoint:
     quasi-static soil, whose forces belong to the end.
     """
 
-    needs_history = False
+    dynamic = True
     lag = stiff_lag = 0.0
     error_constant = 1.0 / 12.0
+
+    def renews_history(self, smooth: bool) -> bool:
+        return False
+
+    def split_contact(self, state: State, contact: Array, dt: float) -> State:
+        return state
+
+    def rates_after(self, end: StepEnd) -> tuple[State, State]:
+        """With the momentum that inertia has kept, and accelerations of the end, as the balance is in the middle."""
+        now = end.in_balance(end.with_momentum(end.state))
+        return now, now
 
     def weights(self, dt: float) -> Weights:
         return Weights(inertia=1.0, force=1.0, shift_v=2.0 / dt, shift_a=4.0 / dt**2)

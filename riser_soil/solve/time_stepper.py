@@ -8,8 +8,8 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Energy, Forces, State, Work
-from riser_soil.core.roles import Adaptive, Demanding, MomentumCorrecting, Predictor, Turning
+from riser_soil.core.part import Energy, Forces, State, Work, local
+from riser_soil.core.roles import Adaptive, MomentumCorrecting, Predictor, with_role
 from riser_soil.core.system import System, total
 from riser_soil.errors import SolveError
 from riser_soil.solve.local_error import LocalError
@@ -17,7 +17,8 @@ from riser_soil.solve.newton import Newton, NotConvergedError, Solution, Step
 from riser_soil.solve.predictor import Extrapolation
 from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.step_control import Control
-from riser_soil.solve.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
+from riser_soil.solve.step_end import CommittedStep
+from riser_soil.solve.time_scheme import Scheme
 
 LARGEST_ENERGY_GAIN = 0.2  # of the energy in motion: what a step may make out of nothing
 ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away
@@ -63,18 +64,17 @@ class TimeStepper:
         self.system, self.newton, self.scheme, self._largest_gain = system, newton, scheme, largest_gain
         self._mass: RiserMass | None = None
         self._error: LocalError | None = None
-        owners = (*system.model.fields, *system.model.parts)
-        self._predictors = [owner for owner in owners if isinstance(owner, Predictor)]
-        self._turning = [field for field in system.model.fields if isinstance(field, Turning)]
-        self._adaptive = [part for part in system.model.parts if isinstance(part, Adaptive)]
+        parts = system.model.parts
+        self._predictors: list[Predictor] = [*system.model.lines, *with_role(parts, Predictor)]
+        self._adaptive: list[Adaptive] = with_role(parts, Adaptive)
+        self._momentum_correcting: list[MomentumCorrecting] = with_role(parts, MomentumCorrecting)
         self.before = self.now = before
         self.restart()
-        if not isinstance(scheme, Static):
+        if scheme.dynamic:
             self._mass = RiserMass(system)
             self._start_rates(before)
-        self._momentum_correcting = [part for part in system.model.parts if isinstance(part, MomentumCorrecting)]
         self._begin_step()
-        self._history = self.system.forces(self.before) if self._needs_history else None
+        self._history = self.system.forces(self.before) if self._renews_history else None
         self.energy = system.energy(self.before)
 
     def restart(self) -> None:
@@ -104,7 +104,7 @@ class TimeStepper:
 
     def advance(self, control: Control, most_cuts: int | None = None) -> Accepted:
         """Take one step, cut as often as it needs; SolveError when it can't be cut any more, or may not."""
-        if isinstance(control, Demanding) and self._error is None:
+        if control.judges_error and self._error is None:
             self._error = self._new_error()
         cuts = 0
         while True:
@@ -128,7 +128,6 @@ class TimeStepper:
 
     def _new_error(self) -> LocalError:
         assert self._mass is not None
-        assert isinstance(self.scheme, GeneralizedAlpha | Midpoint)
         return LocalError(self.system, self.scheme, self._mass)
 
     def _start(self, dt: float) -> State:
@@ -143,7 +142,7 @@ class TimeStepper:
             if not self._renew_pattern():
                 raise
             solution = self.newton.solve(step)
-        if isinstance(self.scheme, Static):
+        if not self.scheme.dynamic:
             self.newton.require_stable(solution)
         return solution
 
@@ -183,7 +182,7 @@ class TimeStepper:
         """A dynamic step that adds much to the energy in motion out of nothing is a root of the equations far from the
         motion that it continues, or too long for it: NotConvergedError, so that it is cut.
         """
-        if isinstance(self.scheme, Static):
+        if not self.scheme.dynamic:
             return
         was, now = self.energy, step.energy
         appeared = now.total - was.total + step.dissipated - step.work
@@ -201,18 +200,18 @@ class TimeStepper:
         """Kinetic energy [J] after a step, not yet committed, as the riser moves: in the step's own energy contact has
         accelerated it as the bulk's forces do, so that it speeds up where it rests.
         """
-        if self.system.smooth or self._mass is None or not isinstance(self.scheme, GeneralizedAlpha):
+        if self.system.smooth or self._mass is None:
             return step.energy.kinetic
         contact = self._mass.accelerations(self.before.t, -step.solution.forces.end)
         return self._mass.kinetic_energy(self.scheme.split_contact(step.solution.state, contact, step.dt))
 
     def _refuse_inaccurate(self, step: Accepted, control: Control) -> None:
         """NotConvergedError for a step whose local error is too large, so that it is cut."""
-        if self._error is None or not isinstance(control, Demanding):
+        if self._error is None:
             return
         error = self._error.of(self._start(step.dt), self.now, step.solution, step.dt)
-        if fault := control.fault(error):
-            raise NotConvergedError(fault)
+        if rejection := control.rejection(error):
+            raise NotConvergedError(rejection)
 
     def commit(self, step: Accepted, control: Control) -> None:
         """Accept the step and get ready for the next."""
@@ -223,7 +222,7 @@ class TimeStepper:
         if self._error is not None:
             self._error.accept(start, self.before, step.dt)
         self._begin_step()
-        self._forces, self._history = forces, self._forces_after(step) if self._needs_history else None
+        self._forces, self._history = forces, self._forces_after(step) if self._renews_history else None
         self.energy = self._energy_after(step)
         self._past.accept(state.u, step.dt)
         control.accept(easy=step.solution.iterations <= EASY)
@@ -232,48 +231,26 @@ class TimeStepper:
     def _rates_after(self, step: Accepted) -> tuple[State, State]:
         """The state just committed, increments zero: with the bulk's rates alone, and as the riser moves."""
         solved, forces = step.solution.state, step.solution.forces
-        state = State(solved.t, np.zeros_like(solved.u), solved.v, solved.a)
-        if isinstance(self.scheme, Midpoint):
-            now = self._in_balance(self._corrected_momentum(state))
-            return now, now
-        if self.system.smooth or self._mass is None or not isinstance(self.scheme, GeneralizedAlpha):
-            return state, state
-        contact = self._mass.accelerations(state.t, -forces.end)
-        bulk = self.scheme.split_contact(state, contact, step.dt)
-        return bulk, State(bulk.t, bulk.u, bulk.v, bulk.a + contact)
+        if self._mass is None:
+            still = State(solved.t, np.zeros_like(solved.u), solved.v, solved.a)
+            return still, still
+        correcting = self._momentum_correcting
+        end = CommittedStep(self.system, self._mass, correcting, solved, forces, step.dt)
+        return self.scheme.rates_after(end)
 
     def _begin_step(self) -> None:
         for part in self._momentum_correcting:
             part.begin(self.before)
 
-    def _corrected_momentum(self, state: State) -> State:
-        """An accepted state with the rates that have the momentum of the step's end."""
-        assert self._mass is not None
-        excess = np.zeros_like(state.v)
-        for part in self._momentum_correcting:
-            part.add_momentum_correction(state, excess)
-        return State(state.t, state.u, state.v + self._mass.accelerations(state.t, excess), state.a)
-
-    def _in_balance(self, state: State) -> State:
-        """An accepted state with the accelerations that its forces cause, as the scheme's own balance is elsewhere."""
-        assert self._mass is not None
-        held = np.where(self.system.prescribed, state.a, 0.0)
-        forces = self.system.forces(State(state.t, state.u, state.v, held))
-        return State(state.t, state.u, state.v, held + self._mass.accelerations(state.t, -total(forces)))
-
     def _energy_after(self, step: Accepted) -> Energy:
         """Stored energy of the accepted state: the step's, but kinetic as the riser moves."""
-        as_solved = self.system.smooth and not isinstance(self.scheme, Midpoint)
-        if as_solved or self._mass is None:
+        if self._mass is None or self.now.v is step.solution.state.v:
             return step.energy
         return replace(step.energy, kinetic=self._mass.kinetic_energy(self.now))
 
     @property
-    def _needs_history(self) -> bool:
-        """Whether the scheme weighs the forces at the start, or contact has changed the rates since they were found."""
-        if not isinstance(self.scheme, GeneralizedAlpha):
-            return False
-        return self.scheme.needs_history or not self.system.smooth
+    def _renews_history(self) -> bool:
+        return self.scheme.renews_history(self.system.smooth)
 
     def _forces_after(self, step: Accepted) -> Forces:
         """Bulk forces at the state just accepted, in its own axes: the step's, unless contact has changed the rates."""
@@ -284,7 +261,7 @@ class TimeStepper:
 
     def _in_new_axes(self, conjugate: Array, increments: Array) -> Array:
         out = conjugate.copy()
-        for field in self._turning:
-            at = slice(field.offset, field.offset + field.size)
-            out[at] = field.in_new_axes(conjugate[at], increments[at])
+        for line in self.system.model.lines:
+            at = local(line)
+            out[at] = line.in_new_axes(conjugate[at], increments[at])
         return out

@@ -21,6 +21,23 @@ class Chain:
         self.prescribed: BoolArray = np.zeros(self.size, dtype=bool)
         self.prescribed[0] = held
 
+    lever = 1.0
+
+    def predict(self, guess: State) -> Array:
+        return guess.u
+
+    def inadmissible(self, state: State) -> str:
+        return ""
+
+    def in_new_axes(self, conjugate: Array, increments: Array) -> Array:
+        return conjugate
+
+    def free_turns(self, state: State) -> Array:
+        return np.zeros((0, self.size))
+
+    def in_newtons(self, forces: Array) -> Array:
+        return forces
+
     @property
     def translation_dofs(self) -> IntArray:
         return np.asarray(self.offset + np.arange(self.size)[:, None], dtype=np.int64)
@@ -50,7 +67,7 @@ class Inertia:
         self.chain, self.mass = chain, mass / 2.0
 
     def blocks(self) -> dict[str, Block]:
-        return {"riser": self.chain.pairs()}
+        return {"chain": self.chain.pairs()}
 
     def nodal(self) -> Array:
         count = np.full(self.chain.size, 2.0)
@@ -61,7 +78,7 @@ class Inertia:
         forces.inertia += self.nodal() * state.a
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        values["riser"] += weights.inertia * weights.shift_a * self.mass * np.eye(2)
+        values["chain"] += weights.inertia * weights.shift_a * self.mass * np.eye(2)
 
     def energy(self, state: State) -> Energy:
         return Energy(kinetic=0.5 * float(self.nodal() @ state.v**2))
@@ -82,7 +99,7 @@ class Springs:
         self.chain, self.rest, self.k, self.cubic, self.weight = chain, rest, k, cubic, weight
 
     def blocks(self) -> dict[str, Block]:
-        return {"riser": self.chain.pairs()}
+        return {"chain": self.chain.pairs()}
 
     def _stretch(self, state: State) -> Array:
         return np.diff(self.chain.heights(state)) - self.rest
@@ -96,7 +113,7 @@ class Springs:
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         k = self.k + 3.0 * self.cubic * self._stretch(state) ** 2
-        values["riser"] += weights.force * k[:, None, None] * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        values["chain"] += weights.force * k[:, None, None] * np.array([[1.0, -1.0], [-1.0, 1.0]])
 
     def energy(self, state: State) -> Energy:
         e = self._stretch(state)

@@ -20,7 +20,7 @@ def walk(steps: AutoSteps, error: Callable[[float, float], float], easy: bool = 
     """Ends of the accepted steps, and how many attempts failed; error(t, dt)."""
     times, failed = list[float](), 0
     while not steps.finished:
-        if steps.fault(error(steps.target, steps.dt)):
+        if steps.rejection(error(steps.target, steps.dt)):
             assert steps.cut()
             failed += 1
         else:
@@ -94,7 +94,7 @@ def test_what_fails_for_other_reasons_is_halved_down_to_the_smallest() -> None:
 
 
 def test_fault_states_error_and_tolerance() -> None:
-    assert "0.005 m exceeds the tolerance of 0.001 m" in AutoSteps(1.0, TOLERANCE, 1e-5, 0.1).fault(0.005)
+    assert "0.005 m exceeds the tolerance of 0.001 m" in AutoSteps(1.0, TOLERANCE, 1e-5, 0.1).rejection(0.005)
 
 
 def test_output_ramps_and_bends_of_loads_are_hit() -> None:

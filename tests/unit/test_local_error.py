@@ -23,6 +23,8 @@ SCHEMES = [GeneralizedAlpha.newmark(), GeneralizedAlpha.from_rho_inf(0.8), Gener
 class Given:
     """Steps of given sizes whatever their error, which is kept."""
 
+    judges_error = True
+
     def __init__(self, sizes: Array) -> None:
         self._ends, self.end = np.cumsum(sizes), float(np.sum(sizes))
         self._done = 0
@@ -40,7 +42,7 @@ class Given:
     def dt(self) -> float:
         return self.target - (float(self._ends[self._done - 1]) if self._done else 0.0)
 
-    def fault(self, error: float) -> str:
+    def rejection(self, error: float) -> str:
         self.errors.append(error)
         return ""
 

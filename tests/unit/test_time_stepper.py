@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil.core.part import Field, Forces, Model, Part, State
+from riser_soil.core.part import Forces, LineField, Model, Part, State
 from riser_soil.core.system import Clock, System
 from riser_soil.errors import SolveError
 from riser_soil.results import Run
@@ -23,8 +23,8 @@ from tests.support.toy_chain import Chain, Floor, Inertia, Springs
 AVERAGE = GeneralizedAlpha.newmark()
 
 
-def march_through(
-    chain: Field, parts: list[Part], scheme: Scheme, v0: np.ndarray, end: float, dt: float, tolerance: float = 1e-11
+def walk_through(
+    chain: LineField, parts: list[Part], scheme: Scheme, v0: np.ndarray, end: float, dt: float, tolerance: float = 1e-11
 ) -> list[Accepted]:
     system = System(MPI.COMM_SELF, Model([chain], parts), Clock.new())
     newton = Newton(system, NewtonSettings(tolerance, 20, 1e-12))
@@ -44,7 +44,7 @@ def oscillate(scheme: Scheme, dt: float) -> float:
     """Height of the free end of a held nonlinear chain after 3 s."""
     chain = Chain(np.arange(4.0), held=True)
     parts: list[Part] = [Springs(chain, 1.0, 20.0, 50.0), Inertia(chain, 1.0)]
-    march_through(chain, parts, scheme, np.array([0.0, 0.3, 0.1, 0.8]), 3.0, dt)
+    walk_through(chain, parts, scheme, np.array([0.0, 0.3, 0.1, 0.8]), 3.0, dt)
     return float(chain.z[-1])
 
 
@@ -72,7 +72,7 @@ def test_average_acceleration_and_midpoint_rule_keep_the_energy_of_a_linear_chai
     parts: list[Part] = [Springs(chain, 1.0, 50.0, weight=2.0), inertia]
     v0 = np.array([0.0, 1.0, -1.0, 0.5, 0.2, 2.0])
     start = 0.5 * float(inertia.nodal() @ v0**2)
-    energies = [s.energy.total for s in march_through(chain, parts, scheme, v0, 100.0, 0.1)]
+    energies = [s.energy.total for s in walk_through(chain, parts, scheme, v0, 100.0, 0.1)]
     assert len(energies) == 1000
     assert np.ptp(energies) < 1e-8 * start
 
@@ -87,7 +87,7 @@ def test_impact_never_gains_energy(scheme: Scheme, stiffness: float, dt: float) 
     floor = Floor(chain, stiffness)
     at_rest = State.at_rest(0.0, 5)
     start = springs.energy(at_rest).total
-    steps = march_through(chain, [springs, inertia, floor], scheme, np.zeros(5), 2.0, dt, 1e-9)
+    steps = walk_through(chain, [springs, inertia, floor], scheme, np.zeros(5), 2.0, dt, 1e-9)
     assert min(s.dissipated for s in steps) > -1e-9 * start
     assert max(s.energy.total for s in steps) <= start * (1.0 + 1e-6)
     assert sum(s.dissipated for s in steps) > 0.0
@@ -103,7 +103,7 @@ class Unsolvable(Springs):
 def test_failure_names_the_place_and_the_step() -> None:
     chain = Chain(np.zeros(3))
     with pytest.raises(SolveError, match=r"smallest step 0\.0125.*mass \d"):
-        march_through(chain, [Unsolvable(chain, 1.0, 1.0), Inertia(chain, 0.0)], AVERAGE, np.zeros(3), 1.0, 0.1)
+        walk_through(chain, [Unsolvable(chain, 1.0, 1.0), Inertia(chain, 0.0)], AVERAGE, np.zeros(3), 1.0, 0.1)
 
 
 def test_a_smooth_start_from_rest_needs_no_cuts(tmp_path: Path) -> None:

@@ -1,0 +1,50 @@
+"""What becomes of a dynamic step at its end: contact's share of the accelerations, momentum, balance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Forces, State
+from riser_soil.core.roles import MomentumCorrecting
+from riser_soil.core.system import System, total
+from riser_soil.solve.riser_mass import RiserMass
+
+
+@dataclass(eq=False)
+class CommittedStep:
+    """A step just committed, see `time_scheme.StepEnd`; collective.
+
+    solved: its state, increments included; forces: in balance there [N]; dt [s].
+    """
+
+    system: System
+    mass: RiserMass
+    correcting: Sequence[MomentumCorrecting]
+    solved: State
+    forces: Forces
+    dt: float
+
+    @cached_property
+    def state(self) -> State:
+        solved = self.solved
+        return State(solved.t, np.zeros_like(solved.u), solved.v, solved.a)
+
+    @cached_property
+    def contact(self) -> Array | None:
+        return None if self.system.smooth else self.mass.accelerations(self.solved.t, -self.forces.end)
+
+    def with_momentum(self, state: State) -> State:
+        missing = np.zeros_like(state.v)
+        for part in self.correcting:
+            part.add_momentum_correction(state, missing)
+        return State(state.t, state.u, state.v + self.mass.accelerations(state.t, missing), state.a)
+
+    def in_balance(self, state: State) -> State:
+        prescribed = np.where(self.system.prescribed, state.a, 0.0)
+        forces = self.system.forces(State(state.t, state.u, state.v, prescribed))
+        return State(state.t, state.u, state.v, prescribed + self.mass.accelerations(state.t, -total(forces)))

@@ -1,0 +1,57 @@
+"""Roles of parts: what is declared is there, and what is there is declared; otherwise a stage does not start."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Model, State, Traits
+from riser_soil.core.roles import Adaptive, MomentumCorrecting, Predictor, Remembering, with_role
+from riser_soil.core.system import Clock, System
+from tests.support.toy_chain import Chain, Floor
+
+
+class Foreseen(Floor):
+    """A floor that predicts."""
+
+    traits = Traits("E", symmetric=True, roles=(Predictor,))
+
+    def predict(self, guess: State) -> Array:
+        return guess.u
+
+
+class Misspelt(Floor):
+    traits = Traits("E", symmetric=True, roles=(Predictor,))
+
+    def predcit(self, guess: State) -> Array:
+        return guess.u
+
+
+class Undeclared(Foreseen):
+    traits = Traits("E", symmetric=True)
+
+
+def start(kind: type[Floor]) -> System:
+    chain = Chain(np.array([1.0, 2.0]))
+    return System(MPI.COMM_SELF, Model([chain], [kind(chain, 1e3)]), Clock.new())
+
+
+def test_a_declared_role_is_played() -> None:
+    system = start(Foreseen)
+    assert len(with_role(system.model.parts, Predictor)) == 1
+    assert all(not with_role(system.model.parts, role) for role in (Adaptive, MomentumCorrecting, Remembering))
+    system.destroy()
+
+
+@pytest.mark.parametrize(
+    ("kind", "says"),
+    [
+        (Misspelt, 'part "contact": the role Predictor, predict, is declared and not there'),
+        (Undeclared, 'part "contact": the role Predictor, predict, is there and not declared'),
+    ],
+)
+def test_a_misspelt_or_undeclared_role_is_an_error_at_the_start(kind: type[Floor], says: str) -> None:
+    with pytest.raises(TypeError, match=says):
+        start(kind)
