@@ -16,6 +16,7 @@ from riser_soil import dolfinx_compat
 from riser_soil.arrays import Array, BoolArray
 from riser_soil.dolfinx_compat import Nodes
 from riser_soil.errors import MeshError
+from riser_soil.interruption import undisturbed
 from riser_soil.soil.block import BlockSpec, make_block
 from riser_soil.soil.families import HEX8, TET10, Family
 from riser_soil.soil.mesh_file import HEXAHEDRON, cell_type, read_mesh
@@ -67,12 +68,14 @@ def on_all_ranks(comm: MPI.Intracomm, make: Callable[[], T]) -> T:
 @contextmanager
 def silent_gmsh() -> Iterator[None]:
     """A gmsh session that prints nothing and reads no settings of the user."""
-    gmsh.initialize(readConfigFiles=False)
+    with undisturbed():
+        gmsh.initialize(readConfigFiles=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         yield
     finally:
-        gmsh.finalize()
+        with undisturbed():
+            gmsh.finalize()
 
 
 def _grid(comm: MPI.Intracomm, make: Callable[[], None]) -> Grid:
