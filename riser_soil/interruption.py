@@ -65,6 +65,17 @@ def listening() -> Iterator[None]:
             signal.signal(number, handler)
 
 
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """A block whose libraries keep no hold on Ctrl-C: gmsh takes it when it is imported, or a session of it begins."""
+    usual = signal.getsignal(signal.SIGINT)
+    try:
+        yield
+    finally:
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(signal.SIGINT, usual)
+
+
 def deaf() -> None:
     """From now on signals end this process at once and without a word."""
     for number in OURS:

@@ -11,6 +11,7 @@ from riser_soil.assembly.laws import hysteretic_law, soil_law
 from riser_soil.assembly.scales import Scales, contact_radius, scales_of
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
+from riser_soil.interruption import undisturbed
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.contact import Contact as ContactScene
@@ -36,7 +37,8 @@ NARROWEST_CORNER, WIDEST_CORNER, MOBILISATION = 1.0 / 3000.0, 1.0 / 300.0, 1.0 /
 
 def soil_of(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Soil:
     """The continuum; meshed finely under the straight line between the riser's ends. Collective."""
-    from riser_soil.soil.soil import Soil
+    with undisturbed():  # imports gmsh
+        from riser_soil.soil.soil import Soil
 
     return Soil(
         _grid(scene, given, line, comm),

@@ -14,6 +14,7 @@ from mpi4py import MPI
 
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.errors import MeshError
+from riser_soil.interruption import undisturbed
 from riser_soil.soil import dolfinx_compat
 from riser_soil.soil.block import BlockSpec, make_block
 from riser_soil.soil.dolfinx_compat import Nodes
@@ -67,12 +68,14 @@ def on_all_ranks(comm: MPI.Intracomm, make: Callable[[], T]) -> T:
 @contextmanager
 def silent_gmsh() -> Iterator[None]:
     """A gmsh session that prints nothing and reads no settings of the user."""
-    gmsh.initialize(readConfigFiles=False)
+    with undisturbed():
+        gmsh.initialize(readConfigFiles=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         yield
     finally:
-        gmsh.finalize()
+        with undisturbed():
+            gmsh.finalize()
 
 
 def _grid(comm: MPI.Intracomm, make: Callable[[], None]) -> Grid:

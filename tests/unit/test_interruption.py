@@ -124,6 +124,31 @@ def test_a_run_in_another_thread_listens_to_nothing() -> None:
     assert failures == []
 
 
+MESHING = """
+import os, signal, sys
+from riser_soil.__main__ import main
+
+sys.argv = ["riser-soil", "run", "demos/touchdown_clay/scene.yaml", "-o", sys.argv[1]]
+
+def interrupt(frame, event, argument):
+    if event == "call" and frame.f_code.co_name == "BEGIN" and "riser_soil" in frame.f_code.co_filename:
+        sys.setprofile(None)
+        os.kill(os.getpid(), signal.SIGINT)
+
+sys.setprofile(interrupt)
+main()
+"""
+
+
+@pytest.mark.parametrize("begin", ["make_block", "lagrange_nodes"])
+def test_ctrl_c_is_heard_while_the_soil_is_meshed(begin: str, tmp_path: Path) -> None:
+    """Within a session of gmsh, which would end the process without a word."""
+    call = [sys.executable, "-c", MESHING.replace("BEGIN", begin), str(tmp_path / "out")]
+    done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 128 + signal.SIGINT, done.stderr
+    assert done.stderr.splitlines()[-1] == "ended by SIGINT before the first stage; nothing was computed"
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_run_keeps_its_last_accepted_step(number: signal.Signals, tmp_path: Path) -> None:
     """13 steps of 0.1 s, of which every fifth is recorded, after one static step."""
