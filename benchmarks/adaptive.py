@@ -14,11 +14,11 @@ from riser_soil.core.part import State
 from riser_soil.core.system import Clock
 from riser_soil.results.observer import riser_snapshot
 from riser_soil.results.touchdown_zone import TouchdownZone
-from riser_soil.run import run_stage
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
 from riser_soil.solve.dynamic_relaxation import Relaxed
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.stages import run_stage
 
 SCENE = Path(__file__).parent.parent / "tests" / "scenes" / "tank.yaml"
 DURATION = 30.0  # s

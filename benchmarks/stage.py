@@ -16,11 +16,11 @@ from riser_soil.assembly.stage import scheme_of
 from riser_soil.core.part import State
 from riser_soil.core.system import Clock, System
 from riser_soil.results.observer import Observer
-from riser_soil.run import steps_of
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.time_stepper import TimeStepper
+from riser_soil.stages import steps_of
 
 
 class TimedStage:

@@ -1,4 +1,4 @@
-"""Doubts about elements: too long for the riser's bending, or of very different lengths where waves meet them."""
+"""Plausibility warnings about elements: too long for the riser's bending, or of very different lengths where waves meet them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MOMENT_ERROR = 0.1
 UNEVEN, WAVE_IN_ELEMENTS = 4.0, 6.0
 
 
-def bending_doubts(assembly: Assembly) -> Iterator[str]:
+def bending_warnings(assembly: Assembly) -> Iterator[str]:
     """What an engineer would question about the elements' lengths, each with its numbers."""
     yield from _long_in_boundary_layers(assembly)
     yield from _long_in_the_bend(assembly)

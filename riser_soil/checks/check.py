@@ -1,4 +1,4 @@
-"""What a scene will be built of: parts, unknowns, memory, and physical doubts."""
+"""What a scene will be built of: parts, unknowns, memory, and physical warnings."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def describe(scene: Scene) -> str:
     tell(size, MPI.COMM_WORLD)
     assembly = build(scene, MPI.COMM_WORLD)
     lines = [*_parts(assembly), *_unknowns(assembly), _memory_line(assembly), *_results(size)]
-    doubts = [*physical_warnings(assembly), *too_long(size)]
-    return "\n".join([*lines, *(f"warning: {doubt}" for doubt in doubts), _verdict(doubts)])
+    warnings = [*physical_warnings(assembly), *too_long(size)]
+    return "\n".join([*lines, *(f"warning: {warning}" for warning in warnings), _verdict(warnings)])
 
 
-def _verdict(doubts: list[str]) -> str:
-    return _counted(len(doubts), "warning") if doubts else "no warnings"
+def _verdict(warnings: list[str]) -> str:
+    return _counted(len(warnings), "warning") if warnings else "no warnings"
 
 
 def _counted(number: int, name: str) -> str:

@@ -1,4 +1,4 @@
-"""Doubts about what the riser lies on: penalties, friction where there is none, soil out of reach or off the seabed."""
+"""Plausibility warnings about what the riser lies on: penalties, friction where there is none, soil out of reach or off the seabed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LOWERED, DRIVEN = 5.0, 0.1
 POINTS, OFF_LEVEL = 20, 1e-3
 
 
-def ground_doubts(assembly: Assembly) -> Iterator[str]:
+def ground_warnings(assembly: Assembly) -> Iterator[str]:
     """What an engineer would question about the ground and contact with it, each with its numbers."""
     yield from _penalty_against_soil(assembly)
     yield from _corner_against_weight(assembly)

@@ -1,4 +1,4 @@
-"""Doubts about motions and waves in time: ends that start or stop with a shock or go too far apart, too long steps."""
+"""Plausibility warnings about motions and waves in time: ends that start or stop with a shock or go too far apart, too long steps."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ Courses = dict[str, Course]
 """By the unit, m/s and deg/s."""
 
 
-def motion_doubts(scene: Scene) -> Iterator[str]:
+def motion_warnings(scene: Scene) -> Iterator[str]:
     """What an engineer would question about motions and time steps, each with its numbers."""
     for name, support in (("start", scene.riser.start), ("end", scene.riser.end)):
         if isinstance(support, Support):

@@ -1,4 +1,4 @@
-"""Physical doubts about a scene as it is built, each with its numbers and a remedy."""
+"""Plausibility warnings of a scene as it is built, each with its numbers and a remedy."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from riser_soil.assembly import Assembly
-from riser_soil.checks.bending_plausibility import bending_doubts
+from riser_soil.checks.bending_plausibility import bending_warnings
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Load, StaticStage
 
@@ -16,21 +16,21 @@ from riser_soil.scene.stages import DynamicStage, Load, StaticStage
 def physical_warnings(assembly: Assembly) -> Iterator[str]:
     """What a riser engineer would question, each with its numbers; collective."""
     yield from _light_pipes(assembly)
-    yield from bending_doubts(assembly)
+    yield from bending_warnings(assembly)
     if assembly.contacts:
-        from riser_soil.checks.ground_plausibility import ground_doubts
+        from riser_soil.checks.ground_plausibility import ground_warnings
 
-        yield from ground_doubts(assembly)
+        yield from ground_warnings(assembly)
     yield from _beyond_the_rao(assembly)
     yield from _loads_that_end(assembly.scene)
     if assembly.scene.water is not None and assembly.scene.water.waves is not None:
-        from riser_soil.checks.wave_plausibility import wave_doubts
+        from riser_soil.checks.wave_plausibility import wave_warnings
 
-        yield from wave_doubts(assembly.scene)
+        yield from wave_warnings(assembly.scene)
     if _moves(assembly.scene):
-        from riser_soil.checks.motion_plausibility import motion_doubts
+        from riser_soil.checks.motion_plausibility import motion_warnings
 
-        yield from motion_doubts(assembly.scene)
+        yield from motion_warnings(assembly.scene)
 
 
 def _moves(scene: Scene) -> bool:

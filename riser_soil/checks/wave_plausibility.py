@@ -1,4 +1,4 @@
-"""Doubts about a scene's waves: too steep for linear theory, or in water of another depth than the scene's."""
+"""Plausibility warnings about a scene's waves: too steep for linear theory, or in water of another depth than the scene's."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SHALLOW = 40.0
 OTHER_DEPTH = 0.05
 
 
-def wave_doubts(scene: Scene) -> Iterator[str]:
+def wave_warnings(scene: Scene) -> Iterator[str]:
     """What an engineer would question about the waves, each with its numbers."""
     assert scene.water is not None
     assert scene.water.waves is not None

@@ -10,6 +10,7 @@ import json
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import h5py
@@ -59,6 +60,18 @@ def refuse(folder: Path, force: bool) -> None:
             _refuse_foreign(folder / name)
     except OSError as err:
         raise _unusable(folder, err) from err
+
+
+def refuse_together(folder: Path, force: bool, comm: Any) -> None:
+    """`refuse` on all ranks by what the first one sees; collective."""
+    failure = None
+    if comm.rank == 0:
+        try:
+            refuse(folder, force)
+        except (SceneError, WriteError) as err:
+            failure = err
+    if failure := comm.bcast(failure):
+        raise failure
 
 
 def prepare(folder: Path, force: bool) -> Claim:

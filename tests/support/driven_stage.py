@@ -17,7 +17,6 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
 from riser_soil.core.system import Clock, System
 from riser_soil.results.observer import Observer
-from riser_soil.run import run_stage
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.solve.dynamic_relaxation import Relaxed
@@ -25,6 +24,7 @@ from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 
 Watch = Callable[[System, Accepted], None]

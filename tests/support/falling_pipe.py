@@ -56,7 +56,7 @@ def tilted(k: float, dt: float, duration: float = 3.0) -> Mapping:
 
 
 class Energies:
-    """Energies of a stage [J], one entry a step; follows `riser_soil.run.run_stage`."""
+    """Energies of a stage [J], one entry a step; follows `riser_soil.stages.run_stage`."""
 
     def __init__(self) -> None:
         self._begun = 0.0

@@ -15,10 +15,10 @@ from riser_soil.core.part import State
 from riser_soil.core.snapshot import RiserSnapshot
 from riser_soil.core.system import Clock
 from riser_soil.results.observer import riser_snapshot
-from riser_soil.run import run_stage
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher
 

@@ -1,4 +1,4 @@
-"""What `check` tells of a scene: parts, unknowns, memory, and physical doubts with their numbers."""
+"""What `check` tells of a scene: parts, unknowns, memory, and physical warnings with their numbers."""
 
 from __future__ import annotations
 

@@ -24,7 +24,8 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("assembly",),
     ("checks",),
     ("results",),
-    ("run", "plots"),
+    ("stages", "plots"),
+    ("run",),
     ("__main__",),
 ]
 RANK = {name: rank for rank, layer in enumerate(LAYERS) for name in layer}
@@ -120,7 +121,7 @@ def test_a_circle_is_found() -> None:
 
 
 def test_imports_for_type_checkers_and_inside_functions_count() -> None:
-    assert "riser_soil.solve.newton" in imports()["riser_soil.run"]
+    assert "riser_soil.solve.newton" in imports()["riser_soil.stages"]
     source = "if TYPE_CHECKING:\n    from riser_soil import a\ndef f():\n    from riser_soil.b import c"
     assert list(imported_names(source, "riser_soil")) == ["riser_soil.a", "riser_soil.b.c"]
 

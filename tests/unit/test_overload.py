@@ -12,10 +12,10 @@ from riser_soil.checks.overload import Bearing, overload
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Clock
-from riser_soil.run import run_stage
 from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
 from riser_soil.seabed.bearing import Strength, strip_capacity
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
+from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher, built
 from tests.support.riser_scenes import held, riser_scene, static
 

@@ -12,8 +12,8 @@ from riser_soil.core.system import Clock
 from riser_soil.results.observer import elastic_residual
 from riser_soil.results.plausibility import SMOOTH_MISFIT, STEEP_MISFIT
 from riser_soil.riser.resolution import Misfit, misfit
-from riser_soil.run import run_stage
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
 from tests.support.riser_scenes import held, riser_scene, static

@@ -103,12 +103,12 @@ def test_a_vessel_that_drives_too_far_is_told(surge: float, told: int, tmp_path:
     """The ends are 40 m and 33 m apart at rest, the waves 1.5 m high: a surge of 6.7 m/m uses up the 60 m."""
     text = table(*EVERYWHERE, surge=(surge, 0.0))
     assembly = begun(scene(tmp_path, text, aboard(duration=40.0)))
-    doubts = [doubt for doubt in physical_warnings(assembly) if "m apart" in doubt]
-    assert len(doubts) == told
-    for doubt in doubts:
-        assert doubt.startswith("stages.0.motion: the ends come to be ")
+    warnings = [warning for warning in physical_warnings(assembly) if "m apart" in warning]
+    assert len(warnings) == told
+    for warning in warnings:
+        assert warning.startswith("stages.0.motion: the ends come to be ")
         farthest = float(np.hypot(40.0 + 1.5 * surge, 33.0))
-        assert float(doubt.split("come to be ")[1].split(" m")[0]) == pytest.approx(farthest, abs=0.1)
+        assert float(warning.split("come to be ")[1].split(" m")[0]) == pytest.approx(farthest, abs=0.1)
 
 
 @pytest.mark.parametrize("waves", [AIRY, JONSWAP])
@@ -304,10 +304,10 @@ def test_waves_beyond_the_table(decay: float, warnings: int, tmp_path: Path) -> 
     assert np.count_nonzero(above) == 5  # of 40 waves of equal energy
     assert not np.any(response.amplitude[above])
     assert np.all(response.amplitude[~above, 2])
-    told = [doubt for doubt in physical_warnings(assembly) if "vessel" in doubt]
+    told = [warning for warning in physical_warnings(assembly) if "vessel" in warning]
     assert len(told) == warnings
-    assert all(doubt.startswith("stages.0.motion.end.vessel.rao: 0 % of the waves' energy") for doubt in told)
-    assert all("12.5 % above its last, 1.1 rad/s" in doubt for doubt in told)
+    assert all(warning.startswith("stages.0.motion.end.vessel.rao: 0 % of the waves' energy") for warning in told)
+    assert all("12.5 % above its last, 1.1 rad/s" in warning for warning in told)
 
 
 def test_a_table_that_misses_waves_that_matter_is_refused(tmp_path: Path) -> None:

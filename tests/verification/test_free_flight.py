@@ -17,9 +17,9 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Clock
-from riser_soil.run import run_stage
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
 from tests.support.momentum import momentum

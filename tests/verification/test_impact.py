@@ -30,10 +30,10 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Clock
 from riser_soil.results.observer import riser_snapshot
-from riser_soil.run import run_stage
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
 from riser_soil.solve.newton import Newton, Solution, Step
+from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built, take
 from tests.support.falling_pipe import FALL, Energies, flat, pinned, tilted

@@ -23,8 +23,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Clock
 from riser_soil.results.observer import riser_snapshot
-from riser_soil.run import run_stage
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher, built
 from tests.support.riser_scenes import held, riser_scene, static
 

@@ -1,4 +1,4 @@
-"""Doubts about motions: velocities that jump between stages, and time steps that are too long for what moves."""
+"""Plausibility warnings about motions: velocities that jump between stages, and time steps that are too long for what moves."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from riser_soil.checks.motion_plausibility import motion_doubts
+from riser_soil.checks.motion_plausibility import motion_warnings
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.riser_scenes import Mapping, dynamic, held, riser_scene, static
 
@@ -17,7 +17,7 @@ HARMONIC: Mapping = {"amplitude": [0.0, 0.0, 2.0], "period": 6.2831853}  # 2 m/s
 SWELL: Mapping = {"airy": {"height": 2.0, "period": 8.0}}
 
 
-def doubts(*stages: Mapping, folder: Path | None = None, rotation: Any = "fixed", **more: Any) -> list[str]:
+def warnings(*stages: Mapping, folder: Path | None = None, rotation: Any = "fixed", **more: Any) -> list[str]:
     pipe = riser_scene(
         *stages,
         pipe=PIPE,
@@ -28,7 +28,7 @@ def doubts(*stages: Mapping, folder: Path | None = None, rotation: Any = "fixed"
         gravity=9.81,
         **more,
     )
-    return list(motion_doubts(scene_from_mapping(pipe, folder) if folder else scene_from_mapping(pipe)))
+    return list(motion_warnings(scene_from_mapping(pipe, folder) if folder else scene_from_mapping(pipe)))
 
 
 def moved(name: str = "move", duration: float = 6.2831853, time_step: float = 0.1, **motion: Any) -> Mapping:
@@ -44,32 +44,32 @@ def moved(name: str = "move", duration: float = 6.2831853, time_step: float = 0.
     ],
 )
 def test_a_start_at_full_speed_is_told_and_a_ramp_heals_it(motion: Mapping, speed: str) -> None:
-    (told,) = doubts(static(), moved(**motion))
+    (told,) = warnings(static(), moved(**motion))
     assert told.startswith(f"stages.1.motion.end: the end starts at {speed} from rest, at once")
     assert told.endswith("give the motion a ramp [s]")
     ((kind, given),) = motion.items()
-    assert not doubts(static(), moved(**{kind: given | {"ramp": 3.0}}))
+    assert not warnings(static(), moved(**{kind: given | {"ramp": 3.0}}))
 
 
 def test_a_table_that_starts_moving(tmp_path: Path) -> None:
     (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + "".join(f"{t},{-3 * t},0,0\n" for t in range(8)))
-    (told,) = doubts(moved(table="t.csv"), folder=tmp_path)
+    (told,) = warnings(moved(table="t.csv"), folder=tmp_path)
     assert "the end starts at 3 m/s" in told
     rows = "".join(f"{t},{-0.1 * t**3},0,0\n" for t in range(8))
     (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + rows)
-    assert not doubts(moved(table="t.csv"), folder=tmp_path)
+    assert not warnings(moved(table="t.csv"), folder=tmp_path)
 
 
 def test_what_stops_dead_is_told() -> None:
     ramped: dict[str, Any] = {"harmonic": HARMONIC | {"ramp": 3.0}}
-    (told,) = doubts(moved(**ramped), dynamic(1.0, 0.1, "still"))
+    (told,) = warnings(moved(**ramped), dynamic(1.0, 0.1, "still"))
     assert told.startswith("stages.1: the end stops dead as the stage begins, its velocity jumping by 2 m/s")
-    (told,) = doubts(moved(**ramped), moved("again", **ramped))
+    (told,) = warnings(moved(**ramped), moved("again", **ramped))
     assert told.startswith("stages.1: the end takes up another motion as the stage begins")
-    assert not doubts(moved(**ramped), moved("on", harmonic=HARMONIC))  # a whole period later it is the same sine
-    assert not doubts(moved(**ramped), static())
-    assert len(doubts(moved(**ramped), static(), moved("again", harmonic=HARMONIC))) == 1
-    assert not doubts(moved(duration=6.2831853 * 1.25, **ramped), dynamic(1.0, 0.1, "still"))  # at rest, at the top
+    assert not warnings(moved(**ramped), moved("on", harmonic=HARMONIC))  # a whole period later it is the same sine
+    assert not warnings(moved(**ramped), static())
+    assert len(warnings(moved(**ramped), static(), moved("again", harmonic=HARMONIC))) == 1
+    assert not warnings(moved(duration=6.2831853 * 1.25, **ramped), dynamic(1.0, 0.1, "still"))  # at rest, at the top
 
 
 @pytest.mark.parametrize(
@@ -85,9 +85,9 @@ def test_what_stops_dead_is_told() -> None:
 def test_long_time_steps(period: float, waves: Mapping | None, time_step: float, says: str | None) -> None:
     water: dict[str, Any] = {"water": {"surface_level": 10.0, "waves": waves}} if waves else {}
     harmonic = {"amplitude": [0.0, 0.0, 2.0], "period": period, "ramp": period}
-    told = doubts(static(), moved(harmonic=harmonic, time_step=time_step), **water)
+    told = warnings(static(), moved(harmonic=harmonic, time_step=time_step), **water)
     assert len(told) == (says is not None)
-    assert all(says in doubt and doubt.startswith("stages.1.time_step: ") for doubt in told if says)
+    assert all(says in warning and warning.startswith("stages.1.time_step: ") for warning in told if says)
 
 
 @pytest.mark.parametrize(
@@ -103,7 +103,7 @@ def test_long_time_steps(period: float, waves: Mapping | None, time_step: float,
     ],
 )
 def test_ends_that_go_farther_apart_than_the_riser_is_long(stage: Mapping, path: str, apart: float) -> None:
-    (told,) = [doubt for doubt in doubts(static(), stage) if "long" in doubt]
+    (told,) = [warning for warning in warnings(static(), stage) if "long" in warning]
     assert told.startswith(f"{path}: the ends come to be ")
     found = float(told.split("come to be ")[1].split(" m apart")[0])
     assert found == pytest.approx(apart, abs=0.1)
@@ -112,21 +112,21 @@ def test_ends_that_go_farther_apart_than_the_riser_is_long(stage: Mapping, path:
 
 
 def test_ends_that_stay_within_the_length_are_not_told() -> None:
-    assert not doubts(static(), moved(harmonic=HARMONIC | {"amplitude": [6.0, 0.0, 4.5], "ramp": 3.0}))
-    assert not doubts(static(), static("pull", move={"end": [48.0, 0.0, 5.0]}))
+    assert not warnings(static(), moved(harmonic=HARMONIC | {"amplitude": [6.0, 0.0, 4.5], "ramp": 3.0}))
+    assert not warnings(static(), static("pull", move={"end": [48.0, 0.0, 5.0]}))
 
 
 def test_motions_go_on_from_where_the_stage_before_left_the_end() -> None:
     """Each alone would stay within the length."""
     pull = static("pull", move={"end": [48.0, 0.0, 5.0]})
     heave = moved(harmonic=HARMONIC | {"amplitude": [2.0, 0.0, 4.0], "ramp": 3.0})
-    assert not doubts(static(), heave)
-    (told,) = doubts(static(), pull, heave)
+    assert not warnings(static(), heave)
+    (told,) = warnings(static(), pull, heave)
     assert told.startswith("stages.2.motion: the ends come to be 6")
 
 
 def test_a_table_that_leads_too_far_at_one_of_its_rows_is_told(tmp_path: Path) -> None:
     rows = [(t, 20 * (t == 51)) for t in range(0, 103, 3)]
     (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + "".join(f"{t},{x},0,0\n" for t, x in rows))
-    told = doubts(static(), moved(duration=100.0, table="t.csv"), folder=tmp_path)
-    assert [doubt for doubt in told if "apart at 51 s" in doubt]
+    told = warnings(static(), moved(duration=100.0, table="t.csv"), folder=tmp_path)
+    assert [warning for warning in told if "apart at 51 s" in warning]
