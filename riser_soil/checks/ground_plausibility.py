@@ -1,4 +1,4 @@
-"""Plausibility warnings about what the riser lies on: penalties, friction where there is none, soil out of reach or off the seabed."""
+"""Plausibility of the ground: penalties, friction where there is none, soil out of reach or off the seabed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Plausibility warnings about motions and waves in time: ends that start or stop with a shock or go too far apart, too long steps."""
+"""Plausibility of motions in time: ends that start or stop with a shock or go too far apart, too long steps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Plausibility warnings about a scene's waves: too steep for linear theory, or in water of another depth than the scene's."""
+"""Plausibility of a scene's waves: too steep for linear theory, or in water of another depth than the scene's."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Plausibility warnings about motions: velocities that jump between stages, and time steps that are too long for what moves."""
+"""Plausibility of motions: velocities that jump between stages, and time steps that are too long for what moves."""
 
 from __future__ import annotations
 

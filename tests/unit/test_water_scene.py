@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from riser_soil.assembly.sea import components_of, water_of, wave_age, wave_clock
-from riser_soil.checks.wave_plausibility import wave_doubts
+from riser_soil.checks.wave_plausibility import wave_warnings
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
@@ -204,16 +204,16 @@ GROUND = {"kind": "rigid", "level": 0.5, "contact_at": "axis"}
         (AIRY, {"depth": 80.0}, "water.depth is 80 m, but the surface lies 99.5 m above the seabed"),
     ],
 )
-def test_doubts_about_waves_state_their_numbers(waves: Any, more: Any, words: str) -> None:
-    told = list(wave_doubts(scene_in({"surface_level": 100.0, "waves": waves, **more}, seabed=GROUND)))
+def test_warnings_about_waves_state_their_numbers(waves: Any, more: Any, words: str) -> None:
+    told = list(wave_warnings(scene_in({"surface_level": 100.0, "waves": waves, **more}, seabed=GROUND)))
     assert any(words in line for line in told), told
 
 
 @pytest.mark.parametrize("waves", [AIRY, {"jonswap": {"Hs": 9.0, "Tp": 14.0}}])
 def test_ordinary_waves_raise_no_doubt(waves: Any) -> None:
-    assert not list(wave_doubts(scene_in({"surface_level": 100.0, "waves": waves}, seabed=GROUND)))
+    assert not list(wave_warnings(scene_in({"surface_level": 100.0, "waves": waves}, seabed=GROUND)))
 
 
 def test_waves_in_a_static_scene_are_doubted() -> None:
-    told = list(wave_doubts(scene_in({"surface_level": 100.0, "waves": AIRY}, static("only"))))
+    told = list(wave_warnings(scene_in({"surface_level": 100.0, "waves": AIRY}, static("only"))))
     assert any("all stages are static" in line for line in told)
