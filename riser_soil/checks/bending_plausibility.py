@@ -1,4 +1,4 @@
-"""Plausibility of the elements: too long for the riser's bending, or of very different lengths where waves meet them."""
+"""Plausibility of the elements: too long for the bending, or of very different lengths where waves meet them."""
 
 from __future__ import annotations
 

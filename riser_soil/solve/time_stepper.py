@@ -109,7 +109,7 @@ class TimeStepper:
         cuts = 0
         while True:
             try:
-                return self._account(self._solve(control.target, control.dt), control, cuts)
+                return self._attempt(control, cuts)
             except NotConvergedError as failure:
                 cuts += 1
                 if cuts - 1 == most_cuts or not control.cut():
@@ -117,14 +117,20 @@ class TimeStepper:
                         f"no convergence at t = {control.target:.6g} with the smallest step {control.dt:.3g}: {failure}"
                     ) from failure
 
-    def next_step(self, control: Control) -> Step:
-        """The step to be solved next."""
-        return self._step(control.target, control.dt)
+    def _attempt(self, control: Control, cuts: int) -> Accepted:
+        """A step that is solved, accounted for and acceptable; else NotConvergedError."""
+        solution = self._solve(self.next_step(control))
+        step = self._account(solution, control, cuts)
+        self._reject_energy_gain(step)
+        self._reject_inaccurate(step, control)
+        return step
 
-    def _step(self, t: float, dt: float) -> Step:
+    def next_step(self, control: Control) -> Step:
+        """The step to be solved next, its increments predicted."""
+        t, dt = control.target, control.dt
         start = self._start(dt)
         history = self._history if start is self.before else self.system.forces(start)
-        return Step(self.scheme, start, t, dt, history, self._guess(t, dt))
+        return Step(self.scheme, start, t, dt, history, self._predict(t, dt))
 
     def _new_error(self) -> LocalError:
         assert self._mass is not None
@@ -134,8 +140,8 @@ class TimeStepper:
         """The accepted state as a step of size dt starts from it."""
         return self.before if self._error is None else self._error.start(self.before, dt)
 
-    def _solve(self, t: float, dt: float) -> Solution:
-        step = self._step(t, dt)
+    def _solve(self, step: Step) -> Solution:
+        """By Newton's method, once more where the motion has outgrown the matrix' pattern; stable in statics."""
         try:
             solution = self.newton.solve(step)
         except NotConvergedError:
@@ -146,8 +152,8 @@ class TimeStepper:
             self.newton.require_stable(solution)
         return solution
 
-    def _guess(self, t: float, dt: float) -> Array:
-        """The motion of the last steps continued, as fields and parts improve it."""
+    def _predict(self, t: float, dt: float) -> Array:
+        """The motion of the last steps continued, as lines and contacts predict it better."""
         guess = self._past.increments(dt)
         for owner in self._predictors:
             guess = owner.predict(State(t, guess, self.before.v, self.before.a))
@@ -164,6 +170,7 @@ class TimeStepper:
         return True
 
     def _account(self, solution: Solution, control: Control, cuts: int) -> Accepted:
+        """What the step stores, dissipates and puts in."""
         state = solution.state
         turned = self.system.work(self.before, state)
         reactions = self.scheme.mean(*(self.system.reactions(f) for f in (self._forces, solution.forces)))
@@ -173,12 +180,9 @@ class TimeStepper:
         against = self.system.work_against(bulk, solution.forces.end, state.u)
         braking = against - supports - sum(work.inertial for work in turned.values())
         turned["supports"] = Work(external=supports)
-        step = Accepted(control.target, control.dt, solution, cuts, self.system.energy(state), turned, braking)
-        self._refuse_energy_gain(step)
-        self._refuse_inaccurate(step, control)
-        return step
+        return Accepted(control.target, control.dt, solution, cuts, self.system.energy(state), turned, braking)
 
-    def _refuse_energy_gain(self, step: Accepted) -> None:
+    def _reject_energy_gain(self, step: Accepted) -> None:
         """A dynamic step that adds much to the energy in motion out of nothing is a root of the equations far from the
         motion that it continues, or too long for it: NotConvergedError, so that it is cut.
         """
@@ -205,7 +209,7 @@ class TimeStepper:
         contact = self._mass.accelerations(self.before.t, -step.solution.forces.end)
         return self._mass.kinetic_energy(self.scheme.split_contact(step.solution.state, contact, step.dt))
 
-    def _refuse_inaccurate(self, step: Accepted, control: Control) -> None:
+    def _reject_inaccurate(self, step: Accepted, control: Control) -> None:
         """NotConvergedError for a step whose local error is too large, so that it is cut."""
         if self._error is None:
             return
