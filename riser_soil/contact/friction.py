@@ -10,9 +10,10 @@ from riser_soil.contact.coulomb import traction
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.contact.station_forces import StationForces
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
 from riser_soil.core.roles import Remembering
 from riser_soil.riser import stations
+from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.trial import Trial
 
 UPRIGHT = 1e-6  # sine of the angle to the ground's normal below which a riser has no axial direction along the ground
@@ -38,7 +39,7 @@ class FrictionState(NamedTuple):
     traction: Array
 
 
-class Friction:
+class Friction(LinePart):
     """Part "friction": Coulomb friction at the stations of a `SeabedContact`, whose normal forces it reads; group E.
 
     axial, lateral: coefficients, > 0. stiffness (ne,): of the ground along itself, per length [N/m2]; with the weight w
@@ -50,7 +51,8 @@ class Friction:
     traits = Traits("E", symmetric=False, roles=(Remembering,))
 
     def __init__(self, contact: SeabedContact, axial: float, lateral: float, stiffness: Array) -> None:
-        self.contact, self.line = contact, contact.line
+        super().__init__(contact.line)
+        self.contact = contact
         self._mu = np.array([axial, lateral])[: self.line.dimension - 1]
         self._stiffness = stiffness[:, None, None]
         self._begun: FrictionState | None = None
@@ -85,9 +87,6 @@ class Friction:
         tau, _ = stations.unit_tangents(self.contact.at, trial.chord, trial.turn.tangent)
         return FrictionState(found.position, directions(tau, found.normal), traction)
 
-    def blocks(self) -> dict[str, Block]:
-        return {self.line.name: self.line.element_block()} if self.line.active else {}
-
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
         trial = self.line.trial(state)
@@ -95,19 +94,15 @@ class Friction:
         return None, self._forces.in_elements(trial, sliding.elements, sliding.resistance)
 
     def residual(self, state: State, forces: Forces) -> None:
-        if self.line.active:
-            self.line.scatter(self.element_forces(state)[1], forces.end)
+        self.line.scatter(self.element_forces(state)[1], forces.end)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         """Unweighted: friction stands at the end of the step."""
-        if self.line.active:
-            trial = self.line.trial(state)
-            self._forces.add_tangent(values[self.line.name], trial, *self.evaluate(trial))
+        trial = self.line.trial(state)
+        self._forces.add_tangent(values[self.line.name], trial, *self.evaluate(trial))
 
     def energy(self, state: State) -> Energy:
         """Stored in what the ground gives elastically along itself."""
-        if not self.line.active:
-            return Energy()
         sliding = self.evaluate(self.line.trial(state))
         return Energy(potential=self._stored(sliding.elements, sliding.resistance))
 
@@ -117,8 +112,6 @@ class Friction:
 
     def work(self, before: State, after: State) -> Work:
         """What friction took out beyond the change of what it stores: never negative."""
-        if not self.line.active:
-            return Work()
         trial = self.line.trial(after)
         sliding, begun, at = self.evaluate(trial), self._friction_state(trial), self.evaluate(trial).elements
         moved = self.contact.evaluate(trial).position[at] - begun.position[at]
@@ -128,14 +121,13 @@ class Friction:
 
     def commit(self, state: State) -> None:
         """Keep the traction, and the place and directions from which the next step slides."""
-        if self.line.active:
-            trial = self.line.trial(state)
-            sliding = self.evaluate(trial)
-            traction = np.zeros_like(self.contact.evaluate(trial).position)
-            traction[sliding.elements] = -sliding.resistance
-            slid = np.zeros_like(self._slid)
-            slid[sliding.elements] = self._slide(trial, sliding)
-            self.memory = self._friction_state_at(trial, traction), self._slid + slid
+        trial = self.line.trial(state)
+        sliding = self.evaluate(trial)
+        traction = np.zeros_like(self.contact.evaluate(trial).position)
+        traction[sliding.elements] = -sliding.resistance
+        slid = np.zeros_like(self._slid)
+        slid[sliding.elements] = self._slide(trial, sliding)
+        self.memory = self._friction_state_at(trial, traction), self._slid + slid
 
     @property
     def memory(self) -> tuple[FrictionState | None, Array]:

@@ -11,10 +11,11 @@ from riser_soil.contact.law import NormalLaw
 from riser_soil.contact.station_forces import StationForces
 from riser_soil.contact.touchdown import Stretch, stretches, touchdown
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
 from riser_soil.core.roles import Predictor, Remembering
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.trial import Trial
 from riser_soil.seabed.grounds import Distance, Ground
 
@@ -49,7 +50,7 @@ class StationContact(NamedTuple):
     touching: Touching
 
 
-class SeabedContact:
+class SeabedContact(LinePart):
     """Part "seabed": force per length of riser by its penetration into the ground, in group E.
 
     line: the riser's field. radius (ne,): distance [m] from the axis to the line that touches, 0 for the axis itself.
@@ -70,7 +71,8 @@ class SeabedContact:
         rule: stations.Rule = stations.THREE_POINTS,
         covered: Covered | None = None,
     ) -> None:
-        self.line, self.ground, self.law = line, ground, law
+        super().__init__(line)
+        self.ground, self.law = ground, law
         self._radius, self._covered = radius, covered
         self.at = stations.stations(line.length, rule)
         self._forces = StationForces(line, self.at)
@@ -106,9 +108,6 @@ class SeabedContact:
             return found
         return found._replace(value=np.where(self._covered(x[:, :2]), np.inf, found.value))
 
-    def blocks(self) -> dict[str, Block]:
-        return {self.line.name: self.line.element_block()} if self.line.active else {}
-
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
         trial = self.line.trial(state)
@@ -116,15 +115,13 @@ class SeabedContact:
         return None, self._forces.in_elements(trial, touching.elements, touching.resistance)
 
     def residual(self, state: State, forces: Forces) -> None:
-        if self.line.active:
-            self.line.scatter(self.element_forces(state)[1], forces.end)
+        self.line.scatter(self.element_forces(state)[1], forces.end)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         """Unweighted: contact stands at the end of the step."""
-        if self.line.active:
-            trial = self.line.trial(state)
-            t = self.evaluate(trial).touching
-            self._forces.add_tangent(values[self.line.name], trial, t.elements, t.resistance, self._by_position(t))
+        trial = self.line.trial(state)
+        t = self.evaluate(trial).touching
+        self._forces.add_tangent(values[self.line.name], trial, t.elements, t.resistance, self._by_position(t))
 
     def _by_position(self, t: Touching) -> Array:
         """Derivative (m, ng, d, d) of the resistance by the position."""
@@ -133,8 +130,6 @@ class SeabedContact:
 
     def energy(self, state: State) -> Energy:
         """What the law gives back."""
-        if not self.line.active:
-            return Energy()
         penetration = self.evaluate(self.line.trial(state)).penetration
         return Energy(potential=float(np.sum(self.share * self.law.stored(penetration, self.memory))))
 
@@ -143,8 +138,6 @@ class SeabedContact:
 
         Never negative on a plane, where the stored energy is convex in the penetration.
         """
-        if not self.line.active:
-            return Work()
         first, last = (self.evaluate(self.line.trial(state)) for state in (before, after))
         at = last.touching.elements
         moved = last.position[at] - first.position[at]
@@ -153,9 +146,8 @@ class SeabedContact:
 
     def commit(self, state: State) -> None:
         """Keep the law's history."""
-        if self.line.active:
-            penetration = self.evaluate(self.line.trial(state)).penetration
-            self.memory = self.law.update(penetration, self.memory)
+        penetration = self.evaluate(self.line.trial(state)).penetration
+        self.memory = self.law.update(penetration, self.memory)
 
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m]: the stations' forces, shared linearly by two nodes."""

@@ -142,6 +142,11 @@ class Part(Protocol):
     name: str
     traits: Traits
 
+    @property
+    def active(self) -> bool:
+        """Whether this rank evaluates the part; where not, it is asked for nothing that follows."""
+        ...
+
     def blocks(self) -> dict[str, Block]:
         """Patterns that the part adds to. Parts that share a key share the very same rows and columns."""
         ...

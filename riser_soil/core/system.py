@@ -47,6 +47,7 @@ class System:
     def __init__(self, comm: MPI.Intracomm, model: Model, clock: Clock) -> None:
         self.comm, self.model, self.clock = comm, model, clock
         require_roles(model.parts)
+        self._active = [part for part in model.parts if part.active]
         self.numbering = Numbering(comm, model.fields)
         self.prescribed: BoolArray = self._gather_prescribed()
         self.prescribed_dofs: IntArray = np.flatnonzero(self.prescribed)
@@ -67,7 +68,7 @@ class System:
 
     def _new_matrix(self) -> Matrix:
         blocks: dict[str, Block] = {}
-        for part in self.model.parts:
+        for part in self._active:
             blocks.update(part.blocks())
         return Matrix(self.numbering, blocks, self.symmetric)
 
@@ -85,7 +86,7 @@ class System:
     def forces(self, state: State) -> Forces:
         """This rank's residual by group (local arrays; shares of shared dofs are summed by the numbering)."""
         forces = Forces.zeros(self.numbering.size)
-        for part in self.model.parts:
+        for part in self._active:
             since = time.perf_counter()
             part.residual(state, forces)
             self.clock.add(part.name, since)
@@ -94,16 +95,17 @@ class System:
     def assemble(self, state: State, weights: Weights, parts: Sequence[Part] | None = None) -> None:
         """Put dR/du at the state into the matrix; by default that of all parts."""
         self.matrix.clear()
-        for part in self.model.parts if parts is None else parts:
+        for part in self._active if parts is None else parts:
             since = time.perf_counter()
-            part.tangent(state, weights, self.matrix.values)
+            if part.active:
+                part.tangent(state, weights, self.matrix.values)
             self.clock.add(part.name, since)
         since = time.perf_counter()
         self.matrix.assemble()
         self.clock.add("matrix", since)
 
     def energy(self, state: State) -> Energy:
-        mine = sum((p.energy(state) for p in self.model.parts), Energy())
+        mine = sum((p.energy(state) for p in self._active), Energy())
         values = self.sum([mine.kinetic, mine.strain, mine.potential])
         return Energy(*values)
 
@@ -111,7 +113,8 @@ class System:
         """Energy turned over by each part; those of one name together."""
         mine: dict[str, Work] = {}
         for part in self.model.parts:
-            mine[part.name] = mine.get(part.name, Work()) + part.work(before, after)
+            turned = part.work(before, after) if part.active else Work()
+            mine[part.name] = mine.get(part.name, Work()) + turned
         summed = self.sum([x for work in mine.values() for x in (work.dissipated, work.external, work.inertial)])
         return {name: Work(*summed[3 * i : 3 * i + 3]) for i, name in enumerate(mine)}
 
@@ -130,7 +133,7 @@ class System:
 
     def commit(self, state: State) -> None:
         """Accept a state: parts first, then the fields that they act on."""
-        owners: list[Part | Field] = [*self.model.parts, *self.model.fields]
+        owners: list[Part | Field] = [*self._active, *self.model.fields]
         for owner in owners:
             owner.commit(state)
 

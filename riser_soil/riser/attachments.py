@@ -15,9 +15,10 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.part import Energy, Forces, State, Traits, Weights
 from riser_soil.riser import hermite
 from riser_soil.riser.line import UP, Line
+from riser_soil.riser.line_part import LinePart
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ def _residual(line: Line, attachments: Sequence[Attachment]) -> Array:
     return F
 
 
-class Attachments:
+class Attachments(LinePart):
     """Weight less buoyancy of attachments (group F), with a potential.
 
     line: the riser's field. attachments: on it, in any order.
@@ -97,12 +98,9 @@ class Attachments:
     traits = Traits("F", symmetric=True)
 
     def __init__(self, line: Line, attachments: Sequence[Attachment]) -> None:
-        self.line = line
+        super().__init__(line)
         self._along, self._ends = (_residual(line, some) for some in split(line, attachments))
         self._F = self._along + self._ends
-
-    def blocks(self) -> dict[str, Block]:
-        return {self.line.name: self.line.element_block()} if self.line.active else {}
 
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None, of what sits along the line."""
@@ -113,21 +111,11 @@ class Attachments:
         return self.line.gathered(self.line.trial(state).pull_back(self._ends))
 
     def residual(self, state: State, forces: Forces) -> None:
-        if self.line.active:
-            self.line.collect(self.line.trial(state), self._F, forces.force)
+        self.line.collect(self.line.trial(state), self._F, forces.force)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        if self.line.active:
-            self.line.trial(state).add_turning(values[self.line.name], weights.force, self._F)
+        self.line.trial(state).add_turning(values[self.line.name], weights.force, self._F)
 
     def energy(self, state: State) -> Energy:
         """Potential of weight less buoyancy, zero at the origin of the axes."""
-        if not self.line.active:
-            return Energy()
         return Energy(potential=float(np.sum(self._F * self.line.trial(state).q)))
-
-    def work(self, before: State, after: State) -> Work:
-        return Work()
-
-    def commit(self, state: State) -> None:
-        pass

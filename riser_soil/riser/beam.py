@@ -7,17 +7,18 @@ from collections.abc import Callable
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.part import Energy, Forces, State, Traits, Weights
 from riser_soil.riser import uniform_load
 from riser_soil.riser.elastic import elastic_elements
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.trial import Trial
 
 DOWN = np.array([0.0, 0.0, -1.0])
 
 
-class Beam:
+class Beam(LinePart):
     """Elastic elements and their submerged weight, both with a potential (group F).
 
     line: the riser's field. elements: section properties and weight (N/m) per element.
@@ -30,14 +31,11 @@ class Beam:
     traits = Traits("F", symmetric=True)
 
     def __init__(self, line: Line, elements: Elements, load: Array | None = None) -> None:
-        self.line = line
+        super().__init__(line)
         self.factor: Callable[[float], float] = lambda _: 1.0
         self._elastic = elastic_elements(line, elements)
         per_length = elements.weight[:, None] * DOWN + (np.zeros(3) if load is None else load)
         self._load = np.ascontiguousarray(per_length @ line.basis)
-
-    def blocks(self) -> dict[str, Block]:
-        return {self.line.name: self.line.element_block()} if self.line.active else {}
 
     def _loaded(self, trial: Trial) -> tuple[Array, Array, Array, Array]:
         """Arguments of `uniform_load`: chords, tangents, lengths and load."""
@@ -55,30 +53,20 @@ class Beam:
         return None, self.line.trial(state).once((self, "element forces"), self._element_forces)
 
     def residual(self, state: State, forces: Forces) -> None:
-        if self.line.active:
-            trial = self.line.trial(state)
-            self.line.scatter(self._elastic.forces(trial), forces.force)
-            self.line.collect(trial, trial.once((self, "load"), self._load_forces), forces.force)
+        trial = self.line.trial(state)
+        self.line.scatter(self._elastic.forces(trial), forces.force)
+        self.line.collect(trial, trial.once((self, "load"), self._load_forces), forces.force)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        if self.line.active:
-            trial, K, at = self.line.trial(state), values[self.line.name], self._loaded(self.line.trial(state))
-            self._elastic.add_tangent(K, weights.force, trial)
-            trial.add_turning(K, weights.force, trial.once((self, "load"), self._load_forces))
-            uniform_load.add_tangent(K, weights.force, trial.turn.P, *at)
+        trial, K, at = self.line.trial(state), values[self.line.name], self._loaded(self.line.trial(state))
+        self._elastic.add_tangent(K, weights.force, trial)
+        trial.add_turning(K, weights.force, trial.once((self, "load"), self._load_forces))
+        uniform_load.add_tangent(K, weights.force, trial.turn.P, *at)
 
     def energy(self, state: State) -> Energy:
         """Strain energy, and the potential of weight and load, zero at the origin of the axes."""
-        if not self.line.active:
-            return Energy()
         trial = self.line.trial(state)
         chord, *rest = self._loaded(trial)
         middle = 0.5 * (trial.x[:-1] + trial.x[1:])
         potential = float(np.sum(uniform_load.potential(chord, middle, *rest)))
         return Energy(strain=self._elastic.energy(trial), potential=potential)
-
-    def work(self, before: State, after: State) -> Work:
-        return Work()
-
-    def commit(self, state: State) -> None:
-        pass

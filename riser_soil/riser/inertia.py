@@ -3,14 +3,15 @@
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.part import Energy, Forces, State, Traits, Weights
 from riser_soil.riser.attachments import Masses
 from riser_soil.riser.hermite import add_mass, consistent_mass, weigh
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.trial import Trial
 
 
-class Inertia:
+class Inertia(LinePart):
     """Consistent mass of the cubic line and of what is attached to it, turning with the tangents (group I).
 
     line: the riser's field. mass: kg/m per element (ne,), contents included, water excluded. attached: further masses.
@@ -22,14 +23,11 @@ class Inertia:
     traits = Traits("I", symmetric=False)
 
     def __init__(self, line: Line, mass: Array, attached: Masses | None = None) -> None:
-        self.line = line
+        super().__init__(line)
         self.M = consistent_mass(line.length, mass)
         self._at_ends = None if attached is None else attached.ends
         if attached is not None:
             self.M += attached.along + attached.ends
-
-    def blocks(self) -> dict[str, Block]:
-        return {self.line.name: self.line.element_block()} if self.line.active else {}
 
     def _F(self, trial: Trial) -> Array:
         """Residual conjugate to q (ne, 4, d)."""
@@ -56,25 +54,15 @@ class Inertia:
         return self.line.gathered(self._end_forces(state) + np.zeros((self.line.length.size, 2 * self.line.ndof)))
 
     def residual(self, state: State, forces: Forces) -> None:
-        if self.line.active:
-            trial = self.line.trial(state)
-            self.line.collect(trial, trial.once((self, "F"), self._F), forces.inertia)
+        trial = self.line.trial(state)
+        self.line.collect(trial, trial.once((self, "F"), self._F), forces.inertia)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        if self.line.active:
-            trial, K = self.line.trial(state), values[self.line.name]
-            trial.add_turning(K, weights.inertia, trial.once((self, "F"), self._F))
-            columns, shift = trial.columns(weights)[2]
-            add_mass(K, weights.inertia, trial.turn.P, columns, shift, self.M)
+        trial, K = self.line.trial(state), values[self.line.name]
+        trial.add_turning(K, weights.inertia, trial.once((self, "F"), self._F))
+        columns, shift = trial.columns(weights)[2]
+        add_mass(K, weights.inertia, trial.turn.P, columns, shift, self.M)
 
     def energy(self, state: State) -> Energy:
-        if not self.line.active:
-            return Energy()
         rate = self.line.trial(state).q_rate
         return Energy(kinetic=0.5 * float(np.vdot(rate, weigh(self.M, rate))))
-
-    def work(self, before: State, after: State) -> Work:
-        return Work()
-
-    def commit(self, state: State) -> None:
-        pass

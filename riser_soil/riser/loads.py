@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.part import Forces, State, Traits, Weights, Work
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import SpatialTurn, moment_stiffness
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.trial import Trial
 
 
@@ -32,7 +33,7 @@ class Load:
     distributed: Array | None = None
 
 
-class PointLoads:
+class PointLoads(LinePart):
     """Loads of a stage (group F).
 
     Forces spread to their element by the cubic shape functions; moments must sit at a node. A moment of fixed
@@ -42,7 +43,8 @@ class PointLoads:
     name = "loads"
 
     def __init__(self, line: Line, loads: list[Load]) -> None:
-        self.line, self._loads = line, loads
+        super().__init__(line)
+        self._loads = loads
         self._places = {load: self._place(load) for load in loads}
         self._within = [load for load in loads if self._inside(load)]
         self._moments = [(load, self._node(load)) for load in loads if load.moment is not None]
@@ -78,9 +80,6 @@ class PointLoads:
         """Whether a load acts within elements rather than on a node."""
         return load.distributed is not None or self.line.place(load.arc)[1] not in (0.0, 1.0)
 
-    def blocks(self) -> dict[str, Block]:
-        return {self.line.name: self.line.element_block()} if self.line.active else {}
-
     def _F(self, t: float, loads: list[Load]) -> Array:
         """Residual of some of the loads, conjugate to q (ne, 4, d)."""
         F = np.zeros((self.line.length.size, 4, self.line.dimension))
@@ -104,8 +103,7 @@ class PointLoads:
         return self.line.nodal(out - inside)
 
     def residual(self, state: State, forces: Forces) -> None:
-        if self.line.active:
-            self._add(self.line.trial(state), forces.force)
+        self._add(self.line.trial(state), forces.force)
 
     def _add(self, trial: Trial, out: Array) -> None:
         self.line.collect(trial, self._F(trial.state.t, self._loads), out)
@@ -123,8 +121,6 @@ class PointLoads:
         return np.array([moment @ self.line.normal])
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        if not self.line.active:
-            return
         trial, K = self.line.trial(state), values[self.line.name]
         trial.add_turning(K, weights.force, self._F(state.t, self._loads))
         if isinstance(trial.turn, SpatialTurn):
@@ -137,18 +133,10 @@ class PointLoads:
             moment_stiffness(turn.Rn[node], turn.Theta[node], moment)
         )
 
-    def energy(self, state: State) -> Energy:
-        return Energy()
-
     def work(self, before: State, after: State) -> Work:
         """Work of the mean loads over the step."""
-        if not self.line.active:
-            return Work()
         residual = np.zeros_like(after.u)
         for state in (before, after):
             self._add(self.line.trial(state), residual)
         part = self.line.part
         return Work(external=-0.5 * float(residual[part] @ (after.u - before.u)[part]))
-
-    def commit(self, state: State) -> None:
-        pass

@@ -25,17 +25,18 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed
-from riser_soil.core.part import Block, Energy, Forces, Part, State, Traits, Weights, Work
+from riser_soil.core.part import Block, Energy, Forces, Part, State, Traits, Weights
 from riser_soil.core.roles import MomentumCorrecting
 from riser_soil.riser import hermite
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.midpoint_directors import Carried, Secant, directors
 from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.trial import Trial
 
 
-class MidpointInertia:
+class MidpointInertia(LinePart):
     """The line's mass in steps of the midpoint rule (group I).
 
     instant: the same mass as it acts at an instant, which is asked for at accepted states.
@@ -44,7 +45,8 @@ class MidpointInertia:
     name, traits = "inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting,))
 
     def __init__(self, instant: Inertia) -> None:
-        self.instant, self.line = instant, instant.line
+        super().__init__(instant.line)
+        self.instant = instant
         self._tangents = Carried(directors(self.line.frames, 0))
 
     def begin(self, state: State) -> None:
@@ -72,14 +74,14 @@ class MidpointInertia:
     def residual(self, state: State, forces: Forces) -> None:
         if not self._tangents.within_step(state.t):
             self.instant.residual(state, forces)
-        elif self.line.active:
+        else:
             secant, F = self.line.trial(state).once((self, "step"), self._step)
             self.line.scatter(hermite.pull_back(F, secant.P), forces.inertia)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if not self._tangents.within_step(state.t):
             self.instant.tangent(state, weights, values)
-        elif self.line.active:
+        else:
             secant, F = self.line.trial(state).once((self, "step"), self._step)
             K, shift = values[self.line.name], weights.shift_a
             G = self._tangents.geometric(secant, _turning(self.line, state.u), F[:, 1::2])
@@ -103,19 +105,14 @@ class MidpointInertia:
 
     def energy(self, state: State) -> Energy:
         """Kinetic energy at the start or the end of a step."""
-        if not self.line.active:
-            return Energy()
         rate = self.q_rate(state)
         return Energy(kinetic=0.5 * float(np.sum(rate * hermite.weigh(self.instant.M, rate))))
-
-    def work(self, before: State, after: State) -> Work:
-        return Work()
 
     def commit(self, state: State) -> None:
         self._tangents.commit(state.t, _turning(self.line, state.u))
 
 
-class MidpointRotaryInertia:
+class MidpointRotaryInertia(LinePart):
     """The sections' rotary inertia in steps of the midpoint rule (group I): mass that sits on their directors.
 
     instant: the same inertia as it acts at an instant, which is asked for at accepted states. masses: of element ends
@@ -125,7 +122,8 @@ class MidpointRotaryInertia:
     name, traits = "rotary inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting,))
 
     def __init__(self, instant: RotaryInertia) -> None:
-        self.instant, self.line = instant, instant.line
+        super().__init__(instant.line)
+        self.instant = instant
         on = instant.on_directors()
         self.masses = [mass[:, None, None] for mass in on.values()]
         self._directors = [Carried(directors(self.line.frames, k)) for k in on]
@@ -151,7 +149,7 @@ class MidpointRotaryInertia:
     def residual(self, state: State, forces: Forces) -> None:
         if not self._directors[0].within_step(state.t):
             self.instant.residual(state, forces)
-        elif self.line.active:
+        else:
             steps = self.line.trial(state).once((self, "step"), self._step)
             self._scatter([secant.moments(F) for secant, F in steps], forces.inertia)
 
@@ -171,7 +169,7 @@ class MidpointRotaryInertia:
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         if not self._directors[0].within_step(state.t):
             self.instant.tangent(state, weights, values)
-        elif self.line.active:
+        else:
             middle, half = _turning(self.line, state.u), 0.5 * weights.shift_a
             steps = self.line.trial(state).once((self, "step"), self._step)
             for director, mass, (secant, F) in zip(self._directors, self.masses, steps, strict=True):
@@ -185,13 +183,8 @@ class MidpointRotaryInertia:
 
     def energy(self, state: State) -> Energy:
         """Kinetic energy at the start or the end of a step."""
-        if not self.line.active:
-            return Energy()
         squares = (mass * rate**2 for mass, rate in zip(self.masses, self.rates(state), strict=True))
         return Energy(kinetic=0.5 * sum(float(np.sum(square)) for square in squares))
-
-    def work(self, before: State, after: State) -> Work:
-        return Work()
 
     def commit(self, state: State) -> None:
         for director in self._directors:

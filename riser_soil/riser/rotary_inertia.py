@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.part import Energy, Forces, State, Traits, Weights
 from riser_soil.riser import rotary_moments
 from riser_soil.riser.directors import PlanarFrames, SpatialFrames
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import LinePart
 
 
 class PlanarSections:
@@ -52,7 +53,7 @@ class SpatialSections:
         return float(rotary_moments.kinetic_energy(self._J, v))
 
 
-class RotaryInertia:
+class RotaryInertia(LinePart):
     """Rotary inertia of the sections, gathered at the nodes (group I).
 
     line: the riser's field. across: kg m per element (ne,) about an axis across the pipe (rho I of the section).
@@ -66,7 +67,8 @@ class RotaryInertia:
     name = "rotary inertia"
 
     def __init__(self, line: Line, across: Array, polar: Array | None = None) -> None:
-        self.line, self.traits = line, Traits("I", symmetric=line.dimension == 2)
+        super().__init__(line)
+        self.traits = Traits("I", symmetric=line.dimension == 2)
         self.across = 0.5 * line.length * across  # of ends, kg m2
         self.polar = 2.0 * self.across if polar is None else 0.5 * line.length * polar
         self._sections = _sections(line, self.across, self.polar)
@@ -84,9 +86,6 @@ class RotaryInertia:
         on_tangent = self.across - half
         return {0: on_tangent} | masses if on_tangent.any() else masses
 
-    def blocks(self) -> dict[str, Block]:
-        return {self.line.name: self.line.element_block()} if self.line.active else {}
-
     def _turning(self, values: Array) -> Array:
         """Rotation dofs of the nodes (nn, r)."""
         return np.ascontiguousarray(self.line.nodal(values)[:, self.line.dimension :])
@@ -99,24 +98,14 @@ class RotaryInertia:
         return out.reshape(len(moments), -1), None
 
     def residual(self, state: State, forces: Forces) -> None:
-        if self.line.active:
-            self.line.scatter(self.element_forces(state)[0], forces.inertia)
+        self.line.scatter(self.element_forces(state)[0], forces.inertia)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        if self.line.active:
-            turning = map(self._turning, (state.u, state.v, state.a))
-            self._sections.add_tangent(values[self.line.name], weights, *turning)
+        turning = map(self._turning, (state.u, state.v, state.a))
+        self._sections.add_tangent(values[self.line.name], weights, *turning)
 
     def energy(self, state: State) -> Energy:
-        if not self.line.active:
-            return Energy()
         return Energy(kinetic=self._sections.kinetic_energy(self._turning(state.v)))
-
-    def work(self, before: State, after: State) -> Work:
-        return Work()
-
-    def commit(self, state: State) -> None:
-        pass
 
 
 def _sections(line: Line, across: Array, polar: Array) -> PlanarSections | SpatialSections:

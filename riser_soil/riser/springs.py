@@ -9,9 +9,10 @@ from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, 
 from riser_soil.riser import rotations
 from riser_soil.riser.directors import SpatialTurn, moment_stiffness
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import LinePart
 
 
-class EndSpring:
+class EndSpring(LinePart):
     """Moment stiffness times the rotation vector from the support's orientation to the end's (group F).
 
     line: the riser's field. node: 0 for the start, -1 for the end. stiffness: N m/rad.
@@ -22,13 +23,12 @@ class EndSpring:
     traits = Traits("F", symmetric=True)
 
     def __init__(self, line: Line, node: int, stiffness: float) -> None:
-        self.line, self.stiffness = line, stiffness
+        super().__init__(line)
+        self.stiffness = stiffness
         self.node = node % line.nodes
         self.name = "start spring" if self.node == 0 else "end spring"
 
     def blocks(self) -> dict[str, Block]:
-        if not self.line.active:
-            return {}
         first = self.line.offset + self.node * self.line.ndof + self.line.dimension
         dofs = np.arange(first, first + self.line.frames.dofs, dtype=np.int64)[None]
         return {self.name: Block(dofs, dofs)}
@@ -42,16 +42,14 @@ class EndSpring:
         return self.line.frames.rotation(support, self.line.trial(state).turn.at(self.node))
 
     def residual(self, state: State, forces: Forces) -> None:
-        if self.line.active:
-            turn = self.line.trial(state).turn
-            H = turn.H[self.node] if isinstance(turn, SpatialTurn) else np.eye(1)
-            self.line.nodal(forces.force)[self.node, self.line.dimension :] -= H.T @ self.moment(state)
+        turn = self.line.trial(state).turn
+        H = turn.H[self.node] if isinstance(turn, SpatialTurn) else np.eye(1)
+        self.line.nodal(forces.force)[self.node, self.line.dimension :] -= H.T @ self.moment(state)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        if self.line.active:
-            turn = self.line.trial(state).turn
-            K = self._spatial_tangent(turn, state) if isinstance(turn, SpatialTurn) else self.stiffness
-            values[self.name][0] += weights.force * K
+        turn = self.line.trial(state).turn
+        K = self._spatial_tangent(turn, state) if isinstance(turn, SpatialTurn) else self.stiffness
+        values[self.name][0] += weights.force * K
 
     def _spatial_tangent(self, turn: SpatialTurn, state: State) -> Array:
         """H^T k T_L^-1(phi) H, and the change of H at fixed moment."""
@@ -61,17 +59,10 @@ class EndSpring:
         return np.asarray(material + np.array(moment_stiffness(frame, Theta, self.stiffness * phi)))
 
     def energy(self, state: State) -> Energy:
-        if not self.line.active:
-            return Energy()
         phi = self._rotation(state)
         return Energy(strain=0.5 * self.stiffness * float(phi @ phi))
 
     def work(self, before: State, after: State) -> Work:
         """Of the support's turning against the spring: the mean moment times the rotation."""
-        if not self.line.active:
-            return Work()
         rotation = self.line.frames.rotation(*(self.line.support(self.node, state.t) for state in (before, after)))
         return Work(external=0.5 * float((self.moment(before) + self.moment(after)) @ rotation))
-
-    def commit(self, state: State) -> None:
-        pass

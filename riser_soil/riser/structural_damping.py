@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.part import Forces, State, Traits, Weights, Work
 from riser_soil.riser import beam2d, beam3d, damping2d, damping3d, increments
 from riser_soil.riser.directors import SpatialTurn
 from riser_soil.riser.elastic import PlanarElements, SpatialElements, elastic_elements
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.trial import Trial
 
@@ -61,7 +62,7 @@ class SpatialDamping:
         return *elements.configuration(trial), elements.reference, self._viscosity, *rates
 
 
-class StructuralDamping:
+class StructuralDamping(LinePart):
     """Stiffness-proportional damping (group F): stresses beta D times the strains' rates, D the elastic stiffnesses.
 
     line: the riser's field. elements.damping: beta [s] per element. A mode of angular frequency w has the damping
@@ -71,11 +72,8 @@ class StructuralDamping:
     name, traits = "structural damping", Traits("F", symmetric=False)
 
     def __init__(self, line: Line, elements: Elements) -> None:
-        self.line = line
+        super().__init__(line)
         self._damping = _damping(elastic_elements(line, elements), elements.damping)
-
-    def blocks(self) -> dict[str, Block]:
-        return {self.line.name: self.line.element_block()} if self.line.active else {}
 
     def viscous_forces(self, state: State) -> Array:
         """Element residuals (ne, 2 ndof)."""
@@ -90,29 +88,19 @@ class StructuralDamping:
         return None, self.viscous_forces(state)
 
     def residual(self, state: State, forces: Forces) -> None:
-        if self.line.active:
-            self.line.scatter(self.viscous_forces(state), forces.force)
+        self.line.scatter(self.viscous_forces(state), forces.force)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        if self.line.active:
-            trial, v = self.line.trial(state), self.line.nodal(state.v)
-            values[self.line.name] += weights.force * self._damping.tangent(trial, v, float(weights.shift_v))
-
-    def energy(self, state: State) -> Energy:
-        return Energy()
+        trial, v = self.line.trial(state), self.line.nodal(state.v)
+        values[self.line.name] += weights.force * self._damping.tangent(trial, v, float(weights.shift_v))
 
     def work(self, before: State, after: State) -> Work:
         """Energy that the mean forces take out over the step."""
-        if not self.line.active:
-            return Work()
         forces = Forces.zeros(after.u.size)
         for state in (before, after):
             self.residual(state, forces)
         part = self.line.part
         return Work(dissipated=0.5 * float(forces.force[part] @ (after.u - before.u)[part]))
-
-    def commit(self, state: State) -> None:
-        pass
 
 
 def _damping(elements: PlanarElements | SpatialElements, beta: Array) -> PlanarDamping | SpatialDamping:

@@ -7,7 +7,8 @@ from typing import Protocol
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
+from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.stations import Derivatives
 from riser_soil.riser.trial import Trial
 from riser_soil.sea.pipe import Pipe
@@ -53,7 +54,7 @@ class DryStations:
         return float(np.sum(self._pipe.share * self._displaced * self._wetting.dry_height(trial)))
 
 
-class Buoyancy:
+class Buoyancy(LinePart):
     """The weight of what is dry (group F), downwards.
 
     flat: whether the surface is level and at rest; the force then has a potential. Waves do work on it instead.
@@ -62,11 +63,9 @@ class Buoyancy:
     name = "buoyancy"
 
     def __init__(self, pipe: Pipe, dry: Dry, flat: bool) -> None:
-        self.line, self._pipe, self._dry, self._flat = pipe.line, pipe, dry, flat
+        super().__init__(pipe.line)
+        self._pipe, self._dry, self._flat = pipe, dry, flat
         self.traits = Traits("F", symmetric=flat)
-
-    def blocks(self) -> dict[str, Block]:
-        return {self.line.name: self.line.element_block()} if self.line.active else {}
 
     def _F(self, trial: Trial) -> Array:
         found: Array = trial.once((self, "F"), self._dry.residual)
@@ -81,28 +80,21 @@ class Buoyancy:
         return None, found
 
     def residual(self, state: State, forces: Forces) -> None:
-        if self.line.active:
-            trial = self.line.trial(state)
-            self.line.collect(trial, trial.once((self, "F"), self._F), forces.force)
+        trial = self.line.trial(state)
+        self.line.collect(trial, trial.once((self, "F"), self._F), forces.force)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        if self.line.active:
-            trial, K = self.line.trial(state), values[self.line.name]
-            self._dry.add_tangent(K, trial, weights)
-            trial.add_turning(K, weights.force, self._F(trial))
+        trial, K = self.line.trial(state), values[self.line.name]
+        self._dry.add_tangent(K, trial, weights)
+        trial.add_turning(K, weights.force, self._F(trial))
 
     def energy(self, state: State) -> Energy:
         """Potential under a flat surface."""
-        if not (self.line.active and self._flat):
-            return Energy()
-        return Energy(potential=self._dry.potential(self.line.trial(state)))
+        return Energy(potential=self._dry.potential(self.line.trial(state))) if self._flat else Energy()
 
     def work(self, before: State, after: State) -> Work:
         """Work that waves put in."""
-        if self._flat or not self.line.active:
+        if self._flat:
             return Work()
         first, last = self.line.left_at(before), self.line.trial(after)
         return Work(external=-self._pipe.taken(lambda trial: trial.once((self, "F"), self._F), first, last))
-
-    def commit(self, state: State) -> None:
-        pass

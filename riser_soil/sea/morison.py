@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
+from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.trial import Trial
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.still_water import StationLoads
 
 
-class Morison:
+class Morison(LinePart):
     """Loads of the water at the pipe's stations, brought to the line: group I is the added mass, F all the rest."""
 
     name = "morison"
     traits = Traits("IF", symmetric=False, follows=True)
 
     def __init__(self, pipe: Pipe, loads: StationLoads) -> None:
-        self.line, self._pipe, self._loads = pipe.line, pipe, loads
-
-    def blocks(self) -> dict[str, Block]:
-        return {self.line.name: self.line.element_block()} if self.line.active else {}
+        super().__init__(pipe.line)
+        self._pipe, self._loads = pipe, loads
 
     def element_forces(self, state: State) -> tuple[Array, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof)."""
@@ -27,15 +26,12 @@ class Morison:
         return found
 
     def residual(self, state: State, forces: Forces) -> None:
-        if self.line.active:
-            trial = self.line.trial(state)
-            inertia, force = self._q_forces(trial)
-            self.line.collect(trial, inertia, forces.inertia)
-            self.line.collect(trial, force, forces.force)
+        trial = self.line.trial(state)
+        inertia, force = self._q_forces(trial)
+        self.line.collect(trial, inertia, forces.inertia)
+        self.line.collect(trial, force, forces.force)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        if not self.line.active:
-            return
         trial, K = self.line.trial(state), values[self.line.name]
         self._pipe.add_tangent(K, trial, weights, self._loads.derivatives(trial, weights))
         inertia, force = self._q_forces(trial)
@@ -43,8 +39,6 @@ class Morison:
 
     def energy(self, state: State) -> Energy:
         """Kinetic energy of the added mass at the pipe's own velocity."""
-        if not self.line.active:
-            return Energy()
         trial = self.line.trial(state)
         v = self._pipe.flow(trial).v
         return Energy(kinetic=0.5 * self._pipe.total(v, self._loads.momentum(trial, v)))
@@ -54,8 +48,6 @@ class Morison:
 
         So a riser at rest in a current neither takes nor loses energy, whoever holds it.
         """
-        if not self.line.active:
-            return Work()
         first, last = self.line.left_at(before), self.line.trial(after)
         resisted = self._pipe.taken(lambda trial: self._q_forces(trial)[1], first, last)
         changed = self._changed(first, last)
@@ -72,9 +64,6 @@ class Morison:
         """
         v = 0.5 * (self._pipe.flow(first).v + self._pipe.flow(last).v)
         return 0.5 * self._pipe.total(v, self._loads.momentum(last, v) - self._loads.momentum(first, v))
-
-    def commit(self, state: State) -> None:
-        pass
 
     def _element_forces(self, trial: Trial) -> tuple[Array, Array]:
         inertia, force = self._q_forces(trial)

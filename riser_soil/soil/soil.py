@@ -31,6 +31,7 @@ class Soil:
     """
 
     name = "soil"
+    active = True
 
     def __init__(
         self,

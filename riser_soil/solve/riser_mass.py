@@ -43,7 +43,7 @@ class RiserMass:
 
 
 def _with_inertia(system: System) -> list[Part]:
-    return [part for part in system.model.parts if "I" in part.traits.groups]
+    return [part for part in system.model.parts if part.active and "I" in part.traits.groups]
 
 
 class _LineMass:

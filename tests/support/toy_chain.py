@@ -62,6 +62,7 @@ class Chain:
 
 class Inertia:
     name, traits = "inertia", Traits("I", symmetric=True)
+    active = True
 
     def __init__(self, chain: Chain, mass: float) -> None:
         self.chain, self.mass = chain, mass / 2.0
@@ -94,6 +95,7 @@ class Springs:
     """Forces k e + c e^3 in the stretches e beyond the rest lengths, and weight."""
 
     name, traits = "springs", Traits("F", symmetric=True)
+    active = True
 
     def __init__(self, chain: Chain, rest: float, k: float, cubic: float = 0.0, weight: float = 0.0) -> None:
         self.chain, self.rest, self.k, self.cubic, self.weight = chain, rest, k, cubic, weight
@@ -131,6 +133,7 @@ class Floor:
     """Penalty contact with the plane z = 0, fully implicit."""
 
     name, traits = "contact", Traits("E", symmetric=True)
+    active = True
 
     def __init__(self, chain: Chain, stiffness: float) -> None:
         self.chain, self.stiffness = chain, stiffness

@@ -1,0 +1,30 @@
+"""What parts that act on a line have in common: its pattern; by default nothing is stored, turned over or kept."""
+
+from __future__ import annotations
+
+from riser_soil.core.part import Block, Energy, State, Work
+from riser_soil.riser.line import Line
+
+
+class LinePart:
+    """Base of the parts that act on a line; asked on the rank alone that evaluates it."""
+
+    def __init__(self, line: Line) -> None:
+        self.line = line
+
+    @property
+    def active(self) -> bool:
+        return self.line.active
+
+    def blocks(self) -> dict[str, Block]:
+        """All dofs of each element."""
+        return {self.line.name: self.line.element_block()}
+
+    def energy(self, state: State) -> Energy:
+        return Energy()
+
+    def work(self, before: State, after: State) -> Work:
+        return Work()
+
+    def commit(self, state: State) -> None:
+        """Nothing is kept."""
