@@ -21,6 +21,7 @@ class Averaged:
     """Contact in group F: its force counts as the time scheme weighs those of the riser, not at the step's end."""
 
     traits = Traits("FE", symmetric=True)  # E, as the force may jump
+    active = True
 
     def __init__(self, contact: SeabedContact) -> None:
         self._contact, self.name = contact, contact.name
