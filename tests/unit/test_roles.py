@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NoReturn
+
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -9,7 +11,8 @@ from mpi4py import MPI
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Model, State, Traits
 from riser_soil.core.roles import Adaptive, MomentumCorrecting, Predictor, Remembering, with_role
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import Clock, System, total
+from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Floor
 
 
@@ -31,6 +34,17 @@ class Misspelt(Floor):
 
 class Undeclared(Foreseen):
     traits = Traits("E", symmetric=True)
+
+
+class Asleep(Floor):
+    """A floor that this rank does not evaluate, and that would fail."""
+
+    active = False
+
+    def fail(self, *_: object) -> NoReturn:
+        raise AssertionError
+
+    blocks = residual = tangent = energy = work = commit = fail
 
 
 def start(kind: type[Floor]) -> System:
@@ -55,3 +69,14 @@ def test_a_declared_role_is_played() -> None:
 def test_a_misspelt_or_undeclared_role_is_an_error_at_the_start(kind: type[Floor], says: str) -> None:
     with pytest.raises(TypeError, match=says):
         start(kind)
+
+
+def test_a_part_that_is_not_active_is_asked_for_nothing() -> None:
+    system = start(Asleep)
+    state = State.at_rest(0.0, 2)
+    assert not np.any(total(system.forces(state)))
+    system.assemble(state, Static().weights(1.0))
+    assert system.energy(state).total == 0.0
+    assert list(system.work(state, state)) == ["contact"]
+    system.commit(state)
+    system.destroy()
