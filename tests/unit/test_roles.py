@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 import pytest
@@ -14,6 +14,13 @@ from riser_soil.core.roles import Adaptive, MomentumCorrecting, Predictor, Remem
 from riser_soil.core.system import Clock, System, total
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Floor
+
+
+def _fail(*_: object) -> NoReturn:
+    raise AssertionError
+
+
+FAIL: Any = _fail
 
 
 class Foreseen(Floor):
@@ -40,11 +47,7 @@ class Asleep(Floor):
     """A floor that this rank does not evaluate, and that would fail."""
 
     active = False
-
-    def fail(self, *_: object) -> NoReturn:
-        raise AssertionError
-
-    blocks = residual = tangent = energy = work = commit = fail
+    blocks = residual = tangent = energy = work = commit = FAIL
 
 
 def start(kind: type[Floor]) -> System:
