@@ -21,30 +21,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Weights
-
-
-class StepEnd(Protocol):
-    """An accepted step at its end, and what may be asked of the system there.
-
-    state: increments zero, rates as solved. contact: accelerations that contact causes [m/s2]; None where no forces may
-    jump.
-    """
-
-    dt: float
-
-    @property
-    def state(self) -> State: ...
-
-    @property
-    def contact(self) -> Array | None: ...
-
-    def with_momentum(self, state: State) -> State:
-        """The state with the rates that have the momentum of the step's end."""
-        ...
-
-    def in_balance(self, state: State) -> State:
-        """The state with the accelerations that its forces cause."""
-        ...
+from riser_soil.solve.step_end import CommittedStep
 
 
 class Scheme(Protocol):
@@ -78,7 +55,7 @@ class Scheme(Protocol):
         """A solved state, contact's accelerations [m/s2] out of its bulk ones and in full in its rate."""
         ...
 
-    def rates_after(self, end: StepEnd) -> tuple[State, State]:
+    def rates_after(self, end: CommittedStep) -> tuple[State, State]:
         """The state that the next step starts from, with the bulk's rates alone, and the same as the riser moves."""
         ...
 
@@ -118,7 +95,7 @@ class Static:
     def split_contact(self, state: State, contact: Array, dt: float) -> State:
         return state
 
-    def rates_after(self, end: StepEnd) -> tuple[State, State]:
+    def rates_after(self, end: CommittedStep) -> tuple[State, State]:
         return end.state, end.state
 
     def weights(self, dt: float) -> Weights:
@@ -221,7 +198,7 @@ class GeneralizedAlpha:
         v = state.v + dt * (1.0 - self.gamma / (2.0 * self.beta)) * contact
         return State(state.t, state.u, v, a)
 
-    def rates_after(self, end: StepEnd) -> tuple[State, State]:
+    def rates_after(self, end: CommittedStep) -> tuple[State, State]:
         if end.contact is None:
             return end.state, end.state
         bulk = self.split_contact(end.state, end.contact, end.dt)
@@ -247,7 +224,7 @@ class Midpoint:
     def split_contact(self, state: State, contact: Array, dt: float) -> State:
         return state
 
-    def rates_after(self, end: StepEnd) -> tuple[State, State]:
+    def rates_after(self, end: CommittedStep) -> tuple[State, State]:
         """With the momentum that inertia has kept, and accelerations of the end, as the balance is in the middle."""
         now = end.in_balance(end.with_momentum(end.state))
         return now, now
