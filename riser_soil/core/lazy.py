@@ -6,7 +6,7 @@ import importlib
 from typing import Any
 
 
-class lazy:  # noqa: N801  (it stands for a module)
+class Lazy:
     """A module by its full name; its names are looked up when they are asked for, each once."""
 
     def __init__(self, module: str) -> None:

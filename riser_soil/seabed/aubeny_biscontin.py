@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from pydantic import Field
 
-from riser_soil.core.lazy import lazy
+from riser_soil.core.lazy import Lazy
 from riser_soil.core.quantities import NonNegative, PositiveStrengthGradient, Ratio, Stress
 from riser_soil.seabed.bearing import PowerLaw, Strength
 from riser_soil.seabed.law import Answer, SeabedLaw
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
     from riser_soil.core.arrays import Array, BoolArray
 else:
-    np = lazy("numpy")
+    np = Lazy("numpy")
 
 TINY = 1e-30
 

@@ -9,14 +9,14 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from riser_soil.core.lazy import lazy
+from riser_soil.core.lazy import Lazy
 
 if TYPE_CHECKING:
     import numpy as np
 
     from riser_soil.core.arrays import Array
 else:
-    np = lazy("numpy")
+    np = Lazy("numpy")
 
 SHALLOW = 0.1  # z/D below which Randolph & Quiggin's bearing factor follows the square root
 

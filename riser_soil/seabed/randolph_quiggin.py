@@ -33,7 +33,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from pydantic import Field
 
-from riser_soil.core.lazy import lazy
+from riser_soil.core.lazy import Lazy
 from riser_soil.core.quantities import Coefficient, NonNegative, PositiveStrengthGradient, Ratio, Stress, UnitWeight
 from riser_soil.seabed.bearing import SHALLOW, PowerLaw, Strength, displaced
 from riser_soil.seabed.law import Answer, SeabedLaw
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
     from riser_soil.core.arrays import Array, BoolArray
 else:
-    np = lazy("numpy")
+    np = Lazy("numpy")
 
 TINY = 1e-30
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
-from riser_soil.core.lazy import lazy
+from riser_soil.core.lazy import Lazy
 from riser_soil.core.quantities import PoissonRatio, Stress
 from riser_soil.soil.law import STRESS, Response, SoilLaw
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from riser_soil.core.arrays import Array
     from riser_soil.soil import mandel
 else:
-    np, mandel = lazy("numpy"), lazy("riser_soil.soil.mandel")
+    np, mandel = Lazy("numpy"), Lazy("riser_soil.soil.mandel")
 
 
 class LinearElastic(SoilLaw):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
-from riser_soil.core.lazy import lazy
+from riser_soil.core.lazy import Lazy
 from riser_soil.core.quantities import PoissonRatio, Ratio, StrengthGradient, Stress
 from riser_soil.seabed.bearing import Strength, strip_capacity
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Bearing, Response, SoilLaw
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from riser_soil.core.arrays import Array
     from riser_soil.soil import mandel
 else:
-    np, mandel = lazy("numpy"), lazy("riser_soil.soil.mandel")
+    np, mandel = Lazy("numpy"), Lazy("riser_soil.soil.mandel")
 
 
 class VonMises(SoilLaw):
