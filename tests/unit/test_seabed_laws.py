@@ -90,6 +90,13 @@ def test_a_response_keeps_nothing(law: NormalLaw, way: tuple[float, ...]) -> Non
 
 
 @every_law
+def test_each_column_of_the_history_has_a_name(law: NormalLaw) -> None:
+    history = law.initial_history((2, 3))
+    assert history.shape == law.update(np.full((2, 3), 0.05), history).history.shape == (2, 3, len(law.columns))
+    assert len(set(law.columns)) == len(law.columns)
+
+
+@every_law
 def test_force_is_zero_out_of_contact(law: NormalLaw) -> None:
     normal = np.array([-np.inf, -1.0, -1e-9, 0.0])
     for history in (law.initial_history((1,)), after(law, through(0.0, 0.07, 0.05))):

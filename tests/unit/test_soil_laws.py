@@ -75,6 +75,13 @@ def test_elastic_strain_inverts_the_elastic_stress(law: Formula) -> None:
     np.testing.assert_allclose(found.stored, 0.5 * np.sum(found.stress * strain, axis=1), rtol=1e-12)
 
 
+@pytest.mark.parametrize("law", [rock(np.zeros(3), NU), clay(np.zeros(3))])
+def test_each_column_of_the_history_has_a_name(law: Formula) -> None:
+    assert law.start().shape == (3, len(law.columns))
+    assert law.update(shear_strain(np.full(3, 0.05)), law.start()).history.shape == (3, len(law.columns))
+    assert len(set(law.columns)) == len(law.columns)
+
+
 def test_simple_shear_yields_at_su_of_the_depth() -> None:
     depth = np.array([0.0, 1.0, 2.5])
     law = clay(depth)
