@@ -5,6 +5,7 @@ All stand on its own parts: the contact's force is weighed as the riser's other 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.seabed.law import Answer
 
 NEAR = 1e-8  # m: below it a difference quotient of the potential is round-off
 
@@ -61,6 +63,8 @@ class DiscreteGradient:
     """
 
     penalty: Penalty
+    columns: tuple[str, ...] = ("penetration",)
+    capacity: float = math.inf
 
     @property
     def start(self) -> float:
@@ -72,7 +76,7 @@ class DiscreteGradient:
     def active(self, penetration: Array, history: Array) -> BoolArray:
         return np.maximum(penetration, history[..., 0]) > -self.penalty.smoothing
 
-    def force_and_stiffness(self, penetration: Array, history: Array) -> tuple[Array, Array]:
+    def update(self, penetration: Array, history: Array) -> Answer:
         before = history[..., 0]
         way = penetration - before
         near = np.abs(way) < NEAR
@@ -81,10 +85,9 @@ class DiscreteGradient:
         half = 0.5 * (penetration + before)
         force = np.where(near, self.penalty.force(half), quotient)
         slope = (self.penalty.force(penetration) - quotient) / safe
-        return force, np.where(near, 0.5 * self.penalty.slope(half), slope)
-
-    def stored(self, penetration: Array, history: Array) -> Array:
-        return self.penalty.potential(penetration)
-
-    def update(self, penetration: Array, history: Array) -> Array:
-        return np.asarray(penetration[..., None])
+        return Answer(
+            force,
+            np.where(near, 0.5 * self.penalty.slope(half), slope),
+            np.asarray(penetration[..., None]),
+            self.penalty.potential(penetration),
+        )

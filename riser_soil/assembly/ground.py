@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, assert_never
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil.assembly.laws import hysteretic_law, soil_law
 from riser_soil.assembly.scales import Scales, contact_radius, scales_of
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
@@ -22,10 +21,10 @@ from riser_soil.scene.soil import GeneratedMesh, MeshFile, SoilScene
 
 if TYPE_CHECKING:
     from riser_soil.contact.friction import Friction
-    from riser_soil.contact.law import NormalLaw
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.seabed.grounds import Ground
+    from riser_soil.seabed.law import NormalLaw
     from riser_soil.soil.grid import Grid
     from riser_soil.soil.soil import Soil
     from riser_soil.soil.surface import SoilTop
@@ -42,7 +41,7 @@ def soil_of(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> 
 
     return Soil(
         _grid(scene, given, line, comm),
-        soil_law(given.law),
+        given.law.at_points,
         level=scene.seabed_level,
         unit_weight=given.submerged_unit_weight,
         K0=given.K0,
@@ -115,10 +114,10 @@ def friction_of(settings: ContactScene, seabed: SeabedContact, elements: Element
 
 
 def seabed_law(seabed: Seabed, settings: ContactScene, elements: Elements, stiffness: dict[str, float]) -> NormalLaw:
-    """How the seabed answers to penetration. stiffness [N/m2]: of penalties, by ground."""
+    """How the seabed answers to penetration by the line of its mean diameter. stiffness [N/m2]: of penalties."""
     match seabed:
         case HystereticSeabed():
-            return hysteretic_law(seabed.law, elements)
+            return seabed.law.of_pipe(float(np.average(elements.outer_diameter, weights=elements.length)))
         case RigidSeabed() | SpringSeabed():
             return _penalty(settings, scales_of(elements), stiffness["seabed"])
         case _:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, assert_never
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.quantities import Vector
 from riser_soil.riser.ends import End, Motion, Turning
 from riser_soil.riser.line import Line
 from riser_soil.scene.motions import ArcMotion, Harmonic, Rotation, Table, Vessel, Way
-from riser_soil.scene.quantities import Vector
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 

@@ -11,11 +11,11 @@ import numpy as np
 
 from riser_soil.assembly.sea import components_of, wave_clock
 from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.quantities import Vector
 from riser_soil.errors import SceneError
 from riser_soil.motion.rao import RaoTable
 from riser_soil.motion.vessel import Response, Vessel, VesselAttachment
 from riser_soil.scene.motions import Vessel as VesselScene
-from riser_soil.scene.quantities import Vector
 from riser_soil.scene.rao import MODES
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage

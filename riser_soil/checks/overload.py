@@ -2,30 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.scene.soil import VonMises
-from riser_soil.seabed.bearing import Strength, strip_capacity
 
 if TYPE_CHECKING:
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
-
-
-@runtime_checkable
-class Bearing(Protocol):
-    """A law of the ground with a limit."""
-
-    @property
-    def capacity(self) -> float:
-        """Force per length [N/m] at a penetration of one diameter."""
-        ...
 
 
 class Overload(NamedTuple):
@@ -76,10 +65,10 @@ def _overloads(assembly: Assembly) -> Iterator[Overload]:
 def _limits(assembly: Assembly) -> Iterator[tuple[SoilContact | SeabedContact, float, str]]:
     """Grounds that bear so much only [N/m], and what that is."""
     soil, D = assembly.scene.soil, assembly.scales.diameter
-    if soil is not None and assembly.soil_contact is not None and isinstance(soil.law, VonMises):
-        clay = Strength(soil.law.su, soil.law.su_gradient)
-        yield assembly.soil_contact, strip_capacity(clay, D), f"(2 + pi) su D + su_gradient D^2/4 with D = {D:.4g} m"
-    if assembly.seabed is not None and isinstance(assembly.seabed.law, Bearing):
+    bearing = soil.law.bearing(D) if soil is not None else None
+    if assembly.soil_contact is not None and bearing is not None:
+        yield assembly.soil_contact, *bearing
+    if assembly.seabed is not None and math.isfinite(assembly.seabed.law.capacity):
         yield assembly.seabed, assembly.seabed.law.capacity, f"by its law at a depth of one diameter, {D:.4g} m"
 
 

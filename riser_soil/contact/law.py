@@ -1,16 +1,17 @@
-"""Normal contact force per length of riser as a function of penetration, and the choice of its stiffness.
+"""The penalty of normal contact: its force per length of riser by penetration, and the choice of its stiffness.
 
 Penetration δ = −gap [m]; force f [N/m] pushes the two sides apart; f = dψ/dδ with the potential ψ [N].
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.seabed.law import Answer
 
 #: Penetration of a riser at rest under its own weight, in outer diameters: small beside what a pipe's size
 #: can show.
@@ -18,39 +19,6 @@ PENETRATION_AT_REST = 1e-3
 #: Contact stiffness over Young's modulus at the surface. A strip that loads a half space settles by about
 #: force per length over E, so the penalty adds about a tenth to the settlement that it passes on.
 STIFFNESS_OVER_SOIL = 10.0
-
-
-class NormalLaw(Protocol):
-    """Force per length of riser by its penetration, with a history of nh numbers a point, kept between steps.
-
-    Penetrations, forces and slopes have one shape (...); a history is (..., nh). Nothing is kept here: `update` gives
-    the history after a step that is accepted.
-    """
-
-    @property
-    def start(self) -> float:
-        """Gap [m] at which a riser that comes down begins to feel the ground."""
-        ...
-
-    def initial_history(self, shape: tuple[int, ...]) -> Array:
-        """History of ground that has never been touched (*shape, nh)."""
-        ...
-
-    def active(self, penetration: Array, history: Array) -> BoolArray:
-        """Where there may be a force."""
-        ...
-
-    def force_and_stiffness(self, penetration: Array, history: Array) -> tuple[Array, Array]:
-        """Force [N/m], positive where it pushes the riser away, and its derivative by the penetration [N/m2]."""
-        ...
-
-    def stored(self, penetration: Array, history: Array) -> Array:
-        """Energy per length that the ground gives back [N]."""
-        ...
-
-    def update(self, penetration: Array, history: Array) -> Array:
-        """History after a step to this penetration."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -63,6 +31,8 @@ class Penalty:
 
     stiffness: float
     smoothing: float = 0.0
+    columns: tuple[str, ...] = ()
+    capacity: float = math.inf
 
     def force(self, penetration: Array) -> Array:
         """f [N/m], same shape as the penetration [m]."""
@@ -92,14 +62,8 @@ class Penalty:
     def active(self, penetration: Array, history: Array) -> BoolArray:
         return penetration > -self.smoothing
 
-    def force_and_stiffness(self, penetration: Array, history: Array) -> tuple[Array, Array]:
-        return self.force(penetration), self.slope(penetration)
-
-    def stored(self, penetration: Array, history: Array) -> Array:
-        return self.potential(penetration)
-
-    def update(self, penetration: Array, history: Array) -> Array:
-        return history
+    def update(self, penetration: Array, history: Array) -> Answer:
+        return Answer(self.force(penetration), self.slope(penetration), history, self.potential(penetration))
 
     def _rounded(self, penetration: Array) -> BoolArray:
         return np.abs(penetration) < self.smoothing

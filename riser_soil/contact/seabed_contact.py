@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.law import NormalLaw
 from riser_soil.contact.station_forces import StationForces
 from riser_soil.contact.touchdown import Stretch, stretches, touchdown
 from riser_soil.core.arrays import Array, BoolArray, IntArray
@@ -18,6 +17,7 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.trial import Trial
 from riser_soil.seabed.grounds import Distance, Ground
+from riser_soil.seabed.law import NormalLaw
 
 Covered = Callable[[Array], BoolArray]
 """Horizontal positions (n, 2) [m] -> whether something other than the seabed lies there, such as a block of soil."""
@@ -28,7 +28,8 @@ class Touching(NamedTuple):
 
     elements (m,). force, slope (m, ng): force per length [N/m] and its derivative by the penetration [N/m2]. away
     (m, ng, d): gradient of the distance from the ground; bend (m, ng, d, d) its derivative, None where it is zero.
-    resistance (m, ng, d): minus the force per length on the riser [N/m].
+    resistance (m, ng, d): minus the force per length on the riser [N/m]. history (m, ng, nh) and energy stored per
+    length (m, ng) [N]: what the law tells of a step that ends here.
     """
 
     elements: IntArray
@@ -37,6 +38,8 @@ class Touching(NamedTuple):
     normal: Array
     bend: Array | None
     resistance: Array
+    history: Array
+    stored: Array
 
 
 class StationContact(NamedTuple):
@@ -92,13 +95,16 @@ class SeabedContact(LinePart):
         penetration = self._radius[:, None] - value.reshape(x.shape[:2])
         touched = self.law.active(penetration, self.memory).any(axis=1)
         at = np.flatnonzero(touched)
-        force, slope = self.law.force_and_stiffness(penetration[at], self.memory[at])
+        answer = self.law.update(penetration[at], self.memory[at])
         normal = (gradient @ self.line.basis).reshape(x.shape)
         bend = None
         if hessian is not None:
             local = self.line.basis.T @ hessian @ self.line.basis
             bend = local.reshape(*x.shape, x.shape[2])[at]
-        touching = Touching(at, force, slope, normal[at], bend, -force[..., None] * normal[at])
+        resistance = -answer.force[..., None] * normal[at]
+        touching = Touching(
+            at, answer.force, answer.slope, normal[at], bend, resistance, answer.history, answer.stored
+        )
         return StationContact(x, penetration, normal, touching)
 
     def _distance(self, x: Array) -> Distance:
@@ -130,8 +136,8 @@ class SeabedContact(LinePart):
 
     def energy(self, state: State) -> Energy:
         """What the law gives back."""
-        penetration = self.evaluate(self.line.trial(state)).penetration
-        return Energy(potential=float(np.sum(self.share * self.law.stored(penetration, self.memory))))
+        touching = self.evaluate(self.line.trial(state)).touching
+        return Energy(potential=float(np.sum(self.share * self._at_stations(touching.elements, touching.stored))))
 
     def work(self, before: State, after: State) -> Work:
         """What the force at the end of the step took out beyond the change of what it stores.
@@ -145,16 +151,25 @@ class SeabedContact(LinePart):
         return Work(dissipated=taken - self.energy(after).potential + self.energy(before).potential)
 
     def commit(self, state: State) -> None:
-        """Keep the law's history."""
-        penetration = self.evaluate(self.line.trial(state)).penetration
-        self.memory = self.law.update(penetration, self.memory)
+        """Keep the law's history: known where something touches, asked for elsewhere."""
+        if self.memory.size:
+            found = self.evaluate(self.line.trial(state))
+            memory, free = np.empty_like(self.memory), np.ones(len(self.memory), dtype=bool)
+            free[found.touching.elements] = False
+            memory[found.touching.elements] = found.touching.history
+            memory[free] = self.law.update(found.penetration[free], self.memory[free]).history
+            self.memory = memory
+
+    def _at_stations(self, elements: IntArray, values: Array) -> Array:
+        """Values (m, ng) of some elements' stations, among those of all (ne, ng), 0 elsewhere."""
+        out = np.zeros_like(self.share)
+        out[elements] = values
+        return out
 
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m]: the stations' forces, shared linearly by two nodes."""
         touching = self.evaluate(self.line.trial(state)).touching
-        force = np.zeros_like(self.share)
-        force[touching.elements] = touching.force
-        return self.at_nodes(force)
+        return self.at_nodes(self._at_stations(touching.elements, touching.force))
 
     def at_nodes(self, values: Array) -> Array:
         """Means at the nodes (nn,) of values at the stations (ne, ng), which count with their share of arc length."""
@@ -197,8 +212,7 @@ class SeabedContact(LinePart):
     def _lying(self, state: State) -> tuple[Array, Array, Array, Array]:
         """Arc, share of the length, clearance and force per length of the stations, all (ne ng,)."""
         found = self.evaluate(self.line.trial(state))
-        force = np.zeros_like(self._arc)
-        force[found.touching.elements] = found.touching.force
+        force = self._at_stations(found.touching.elements, found.touching.force)
         return self._arc.ravel(), self.share.ravel(), -found.penetration.ravel() - self.law.start, force.ravel()
 
     def predict(self, guess: State) -> Array:

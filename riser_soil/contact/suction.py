@@ -14,12 +14,14 @@ Numerical Methods in Engineering 44 (1999), here healed by a touch.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from riser_soil.contact.law import Penalty
 from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.seabed.law import Answer
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,8 @@ class Sticking:
     penalty: Penalty
     cap: float
     reach: float
+    columns: tuple[str, ...] = ("widest_opening",)
+    capacity: float = math.inf
 
     def __post_init__(self) -> None:
         if self.reach <= self._peak:
@@ -52,19 +56,16 @@ class Sticking:
         stuck = (-penetration < self.reach) & (history[..., 0] < self.reach)
         return self.penalty.active(penetration, history) | stuck
 
-    def force_and_stiffness(self, penetration: Array, history: Array) -> tuple[Array, Array]:
-        force, slope = self.penalty.force_and_stiffness(penetration, history)
-        tension, stiffness = self._tension(self._opening(penetration), history[..., 0])
-        return force - tension, slope + stiffness
-
-    def stored(self, penetration: Array, history: Array) -> Array:
-        w = self._opening(penetration)
-        tension, _ = self._tension(w, history[..., 0])
-        return self.penalty.stored(penetration, history) + 0.5 * tension * w
-
-    def update(self, penetration: Array, history: Array) -> Array:
+    def update(self, penetration: Array, history: Array) -> Answer:
+        pushed, w = self.penalty.update(penetration, history[..., :0]), self._opening(penetration)
+        tension, stiffness = self._tension(w, history[..., 0])
         opened = np.maximum(-penetration[..., None], history)
-        return np.where(penetration[..., None] >= 0.0, 0.0, opened)
+        return Answer(
+            pushed.force - tension,
+            pushed.slope + stiffness,
+            np.where(penetration[..., None] >= 0.0, 0.0, opened),
+            pushed.stored + 0.5 * tension * w,
+        )
 
     def _opening(self, penetration: Array) -> Array:
         """Opening as far as it matters [m]."""

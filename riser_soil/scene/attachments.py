@@ -4,7 +4,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
-from riser_soil.scene.quantities import FROZEN, ArcLength, Area, Coefficient, Mass, Volume, wrong
+from riser_soil.core.quantities import FROZEN, ArcLength, Area, Coefficient, Mass, Volume, wrong
 
 
 def _one_or_more(value: Any) -> str:

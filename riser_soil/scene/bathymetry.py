@@ -3,8 +3,8 @@
 import math
 from itertools import pairwise
 
+from riser_soil.core.quantities import Vector
 from riser_soil.scene.plane import vertical_plane
-from riser_soil.scene.quantities import Vector
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.vectors import dot, minus
 

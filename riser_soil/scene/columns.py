@@ -11,10 +11,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from riser_soil.core.quantities import FARTHEST
 from riser_soil.scene.bounded import content
 from riser_soil.scene.files import wrong_file
 from riser_soil.scene.problem import hint, shown
-from riser_soil.scene.quantities import FARTHEST
 
 Units = Mapping[str, float]
 """Accepted units of a column, each with its size in SI units."""

@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import BaseModel, Field
 
-from riser_soil.scene.quantities import (
+from riser_soil.core.quantities import (
     FROZEN,
     AutoOrBedStiffness,
     AutoOrLength,

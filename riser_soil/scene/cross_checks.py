@@ -3,12 +3,12 @@
 import math
 from collections.abc import Callable, Iterator
 
+from riser_soil.core.quantities import Vector
 from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
 from riser_soil.scene.problem import Path, Problem, dotted, hint
-from riser_soil.scene.quantities import Vector
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed

@@ -5,7 +5,9 @@ from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel
+from pydantic.fields import FieldInfo
 
+from riser_soil.core.kinds import OneOf
 from riser_soil.scene.scene import Scene
 
 
@@ -52,7 +54,7 @@ class Spot:
         for model in self._models:
             for name, field in model.model_fields.items():
                 if (field.alias or name) == key:
-                    return Spot(_alternatives(field.annotation), field.description or "")
+                    return Spot(_types(field), field.description or "")
         values = (get_args(kind)[1] for kind in self.types if get_origin(kind) is dict)
         return Spot(tuple(t for kind in values for t in _alternatives(kind)), self.description)
 
@@ -63,6 +65,12 @@ def spot(location: tuple[str | int, ...]) -> Spot:
     for item in location:
         here = here.under(item)
     return here
+
+
+def _types(field: FieldInfo) -> tuple[Any, ...]:
+    """The types that fit at a key."""
+    registered = [mark for mark in field.metadata if isinstance(mark, OneOf)]
+    return tuple(registered[0].models.values()) if registered else _alternatives(field.annotation)
 
 
 def _alternatives(kind: Any) -> tuple[Any, ...]:

@@ -2,7 +2,7 @@
 
 import math
 
-from riser_soil.scene.quantities import Vector
+from riser_soil.core.quantities import Vector
 from riser_soil.scene.riser import Riser, Support
 from riser_soil.scene.shapes import ArcShape, CircularArc, PointsShape
 from riser_soil.scene.vectors import cross, dot, minus, plus, times

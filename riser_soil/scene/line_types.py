@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
-from riser_soil.scene.quantities import (
+from riser_soil.core.quantities import (
     FROZEN,
     AxialStiffness,
     BendingStiffness,

@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterator
 from typing import assert_never
 
+from riser_soil.core.quantities import Vector
 from riser_soil.scene.motions import ArcMotion, Harmonic, Rotation, Table, Vessel, Way
 from riser_soil.scene.problem import Path
-from riser_soil.scene.quantities import Vector
 from riser_soil.scene.rao import ROTATIONS, TRANSLATIONS
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage

@@ -7,9 +7,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
-from riser_soil.scene.columns import ANGLE, LENGTH, TIME, CsvColumns, read_columns
-from riser_soil.scene.files import NamedFile, wrong_file
-from riser_soil.scene.quantities import (
+from riser_soil.core.quantities import (
     FLATTEST,
     FROZEN,
     NEAREST,
@@ -22,6 +20,8 @@ from riser_soil.scene.quantities import (
     Vector,
     wrong,
 )
+from riser_soil.scene.columns import ANGLE, LENGTH, TIME, CsvColumns, read_columns
+from riser_soil.scene.files import NamedFile, wrong_file
 from riser_soil.scene.rao import MODES, Rao, read_rao
 
 PLANES: dict[str, Vector] = {"xz": (0.0, -1.0, 0.0), "yz": (1.0, 0.0, 0.0), "xy": (0.0, 0.0, 1.0)}

@@ -4,7 +4,7 @@ from typing import Literal, get_args
 
 from pydantic import BaseModel, Field
 
-from riser_soil.scene.quantities import FROZEN, Text, Time
+from riser_soil.core.quantities import FROZEN, Text, Time
 
 FieldName = Literal[
     "effective_tension",

@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
+from riser_soil.core.quantities import Vector
 from riser_soil.scene.motion_plane import displacements, rotation_axes
 from riser_soil.scene.problem import Path
-from riser_soil.scene.quantities import Vector
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.shapes import ArcShape, PointsShape

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from riser_soil.core.quantities import NEAREST
 from riser_soil.scene.columns import ANGLE, CsvColumns, Known, read_columns
 from riser_soil.scene.files import wrong_file
-from riser_soil.scene.quantities import NEAREST
 
 TURN = 2.0 * math.pi
 TRANSLATIONS, ROTATIONS = ("surge", "sway", "heave"), ("roll", "pitch", "yaw")

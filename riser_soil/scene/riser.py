@@ -6,9 +6,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
-from riser_soil.scene.attachments import Attachment
-from riser_soil.scene.grading import graded_count, graded_lengths
-from riser_soil.scene.quantities import (
+from riser_soil.core.quantities import (
     FROZEN,
     MOST_ELEMENTS,
     Coordinate,
@@ -22,6 +20,8 @@ from riser_soil.scene.quantities import (
     word_or,
     wrong,
 )
+from riser_soil.scene.attachments import Attachment
+from riser_soil.scene.grading import graded_count, graded_lengths
 from riser_soil.scene.shapes import Initial, Unstressed
 
 

@@ -5,10 +5,10 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, Field, model_validator
 
+from riser_soil.core.quantities import FROZEN, Gravity, Text
 from riser_soil.scene.contact import Contact
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.output import Output
-from riser_soil.scene.quantities import FROZEN, Gravity, Text
 from riser_soil.scene.riser import Riser
 from riser_soil.scene.seabed import ContactAt, Seabed
 from riser_soil.scene.soil import SoilScene

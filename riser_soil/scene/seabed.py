@@ -6,19 +6,16 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, BaseModel, Discriminator, Field, Tag
 from pydantic_core import PydanticCustomError
 
-from riser_soil.scene.quantities import (
+from riser_soil.core.kinds import OneOf
+from riser_soil.core.quantities import (
     FROZEN,
     SHORTEST,
     BedStiffness,
-    Coefficient,
     Coordinate,
-    NonNegative,
-    PositiveStrengthGradient,
-    Ratio,
-    Stress,
-    UnitWeight,
     by_kind,
 )
+from riser_soil.seabed.law import SeabedLaw
+from riser_soil.seabed.laws import LAWS
 
 ContactAt = Literal["axis", "outer"]
 
@@ -82,48 +79,7 @@ class SpringSeabed(BaseModel):
     stiffness: BedStiffness = Field(description="force per length of pipe and penetration [N/m2]")
 
 
-class RandolphQuiggin(BaseModel):
-    """Hysteretic law of Randolph & Quiggin (2009); `riser_soil.seabed.randolph_quiggin` tells what is certain of it."""
-
-    model_config = FROZEN
-
-    kind: Literal["randolph-quiggin"] = Field(description="randolph-quiggin or aubeny-biscontin")
-    su: Stress = Field(description="undrained shear strength at the surface [Pa]")
-    su_gradient: PositiveStrengthGradient = Field(default=0.0, description="its growth with depth [Pa/m]")
-    unit_weight: UnitWeight = Field(default=0.0, description="submerged unit weight, for the soil's buoyancy [N/m3]")
-    a: Ratio = Field(default=6.0, description="factor of the bearing capacity a (z/D)^b [-]")
-    b: NonNegative = Field(default=0.25, lt=1.0, description="power of the bearing capacity a (z/D)^b [-]")
-    K_max: Ratio = Field(default=200.0, description="greatest stiffness, over the ultimate pressure [-]")
-    f_suc: NonNegative = Field(default=0.6, lt=1.0, description="suction over the ultimate resistance [-]")
-    lambda_suc: Ratio = Field(default=1.0, description="decay length of suction over the greatest penetration [-]")
-    lambda_rep: Coefficient = Field(default=0.3, description="softening of repenetration [-]")
-    f_b: Coefficient = Field(default=1.5, description="factor of the soil's buoyancy [-]")
-
-
-class AubenyBiscontin(BaseModel):
-    """Hysteretic law of Aubeny & Biscontin (2009); `riser_soil.seabed.aubeny_biscontin` tells what is certain of it."""
-
-    model_config = FROZEN
-
-    kind: Literal["aubeny-biscontin"] = Field(description="randolph-quiggin or aubeny-biscontin")
-    su: Stress = Field(description="undrained shear strength at the surface [Pa]")
-    su_gradient: PositiveStrengthGradient = Field(default=0.0, description="its growth with depth [Pa/m]")
-    a: Ratio = Field(default=6.73, description="factor of the backbone a (y/D)^b [-]")
-    b: NonNegative = Field(default=0.29, lt=1.0, description="power of the backbone a (y/D)^b [-]")
-    k_over_su: Ratio = Field(default=660.0, description="initial stiffness over the shear strength [-]")
-    omega: Ratio = Field(default=0.433, description="asymptote of the rebound [-]")
-    phi: NonNegative = Field(default=0.203, lt=1.0, description="suction over the resistance before the uplift [-]")
-    psi: Ratio = Field(default=0.661, description="length of the separation over that of the rebound [-]")
-
-
-Law = Annotated[
-    Annotated[RandolphQuiggin, Tag("<RandolphQuiggin>")] | Annotated[AubenyBiscontin, Tag("<AubenyBiscontin>")],
-    Discriminator(
-        by_kind({"randolph-quiggin": RandolphQuiggin, "aubeny-biscontin": AubenyBiscontin}),
-        custom_error_type="kind",
-        custom_error_message="randolph-quiggin, aubeny-biscontin",
-    ),
-]
+LAW = OneOf(LAWS)
 
 
 class HystereticSeabed(BaseModel):
@@ -136,7 +92,7 @@ class HystereticSeabed(BaseModel):
     slope_deg: Slope = 0.0
     profile: Profile = None
     contact_at: Toucher = "outer"
-    law: Law = Field(description="{kind: randolph-quiggin, su: ...} or {kind: aubeny-biscontin, su: ...}")
+    law: Annotated[SeabedLaw, LAW] = Field(description=LAW.examples)
 
 
 Seabed = Annotated[

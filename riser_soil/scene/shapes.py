@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
-from riser_soil.scene.quantities import FLATTEST, FROZEN, SHORTEST, Angle, Axis, Position, by_key, word_or, wrong
+from riser_soil.core.quantities import FLATTEST, FROZEN, SHORTEST, Angle, Axis, Position, by_key, word_or, wrong
 
 
 class PointsShape(BaseModel):

@@ -4,20 +4,19 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
-from riser_soil.scene.files import NamedFile
-from riser_soil.scene.quantities import (
+from riser_soil.core.kinds import OneOf
+from riser_soil.core.quantities import (
     FROZEN,
     SHORTEST,
     Interval,
     Length,
-    PoissonRatio,
     Ratio,
-    StrengthGradient,
-    Stress,
     UnitWeight,
-    by_kind,
     wrong,
 )
+from riser_soil.scene.files import NamedFile
+from riser_soil.soil.law import SoilLaw
+from riser_soil.soil.laws import LAWS
 
 
 class Block(BaseModel):
@@ -83,46 +82,7 @@ Mesh = Annotated[
 ]
 
 
-class LinearElastic(BaseModel):
-    """Linear elastic soil."""
-
-    model_config = FROZEN
-
-    kind: Literal["linear-elastic"] = Field(description="linear-elastic or von-mises")
-    E: Stress = Field(description="Young's modulus [Pa]")
-    nu: PoissonRatio = Field(description="Poisson's ratio [-]")
-
-    @property
-    def surface_modulus(self) -> float:
-        """Young's modulus at the soil's surface [Pa]."""
-        return self.E
-
-
-class VonMises(BaseModel):
-    """Undrained clay: elastic, perfectly plastic; su is the strength in simple shear and plane strain."""
-
-    model_config = FROZEN
-
-    kind: Literal["von-mises"] = Field(description="linear-elastic or von-mises")
-    su: Stress = Field(description="undrained shear strength at the seabed [Pa]")
-    su_gradient: StrengthGradient = Field(default=0.0, description="growth of su with depth [Pa/m]")
-    E_over_su: Ratio = Field(description="Young's modulus over su, the same at every depth [-]")
-    nu: PoissonRatio = Field(default=0.49, description="Poisson's ratio [-]")
-
-    @property
-    def surface_modulus(self) -> float:
-        """Young's modulus at the soil's surface [Pa]."""
-        return self.E_over_su * self.su
-
-
-Law = Annotated[
-    Annotated[LinearElastic, Tag("<LinearElastic>")] | Annotated[VonMises, Tag("<VonMises>")],
-    Discriminator(
-        by_kind({"linear-elastic": LinearElastic, "von-mises": VonMises}),
-        custom_error_type="kind",
-        custom_error_message="linear-elastic, von-mises",
-    ),
-]
+LAW = OneOf(LAWS)
 
 
 class SoilScene(BaseModel):
@@ -132,7 +92,7 @@ class SoilScene(BaseModel):
 
     block: Block | None = Field(default=None, description="the box of soil to mesh; not with mesh.file")
     mesh: Mesh = Field(description="{kind, size_at_riser, size_far} for a block, or {file: mesh.msh}")
-    law: Law = Field(description="constitutive law: linear-elastic or von-mises, with its constants")
+    law: Annotated[SoilLaw, LAW] = Field(description=f"constitutive law: {LAW.words}, with its constants")
     submerged_unit_weight: UnitWeight = Field(
         default=0.0, description="submerged unit weight, source of the initial stress [N/m3]"
     )
@@ -153,11 +113,7 @@ class SoilScene(BaseModel):
 
     @model_validator(mode="after")
     def _strong_to_the_bottom(self) -> Self:
-        law, block = self.law, self.block
-        if isinstance(law, VonMises) and block and law.su + law.su_gradient * block.depth <= 0.0:
-            raise wrong(
-                "law",
-                "su must stay positive down to the block's bottom",
-                "raise su_gradient or take a shallower block",
-            )
+        found = self.law.wrong_within(self.block.depth) if self.block else None
+        if found:
+            raise wrong("law", *found)
         return self

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, Field
 
-from riser_soil.scene.quantities import FROZEN, AutoOrTime, Count, Ratio, SolverTolerance
+from riser_soil.core.quantities import FROZEN, AutoOrTime, Count, Ratio, SolverTolerance
 
 
 class Solver(BaseModel):

@@ -3,10 +3,10 @@
 import math
 from collections.abc import Iterator
 
+from riser_soil.core.quantities import Vector
 from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.motion_checks import motion_conflicts
 from riser_soil.scene.problem import Path, Problem
-from riser_soil.scene.quantities import Vector
 from riser_soil.scene.riser import End, Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Load, MidpointScheme, StaticStage

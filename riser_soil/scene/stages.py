@@ -5,8 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
-from riser_soil.scene.motions import Motion
-from riser_soil.scene.quantities import (
+from riser_soil.core.quantities import (
     FROZEN,
     NEAREST,
     ArcLength,
@@ -28,6 +27,7 @@ from riser_soil.scene.quantities import (
     word_or_number,
     wrong,
 )
+from riser_soil.scene.motions import Motion
 
 Place = Annotated[
     Annotated[Literal["start", "end"], Tag("<word>")] | Annotated[ArcLength, Tag("<number>")],

@@ -1,6 +1,6 @@
 """Vectors in space as plain tuples: a scene is checked without numerics."""
 
-from riser_soil.scene.quantities import Vector
+from riser_soil.core.quantities import Vector
 
 
 def dot(a: Vector, b: Vector) -> float:

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Field, model_validator
 
-from riser_soil.scene.quantities import (
+from riser_soil.core.quantities import (
     FROZEN,
     SHORTEST,
     Angle,

@@ -27,14 +27,40 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
-import numpy as np
+from pydantic import Field
 
-from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.lazy import Lazy
+from riser_soil.core.quantities import NonNegative, PositiveStrengthGradient, Ratio, Stress
 from riser_soil.seabed.bearing import PowerLaw, Strength
+from riser_soil.seabed.law import Answer, SeabedLaw
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from riser_soil.core.arrays import Array, BoolArray
+else:
+    np = Lazy("numpy")
 
 TINY = 1e-30
+
+
+class AubenyBiscontin(SeabedLaw):
+    """Hysteretic law of Aubeny & Biscontin (2009); `riser_soil.seabed.aubeny_biscontin` tells what is certain of it."""
+
+    kind: Literal["aubeny-biscontin"] = Field(description="the law's name")
+    su: Stress = Field(description="undrained shear strength at the surface [Pa]")
+    su_gradient: PositiveStrengthGradient = Field(default=0.0, description="its growth with depth [Pa/m]")
+    a: Ratio = Field(default=6.73, description="factor of the backbone a (y/D)^b [-]")
+    b: NonNegative = Field(default=0.29, lt=1.0, description="power of the backbone a (y/D)^b [-]")
+    k_over_su: Ratio = Field(default=660.0, description="initial stiffness over the shear strength [-]")
+    omega: Ratio = Field(default=0.433, description="asymptote of the rebound [-]")
+    phi: NonNegative = Field(default=0.203, lt=1.0, description="suction over the resistance before the uplift [-]")
+    psi: Ratio = Field(default=0.661, description="length of the separation over that of the rebound [-]")
+
+    def of_pipe(self, diameter: float) -> Trench:
+        return Trench(diameter, self)
 
 
 class Past(NamedTuple):
@@ -67,26 +93,20 @@ class Loop(NamedTuple):
 
 
 @dataclass(frozen=True)
-class AubenyBiscontin:
-    """Law of a pipe of one diameter [m]; see the module's text. su [Pa] at the surface, su_gradient [Pa/m]."""
+class Trench:
+    """The seafloor under a pipe of one diameter [m]; see the module's text."""
 
     diameter: float
-    su: float
-    su_gradient: float = 0.0
-    a: float = 6.73
-    b: float = 0.29
-    k_over_su: float = 660.0
-    omega: float = 0.433
-    phi: float = 0.203
-    psi: float = 0.661
+    given: AubenyBiscontin
+    columns: tuple[str, ...] = Past._fields
 
     @cached_property
     def _strength(self) -> Strength:
-        return Strength(self.su, self.su_gradient)
+        return Strength(self.given.su, self.given.su_gradient)
 
     @cached_property
     def _power_law(self) -> PowerLaw:
-        return PowerLaw(self.diameter, self._strength, self.a, self.b)
+        return PowerLaw(self.diameter, self._strength, self.given.a, self.given.b)
 
     @property
     def capacity(self) -> float:
@@ -98,60 +118,50 @@ class AubenyBiscontin:
         return 0.0
 
     def initial_history(self, shape: tuple[int, ...]) -> Array:
-        history = np.zeros((*shape, len(Past._fields)))
+        history = np.zeros((*shape, len(self.columns)))
         history[..., 0] = 1.0
         return history
 
     def active(self, penetration: Array, history: Array) -> BoolArray:
         return penetration > 0.0
 
-    def force_and_stiffness(self, penetration: Array, history: Array) -> tuple[Array, Array]:
-        return self._riser(*self._way(penetration, history))
-
-    def stored(self, penetration: Array, history: Array) -> Array:
-        """What a rebound at the stiffness k would give back."""
-        z, now = self._way(penetration, history)
-        P, _ = self._riser(z, now)
-        return 0.5 * P**2 / self._loop(np.maximum(now.z1, z)).k
-
-    def update(self, penetration: Array, history: Array) -> Array:
-        z, now = self._way(penetration, history)
-        return np.stack(now._replace(z=z, P=self._riser(z, now)[0]), axis=-1)
+    def update(self, penetration: Array, history: Array) -> Answer:
+        """Stored is what a rebound at the stiffness k would give back."""
+        z = np.maximum(penetration, 0.0)
+        now = self._continued(z, Past.of(history))
+        P, slope = self._riser(z, now)
+        after = np.stack(now._replace(z=z, P=P), axis=-1)
+        return Answer(P, slope, after, 0.5 * P**2 / self._stiffness(np.maximum(now.z1, z)))
 
     def backbone(self, z: Array) -> tuple[Array, Array]:
         """Resistance (1) to a first penetration, and its slope."""
         P, slope = self._power_law.resistance(z)
         z = np.maximum(z, 0.0)
         elastic = self._stiffness(z) * z
-        rise = self._stiffness(z) + self.k_over_su * self.su_gradient * z
+        rise = self._stiffness(z) + self.given.k_over_su * self.given.su_gradient * z
         return np.minimum(elastic, P), np.where(elastic < P, rise, slope)
 
     def _stiffness(self, z: Array) -> Array:
-        return self.k_over_su * self._strength.at(z)
+        return self.given.k_over_su * self._strength.at(z)
 
     def _loop(self, y1: Array) -> Loop:
         P1, _ = self.backbone(y1)
-        k, firm = self._stiffness(y1), 1.0 / (1.0 + self.omega)
+        k, firm = self._stiffness(y1), 1.0 / (1.0 + self.given.omega)
         part = self._part(k * y1 / np.maximum(P1, TINY))
-        phi = part * self.phi
+        phi = part * self.given.phi
         fall = (1.0 + phi) / (1.0 - part * firm * (1.0 + phi)) * P1 / k
         bend = part * firm / np.maximum(P1, TINY)
-        return Loop(y1, P1, k, bend, phi * P1, y1 - fall, y1 - (1.0 + part * self.psi) * fall)
+        return Loop(y1, P1, k, bend, phi * P1, y1 - fall, y1 - (1.0 + part * self.given.psi) * fall)
 
     def _part(self, room: Array) -> Array:
         """Share 0 to 1 of phi, psi and 1/(1 + omega) at which the loop is as long as y1 = room P1/k, or shorter:
 
         (1 + part psi)(1 + part phi)/(1 - part (1 + part phi)/(1 + omega)) = room, a quadratic equation.
         """
-        inward = room / (1.0 + self.omega)
-        a, b = self.phi * (self.psi + inward), self.psi + self.phi + inward
+        inward = room / (1.0 + self.given.omega)
+        a, b = self.given.phi * (self.given.psi + inward), self.given.psi + self.given.phi + inward
         c = np.maximum(room - 1.0, 0.0)
         return np.minimum(2.0 * c / (b + np.sqrt(b**2 + 4.0 * a * c)), 1.0)
-
-    def _way(self, penetration: Array, history: Array) -> tuple[Array, Past]:
-        """Penetration, 0 above the surface, and the past as the way there continues it or turns."""
-        z = np.maximum(penetration, 0.0)
-        return z, self._continued(z, Past.of(history))
 
     def _continued(self, z: Array, past: Past) -> Past:
         down = np.where(z == past.z, past.down > 0.0, z > past.z)

@@ -5,11 +5,18 @@ z: penetration of the pipe's lowest line [m], positive into the ground; function
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import numpy as np
+from riser_soil.core.lazy import Lazy
 
-from riser_soil.core.arrays import Array
+if TYPE_CHECKING:
+    import numpy as np
+
+    from riser_soil.core.arrays import Array
+else:
+    np = Lazy("numpy")
 
 SHALLOW = 0.1  # z/D below which Randolph & Quiggin's bearing factor follows the square root
 
@@ -56,7 +63,7 @@ def strip_capacity(strength: Strength, width: float) -> float:
     (2 + pi) su B + gradient B^2/4: Prandtl's, with a strength that grows with depth after E. H. Davis & J. R. Booker,
     Geotechnique 23 (1973), whose factor of 1 to 1.7 on it, for the gradient's effect, is left at 1.
     """
-    return (2.0 + np.pi) * strength.su * width + 0.25 * strength.gradient * width**2
+    return (2.0 + math.pi) * strength.su * width + 0.25 * strength.gradient * width**2
 
 
 def displaced(z: Array, diameter: float) -> tuple[Array, Array, Array]:

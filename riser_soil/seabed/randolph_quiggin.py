@@ -29,14 +29,42 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
-import numpy as np
+from pydantic import Field
 
-from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.lazy import Lazy
+from riser_soil.core.quantities import Coefficient, NonNegative, PositiveStrengthGradient, Ratio, Stress, UnitWeight
 from riser_soil.seabed.bearing import SHALLOW, PowerLaw, Strength, displaced
+from riser_soil.seabed.law import Answer, SeabedLaw
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from riser_soil.core.arrays import Array, BoolArray
+else:
+    np = Lazy("numpy")
 
 TINY = 1e-30
+
+
+class RandolphQuiggin(SeabedLaw):
+    """Hysteretic law of Randolph & Quiggin (2009); `riser_soil.seabed.randolph_quiggin` tells what is certain of it."""
+
+    kind: Literal["randolph-quiggin"] = Field(description="the law's name")
+    su: Stress = Field(description="undrained shear strength at the surface [Pa]")
+    su_gradient: PositiveStrengthGradient = Field(default=0.0, description="its growth with depth [Pa/m]")
+    unit_weight: UnitWeight = Field(default=0.0, description="submerged unit weight, for the soil's buoyancy [N/m3]")
+    a: Ratio = Field(default=6.0, description="factor of the bearing capacity a (z/D)^b [-]")
+    b: NonNegative = Field(default=0.25, lt=1.0, description="power of the bearing capacity a (z/D)^b [-]")
+    K_max: Ratio = Field(default=200.0, description="greatest stiffness, over the ultimate pressure [-]")
+    f_suc: NonNegative = Field(default=0.6, lt=1.0, description="suction over the ultimate resistance [-]")
+    lambda_suc: Ratio = Field(default=1.0, description="decay length of suction over the greatest penetration [-]")
+    lambda_rep: Coefficient = Field(default=0.3, description="softening of repenetration [-]")
+    f_b: Coefficient = Field(default=1.5, description="factor of the soil's buoyancy [-]")
+
+    def of_pipe(self, diameter: float) -> Clay:
+        return Clay(diameter, self)
 
 
 class Past(NamedTuple):
@@ -59,32 +87,22 @@ class Past(NamedTuple):
 
 
 @dataclass(frozen=True)
-class RandolphQuiggin:
-    """Law of a pipe of one diameter [m] on clay; see the module's text.
-
-    su [Pa] at the surface, su_gradient [Pa/m]. unit_weight: submerged, of the soil [N/m3], 0 to leave buoyancy out.
-    """
+class Clay:
+    """The clay under a pipe of one diameter [m]; see the module's text."""
 
     diameter: float
-    su: float
-    su_gradient: float = 0.0
-    unit_weight: float = 0.0
-    a: float = 6.0
-    b: float = 0.25
-    K_max: float = 200.0
-    f_suc: float = 0.6
-    lambda_suc: float = 1.0
-    lambda_rep: float = 0.3
-    f_b: float = 1.5
+    given: RandolphQuiggin
+    columns: tuple[str, ...] = Past._fields
 
     @cached_property
     def _ultimate(self) -> PowerLaw:
-        return PowerLaw(self.diameter, Strength(self.su, self.su_gradient), self.a, self.b, SHALLOW)
+        clay = self.given
+        return PowerLaw(self.diameter, Strength(clay.su, clay.su_gradient), clay.a, clay.b, SHALLOW)
 
     @property
     def _per_metre(self) -> float:
         """x over |z - z0| [1/m]."""
-        return self.K_max / self.diameter
+        return self.given.K_max / self.diameter
 
     @property
     def capacity(self) -> float:
@@ -101,23 +119,21 @@ class RandolphQuiggin:
     def active(self, penetration: Array, history: Array) -> BoolArray:
         return penetration > 0.0
 
-    def force_and_stiffness(self, penetration: Array, history: Array) -> tuple[Array, Array]:
-        P, slope = self._clay(*self._way(penetration, history))
-        weight = self.f_b * self.unit_weight
-        _, area, width = displaced(penetration, self.diameter)
-        return P + weight * area, slope + weight * width
-
-    def stored(self, penetration: Array, history: Array) -> Array:
-        """What a rebound at the greatest stiffness would give back, and the potential of buoyancy."""
-        P, _ = self._clay(*self._way(penetration, history))
-        Pu, _ = self._ultimate.resistance(penetration)
-        rebound = 0.5 * P**2 / np.maximum(self._per_metre * Pu, TINY)
-        return rebound + self.f_b * self.unit_weight * displaced(penetration, self.diameter)[0]
-
-    def update(self, penetration: Array, history: Array) -> Array:
-        z, now = self._way(penetration, history)
-        there = np.stack(now._replace(z=z, P=self._clay(z, now)[0]), axis=-1)
-        return np.where((z > 0.0)[..., None], there, _out_of_contact(now.zm))
+    def update(self, penetration: Array, history: Array) -> Answer:
+        """Stored is what a rebound at the greatest stiffness would give back, and the potential of buoyancy."""
+        z = np.maximum(penetration, 0.0)
+        now = self._continued(z, Past.of(history))
+        P, slope = self._clay(z, now)
+        there = np.stack(now._replace(z=z, P=P), axis=-1)
+        rebound = 0.5 * P**2 / np.maximum(self._per_metre * self._ultimate.resistance(z)[0], TINY)
+        volume, area, width = displaced(z, self.diameter)
+        weight = self.given.f_b * self.given.unit_weight
+        return Answer(
+            P + weight * area,
+            slope + weight * width,
+            np.where((z > 0.0)[..., None], there, _out_of_contact(now.zm)),
+            rebound + weight * volume,
+        )
 
     def _first(self, z: Array) -> tuple[Array, Array]:
         """Resistance (2) to a first penetration, and its slope."""
@@ -126,11 +142,6 @@ class RandolphQuiggin:
         share: Array = x / (1.0 + x)
         rise: Array = dPu * share + Pu * self._per_metre / (1.0 + x) ** 2
         return Pu * share, rise
-
-    def _way(self, penetration: Array, history: Array) -> tuple[Array, Past]:
-        """Penetration, 0 above the surface, and the past as the way there continues it or turns."""
-        z = np.maximum(penetration, 0.0)
-        return z, self._continued(z, Past.of(history))
 
     def _continued(self, z: Array, past: Past) -> Past:
         down = np.where(z == past.z, past.down > 0.0, z > past.z)
@@ -145,13 +156,13 @@ class RandolphQuiggin:
         return past.z, past.P, past.zm, past.s * d, past.c * d
 
     def _after_sinking(self, past: Past) -> tuple[Array, ...]:
-        beyond = np.maximum(past.z - past.zm, 0.0) / np.maximum(self.lambda_rep * past.zm, TINY)
+        beyond = np.maximum(past.z - past.zm, 0.0) / np.maximum(self.given.lambda_rep * past.zm, TINY)
         pressed = past.P / np.maximum(self._first(past.z)[0], TINY)
         s = np.clip(pressed, past.s, 1.0)
         return past.z, past.P, np.maximum(past.zm, past.z), s, np.minimum(past.c + beyond, 1.0)
 
     def _decay_length(self, past: Past) -> Array:
-        return np.maximum(self.lambda_suc * past.zm, TINY)
+        return np.maximum(self.given.lambda_suc * past.zm, TINY)
 
     def _clay(self, z: Array, past: Past) -> tuple[Array, Array]:
         """Resistance without buoyancy, and its slope."""
@@ -167,7 +178,7 @@ class RandolphQuiggin:
 
     def _uplift(self, z: Array, past: Past, d: Array, dd: Array) -> tuple[Array, Array]:
         Pu, dPu = self._ultimate.resistance(z)
-        suction, dsuction = -self.f_suc * past.s * d * Pu, -self.f_suc * past.s * (d * dPu + dd * Pu)
+        suction, dsuction = -self.given.f_suc * past.s * d * Pu, -self.given.f_suc * past.s * (d * dPu + dd * Pu)
         S = np.maximum(past.P0 - suction, 0.0)
         stiff = self._ultimate.resistance(past.z0)[0]
         whole = np.maximum(S + stiff * self._per_metre * np.maximum(past.z0 - z, 0.0), TINY)
@@ -185,9 +196,9 @@ class RandolphQuiggin:
         """Resistance of clay as whole as it is, and its slope; dd: derivative of d."""
         first, slope = self._first(z)
         zm = np.maximum(past.zm, TINY)
-        exponent = -self.lambda_rep * (1.0 - past.c * d) + np.maximum(z - zm, 0.0) / zm
+        exponent = -self.given.lambda_rep * (1.0 - past.c * d) + np.maximum(z - zm, 0.0) / zm
         soft = np.exp(np.minimum(exponent, 0.0))
-        by_z = self.lambda_rep * past.c * dd + np.where(z > zm, 1.0, 0.0) / zm
+        by_z = self.given.lambda_rep * past.c * dd + np.where(z > zm, 1.0, 0.0) / zm
         return soft * first, soft * (slope + np.where(exponent < 0.0, by_z * first, 0.0))
 
 

@@ -1,19 +1,48 @@
-"""What a constitutive law of the soil is: a formula on arrays at n quadrature points.
+"""What a constitutive law of the soil is: its model in the scene, and its formula at n quadrature points.
 
-Strains and stresses (n, 6) in the components of mandel.py, tension positive. A law holds its constants at the
-n points and no state: the caller keeps stress and history and decides when a trial becomes the start of the
-next step.
+Strains and stresses (n, 6) in the components of mandel.py, tension positive. The formula holds constants and the
+initial stress and no state: the caller keeps the history and decides when a trial becomes the start of the next step.
 """
 
 from __future__ import annotations
 
-from typing import Protocol
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-from riser_soil.core.arrays import Array
+from pydantic import BaseModel
+
+from riser_soil.core.quantities import FROZEN
+
+if TYPE_CHECKING:
+    from riser_soil.core.arrays import Array
+
+STRESS = ("stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_xz", "stress_yz")
+PLASTIC_STRAIN = "equivalent_plastic_strain"
 
 
-class Law(Protocol):
-    """A rate-independent law with isotropic elasticity."""
+class Response(NamedTuple):
+    """At the end of a strain increment.
+
+    stress (n, 6) [Pa]. tangent (n, 6, 6) [Pa]: its derivative by the increment. history (n, nh). stored (n,) [J/m3]:
+    free energy of the change since the start, beyond what the initial stress does on the elastic strain: it comes
+    back, or stays in the soil. elastic (n, 6): elastic strain since the start. What the stress does beyond the change
+    of both is dissipated.
+    """
+
+    stress: Array
+    tangent: Array
+    history: Array
+    stored: Array
+    elastic: Array
+
+
+class Formula(Protocol):
+    """A rate-independent law at n points. columns: names of what the history holds; PLASTIC_STRAIN goes to the
+    results, other names are the law's own.
+    """
+
+    @property
+    def columns(self) -> tuple[str, ...]: ...
 
     @property
     def symmetric(self) -> bool:
@@ -21,25 +50,43 @@ class Law(Protocol):
         ...
 
     def start(self) -> Array:
-        """History (n, nh) of undisturbed soil."""
+        """History (n, nh) of undisturbed soil, under its initial stress."""
         ...
 
-    def stress(self, strain_increment: Array, stress: Array, history: Array) -> tuple[Array, Array]:
-        """New stress (n, 6) and new history (n, nh) after the strain increment from the given ones."""
-        ...
-
-    def tangent(self, strain_increment: Array, stress: Array, history: Array) -> Array:
-        """Derivative (n, 6, 6) [Pa] of the new stress by the strain increment."""
-        ...
-
-    def elastic_strain(self, stress: Array) -> Array:
-        """Elastic strain (n, 6) that goes with a stress."""
+    def update(self, strain_increment: Array, history: Array) -> Response:
+        """The answer to a strain increment (n, 6) from a history."""
         ...
 
     def overstress(self, stress: Array) -> Array:
         """Equivalent stress over its limit (n,): impossible above 1; 0 where there is no limit."""
         ...
 
-    def plastic_strain(self, history: Array) -> Array:
-        """Equivalent plastic strain (n,)."""
-        ...
+
+class Bearing(NamedTuple):
+    """Force per length that the ground bears [N/m], and what that is."""
+
+    capacity: float
+    meaning: str
+
+
+class SoilLaw(BaseModel, ABC):
+    """A law as a scene gives it: `kind`, a Literal of one word, and its constants."""
+
+    model_config = FROZEN
+
+    @property
+    @abstractmethod
+    def surface_modulus(self) -> float:
+        """Young's modulus at the soil's surface [Pa]: contact is so much stiffer."""
+
+    @abstractmethod
+    def at_points(self, depth: Array, initial: Array) -> Formula:
+        """The formula at depths (n,) below the seabed [m], of soil under an initial stress (n, 6) [Pa]."""
+
+    def wrong_within(self, depth: float) -> tuple[str, str] | None:
+        """What is wrong with soil of this depth [m]: what is allowed, and what to do."""
+        return None
+
+    def bearing(self, width: float) -> Bearing | None:
+        """What the soil's surface bears on a strip of this width [m]; None without a limit."""
+        return None

@@ -3,41 +3,61 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
 
-import numpy as np
+from pydantic import Field
 
-from riser_soil.core.arrays import Array
-from riser_soil.soil import mandel
+from riser_soil.core.lazy import Lazy
+from riser_soil.core.quantities import PoissonRatio, Stress
+from riser_soil.soil.law import STRESS, Response, SoilLaw
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from riser_soil.core.arrays import Array
+    from riser_soil.soil import mandel
+else:
+    np, mandel = Lazy("numpy"), Lazy("riser_soil.soil.mandel")
+
+
+class LinearElastic(SoilLaw):
+    """Linear elastic soil."""
+
+    kind: Literal["linear-elastic"] = Field(description="the law's name")
+    E: Stress = Field(description="Young's modulus [Pa]")
+    nu: PoissonRatio = Field(description="Poisson's ratio [-]")
+
+    @property
+    def surface_modulus(self) -> float:
+        return self.E
+
+    def at_points(self, depth: Array, initial: Array) -> Elastic:
+        modulus = np.full_like(depth, self.E)
+        return Elastic(mandel.bulk_modulus(modulus, self.nu), mandel.shear_modulus(modulus, self.nu), initial)
 
 
 @dataclass(frozen=True, eq=False)
-class LinearElastic:
-    """Elastic soil; bulk and shear modulus (n,) [Pa] at the quadrature points."""
+class Elastic:
+    """Bulk and shear modulus (n,) and initial stress (n, 6) [Pa]. History: the stress."""
 
     bulk: Array
     shear: Array
+    initial: Array
+    columns: tuple[str, ...] = STRESS
     symmetric: bool = True
 
-    @classmethod
-    def at_depth(cls, depth: Array, *, E: float, nu: float) -> LinearElastic:
-        """Young's modulus E [Pa] at all depths (n,) [m] below the seabed."""
-        modulus = np.full_like(depth, E)
-        return cls(mandel.bulk_modulus(modulus, nu), mandel.shear_modulus(modulus, nu))
-
     def start(self) -> Array:
-        return np.zeros((len(self.bulk), 0))
+        return self.initial
 
-    def stress(self, strain_increment: Array, stress: Array, history: Array) -> tuple[Array, Array]:
-        return stress + mandel.elastic_stress(self.bulk, self.shear, strain_increment), history
-
-    def tangent(self, strain_increment: Array, stress: Array, history: Array) -> Array:
-        return mandel.stiffness(self.bulk, self.shear)
-
-    def elastic_strain(self, stress: Array) -> Array:
-        return mandel.elastic_strain(self.bulk, self.shear, stress)
+    def update(self, strain_increment: Array, history: Array) -> Response:
+        stress = history + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
+        elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
+        return Response(stress, self._moduli, stress, 0.5 * mandel.product(stress - self.initial, elastic), elastic)
 
     def overstress(self, stress: Array) -> Array:
         return np.zeros(len(stress))
 
-    def plastic_strain(self, history: Array) -> Array:
-        return np.zeros(len(history))
+    @cached_property
+    def _moduli(self) -> Array:
+        return mandel.stiffness(self.bulk, self.shear)

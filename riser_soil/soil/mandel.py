@@ -50,6 +50,12 @@ def elastic_strain(bulk: Array, shear: Array, stress: Array) -> Array:
     return (mean(stress) / (3.0 * bulk))[:, None] * UNIT + deviator(stress) / (2.0 * shear)[:, None]
 
 
+def product(a: Array, b: Array) -> Array:
+    """a:b (n,) of two tensors (n, 6)."""
+    result: Array = np.einsum("ni,ni->n", a, b)
+    return result
+
+
 def von_mises(stress: Array) -> Array:
     """Equivalent stress q = √(3/2 s:s) [Pa] (...,); |σ| in uniaxial tension, √3|τ| in simple shear."""
     s = deviator(stress)

@@ -16,14 +16,14 @@ from riser_soil.soil.element import cell_gradients
 from riser_soil.soil.field import SoilField, components
 from riser_soil.soil.gathered import Gathered, gather, gather_rows
 from riser_soil.soil.grid import Grid, on_all_ranks
-from riser_soil.soil.law import Law
+from riser_soil.soil.law import PLASTIC_STRAIN, Formula, Response
 from riser_soil.soil.surface import SoilTop
 
 
 class Soil:
     """Part "soil": internal force of the soil minus its weight, in group E (taken at the end of the step).
 
-    law: makes the constitutive law from depths (n,) below `level` [m]. unit_weight: submerged [N/m3].
+    law: makes the law's formula from depths (n,) below `level` [m] and initial stress. unit_weight: submerged [N/m3].
     start: "geostatic": vertical stress −unit_weight·depth, horizontal K0 times that, in equilibrium with the
     weight, so that displacement and strain count from there; "unstressed": no initial stress, the weight acts
     at once. MeshError if the level misses the mesh or a cell is inverted, SceneError if the initial stress is
@@ -36,7 +36,7 @@ class Soil:
     def __init__(
         self,
         grid: Grid,
-        law: Callable[[Array], Law],
+        law: Callable[[Array, Array], Formula],
         *,
         level: float,
         unit_weight: float,
@@ -54,11 +54,12 @@ class Soil:
         )
         self._shape = self._gradients.weights.shape
         depth = np.maximum(level - self._gradients.points[..., 2], 0.0).ravel()
-        self.law = law(depth)
-        self.traits = Traits("E", self.law.symmetric)
         initial = _geostatic(depth, unit_weight, K0) if start == "geostatic" else np.zeros((depth.size, 6))
+        self.law = law(depth, initial)
+        self.traits = Traits("E", self.law.symmetric)
         self._check_start(initial, depth, K0)
-        self._initial, self._stress, self._history = initial, initial.copy(), self.law.start()
+        self._initial, self._found = initial, _at_rest(self.law, initial)
+        self._asked: tuple[State, Array, Response] | None = None
         self._load = self._internal(initial) if start == "geostatic" else self._weight(unit_weight)
 
     def blocks(self) -> dict[str, Block]:
@@ -66,44 +67,42 @@ class Soil:
         return {"soil": Block(rows, rows)}
 
     def residual(self, state: State, forces: Forces) -> None:
-        stress, _ = self.law.stress(self._strain(state), self._stress, self._history)
-        self.field.own(forces.end)[:] += self._internal(stress) - self._load
+        _, found = self._answer(state)
+        self.field.own(forces.end)[:] += self._internal(found.stress) - self._load
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        moduli = self.law.tangent(self._strain(state), self._stress, self._history)
-        g = self._gradients
-        kernels.add_stiffness(g.full, g.volume, g.weights, moduli.reshape(*self._shape, 6, 6), values["soil"])
+        _, found = self._answer(state)
+        g, moduli = self._gradients, found.tangent.reshape(*self._shape, 6, 6)
+        kernels.add_stiffness(g.full, g.volume, g.weights, moduli, values["soil"])
 
     def energy(self, state: State) -> Energy:
-        """Strain energy of the stress change since the start, and potential of the unbalanced weight.
+        """What the law stores of the change since the start, and potential of the unbalanced weight.
 
-        With σ0 the initial stress and εe the elastic strain of σ − σ0: strain = ∫ ½ (σ−σ0):εe, potential =
-        ∫ σ0:εe − load·u, which is −∫ σ0:εp for a geostatic start: nothing, as long as K0 = 1.
+        With σ0 the initial stress and εe the elastic strain since then, potential = ∫ σ0:εe − load·u, which is −∫ σ0:εp
+        for a geostatic start: nothing, as long as K0 = 1.
         """
-        stress, _ = self.law.stress(self._strain(state), self._stress, self._history)
-        change = stress - self._initial
-        elastic = self.law.elastic_strain(change)
+        _, found = self._answer(state)
         displacement = self.field.total + self.field.own(state.u)
         return Energy(
-            strain=0.5 * self._integral(change, elastic),
-            potential=self._integral(self._initial, elastic) - float(self._load @ displacement),
+            strain=self._sum(found.stored),
+            potential=self._integral(self._initial, found.elastic) - float(self._load @ displacement),
         )
 
     def work(self, before: State, after: State) -> Work:
-        """Dissipation ∫ (σ:Δεp + ½ Δσ:C⁻¹:Δσ) ≥ 0, σ at the end of the step.
+        """Dissipation: the work ∫ σ:Δε of the stress at the end of the step less the change of what is stored.
 
-        The second term is the scheme's own: group E acts with its end value over the whole step, so the riser
-        gives up that much more than the soil stores; counting it closes the energy balance exactly.
+        That is the law's own, ∫ σ:Δεp where only elastic strain stores energy, and the scheme's, ∫ ½ Δσ:C⁻¹:Δσ: group
+        E acts with its end value over the whole step, so the riser gives up that much more than the soil stores;
+        counting it closes the energy balance exactly.
         """
-        strain = self._strain(after)
-        stress, _ = self.law.stress(strain, self._stress, self._history)
-        change = stress - self._stress
-        elastic = self.law.elastic_strain(change)
-        plastic = self._integral(stress, strain - elastic)
-        return Work(dissipated=plastic + 0.5 * self._integral(change, elastic))
+        strain, found = self._answer(after)
+        stored = found.stored - self._found.stored
+        by_initial = self._integral(self._initial, found.elastic - self._found.elastic)
+        return Work(dissipated=self._integral(found.stress, strain) - self._sum(stored) - by_initial)
 
     def commit(self, state: State) -> None:
-        self._stress, self._history = self.law.stress(self._strain(state), self._stress, self._history)
+        _, found = self._answer(state)
+        self._found, self._asked = found._replace(tangent=np.empty(0)), None
 
     def output_mesh(self) -> SoilMesh:
         """The whole mesh for output on rank 0; empty elsewhere."""
@@ -114,12 +113,25 @@ class Soil:
         owned = self.field.total[: 3 * self.grid.nodes.owned].reshape(-1, 3)
         return SoilSnapshot(
             gather_rows(self.grid, owned),
-            gather_rows(self.grid, self._cell_mean(mandel.von_mises(self._stress))),
-            gather_rows(self.grid, self._cell_mean(self.law.plastic_strain(self._history))),
+            gather_rows(self.grid, self._cell_mean(mandel.von_mises(self._found.stress))),
+            gather_rows(self.grid, self._cell_mean(self._plastic_strain())),
         )
 
+    def _answer(self, state: State) -> tuple[Array, Response]:
+        """Strain increment (n, 6) of a trial state and the law's answer; kept for the state asked last, whose arrays
+        must not change then.
+        """
+        if self._asked is None or self._asked[0] is not state:
+            strain = self._strain(state)
+            self._asked = state, strain, self.law.update(strain, self._found.history)
+        return self._asked[1:]
+
+    def _plastic_strain(self) -> Array:
+        """Equivalent plastic strain (n,), 0 of a law that knows none."""
+        history, columns = self._found.history, self.law.columns
+        return history[:, columns.index(PLASTIC_STRAIN)] if PLASTIC_STRAIN in columns else np.zeros(len(history))
+
     def _strain(self, state: State) -> Array:
-        """Strain increment (n, 6) of a trial state."""
         g, out = self._gradients, np.empty((*self._shape, 6))
         kernels.strain(g.full, g.volume, self._cells, self.field.own(state.u), out)
         return out.reshape(-1, 6)
@@ -141,6 +153,9 @@ class Soil:
     def _integral(self, a: Array, b: Array) -> float:
         return float(np.einsum("n,ni,ni->", self._gradients.weights.ravel(), a, b))
 
+    def _sum(self, values: Array) -> float:
+        return float(self._gradients.weights.ravel() @ values)
+
     def _cell_mean(self, values: Array) -> Array:
         w = self._gradients.weights
         result: Array = np.einsum("cq,cq->c", w, values.reshape(self._shape)) / w.sum(axis=1)
@@ -156,6 +171,11 @@ class Soil:
                 f"soil.K0 = {K0}: at depth {at:.3g} m the geostatic stress is {ratio:.3g} times "
                 "what the soil bears; bring K0 nearer to 1 or raise su"
             )
+
+
+def _at_rest(law: Formula, initial: Array) -> Response:
+    """Before the first step."""
+    return Response(initial, np.empty(0), law.start(), np.zeros(len(initial)), np.zeros_like(initial))
 
 
 def _check_level(grid: Grid, level: float) -> None:

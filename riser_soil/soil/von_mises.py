@@ -8,64 +8,93 @@ Computational Inelasticity (1998), box 3.2, without hardening.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
-import numpy as np
+from pydantic import Field
 
-from riser_soil.core.arrays import Array
-from riser_soil.soil import mandel
+from riser_soil.core.lazy import Lazy
+from riser_soil.core.quantities import PoissonRatio, Ratio, StrengthGradient, Stress
+from riser_soil.seabed.bearing import Strength, strip_capacity
+from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Bearing, Response, SoilLaw
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from riser_soil.core.arrays import Array
+    from riser_soil.soil import mandel
+else:
+    np, mandel = Lazy("numpy"), Lazy("riser_soil.soil.mandel")
+
+
+class VonMises(SoilLaw):
+    """Undrained clay: elastic, perfectly plastic; su is the strength in simple shear and plane strain."""
+
+    kind: Literal["von-mises"] = Field(description="the law's name")
+    su: Stress = Field(description="undrained shear strength at the seabed [Pa]")
+    su_gradient: StrengthGradient = Field(default=0.0, description="growth of su with depth [Pa/m]")
+    E_over_su: Ratio = Field(description="Young's modulus over su, the same at every depth [-]")
+    nu: PoissonRatio = Field(default=0.49, description="Poisson's ratio [-]")
+
+    @property
+    def surface_modulus(self) -> float:
+        return self.E_over_su * self.su
+
+    def at_points(self, depth: Array, initial: Array) -> PerfectlyPlastic:
+        strength = self.su + self.su_gradient * depth
+        E = self.E_over_su * strength
+        moduli = mandel.bulk_modulus(E, self.nu), mandel.shear_modulus(E, self.nu)
+        return PerfectlyPlastic(*moduli, np.sqrt(3.0) * strength, initial)
+
+    def wrong_within(self, depth: float) -> tuple[str, str] | None:
+        if self.su + self.su_gradient * depth > 0.0:
+            return None
+        return "su must stay positive down to the block's bottom", "raise su_gradient or take a shallower block"
+
+    def bearing(self, width: float) -> Bearing:
+        capacity = strip_capacity(Strength(self.su, self.su_gradient), width)
+        return Bearing(capacity, f"(2 + pi) su D + su_gradient D^2/4 with D = {width:.4g} m")
 
 
 @dataclass(frozen=True, eq=False)
-class VonMises:
-    """Elastic moduli and largest equivalent stress, each (n,) [Pa], at the quadrature points.
+class PerfectlyPlastic:
+    """Elastic moduli and largest equivalent stress, each (n,), and initial stress (n, 6) [Pa].
 
-    History (n, 1): equivalent plastic strain.
+    History (n, 7): stress and equivalent plastic strain.
     """
 
     bulk: Array
     shear: Array
     limit: Array
+    initial: Array
+    columns: tuple[str, ...] = (*STRESS, PLASTIC_STRAIN)
     symmetric: bool = True
 
-    @classmethod
-    def at_depth(
-        cls, depth: Array, *, su: float, su_gradient: float, E_over_su: float, nu: float
-    ) -> VonMises:
-        """Strength su + su_gradient·depth [Pa] at depths (n,) [m] below the seabed; E follows it."""
-        strength = su + su_gradient * depth
-        E = E_over_su * strength
-        return cls(mandel.bulk_modulus(E, nu), mandel.shear_modulus(E, nu), np.sqrt(3.0) * strength)
-
     def start(self) -> Array:
-        return np.zeros((len(self.limit), 1))
+        return np.column_stack((self.initial, np.zeros(len(self.limit))))
 
-    def stress(self, strain_increment: Array, stress: Array, history: Array) -> tuple[Array, Array]:
-        trial = stress + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
-        s, q, shrink = self._radial_return(trial)
+    def update(self, strain_increment: Array, history: Array) -> Response:
+        trial = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
+        s = mandel.deviator(trial)
+        q = np.sqrt(1.5 * mandel.product(s, s))
+        shrink = self.limit / np.maximum(q, self.limit)
         slip = q * (1.0 - shrink) / (3.0 * self.shear)
-        return trial - (1.0 - shrink)[:, None] * s, history + slip[:, None]
+        stress = trial - (1.0 - shrink)[:, None] * s
+        elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
+        return Response(
+            stress,
+            self._tangent(s, q, shrink),
+            np.column_stack((stress, history[:, 6] + slip)),
+            0.5 * mandel.product(stress - self.initial, elastic),
+            elastic,
+        )
 
-    def tangent(self, strain_increment: Array, stress: Array, history: Array) -> Array:
-        """K 1⊗1 + 2G θ (P − n⊗n) where it yields: n = s/|s| of the trial, θ = limit/q; else elastic."""
-        trial = stress + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
-        s, q, shrink = self._radial_return(trial)
+    def _tangent(self, s: Array, q: Array, shrink: Array) -> Array:
+        """K 1⊗1 + 2G θ (P − n⊗n) where it yields: n = s/|s| of the trial, θ = limit/q = shrink; else elastic."""
         moduli = mandel.stiffness(self.bulk, self.shear * shrink)
         yields = np.flatnonzero(shrink < 1.0)
         n = s[yields] * (np.sqrt(1.5) / q[yields])[:, None]
         moduli[yields] -= (2.0 * self.shear * shrink)[yields, None, None] * n[:, :, None] * n[:, None, :]
         return moduli
 
-    def elastic_strain(self, stress: Array) -> Array:
-        return mandel.elastic_strain(self.bulk, self.shear, stress)
-
     def overstress(self, stress: Array) -> Array:
         return mandel.von_mises(stress) / self.limit
-
-    def plastic_strain(self, history: Array) -> Array:
-        return history[:, 0]
-
-    def _radial_return(self, trial: Array) -> tuple[Array, Array, Array]:
-        """Deviator and equivalent stress of the trial, and the factor ≤ 1 that brings it to the limit."""
-        s = mandel.deviator(trial)
-        q = np.sqrt(1.5 * np.einsum("ni,ni->n", s, s))
-        return s, q, self.limit / np.maximum(q, self.limit)

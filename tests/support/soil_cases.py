@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import basix
@@ -18,8 +17,8 @@ from riser_soil.soil.linear_elastic import LinearElastic
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.von_mises import VonMises
 
-CLAY = partial(VonMises.at_depth, su=4.0e3, su_gradient=1.5e3, E_over_su=300.0, nu=0.49)
-ELASTIC = partial(LinearElastic.at_depth, E=1.2e6, nu=0.49)
+CLAY = VonMises(kind="von-mises", su=4.0e3, su_gradient=1.5e3, E_over_su=300.0, nu=0.49).at_points
+ELASTIC = LinearElastic(kind="linear-elastic", E=1.2e6, nu=0.49).at_points
 KINDS = ("hex", "tet")
 
 

@@ -6,8 +6,20 @@ from itertools import pairwise
 
 import numpy as np
 
-from riser_soil.contact.law import NormalLaw
 from riser_soil.core.arrays import Array
+from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin, Trench
+from riser_soil.seabed.law import NormalLaw
+from riser_soil.seabed.randolph_quiggin import Clay, RandolphQuiggin
+
+
+def randolph_quiggin(D: float, su: float, su_gradient: float = 0.0, **constants: float) -> Clay:
+    """Clay under a pipe of diameter D [m]."""
+    return RandolphQuiggin(kind="randolph-quiggin", su=su, su_gradient=su_gradient, **constants).of_pipe(D)
+
+
+def aubeny_biscontin(D: float, su: float, su_gradient: float = 0.0, **constants: float) -> Trench:
+    """A seafloor under a pipe of diameter D [m]."""
+    return AubenyBiscontin(kind="aubeny-biscontin", su=su, su_gradient=su_gradient, **constants).of_pipe(D)
 
 
 def through(*turns: float, steps: int = 80) -> Array:
@@ -19,7 +31,7 @@ def after(law: NormalLaw, path: Array) -> Array:
     """History (1, nh) of one point at the end of a path."""
     history = law.initial_history((1,))
     for z in path:
-        history = law.update(np.array([z]), history)
+        history = law.update(np.array([z]), history).history
     return history
 
 
@@ -28,8 +40,8 @@ def forces(law: NormalLaw, path: Array, history: Array | None = None) -> Array:
     history = law.initial_history((1,)) if history is None else history
     found = np.empty(path.size)
     for i, z in enumerate(path):
-        found[i] = law.force_and_stiffness(np.array([z]), history)[0][0]
-        history = law.update(np.array([z]), history)
+        answer = law.update(np.array([z]), history)
+        found[i], history = answer.force[0], answer.history
     return found
 
 
@@ -40,4 +52,5 @@ def work(path: Array, force: Array, begin: float = 0.0) -> Array:
 
 def at(law: NormalLaw, z: Array, history: Array) -> tuple[Array, Array]:
     """Force and slope of one step from a history to each of some penetrations."""
-    return law.force_and_stiffness(z, np.repeat(history, z.size, axis=0))
+    answer = law.update(z, np.repeat(history, z.size, axis=0))
+    return answer.force, answer.slope

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
-from tests.support.soil_loops import after, at, forces, through
+from tests.support.soil_loops import after, at, aubeny_biscontin, forces, through
 
 D, SU = 0.3, 2000.0
-LAW = AubenyBiscontin(D, SU)
+LAW = aubeny_biscontin(D, SU)
 Y1 = 0.09
 P1 = 6.73 * (Y1 / D) ** 0.29 * SU * D
 K = 660.0 * SU
@@ -24,7 +23,7 @@ def test_backbone_begins_with_the_stiffness_and_then_follows_the_power_law() -> 
 
 
 def test_slope_of_the_backbone_where_the_clay_hardens_fast() -> None:
-    law = AubenyBiscontin(D, SU, 2.0e5, k_over_su=5.0)
+    law = aubeny_biscontin(D, SU, 2.0e5, k_over_su=5.0)
     z, h = np.array([0.01, 0.1, 0.3]), 1e-6
     differences = (law.backbone(z + h)[0] - law.backbone(z - h)[0]) / (2 * h)
     np.testing.assert_allclose(law.backbone(z)[1], differences, rtol=1e-7)

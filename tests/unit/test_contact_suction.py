@@ -64,10 +64,11 @@ def test_every_step_dissipates_unless_it_tears(law: Sticking, path: list[float])
     """Sum over any path from the first touch: taken less stored is never negative, step by step."""
     history, begin = after(law, np.array([0.0])), np.array([0.0])
     for z in np.array(path)[:, None]:
-        taken = law.force_and_stiffness(z, history)[0] * (z - begin)
-        change = law.stored(z, history) - law.stored(begin, history)
+        answer = law.update(z, history)
+        taken = answer.force * (z - begin)
+        change = answer.stored - law.update(begin, history).stored
         assert taken[0] - change[0] >= -1e-12
-        history, begin = law.update(z, history), z
+        history, begin = answer.history, z
 
 
 def test_a_reach_short_of_the_peak_is_refused() -> None:

@@ -15,7 +15,7 @@ LAW = DiscreteGradient(PENALTY)
 
 @pytest.mark.parametrize("before", DEPTHS)
 def test_work_of_a_step_is_the_change_of_the_potential(before: float) -> None:
-    force, _ = LAW.force_and_stiffness(DEPTHS, np.full((DEPTHS.size, 1), before))
+    force = LAW.update(DEPTHS, np.full((DEPTHS.size, 1), before)).force
     change = PENALTY.potential(DEPTHS) - PENALTY.potential(np.array(before))
     np.testing.assert_allclose(force * (DEPTHS - before), change, atol=1e-14)
 
@@ -23,8 +23,8 @@ def test_work_of_a_step_is_the_change_of_the_potential(before: float) -> None:
 @pytest.mark.parametrize("before", DEPTHS + 1e-4)
 def test_slope_is_exact(before: float) -> None:
     history, h = np.full((DEPTHS.size, 1), before), 1e-7
-    plus, minus = (LAW.force_and_stiffness(DEPTHS + s, history)[0] for s in (h, -h))
-    _, slope = LAW.force_and_stiffness(DEPTHS, history)
+    plus, minus = (LAW.update(DEPTHS + s, history).force for s in (h, -h))
+    slope = LAW.update(DEPTHS, history).slope
     np.testing.assert_allclose(slope, (plus - minus) / (2.0 * h), rtol=1e-4, atol=1e-4 * PENALTY.stiffness)
 
 
@@ -32,7 +32,7 @@ def test_slope_is_exact(before: float) -> None:
 def test_short_way_is_the_penalty(depth: float) -> None:
     """Without a jump where the difference quotient would be round-off."""
     history = np.full((2, 1), depth)
-    force, slope = LAW.force_and_stiffness(depth + np.array([9e-9, 2e-8]), history)
+    force, slope, _, _ = LAW.update(depth + np.array([9e-9, 2e-8]), history)
     np.testing.assert_allclose(force, PENALTY.force(np.array(depth)), rtol=1e-4, atol=0.02)
     np.testing.assert_allclose(slope, 0.5 * PENALTY.slope(np.array(depth)), rtol=2e-2, atol=1e-3)
 

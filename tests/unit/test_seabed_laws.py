@@ -8,25 +8,23 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from riser_soil.contact.law import NormalLaw
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
 from riser_soil.seabed.bearing import PowerLaw, Strength, displaced
 from riser_soil.seabed.grounds import Plane
-from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
+from riser_soil.seabed.law import NormalLaw
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.sample_line import START, Sample, sample
-from tests.support.soil_loops import after, at, forces, through, work
+from tests.support.soil_loops import after, at, aubeny_biscontin, forces, randolph_quiggin, through, work
 
 D, SU, GRADIENT = 0.3, 2000.0, 1500.0
 LAWS: dict[str, NormalLaw] = {
-    "randolph-quiggin": RandolphQuiggin(D, SU, GRADIENT, unit_weight=4.0e3),
-    "randolph-quiggin, even, light": RandolphQuiggin(D, SU, f_suc=0.3, lambda_suc=0.4, lambda_rep=0.5),
-    "aubeny-biscontin": AubenyBiscontin(D, SU, GRADIENT),
-    "aubeny-biscontin, even": AubenyBiscontin(D, SU, omega=0.8, phi=0.3, psi=0.4),
+    "randolph-quiggin": randolph_quiggin(D, SU, GRADIENT, unit_weight=4.0e3),
+    "randolph-quiggin, even, light": randolph_quiggin(D, SU, f_suc=0.3, lambda_suc=0.4, lambda_rep=0.5),
+    "aubeny-biscontin": aubeny_biscontin(D, SU, GRADIENT),
+    "aubeny-biscontin, even": aubeny_biscontin(D, SU, omega=0.8, phi=0.3, psi=0.4),
 }
 WAYS = {
     "first": (0.0,),
@@ -84,11 +82,18 @@ def test_a_way_without_turns_does_not_depend_on_its_steps(law: NormalLaw, way: t
 def test_a_response_keeps_nothing(law: NormalLaw, way: tuple[float, ...]) -> None:
     history = after(law, through(*way)) if len(way) > 1 else law.initial_history((1,))
     kept, here = history.copy(), np.array([0.05])
-    before = law.force_and_stiffness(here, history)
-    law.force_and_stiffness(np.array([0.1]), history)
+    before = law.update(here, history)
     law.update(np.array([0.1]), history)
     np.testing.assert_array_equal(history, kept)
-    np.testing.assert_array_equal(before, law.force_and_stiffness(here, history))
+    for first, again in zip(before, law.update(here, history), strict=True):
+        np.testing.assert_array_equal(first, again)
+
+
+@every_law
+def test_each_column_of_the_history_has_a_name(law: NormalLaw) -> None:
+    history = law.initial_history((2, 3))
+    assert history.shape == law.update(np.full((2, 3), 0.05), history).history.shape == (2, 3, len(law.columns))
+    assert len(set(law.columns)) == len(law.columns)
 
 
 @every_law
@@ -97,7 +102,7 @@ def test_force_is_zero_out_of_contact(law: NormalLaw) -> None:
     for history in (law.initial_history((1,)), after(law, through(0.0, 0.07, 0.05))):
         np.testing.assert_array_equal(at(law, normal, history), np.zeros((2, 4)))
         assert not law.active(normal, np.repeat(history, 4, axis=0)).any()
-        assert not law.stored(normal, np.repeat(history, 4, axis=0)).any()
+        assert not law.update(normal, np.repeat(history, 4, axis=0)).stored.any()
 
 
 @every_law
@@ -113,9 +118,9 @@ def lost_per_cycle(law: NormalLaw, cycle: Array, times: int) -> Array:
     path = np.tile(cycle, times)
     histories = [law.initial_history((1,))]
     for z in path:
-        histories.append(law.update(np.array([z]), histories[-1]))
+        histories.append(law.update(np.array([z]), histories[-1]).history)
     ends = slice(cycle.size - 1, None, cycle.size)
-    stored = [law.stored(cycle[-1:], h)[0] for h in histories[cycle.size :: cycle.size]]
+    stored = [law.update(cycle[-1:], h).stored[0] for h in histories[cycle.size :: cycle.size]]
     return np.asarray(np.diff(work(path, forces(law, path))[ends]) - np.diff(stored))
 
 
@@ -139,7 +144,7 @@ def test_dissipation_per_cycle_grows_with_its_amplitude(law: NormalLaw) -> None:
 @pytest.mark.parametrize("kind", ["randolph-quiggin", "aubeny-biscontin"])
 def test_tangent_along_a_riser_with_a_history(kind: str, rise: float, dimension: int) -> None:
     """Pressed in, lifted a little, then on or back: laws softer than clay, that differences are smooth."""
-    law = RandolphQuiggin(D, SU, 50.0, K_max=2.0) if kind[0] == "r" else AubenyBiscontin(D, SU, k_over_su=5.0)
+    law = randolph_quiggin(D, SU, 50.0, K_max=2.0) if kind[0] == "r" else aubeny_biscontin(D, SU, k_over_su=5.0)
     riser = sample(dimension)
     part = SeabedContact(riser.line, np.zeros(riser.line.length.size), Plane.level(START[2] + 5.0), law)
     for lift, size in ((-0.5, 0.0), (0.1, 0.0)):

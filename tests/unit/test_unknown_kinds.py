@@ -10,21 +10,23 @@ from mpi4py import MPI
 from pydantic import BaseModel
 
 from riser_soil.assembly import build
-from riser_soil.assembly.ground import stiffnesses
-from riser_soil.assembly.laws import hysteretic_law, soil_law
+from riser_soil.assembly.ground import seabed_law, stiffnesses
 from riser_soil.assembly.motions import set_motion
 from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.scales import Scales
 from riser_soil.assembly.shape import initial_shape, unstressed_shape
 from riser_soil.assembly.stage import scheme_of
+from riser_soil.errors import SceneError
 from riser_soil.riser.ends import End
 from riser_soil.riser.shapes import straight
 from riser_soil.scene.contact import Contact
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.seabed import RandolphQuiggin
-from riser_soil.scene.soil import LinearElastic, VonMises
+from riser_soil.scene.seabed import HystereticSeabed
+from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
 from riser_soil.soil.block import BlockSpec, make_block
+from riser_soil.soil.linear_elastic import LinearElastic
+from riser_soil.soil.von_mises import VonMises
 from tests.support.coupled_scenes import LAY, heave, touchdown
 
 CLAY: dict[str, Any] = {"su": 4.0e3, "su_gradient": 1.5e3, "E_over_su": 300.0, "nu": 0.49}
@@ -50,21 +52,22 @@ def with_parts(whole: Any, **parts: Any) -> Any:
 
 def test_each_soil_law_has_its_formula() -> None:
     depth, shear = np.array([0.0, 2.0]), np.sqrt(2.0) * 4.0e3
-    clay = soil_law(VonMises(kind="von-mises", **CLAY))(depth)
+    clay = VonMises(kind="von-mises", **CLAY).at_points(depth, np.zeros((2, 6)))
     stress = np.tile([0.0, 0.0, 0.0, 0.0, 0.0, shear], (2, 1))  # in simple shear, at the strength of the surface
     np.testing.assert_allclose(clay.overstress(stress), [1.0, 4.0 / 7.0])
-    rock = soil_law(LinearElastic(kind="linear-elastic", E=1.0e6, nu=0.3))(depth)
+    rock = LinearElastic(kind="linear-elastic", E=1.0e6, nu=0.3).at_points(depth, np.zeros((2, 6)))
     assert not rock.overstress(stress).any()
 
 
 def test_a_third_soil_law_is_refused() -> None:
-    third = another(VonMises(kind="von-mises", **CLAY))
-    with pytest.raises(AssertionError, match="Another"):
-        soil_law(third)
+    given = touchdown(LAY, heave(1.0))
+    given["soil"]["law"]["kind"] = "cam-clay"
+    with pytest.raises(SceneError, match=r'soil.law.kind: value "cam-clay": must be one of linear-elastic, von-mises;'):
+        scene_from_mapping(given)
+    third = another(VonMises(kind="von-mises", **CLAY), surface_modulus=1.0e6)
     whole = scene()
-    soil = with_parts(whole.soil, law=with_parts(third, surface_modulus=1.0e6))
-    with pytest.raises(AssertionError, match="Another"):
-        build(with_parts(whole, soil=soil), MPI.COMM_SELF)
+    with pytest.raises(AttributeError, match="at_points"):
+        build(with_parts(whole, soil=with_parts(whole.soil, law=third)), MPI.COMM_SELF)
 
 
 def test_a_soil_law_tells_the_modulus_that_contact_goes_by() -> None:
@@ -75,8 +78,15 @@ def test_a_soil_law_tells_the_modulus_that_contact_goes_by() -> None:
 
 
 def test_another_hysteretic_law_is_refused() -> None:
-    with pytest.raises(AssertionError, match="Another"):
-        hysteretic_law(another(RandolphQuiggin(kind="randolph-quiggin", su=2.0e3)), elements_of(scene()))
+    given = touchdown(LAY, heave(1.0))
+    given["seabed"] = {"kind": "hysteretic", "law": {"kind": "bridge", "su": 2.0e3}}
+    allowed = "must be one of randolph-quiggin, aubeny-biscontin;"
+    with pytest.raises(SceneError, match=rf'seabed.law.kind: value "bridge": {allowed}'):
+        scene_from_mapping(given)
+    whole = scene()
+    law = another(RandolphQuiggin(kind="randolph-quiggin", su=2.0e3))
+    with pytest.raises(AttributeError, match="of_pipe"):
+        seabed_law(HystereticSeabed.model_construct(law=law), Contact(), elements_of(whole), {})
 
 
 def test_another_seabed_is_refused() -> None:

@@ -13,8 +13,7 @@ from riser_soil.errors import ResultsError
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
-from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
-from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
+from riser_soil.seabed.laws import LAWS
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import distance, held, riser_scene, static, tell
 
@@ -128,9 +127,9 @@ def test_riser_at_rest_on_clay_that_remembers(law: str) -> None:
     found = lying(clay, dimension=2)
     at = resting(found)
     assert found.contact_force[at] == pytest.approx(W, rel=1e-4)
-    known = {"randolph-quiggin": RandolphQuiggin, "aubeny-biscontin": AubenyBiscontin}[law](0.3, 2e3, 1.5e3)
+    known = LAWS[law](**CLAY | {"kind": law}).of_pipe(0.3)
     depth = -found.position[at, 2]
-    force, _ = known.force_and_stiffness(depth, known.initial_history(depth.shape))
+    force = known.update(depth, known.initial_history(depth.shape)).force
     assert force == pytest.approx(W, rel=1e-3)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -85,7 +84,7 @@ def strip_soil(kind: str, cells: int, family: Family | None, far: float) -> tupl
     fine = ((-1.0, 0.0), (1.25 - 0.5 * h, 0.0))  # cells of size h from the symmetry plane to x = 1.25
     spec = BlockSpec((0.0, 5.0), (0.0, h), 3.0, h, far, kind="tet" if kind == "tet" else "hex", riser=fine)
     grid: Grid = block_grid(MPI.COMM_SELF, spec)
-    law = partial(VonMises.at_depth, su=SU, su_gradient=0.0, E_over_su=300.0, nu=0.49)
+    law = VonMises(kind="von-mises", su=SU, su_gradient=0.0, E_over_su=300.0, nu=0.49).at_points
     soil = Soil(replace(grid, family=family or grid.family), law, level=0.0, unit_weight=0.0)
     x, _, z = grid.nodes.points.T
     return soil, (z > -1e-9) & (x < 1.0 + 1e-9)

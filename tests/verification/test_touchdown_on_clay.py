@@ -72,7 +72,7 @@ def laid(seabed: Mapping, size: float, *stages: Mapping, **more: Mapping) -> lis
         seen = seabed_contact.evaluate(assembly.line.trial(stepper.now))
         force = np.zeros_like(seabed_contact.share)
         force[seen.touching.elements] = seen.touching.force
-        first, _ = law.force_and_stiffness(seen.penetration, law.initial_history(seen.penetration.shape))
+        first = law.update(seen.penetration, law.initial_history(seen.penetration.shape)).force
         at = (x.ravel() for x in (arc, seabed_contact.share, force, first))
         found.append(Laid(seabed_contact.touchdown_arc(stepper.now), *at))
 

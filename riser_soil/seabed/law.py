@@ -1,0 +1,72 @@
+"""What a law of the seabed is: force per length of riser by its penetration, and its model in the scene.
+
+Penetration δ = −gap [m]; force f [N/m] pushes the two sides apart.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+from pydantic import BaseModel
+
+from riser_soil.core.quantities import FROZEN
+
+if TYPE_CHECKING:
+    from riser_soil.core.arrays import Array, BoolArray
+
+
+class Answer(NamedTuple):
+    """At the end of a step to a penetration.
+
+    force [N/m]: positive where it pushes the riser away. slope [N/m2]: its derivative by the penetration. history
+    (..., nh). stored [N]: energy per length that the ground gives back; what the force does beyond it is dissipated.
+    """
+
+    force: Array
+    slope: Array
+    history: Array
+    stored: Array
+
+
+class NormalLaw(Protocol):
+    """Force per length of riser by its penetration, with a history of nh numbers a point, kept between steps.
+
+    Penetrations, forces and slopes have one shape (...); a history is (..., nh), its `columns` have names. Nothing is
+    kept here: `update` gives the history after a step, for the caller to keep when it is accepted.
+    """
+
+    @property
+    def columns(self) -> tuple[str, ...]: ...
+
+    @property
+    def start(self) -> float:
+        """Gap [m] at which a riser that comes down begins to feel the ground."""
+        ...
+
+    @property
+    def capacity(self) -> float:
+        """Force per length [N/m] that it bears at a penetration of one diameter; inf without a limit."""
+        ...
+
+    def initial_history(self, shape: tuple[int, ...]) -> Array:
+        """History of ground that has never been touched (*shape, nh)."""
+        ...
+
+    def active(self, penetration: Array, history: Array) -> BoolArray:
+        """Where there may be a force, or something stored."""
+        ...
+
+    def update(self, penetration: Array, history: Array) -> Answer:
+        """The answer to a step from a history to a penetration."""
+        ...
+
+
+class SeabedLaw(BaseModel, ABC):
+    """A law as a scene gives it: `kind`, a Literal of one word, and its constants."""
+
+    model_config = FROZEN
+
+    @abstractmethod
+    def of_pipe(self, diameter: float) -> NormalLaw:
+        """The formula for a pipe of this diameter [m]."""

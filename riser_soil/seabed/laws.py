@@ -1,0 +1,11 @@
+"""The laws of a hysteretic seabed that a scene may name: one entry each."""
+
+from riser_soil.core.kinds import registry
+from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
+from riser_soil.seabed.law import SeabedLaw
+from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
+
+LAWS: dict[str, type[SeabedLaw]] = registry(
+    RandolphQuiggin,
+    AubenyBiscontin,
+)

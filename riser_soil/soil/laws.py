@@ -1,0 +1,11 @@
+"""The laws of the soil that a scene may name: one entry each."""
+
+from riser_soil.core.kinds import registry
+from riser_soil.soil.law import SoilLaw
+from riser_soil.soil.linear_elastic import LinearElastic
+from riser_soil.soil.von_mises import VonMises
+
+LAWS: dict[str, type[SoilLaw]] = registry(
+    LinearElastic,
+    VonMises,
+)

@@ -1,0 +1,137 @@
+"""Laws that only tests know, each as a contributor would write it: one class for the scene, one for the formula."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Literal, TypeVar
+
+import numpy as np
+from pydantic import BaseModel, Field
+
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.kinds import registry
+from riser_soil.core.quantities import BedStiffness, PoissonRatio, PositiveWeightPerLength, Stress
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.seabed import HystereticSeabed
+from riser_soil.scene.soil import SoilScene
+from riser_soil.seabed.law import Answer, SeabedLaw
+from riser_soil.soil import mandel
+from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Response, SoilLaw
+from riser_soil.soil.linear_elastic import LinearElastic
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+@contextmanager
+def entered(laws: dict[str, type[Model]], model: type[Model]) -> Iterator[None]:
+    """One more entry among the laws, for a while."""
+    laws |= registry(model)
+    _read_anew()
+    try:
+        yield
+    finally:
+        laws.popitem()
+        _read_anew()
+
+
+def _read_anew() -> None:
+    """The models were made with the laws of their time."""
+    for model in (SoilScene, HystereticSeabed, Scene):
+        model.model_rebuild(force=True)
+
+
+class OtherElastic(LinearElastic):
+    """Linear elastic soil under another name."""
+
+    kind: Literal["toy"] = Field(description="the law's name")  # type: ignore[assignment]
+
+
+class Hardening(SoilLaw):
+    """Von Mises soil whose limit grows and stores what that takes: q <= limit + H kappa, kappa the plastic strain."""
+
+    kind: Literal["toy"] = Field(description="the law's name")
+    E: Stress = Field(description="Young's modulus [Pa]")
+    nu: PoissonRatio = Field(description="Poisson's ratio [-]")
+    limit: Stress = Field(description="equivalent stress at which it yields first [Pa]")
+    H: Stress = Field(description="growth of the limit by equivalent plastic strain [Pa]")
+
+    @property
+    def surface_modulus(self) -> float:
+        return self.E
+
+    def at_points(self, depth: Array, initial: Array) -> HardeningPoints:
+        E = np.full_like(depth, self.E)
+        moduli = mandel.bulk_modulus(E, self.nu), mandel.shear_modulus(E, self.nu)
+        return HardeningPoints(*moduli, self.limit, self.H, initial)
+
+
+@dataclass(frozen=True, eq=False)
+class HardeningPoints:
+    """Radial return; free energy (sigma - initial):elastic/2 + H kappa^2/2."""
+
+    bulk: Array
+    shear: Array
+    limit: float
+    H: float
+    initial: Array
+    columns: tuple[str, ...] = (*STRESS, PLASTIC_STRAIN)
+    symmetric: bool = True
+
+    def start(self) -> Array:
+        return np.column_stack((self.initial, np.zeros(len(self.shear))))
+
+    def update(self, strain_increment: Array, history: Array) -> Response:
+        trial = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
+        s, q, G3 = mandel.deviator(trial), mandel.von_mises(trial), 3.0 * self.shear
+        slip = np.maximum(q - self.limit - self.H * history[:, 6], 0.0) / (G3 + self.H)
+        safe = np.where(slip > 0.0, q, 1.0)
+        loss = G3 * slip / safe
+        stress, kappa = trial - loss[:, None] * s, history[:, 6] + slip
+        n, elastic_moduli = np.sqrt(1.5) * s / safe[:, None], mandel.stiffness(self.bulk, self.shear * (1.0 - loss))
+        turn = np.where(slip > 0.0, G3 / (G3 + self.H) - loss, 0.0) * 2.0 * self.shear
+        moduli = elastic_moduli - turn[:, None, None] * n[:, :, None] * n[:, None]
+        elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
+        stored = 0.5 * mandel.product(stress - self.initial, elastic) + 0.5 * self.H * kappa**2
+        return Response(stress, moduli, np.column_stack((stress, kappa)), stored, elastic)
+
+    def overstress(self, stress: Array) -> Array:
+        return mandel.von_mises(stress) / self.limit
+
+
+class PlasticSpring(SeabedLaw):
+    """Springs k that give way beyond a limit, which grows by h times the plastic penetration and stores that."""
+
+    kind: Literal["toy"] = Field(description="the law's name")
+    k: BedStiffness = Field(description="stiffness [N/m2]")
+    limit: PositiveWeightPerLength = Field(description="force per length at which it gives way first [N/m]")
+    h: BedStiffness = Field(description="growth of the limit [N/m2]")
+
+    def of_pipe(self, diameter: float) -> PlasticBed:
+        return PlasticBed(self)
+
+
+@dataclass(frozen=True)
+class PlasticBed:
+    """History (..., 1): plastic penetration [m]."""
+
+    given: PlasticSpring
+    columns: tuple[str, ...] = ("plastic",)
+    capacity: float = math.inf
+    start: float = 0.0
+
+    def initial_history(self, shape: tuple[int, ...]) -> Array:
+        return np.zeros((*shape, 1))
+
+    def active(self, penetration: Array, history: Array) -> BoolArray:
+        return (penetration > history[..., 0]) | (history[..., 0] > 0.0)
+
+    def update(self, penetration: Array, history: Array) -> Answer:
+        k, h, before = self.given.k, self.given.h, history[..., 0]
+        slip = np.maximum(k * (penetration - before) - self.given.limit - h * before, 0.0) / (k + h)
+        plastic = before + slip
+        elastic = np.maximum(penetration - plastic, 0.0)
+        slope = np.where(slip > 0.0, k * h / (k + h), k * (elastic > 0.0))
+        return Answer(k * elastic, slope, plastic[..., None], 0.5 * k * elastic**2 + 0.5 * h * plastic**2)
