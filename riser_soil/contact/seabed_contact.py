@@ -14,6 +14,7 @@ from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
+from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.trial import Trial
 from riser_soil.seabed.grounds import Distance, Ground
 
@@ -225,9 +226,4 @@ class SeabedContact:
     def _clearance(self, trial: Trial) -> Array:
         """Gap (nn,) of the nodes less that at which the force begins [m]."""
         value = self._distance(self.line.to_global(trial.x)).value
-        return value - nodal_radius(self._radius) - self.law.start
-
-
-def nodal_radius(radius: Array) -> Array:
-    """The larger of what the two elements beside a node have (nn,)."""
-    return np.maximum(np.append(radius, 0.0), np.append(0.0, radius))
+        return value - larger_beside(self._radius) - self.law.start

@@ -93,6 +93,11 @@ class Elements:
         return np.concatenate([[0.0], np.cumsum(self.length)])
 
 
+def larger_beside(values: Array) -> Array:
+    """The larger (nn,) of what the two elements beside a node have (ne,), never negative."""
+    return np.maximum(np.append(values, 0.0), np.append(0.0, values))
+
+
 def mass_with_contents(line: LineType, around: Surroundings) -> float:
     """Mass of pipe and contents, kg/m."""
     return line.mass + around.contents * 0.25 * np.pi * line.inner_diameter**2
