@@ -39,8 +39,11 @@ _SIZE = sum(figure.size for _, figure in _FIGURES)
 
 def pack(seen: Instant) -> Array:
     """All figures of one instant as one vector, in the order of the summary; nan for what is not known."""
-    values = _values(seen)
-    return np.concatenate([np.atleast_1d(_figure(figure, values[output.name])) for output, figure in _FIGURES])
+    values, vector, first = _values(seen), np.empty(_SIZE), 0
+    for output, figure in _FIGURES:
+        vector[first : first + figure.size] = _figure(figure, values[output.name])
+        first += figure.size
+    return vector
 
 
 def _values(seen: Instant) -> dict[str, Any]:
@@ -48,7 +51,7 @@ def _values(seen: Instant) -> dict[str, Any]:
 
 
 def _figure(figure: Figure, value: Any) -> Any:
-    return np.full(figure.size, math.nan) if value is None else figure.of(value)
+    return math.nan if value is None else figure.of(value)
 
 
 def unpack(vector: Array) -> dict[str, Any]:
@@ -67,10 +70,10 @@ def final_state(seen: Instant) -> dict[str, Any]:
     values = _values(seen)
     final: dict[str, Any] = {}
     for output, figure in _FIGURES:
-        found = np.asarray(_figure(figure, values[output.name]), dtype=float)
+        found = _figure(figure, values[output.name])
         if figure.name in _SOMETIMES and not np.isfinite(found).all():
             continue
-        told: Any = found.tolist() if figure.size > 1 else found.item()
+        told: Any = [float(x) for x in found] if figure.size > 1 else float(found)
         if figure.node is not None:
             told = {"value": told, "arc": float(seen.arc[figure.node(values[output.name])])}
         _put(final, figure.path, told)
