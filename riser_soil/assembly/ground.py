@@ -8,11 +8,10 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.assembly.scales import Scales, contact_radius, scales_of
-from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.interruption import undisturbed
 from riser_soil.riser.line import Line
-from riser_soil.riser.sections import Elements
+from riser_soil.riser.sections import Elements, larger_beside
 from riser_soil.scene.contact import Contact as ContactScene
 from riser_soil.scene.plane import vertical_plane
 from riser_soil.scene.scene import Scene
@@ -71,10 +70,10 @@ def soil_contact_of(
     from riser_soil.contact.soil_contact import FOOTPRINT, SoilContact
 
     scales = scales_of(elements)
-    outer_radius = float(_at_nodes(0.5 * elements.outer_diameter).mean()) or 0.5 * scales.diameter
+    outer_radius = float(larger_beside(0.5 * elements.outer_diameter).mean()) or 0.5 * scales.diameter
     return SoilContact(
         line,
-        _at_nodes(contact_radius(scene, elements)),
+        larger_beside(contact_radius(scene, elements)),
         surface,
         Penalty(stiffness, smoothing(settings, scales, "soil", stiffness)),
         footprint=FOOTPRINT * outer_radius,  # also where the axis touches: a single point finds no balance on a kink
@@ -153,11 +152,6 @@ def _ground(scene: Scene, seabed: Seabed) -> Ground:
         return Plane.level(seabed.level)
     towards = float(np.arctan2(direction[1], direction[0]))
     return Plane.sloping(np.array([*origin[:2], seabed.level]), np.radians(seabed.slope_deg), towards)
-
-
-def _at_nodes(values: Array) -> Array:
-    """The larger of what the two elements beside a node have (nn,)."""
-    return np.maximum(np.append(values, 0.0), np.append(0.0, values))
 
 
 def smoothing(settings: ContactScene, scales: Scales, ground: str, stiffness: float) -> float:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -36,22 +37,18 @@ def elements_of(scene: Scene) -> sections.Elements:
 
 
 def _line_type(given: LineType) -> sections.LineType:
+    """As the elements take it: properties of the same name as they are given, or the elements' own default."""
     EI_y, EI_z = given.bending_stiffness
-    return sections.LineType(
-        EA=given.EA,
-        EI_y=EI_y,
-        EI_z=EI_z,
-        GJ=given.GJ or 0.0,
-        outer_diameter=given.outer_diameter or 0.0,
-        inner_diameter=given.inner_diameter,
-        mass=given.mass or 0.0,
-        submerged_weight=given.submerged_weight,
-        drag=(given.drag.normal, given.drag.tangential) if given.drag else (0.0, 0.0),
-        added_mass=(given.added_mass.normal, given.added_mass.tangential) if given.added_mass else (0.0, 0.0),
-        rotary_inertia=None if given.rotary_inertia is True else float(given.rotary_inertia),
-        damping=given.damping.time if given.damping else 0.0,
-        min_bend_radius=given.min_bend_radius or 0.0,
-    )
+    formed: dict[str, Any] = {
+        "EI_y": EI_y,
+        "EI_z": EI_z,
+        "drag": (given.drag.normal, given.drag.tangential) if given.drag else (0.0, 0.0),
+        "added_mass": (given.added_mass.normal, given.added_mass.tangential) if given.added_mass else (0.0, 0.0),
+        "rotary_inertia": None if given.rotary_inertia is True else float(given.rotary_inertia),
+        "damping": given.damping.time if given.damping else 0.0,
+    }
+    same = {each.name: getattr(given, each.name) for each in fields(sections.LineType) if each.name not in formed}
+    return sections.LineType(**formed, **{name: value for name, value in same.items() if value is not None})
 
 
 def attachments_of(scene: Scene) -> tuple[Attachment, ...]:

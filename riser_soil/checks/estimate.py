@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from riser_soil.core.outputs import ALONG_RISER, OF_SOIL
 from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.scene import Scene
@@ -20,8 +21,10 @@ from riser_soil.scene.stages import DynamicStage, Stage
 PROCESS, SOIL_PROCESS, PER_RISER_DOF, PER_CELL_ENTRY, PER_STOP, PER_WAVE = 0.24e9, 0.1e9, 2e3, 24.0, 150.0, 150.0
 FACTOR = 10.0  # entries of the soil's factor: FACTOR n^(4/3), as nested dissection gives them in three dimensions
 
-# Doubles of a record: by node, by step; of a picture: by node of the riser, by cell of the soil with its nodes.
-PER_NODE, PER_STEP, PER_PICTURE, PER_CELL = 15, 60, 15, 6
+# Doubles of a record: by node, by step; of a picture: by node of the riser, by cell of the soil with its nodes,
+# somewhat more than one.
+PER_NODE = PER_PICTURE = sum(output.numbers for output in ALONG_RISER)
+PER_STEP, PER_CELL = 60, 1 + sum(output.numbers for output in OF_SOIL)
 COPIES = 2.0  # of each file while it grows
 
 # Seconds on one core: to lay an element out; of a step, and in it of an element, of an element and wave component, of a

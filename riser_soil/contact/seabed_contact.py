@@ -15,6 +15,7 @@ from riser_soil.core.roles import Predictor, Remembering
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
+from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.trial import Trial
 from riser_soil.seabed.grounds import Distance, Ground
 from riser_soil.seabed.law import NormalLaw
@@ -232,9 +233,4 @@ class SeabedContact(LinePart):
     def _clearance(self, trial: Trial) -> Array:
         """Gap (nn,) of the nodes less that at which the force begins [m]."""
         value = self._distance(self.line.to_global(trial.x)).value
-        return value - nodal_radius(self._radius) - self.law.start
-
-
-def nodal_radius(radius: Array) -> Array:
-    """The larger of what the two elements beside a node have (nn,)."""
-    return np.maximum(np.append(radius, 0.0), np.append(0.0, radius))
+        return value - larger_beside(self._radius) - self.law.start

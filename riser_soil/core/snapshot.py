@@ -65,6 +65,15 @@ class Touch:
     slip: Array | None = None  # (nn,) m, way slid over the seabed so far; None without friction, or not wanted
 
 
+@dataclass(frozen=True, eq=False)
+class Instant:
+    """The riser and its contact at one instant. arc: (nn,) m, unstressed arc length of the nodes from the start."""
+
+    arc: Array
+    riser: RiserSnapshot
+    touch: Touch
+
+
 @dataclass(frozen=True)
 class StepHealth:
     """How hard the solver worked for one accepted step."""
@@ -106,6 +115,14 @@ class Ledger:
     def relative_residual(self) -> float:
         """Residual over the energy turned over; nan where there is none."""
         return self.residual / self.turned_over if self.turned_over > 0.0 else float("nan")
+
+
+@dataclass(frozen=True)
+class StepRecord:
+    """What is told of an accepted step."""
+
+    health: StepHealth
+    ledger: Ledger
 
 
 @dataclass(frozen=True)

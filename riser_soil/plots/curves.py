@@ -15,11 +15,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.outputs import ALONG_RISER
 from riser_soil.results import Run
 from riser_soil.results.derived import along, reactions
 
-# Along the arc: what the axis says, and the factor that makes it so.
+# Along the arc: what the axis says, and the factor that makes it so; the text and unit of the table of outputs, where
+# it is not said better here.
 ALONG_ARC: dict[str, tuple[str, float]] = {
+    **{output.name: (f"{output.text} [{output.units}]", 1.0) for output in ALONG_RISER if not output.vector},
     "effective_tension": ("effective tension [kN], + pulls", 1e-3),
     "bending_moment": ("bending moment, magnitude [kN m]", 1e-3),
     "curvature": ("curvature, magnitude [1/m]", 1.0),

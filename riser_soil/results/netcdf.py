@@ -11,24 +11,24 @@ from collections import defaultdict
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import h5netcdf
 import h5py
 import numpy as np
 
+from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
+from riser_soil.core.output import Output
+from riser_soil.core.step_outputs import OF_STEP, TAKEN_OUT
 from riser_soil.results.growing_file import GrowingFile, appending
 
-_ON_RISER = "exerted by the support on the riser; global axes, z up"
-_FROM_NOWHERE = "positive when energy appears from nowhere"
-_TAKEN_OUT = "negative where it was taken out"
 _SPOKEN = {  # parts whose names don't tell what dissipates or works
     "morison": "drag and other forces of the water's motion",
     "buoyancy": "buoyancy in waves",
     "contact": "contact of the riser with the soil",
     "supports": "moving ends",
 }
-_RIGHT_HAND = "right-hand rule; " + _ON_RISER
 
 
 @dataclass(frozen=True)
@@ -43,94 +43,25 @@ class Variable:
 
 
 _ARC = Variable(("arc",), "m", "unstressed arc length from the start")
+
+
+def variable(output: Output[Any]) -> Variable:
+    """Of results.nc, where an output is written along the riser, by instants or by steps."""
+    along = {"nodes": ("time", "arc"), "model": ("time",), "step": ("step",)}[output.where]
+    dims = (*along, "component") if output.vector else along
+    return Variable(dims, output.units, output.text, output.sign, output.dtype)
+
+
 SERIES: dict[str, Variable] = {
     "time": Variable(("time",), "s", "total simulated time; static stages take none"),
     "stage": Variable(("time",), "1", "index of the stage", dtype="i4"),
-    "position": Variable(
-        ("time", "arc", "component"), "m", "position of the riser's axis", "global axes, z up"
-    ),
-    "effective_tension": Variable(("time", "arc"), "N", "effective tension", "positive in tension"),
-    "wall_tension": Variable(
-        ("time", "arc"), "N", "tension in the pipe's wall, T + p_i A_i - p_o A_o", "positive in tension"
-    ),
-    "bending_moment": Variable(("time", "arc"), "N m", "magnitude of the bending moment"),
-    "curvature": Variable(("time", "arc"), "m-1", "magnitude of the curvature"),
-    "bend_utilisation": Variable(
-        ("time", "arc"), "1", "curvature times the smallest bend radius allowed", "above 1 the pipe is bent too much"
-    ),
-    "contact_force": Variable(
-        ("time", "arc"), "N m-1", "contact force per length of riser", "positive where the ground pushes"
-    ),
-    "penetration": Variable(
-        ("time", "arc"), "m", "penetration of the riser's underside into the ground as it is at the time", ">= 0"
-    ),
-    "embedment": Variable(
-        ("time", "arc"),
-        "m",
-        "greatest depth yet of the riser's underside below the ground as it lay before the riser came",
-        ">= 0",
-    ),
-    "slip": Variable(("time", "arc"), "m", "length of the way that the riser has slid over the seabed so far", ">= 0"),
-    "moment_vector": Variable(
-        ("time", "arc", "component"),
-        "N m",
-        "section moment",
-        "right-hand rule, global axes; exerted by the part towards the end on the part towards the start",
-    ),
-    "start_force": Variable(("time", "component"), "N", "force at the start", _ON_RISER),
-    "end_force": Variable(("time", "component"), "N", "force at the end", _ON_RISER),
-    "start_moment": Variable(("time", "component"), "N m", "moment at the start", _RIGHT_HAND),
-    "end_moment": Variable(("time", "component"), "N m", "moment at the end", _RIGHT_HAND),
-    "touchdown_arc": Variable(
-        ("time",),
-        "m",
-        "arc length of the touchdown point towards the end: where a rigid contact with the resultant and moment of the "
-        "contact forces would end; nan when nothing touches",
-    ),
-    "touchdown_position": Variable(
-        ("time", "component"), "m", "position of the riser's axis at the touchdown point", "global axes, z up"
-    ),
-    "touchdown_points": Variable(
-        ("time",), "1", "places where the riser comes down or leaves the seabed, without its ends", dtype="i4"
-    ),
-    "min_effective_tension": Variable(
-        ("time",), "N", "least effective tension along the riser", "negative in compression"
-    ),
-    "min_effective_tension_arc": Variable(("time",), "m", "arc length of the least effective tension"),
-    "min_bend_radius": Variable(("time",), "m", "smallest bend radius, one over the largest curvature of the nodes"),
-    "min_bend_radius_arc": Variable(("time",), "m", "arc length of the smallest bend radius"),
-    "max_penetration": Variable(("time",), "m", "deepest penetration of the riser into the seabed", ">= 0"),
-    "contact_force_sum": Variable(
-        ("time", "component"),
-        "N",
-        "sum of the contact forces",
-        "exerted by the seabed on the riser; global axes, z up",
-    ),
+    **{output.name: variable(output) for output in outputs.of_instant() if output.where != "summary"},
 }
 HEALTH: dict[str, Variable] = {
     "step": Variable(("step",), "1", "index of the accepted step", dtype="i8"),
     "step_time": Variable(("step",), "s", "total simulated time at the end of the step"),
     "step_stage": Variable(("step",), "1", "index of the stage", dtype="i4"),
-    "newton_iterations": Variable(("step",), "1", "Newton iterations", dtype="i4"),
-    "time_step": Variable(("step",), "s", "time step; in static stages the increment of the load factor"),
-    "energy_residual": Variable(
-        ("step",), "J", "residual of the step's energy balance; nan in static stages", _FROM_NOWHERE
-    ),
-    "relative_energy_residual": Variable(
-        ("step",),
-        "1",
-        "residual of the energy balance since the stage began, over the energy turned over; nan in static stages",
-        _FROM_NOWHERE,
-    ),
-    "kinetic_energy": Variable(("step",), "J", "kinetic energy, added mass included"),
-    "strain_energy": Variable(("step",), "J", "elastic energy"),
-    "potential_energy": Variable(("step",), "J", "energy of weight, buoyancy and contact; its zero is anywhere"),
-    "dissipated": Variable(("step",), "J", "energy dissipated since the stage began, but for the time scheme's"),
-    "dissipated_time_scheme": Variable(
-        ("step",), "J", "energy taken out by the time scheme since the stage began", "negative where it put energy in"
-    ),
-    "work": Variable(("step",), "J", "energy put in since the stage began", _TAKEN_OUT),
-    "step_cuts": Variable(("step",), "1", "failed attempts before the step was accepted", dtype="i4"),
+    **{output.name: variable(output) for output in OF_STEP},
 }
 
 
@@ -140,7 +71,7 @@ def ledger_variables(dissipating: Collection[str], working: Collection[str]) -> 
     put_in = "energy put in since the stage began by: "
     return {
         **{f"dissipated_{name}": Variable(("step",), "J", lost + _spoken(name)) for name in dissipating},
-        **{f"work_{name}": Variable(("step",), "J", put_in + _spoken(name), _TAKEN_OUT) for name in working},
+        **{f"work_{name}": Variable(("step",), "J", put_in + _spoken(name), TAKEN_OUT) for name in working},
     }
 
 

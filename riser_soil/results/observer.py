@@ -15,6 +15,7 @@ from mpi4py import MPI
 from riser_soil import __version__
 from riser_soil.assembly import Assembly
 from riser_soil.checks.inventory import built, dissipating, left_out, unknowns, working
+from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, Model, State
 from riser_soil.core.snapshot import RiserSnapshot, RunFacts, SoilSnapshot, StepHealth, Touch
@@ -170,16 +171,13 @@ def _on_all_ranks(comm: MPI.Intracomm) -> Iterator[None]:
 
 def _known_fields(assembly: Assembly) -> tuple[str, ...]:
     """What the scene wants to be told of, as far as it is known."""
-    unknown = set()
-    if assembly.pressures is None:
-        unknown |= {"wall_tension"}
-    if not assembly.elements.min_bend_radius.any():
-        unknown |= {"bend_utilisation"}
-    if not assembly.contacts:
-        unknown |= {"penetration", "embedment"}
-    if assembly.friction is None:
-        unknown |= {"slip"}
-    return tuple(name for name in assembly.scene.output.fields if name not in unknown)
+    has = {
+        "pressures": assembly.pressures is not None,
+        "min_bend_radius": bool(assembly.elements.min_bend_radius.any()),
+        "ground": bool(assembly.contacts),
+        "friction": assembly.friction is not None,
+    }
+    return outputs.known(assembly.scene.output.fields, [need for need, there in has.items() if there])
 
 
 class Acting(NamedTuple):

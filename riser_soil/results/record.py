@@ -12,33 +12,30 @@ from typing import Any, Self
 
 import numpy as np
 
+from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
-from riser_soil.core.snapshot import Ledger, RiserSnapshot, RunFacts, SoilMesh, SoilSnapshot, StepHealth, Touch
+from riser_soil.core.snapshot import (
+    Instant,
+    Ledger,
+    RiserSnapshot,
+    RunFacts,
+    SoilMesh,
+    SoilSnapshot,
+    StepHealth,
+    StepRecord,
+    Touch,
+)
 from riser_soil.errors import SceneError, WriteError
 from riser_soil.results import folder as run_folder
+from riser_soil.results.figures import final_state, pack
 from riser_soil.results.folder import Claim
 from riser_soil.results.netcdf import SeriesFile, ledger_variables
 from riser_soil.results.ownership import prepare, sealed
-from riser_soil.results.record_rows import ledger_row, series_row, soil_frame
+from riser_soil.results.record_rows import series_row, soil_frame, step_row
 from riser_soil.results.schedule import Due
 from riser_soil.results.simulated_time import SimulatedTime
-from riser_soil.results.summary import StageTally, Summary, final_state, pack
+from riser_soil.results.summary import StageTally, Summary
 from riser_soil.results.xdmf import Frame, XdmfFile, polyline
-
-RISER_FIELDS = (
-    "effective_tension",
-    "wall_tension",
-    "bending_moment",
-    "curvature",
-    "bend_utilisation",
-    "contact_force",
-    "penetration",
-    "embedment",
-    "slip",
-    "moment_vector",
-)
-SOIL_FIELDS = ("displacement", "von_mises_stress", "equivalent_plastic_strain")
-FIELDS = RISER_FIELDS + SOIL_FIELDS
 
 # A killed run loses this much wall time of results [s]; more where flushing would take more than this share.
 _FLUSH_EVERY, _FLUSH_SHARE = 1.0, 0.05
@@ -50,8 +47,7 @@ _MOST_WAITING, _STEP = 1 << 24, 2000
 class Last:
     """The state told last, and what it has been written to."""
 
-    riser: RiserSnapshot
-    touch: Touch
+    seen: Instant
     soil: SoilSnapshot | None
     written: Due
     stamp: float = 0.0  # s, of its record in the series
@@ -77,7 +73,7 @@ class Recorder:
         self._claim, self._folder = claim, folder
         self._arc = arc
         self._fields = fields
-        left_out = set(RISER_FIELDS) - set(fields)
+        left_out = set(outputs.choices()) - set(fields)
         self._ledger = ledger_variables(facts.dissipating, facts.working)
         self._series = SeriesFile(folder / run_folder.SERIES, arc, facts.title, facts.version, left_out, self._ledger)
         self._riser_frames = XdmfFile(
@@ -106,10 +102,10 @@ class Recorder:
     ) -> Self:
         """Takes the folder over, until it is closed, and lays the files out.
 
-        arc: (nn,) m. scene_text: the resolved scene, kept as scene.yaml. fields: of FIELDS; None for all.
+        arc: (nn,) m. scene_text: the resolved scene, kept as scene.yaml. fields: of `outputs.choices()`; None for all.
         Raises SceneError for an unknown field and for a folder that the run may not have (see `ownership`).
         """
-        wanted = _check_fields(FIELDS if fields is None else fields)
+        wanted = _check_fields(outputs.choices() if fields is None else fields)
         claim = prepare(folder, force)
         try:
             with _told_when_full(folder):
@@ -159,9 +155,10 @@ class Recorder:
 
     def begin_at(self, riser: RiserSnapshot, touch: Touch, soil: SoilSnapshot | None = None) -> None:
         """The state that the run begins with, where its first stage is dynamic: recorded at time zero."""
-        self._latest = pack(riser, touch)
+        seen = Instant(self._arc, riser, touch)
+        self._latest = pack(seen)
         self.summary.stages[-1].extremes.update(self._time.now, self._latest)
-        self._record(riser, touch, Due(series=True, pictures=True), soil)
+        self._record(seen, Due(series=True, pictures=True), soil)
 
     def accept(
         self,
@@ -179,11 +176,11 @@ class Recorder:
         are due.
         """
         self._time.advance(t)
-        self._tally(t, riser, touch, health, ledger)
-        row = {"step_time": self._time.now} | vars(health) | ledger_row(ledger)
-        self._series.step(dict.fromkeys(self._ledger, 0.0) | row)
+        seen, step = Instant(self._arc, riser, touch), StepRecord(health, ledger)
+        self._tally(t, seen, step)
+        self._series.step(dict.fromkeys(self._ledger, 0.0) | {"step_time": self._time.now} | step_row(step))
         self._waiting += _STEP
-        self._record(riser, touch, due, soil)
+        self._record(seen, due, soil)
         if time.monotonic() > self._next_flush or self._waiting > _MOST_WAITING:
             self.flush()
 
@@ -198,9 +195,9 @@ class Recorder:
         soil = last.soil or soil
         drawable = self._soil_frames is None or soil is not None
         if not last.written.series:
-            self._record(last.riser, last.touch, Due(series=True, pictures=drawable), soil)
+            self._record(last.seen, Due(series=True, pictures=drawable), soil)
         elif drawable and not last.written.pictures:
-            self._picture(last.stamp, series_row(last.stamp, self._arc, last.riser, last.touch), soil)
+            self._picture(last.stamp, series_row(last.stamp, last.seen, self._fields), soil)
             last.written = Due(series=True, pictures=True)
 
     def add_seconds(self, seconds: Mapping[str, float]) -> None:
@@ -249,31 +246,29 @@ class Recorder:
     def _pictures(self) -> list[XdmfFile]:
         return [frames for frames in (self._riser_frames, self._soil_frames) if frames is not None]
 
-    def _tally(
-        self, t: float, riser: RiserSnapshot, touch: Touch, health: StepHealth, ledger: Ledger
-    ) -> None:
+    def _tally(self, t: float, seen: Instant, step: StepRecord) -> None:
         stage = self.summary.stages[-1]
-        self._latest = pack(riser, touch)
-        stage.count(health)
+        self._latest = pack(seen)
+        stage.count(step.health)
         stage.time = self._time.stage_time
-        stage.balance(self._time.now, ledger)
+        stage.balance(self._time.now, step.ledger)
         self.now = now = t if stage.kind == "static" else self._time.now
         stage.extremes.update(now, self._latest)
-        stage.final = final_state(self._arc, riser, touch)
-        stage.bend(now, self._arc, riser)
+        stage.final = final_state(seen)
+        stage.bend(now, self._arc, seen.riser)
 
-    def _record(self, riser: RiserSnapshot, touch: Touch, due: Due, soil: SoilSnapshot | None) -> None:
-        self._last = Last(riser, touch, soil, due)
+    def _record(self, seen: Instant, due: Due, soil: SoilSnapshot | None) -> None:
+        self._last = Last(seen, soil, due)
         if due.series:
             self._last.stamp = self._time.stamp()
-            row = series_row(self._last.stamp, self._arc, riser, touch)
+            row = series_row(self._last.stamp, seen, self._fields)
             self._waiting += _size(row)
             self._series.record(row)
             if due.pictures:
                 self._picture(self._last.stamp, row, soil)
 
     def _picture(self, stamp: float, row: Mapping[str, Array], soil: SoilSnapshot | None) -> None:
-        wanted = [name for name in RISER_FIELDS if name in self._fields]
+        wanted = [output.name for output in outputs.ALONG_RISER if output.chosen and output.name in self._fields]
         on_points = {name: row[name] for name in (*wanted, "position")}
         self._waiting += _size(on_points)
         self._riser_frames.add(Frame(stamp, on_points, geometry="position"))
@@ -307,9 +302,10 @@ def _size(values: Mapping[str, Any]) -> int:
 
 
 def _check_fields(fields: tuple[str, ...]) -> tuple[str, ...]:
-    unknown = [name for name in fields if name not in (*FIELDS, "position")]
+    allowed = outputs.choices()
+    unknown = [name for name in fields if name not in (*allowed, "position")]
     if unknown:
-        raise SceneError(f'output.fields: "{unknown[0]}" is not a field; allowed: {", ".join(FIELDS)}')
+        raise SceneError(f'output.fields: "{unknown[0]}" is not a field; allowed: {", ".join(allowed)}')
     return fields
 
 

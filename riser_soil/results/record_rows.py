@@ -1,48 +1,36 @@
-"""What is written of one state: rows of the series and of the energy ledger, frames of the pictures."""
+"""What is written of one state: rows of the series and of the steps, frames of the pictures."""
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
-from riser_soil.core.arrays import Array
-from riser_soil.core.snapshot import Ledger, RiserSnapshot, SoilSnapshot, Touch
-from riser_soil.results.summary import bend_radius
+from riser_soil.core import outputs
+from riser_soil.core.snapshot import Instant, SoilSnapshot, StepRecord
+from riser_soil.core.step_outputs import OF_STEP
 from riser_soil.results.xdmf import Frame
 
 
-def series_row(stamp: float, arc: Array, riser: RiserSnapshot, touch: Touch) -> dict[str, Any]:
-    """By the names of netcdf.SERIES."""
-    slack, bent = riser.effective_tension.argmin(), riser.curvature.argmax()
+def series_row(stamp: float, seen: Instant, fields: Collection[str]) -> dict[str, Any]:
+    """By the names of netcdf.SERIES, but for choices that are not among the fields."""
+    wanted = (output for output in outputs.of_instant() if output.where != "summary")
+    values = {output.name: output.get(seen) for output in wanted if output.name in fields or not output.chosen}
+    return {"time": stamp, **values}
+
+
+def step_row(step: StepRecord) -> dict[str, float]:
+    """By the names of netcdf.HEALTH and the ledger."""
     return {
-        **vars(touch),
-        **vars(riser),
-        "time": stamp,
-        "contact_force_sum": touch.contact_force,
-        "min_effective_tension": riser.effective_tension[slack],
-        "min_effective_tension_arc": arc[slack],
-        "min_bend_radius": bend_radius(riser.curvature[bent]),
-        "min_bend_radius_arc": arc[bent],
+        **{output.name: output.get(step) for output in OF_STEP},
+        **{f"dissipated_{name}": value for name, value in step.ledger.dissipated_by.items()},
+        **{f"work_{name}": value for name, value in step.ledger.work_by.items()},
     }
 
 
-def ledger_row(ledger: Ledger) -> dict[str, float]:
-    return {
-        "kinetic_energy": ledger.kinetic,
-        "strain_energy": ledger.strain,
-        "potential_energy": ledger.potential,
-        "dissipated": ledger.dissipated,
-        "dissipated_time_scheme": ledger.numerical,
-        "work": ledger.work,
-        "relative_energy_residual": ledger.relative_residual,
-        **{f"dissipated_{name}": value for name, value in ledger.dissipated_by.items()},
-        **{f"work_{name}": value for name, value in ledger.work_by.items()},
-    }
-
-
-def soil_frame(stamp: float, soil: SoilSnapshot, fields: tuple[str, ...]) -> Frame:
-    on_cells = {"von_mises_stress": soil.von_mises, "equivalent_plastic_strain": soil.plastic_strain}
+def soil_frame(stamp: float, soil: SoilSnapshot, fields: Collection[str]) -> Frame:
+    wanted = [output for output in outputs.OF_SOIL if output.name in fields]
     return Frame(
         stamp,
-        {"displacement": soil.displacement} if "displacement" in fields else {},
-        {name: values for name, values in on_cells.items() if name in fields},
+        {output.name: output.get(soil) for output in wanted if output.where == "soil points"},
+        {output.name: output.get(soil) for output in wanted if output.where == "soil cells"},
     )

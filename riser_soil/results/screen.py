@@ -9,7 +9,27 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from riser_soil.core import outputs
+
 Row = tuple[str, str]
+
+# Figures from above; what the table of outputs has beyond them comes below.
+_ORDER = (
+    "end.effective_tension",
+    "min_effective_tension",
+    "max_wall_tension",
+    "max_bending_moment",
+    "max_curvature",
+    "min_bend_radius",
+    "max_bend_utilisation",
+    "touchdown_arc",
+    "touchdown_position",
+    "touchdown_points",
+    "contact_force",
+    "max_penetration",
+    "max_embedment",
+)
+_NOTHING = object()
 
 
 def print_summary(
@@ -47,24 +67,8 @@ def _title(summary: dict[str, Any]) -> str:
 
 
 def _stage_rows(stage: dict[str, Any]) -> list[Row]:
-    final, extremes = stage["final"], stage["extremes"]
     return [
-        (
-            "top tension",
-            _span(final["end"]["effective_tension"], extremes["end"]["effective_tension"], "kN", 1e-3),
-        ),
-        ("least effective tension", _at("min_effective_tension", stage, "kN", 1e-3)),
-        *_wall_rows(stage),
-        ("largest bending moment", _at("max_bending_moment", stage, "kN.m", 1e-3)),
-        ("largest curvature", _at("max_curvature", stage, "1/m")),
-        ("smallest bend radius", _at("min_bend_radius", stage, "m")),
-        *_bend_rows(stage),
-        ("touchdown arc length", _span(final["touchdown_arc"], extremes["touchdown_arc"], "m")),
-        ("touchdown point, x, y, z", _place(final["touchdown_position"])),
-        ("touchdown points", _span(final["touchdown_points"], extremes["touchdown_points"], "")),
-        ("contact force", _span(final["contact_force"], extremes["contact_force"], "kN", 1e-3)),
-        ("deepest penetration", _span(final["max_penetration"], extremes["max_penetration"], "mm", 1e3)),
-        *_embedment_rows(stage),
+        *_figure_rows(stage),
         ("steps, cut", f"{stage['steps']}, {stage['step_cuts']}"),
         ("Newton iterations per step", _newton(stage)),
         *([("found by", stage["method"])] if stage["method"] not in (None, "newton") else []),
@@ -72,26 +76,31 @@ def _stage_rows(stage: dict[str, Any]) -> list[Row]:
     ]
 
 
-def _wall_rows(stage: dict[str, Any]) -> list[Row]:
-    if "max_wall_tension" not in stage["final"]:
-        return []
-    return [("greatest wall tension", _at("max_wall_tension", stage, "kN", 1e-3))]
+def _figure_rows(stage: dict[str, Any]) -> Iterator[Row]:
+    """Of the figures that have a row and are known."""
+    for _, figure in outputs.figures(_ORDER):
+        final, extremes = (_found(stage[key], figure.path) for key in ("final", "extremes"))
+        if figure.row is None or final is _NOTHING:
+            continue
+        unit, scale = figure.row.unit, figure.row.scale
+        if figure.size > 1:
+            yield figure.row.words, _place(final, unit, scale)
+        elif figure.node is not None:
+            yield figure.row.words, _at(final, extremes, unit, scale)
+        else:
+            yield figure.row.words, _span(final, extremes, unit, scale)
 
 
-def _bend_rows(stage: dict[str, Any]) -> list[Row]:
-    if "max_bend_utilisation" not in stage["final"]:
-        return []
-    return [("allowed over actual bend radius", _at("max_bend_utilisation", stage, ""))]
+def _found(nested: dict[str, Any], path: tuple[str, ...]) -> Any:
+    """What the summary has at a place, or _NOTHING."""
+    value: Any = nested
+    for key in path:
+        value = value.get(key, _NOTHING) if isinstance(value, dict) else _NOTHING
+    return value
 
 
-def _embedment_rows(stage: dict[str, Any]) -> list[Row]:
-    if "max_embedment" not in stage["final"]:
-        return []
-    return [("deepest embedment", _at("max_embedment", stage, "mm", 1e3))]
-
-
-def _place(position: list[float]) -> str:
-    return "-" if np.isnan(position[0]) else f"{', '.join(f'{x:.5g}' for x in position)} m"
+def _place(vector: list[float], unit: str, scale: float) -> str:
+    return "-" if np.isnan(vector[0]) else f"{', '.join(f'{x * scale:.5g}' for x in vector)} {unit}".rstrip()
 
 
 def _run_rows(summary: dict[str, Any], settlement: float | None) -> Iterator[Row]:
@@ -120,16 +129,14 @@ def _energy_rows(stage: dict[str, Any]) -> list[Row]:
     ]
 
 
-def _span(value: float | None, extremes: dict[str, float | None], unit: str, scale: float = 1.0) -> str:
+def _span(value: float | None, extremes: dict[str, float | None], unit: str, scale: float) -> str:
     """The final value, and the range over the stage where there is one."""
     return _number(value, unit, scale) + _range(extremes, scale)
 
 
-def _at(name: str, stage: dict[str, Any], unit: str, scale: float = 1.0) -> str:
+def _at(final: dict[str, Any], extremes: dict[str, float | None], unit: str, scale: float) -> str:
     """The final value of what sits somewhere on the riser, its place, and the range over the stage."""
-    final = stage["final"][name]
-    place = f" at {final['arc']:.5g} m"
-    return _number(final["value"], unit, scale) + place + _range(stage["extremes"][name], scale)
+    return _number(final["value"], unit, scale) + f" at {final['arc']:.5g} m" + _range(extremes, scale)
 
 
 def _range(extremes: dict[str, float | None], scale: float) -> str:

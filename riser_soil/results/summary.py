@@ -13,92 +13,13 @@ from typing import Any
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.snapshot import Ledger, RiserSnapshot, RunFacts, StepHealth, Touch
+from riser_soil.core.output import bend_radius
+from riser_soil.core.snapshot import Ledger, RiserSnapshot, RunFacts, StepHealth
+from riser_soil.results.figures import Extremes
 from riser_soil.results.folder import write_atomically
 
-_END = (("position", 3), ("force", 3), ("moment", 3), ("effective_tension", 1), ("angle_deg", 1))
-_WHOLE = (
-    ("touchdown_arc", 1),
-    ("touchdown_position", 3),
-    ("touchdown_points", 1),
-    ("max_bending_moment", 1),
-    ("max_curvature", 1),
-    ("min_bend_radius", 1),
-    ("max_bend_utilisation", 1),
-    ("min_effective_tension", 1),
-    ("min_wall_tension", 1),
-    ("max_wall_tension", 1),
-    ("max_penetration", 1),
-    ("max_embedment", 1),
-    ("contact_force", 1),
-)
-# Left out where the pressures are unknown, no bend radius is given, and embedment is not wanted.
-_SOMETIMES = ("min_wall_tension", "max_wall_tension", "max_bend_utilisation", "max_embedment")
-# Where each number of the packed vector of observables belongs in the nested summary.
-_PLACES: tuple[tuple[tuple[str, ...], int], ...] = (
-    *((("start", name), size) for name, size in _END),
-    *((("end", name), size) for name, size in _END),
-    *(((name,), size) for name, size in _WHOLE),
-)
 _NOT_PLAIN = ("extremes", "energy", "worst_residual", "tightest", "doubts")
 DOUBTFUL = 0.01  # share of the energy turned over above which what is wrong in its balance is a warning
-
-
-def angle_deg(tangent: Array) -> float:
-    """Angle of a tangent (3,) from the horizontal [deg]; positive where the riser rises with its arc."""
-    return math.degrees(math.atan2(tangent[2], math.hypot(tangent[0], tangent[1])))
-
-
-def pack(riser: RiserSnapshot, touch: Touch) -> Array:
-    """All observables of one instant as one vector, in the order of the summary."""
-    tension, wall, position = riser.effective_tension, riser.wall_tension, riser.position
-    start_angle, end_angle = angle_deg(riser.start_tangent), angle_deg(riser.end_tangent)
-    return np.concatenate([
-        position[0], riser.start_force, riser.start_moment, [tension[0], start_angle],
-        position[-1], riser.end_force, riser.end_moment, [tension[-1], end_angle],
-        [touch.touchdown_arc, *touch.touchdown_position, touch.touchdown_points],
-        [riser.bending_moment.max(), riser.curvature.max(), bend_radius(riser.curvature.max())],
-        [riser.bend_utilisation.max(), tension.min(), wall.min(), wall.max(), touch.max_penetration],
-        [math.nan if touch.embedment is None else touch.embedment.max(), touch.contact_force[2]],
-    ])  # fmt: skip
-
-
-def bend_radius(curvature: float) -> float:
-    """Radius [m] of a curvature [1/m]; infinite for a straight pipe."""
-    return float(1.0 / curvature) if curvature > 0.0 else math.inf
-
-
-def unpack(vector: Array) -> dict[str, Any]:
-    """The nested form of a packed vector: scalars as numbers, vectors as lists."""
-    nested: dict[str, Any] = {}
-    first = 0
-    for path, size in _PLACES:
-        values = [float(x) for x in vector[first : first + size]]
-        _put(nested, path, values if size > 1 else values[0])
-        first += size
-    return nested
-
-
-def final_state(arc: Array, riser: RiserSnapshot, touch: Touch) -> dict[str, Any]:
-    """The summary's `final`: the observables, with the arc length [m] of those that sit on one node."""
-    final = unpack(pack(riser, touch))
-    for name, where in (
-        ("max_bending_moment", riser.bending_moment.argmax()),
-        ("max_curvature", riser.curvature.argmax()),
-        ("min_bend_radius", riser.curvature.argmax()),
-        ("max_bend_utilisation", riser.bend_utilisation.argmax()),
-        ("min_effective_tension", riser.effective_tension.argmin()),
-        ("min_wall_tension", riser.wall_tension.argmin()),
-        ("max_wall_tension", riser.wall_tension.argmax()),
-    ):
-        final[name] = {"value": final[name], "arc": float(arc[where])}
-    if touch.embedment is not None:
-        final["max_embedment"] = {"value": final["max_embedment"], "arc": float(arc[touch.embedment.argmax()])}
-    return {name: value for name, value in final.items() if name not in _SOMETIMES or _known(value)}
-
-
-def _known(value: Any) -> bool:
-    return math.isfinite(value["value"] if isinstance(value, dict) else value)
 
 
 def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
@@ -115,31 +36,6 @@ def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
             f"the time scheme {done} {own:.3g} J, {own / ledger.turned_over:.2%} of the {ledger.turned_over:.3g} J "
             "turned over: take a smaller time_step"
         )
-
-
-class Extremes:
-    """Smallest and largest of every observable, with their times; nan does not count."""
-
-    def __init__(self) -> None:
-        size = sum(n for _, n in _PLACES)
-        self._least, self._most = np.full(size, np.inf), np.full(size, -np.inf)
-        self._t_least, self._t_most = np.full(size, np.nan), np.full(size, np.nan)
-
-    def update(self, t: float, vector: Array) -> None:
-        """t: s (static stages: load factor); vector: from `pack`."""
-        less, more = vector < self._least, vector > self._most
-        self._least[less], self._most[more] = vector[less], vector[more]
-        self._t_least[less], self._t_most[more] = t, t
-
-    def nested(self) -> dict[str, Any]:
-        """{min, max, t_min, t_max} at each observable's place; vectors by component."""
-        columns = {"min": self._least, "max": self._most, "t_min": self._t_least, "t_max": self._t_most}
-        parts = {key: unpack(values) for key, values in columns.items()}
-        nested: dict[str, Any] = {}
-        for path, _ in _PLACES:
-            if path[0] not in _SOMETIMES or math.isfinite(parts["min"][path[0]]):
-                _put(nested, path, {key: _get(part, path) for key, part in parts.items()})
-        return nested
 
 
 @dataclass(frozen=True)
@@ -265,18 +161,4 @@ def plain_json(value: Any) -> Any:
         return plain_json(value.item())
     if isinstance(value, float) and not math.isfinite(value):
         return None
-    return value
-
-
-def _put(nested: dict[str, Any], path: tuple[str, ...], value: Any) -> None:
-    *outer, last = path
-    for key in outer:
-        nested = nested.setdefault(key, {})
-    nested[last] = value
-
-
-def _get(nested: dict[str, Any], path: tuple[str, ...]) -> Any:
-    value: Any = nested
-    for key in path:
-        value = value[key]
     return value

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
 from typing import Self
 
 import numpy as np
@@ -93,6 +93,11 @@ class Elements:
         return np.concatenate([[0.0], np.cumsum(self.length)])
 
 
+def larger_beside(values: Array) -> Array:
+    """The larger (nn,) of what the two elements beside a node have (ne,), never negative."""
+    return np.maximum(np.append(values, 0.0), np.append(0.0, values))
+
+
 def mass_with_contents(line: LineType, around: Surroundings) -> float:
     """Mass of pipe and contents, kg/m."""
     return line.mass + around.contents * 0.25 * np.pi * line.inner_diameter**2
@@ -136,25 +141,25 @@ def elements(segments: Sequence[Segment], around: Surroundings) -> Elements:
     if not segments:
         raise SceneError("riser.segments: none given; at least one is needed")
     count = np.array([len(s.lengths) for s in segments])
-    types = [s.line_type for s in segments]
 
-    def spread(values: list[float] | list[tuple[float, float]]) -> Array:
+    def spread(name: str) -> Array:
+        values = [_property(s.line_type, around, name) for s in segments]
         return np.repeat(np.asarray(values, dtype=float), count, axis=0)
 
-    return Elements(
-        length=np.concatenate([s.lengths for s in segments]),
-        EA=spread([t.EA for t in types]),
-        EI_y=spread([t.EI_y for t in types]),
-        EI_z=spread([t.EI_z for t in types]),
-        GJ=spread([t.GJ for t in types]),
-        outer_diameter=spread([t.outer_diameter for t in types]),
-        inner_diameter=spread([t.inner_diameter for t in types]),
-        mass=spread([mass_with_contents(t, around) for t in types]),
-        weight=spread([submerged_weight(t, around) for t in types]),
-        drag=spread([t.drag for t in types]),
-        added_mass=spread([t.added_mass for t in types]),
-        rotary_inertia=spread([rotary_inertia(t, around) for t in types]),
-        polar_inertia=spread([polar_inertia(t, around) for t in types]),
-        damping=spread([t.damping for t in types]),
-        min_bend_radius=spread([t.min_bend_radius for t in types]),
-    )
+    names = (each.name for each in fields(Elements) if each.name != "length")
+    return Elements(np.concatenate([s.lengths for s in segments]), **{name: spread(name) for name in names})
+
+
+_WITH_SURROUNDINGS: dict[str, Callable[[LineType, Surroundings], float]] = {
+    "mass": mass_with_contents,
+    "weight": submerged_weight,
+    "rotary_inertia": rotary_inertia,
+    "polar_inertia": polar_inertia,
+}
+
+
+def _property(line: LineType, around: Surroundings, name: str) -> float | tuple[float, float]:
+    """One of an element: the line type's own of that name, but for what the surroundings take part in."""
+    value: float | tuple[float, float]
+    value = _WITH_SURROUNDINGS[name](line, around) if name in _WITH_SURROUNDINGS else getattr(line, name)
+    return value

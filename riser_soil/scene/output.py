@@ -1,27 +1,17 @@
 """What a run writes."""
 
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import BaseModel, Field
 
+from riser_soil.core import outputs
 from riser_soil.core.quantities import FROZEN, Text, Time
 
-FieldName = Literal[
-    "effective_tension",
-    "wall_tension",
-    "bending_moment",
-    "curvature",
-    "bend_utilisation",
-    "contact_force",
-    "penetration",
-    "embedment",
-    "slip",
-    "moment_vector",
-    "displacement",
-    "von_mises_stress",
-    "equivalent_plastic_strain",
-]
-ALL_FIELDS: tuple[FieldName, ...] = get_args(FieldName)
+ALL_FIELDS = outputs.choices()
+if TYPE_CHECKING:
+    FieldName = str
+else:
+    FieldName = Literal[ALL_FIELDS]
 
 
 class Output(BaseModel):

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 from ruamel.yaml import YAML
 
+from riser_soil.core import outputs
 from riser_soil.results.netcdf import SERIES
-from riser_soil.results.record import FIELDS
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from tests.support.on_ranks import ROOT
@@ -107,7 +107,7 @@ def test_words_of_the_table_are_known() -> None:
     table = text(ROOT / "docs/conventions.md").split("| word | symbol | unit | meaning |")[1].split("\n\n")[0]
     words = {w for row in table.splitlines()[2:] for w in re.findall(r"\w+", row.split("|")[1]) if w != "or"}
     assert len(words) > 30
-    assert words <= {*keys_of(Scene.model_json_schema(by_alias=True)), *SERIES, *FIELDS}
+    assert words <= {*keys_of(Scene.model_json_schema(by_alias=True)), *SERIES, *outputs.choices()}
 
 
 def keys_of(schema: Any) -> Iterator[str]:

@@ -58,3 +58,10 @@ def test_contact_force_has_a_sign_as_the_ground_may_hold_the_riser_by_suction(ru
     along_arc(axes, run, "contact_force")
     assert axes.get_ylabel() == "contact force per length [kN/m], + pushes"
     assert SERIES["contact_force"].sign == "positive where the ground pushes"
+
+
+def test_whatever_lies_along_the_riser_can_be_drawn(run: Run) -> None:
+    _, (axes,) = sheet(1, 1)
+    along_arc(axes, run, "slip")
+    assert axes.lines[0].get_data()[1] == pytest.approx(run["slip"][-1])
+    assert axes.get_ylabel() == "length of the way that the riser has slid over the seabed so far [m]"

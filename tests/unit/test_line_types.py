@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
 
 from riser_soil.assembly.riser import elements_of
 from riser_soil.checks.inventory import built, left_out
+from riser_soil.riser import sections
+from riser_soil.riser.sections import Elements
+from riser_soil.scene.line_types import LineType
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from tests.support.riser_scenes import dynamic, held, riser_scene, static
@@ -18,7 +23,7 @@ def scene(**pipe: object) -> Scene:
     ends = held(0.0, 0.0, 0.0), held(9.0, 0.0, 0.0)
     stages = static(), dynamic(1.0, 0.1)
     return scene_from_mapping(
-        riser_scene(*stages, pipe=PIPE | pipe, length=9.0, elements=3, start=ends[0], end=ends[1])
+        riser_scene(*stages, pipe=PIPE | pipe, length=9.0, elements=3, start=ends[0], end=ends[1], gravity=9.81)
     )
 
 
@@ -35,3 +40,33 @@ def test_damping() -> None:
     assert 0.5 * elements_of(made).damping * (2.0 * np.pi * 0.5) == pytest.approx(np.full(3, 0.02))
     assert "structural damping" in built(made)
     assert left_out(scene(damping={"ratio": 0.0, "frequency": 0.5}))["structural damping"]
+
+
+GIVEN = {
+    "EA": 2.0e8,
+    "GJ": 3.0e4,
+    "outer_diameter": 0.5,
+    "inner_diameter": 0.3,
+    "mass": 60.0,
+    "min_bend_radius": 4.0,
+    "submerged_weight": 70.0,
+}
+
+
+def test_properties_of_the_same_name_reach_the_elements() -> None:
+    """Each by itself, and all that the scene, a line type and the elements call alike."""
+    made = elements_of(scene(**GIVEN))
+    for name in GIVEN.keys() - {"submerged_weight"}:
+        assert getattr(made, name).tolist() == [GIVEN[name]] * 3, name
+    assert made.weight.tolist() == [GIVEN["submerged_weight"]] * 3
+    alike = {each.name for each in fields(Elements)} & {each.name for each in fields(sections.LineType)}
+    formed = {"EI_y", "EI_z", "drag", "added_mass", "damping", "rotary_inertia"}
+    assert alike & LineType.model_fields.keys() == GIVEN.keys() - {"submerged_weight"} | formed
+
+
+def test_what_is_not_given_is_the_elements_default() -> None:
+    bare = scene(GJ=None, outer_diameter=None, inner_diameter=0.0, submerged_weight=10.0)
+    made = elements_of(bare)
+    for name in ("GJ", "outer_diameter", "inner_diameter", "min_bend_radius", "damping", "drag", "added_mass"):
+        assert not getattr(made, name).any(), name
+    assert made.EI_y.tolist() == made.EI_z.tolist() == [1.0e4] * 3

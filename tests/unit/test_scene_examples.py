@@ -11,7 +11,8 @@ from typer.testing import CliRunner
 
 from riser_soil import __version__
 from riser_soil.__main__ import app
-from riser_soil.results.record import FIELDS
+from riser_soil.core.outputs import OF_SOIL
+from riser_soil.results.netcdf import SERIES
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.output import ALL_FIELDS
@@ -251,7 +252,8 @@ def test_merge_keys_serve_line_types(tmp_path: Path) -> None:
 
 
 def test_fields_of_the_language_are_those_of_the_recorder() -> None:
-    assert set(ALL_FIELDS) == set(FIELDS)
+    along_riser = {name for name, variable in SERIES.items() if "arc" in variable.dims} - {"position"}
+    assert set(ALL_FIELDS) == along_riser | {output.name for output in OF_SOIL}
 
 
 def _properties(schema: Any) -> Any:

@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.core.snapshot import Ledger, Touch
-from riser_soil.results.summary import Extremes, StageTally, Summary, angle_deg, final_state, pack, plain_json, unpack
+from riser_soil.core.output import angle_deg
+from riser_soil.core.snapshot import Instant, Ledger, Touch
+from riser_soil.results.figures import Extremes, final_state, pack, unpack
+from riser_soil.results.summary import StageTally, Summary, plain_json
 from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary, record
 
 ARC = np.linspace(0.0, 150.0, 301)
@@ -43,7 +45,7 @@ def strictly(text: str) -> Any:
 
 
 def test_final_state_of_a_catenary() -> None:
-    final = final_state(ARC, LINE.riser(ARC), LINE.touch(ARC))
+    final = final_state(Instant(ARC, LINE.riser(ARC), LINE.touch(ARC)))
     assert set(final) == {"start", "end", PLACE} | WHOLE
     assert set(final["start"]) == set(final["end"]) == END
     assert final["start"]["force"] == pytest.approx([-WEIGHT * 32.0, 0.0, 0.0])
@@ -66,15 +68,16 @@ def test_what_is_unknown_is_left_out() -> None:
     nothing = np.full(ARC.size, math.nan)
     riser = replace(LINE.riser(ARC), wall_tension=nothing, bend_utilisation=nothing)
     touch, extremes = replace(LINE.touch(ARC), embedment=None), Extremes()
-    extremes.update(0.0, pack(riser, touch))
+    extremes.update(0.0, pack(Instant(ARC, riser, touch)))
     unknown = {"min_wall_tension", "max_wall_tension", "max_bend_utilisation", "max_embedment"}
-    for found in (final_state(ARC, riser, touch), extremes.nested()):
+    for found in (final_state(Instant(ARC, riser, touch)), extremes.nested()):
         assert set(found) == {"start", "end", PLACE} | WHOLE - unknown
 
 
 def test_a_straight_pipe_has_no_bend_radius() -> None:
     riser = replace(LINE.riser(ARC), curvature=np.zeros(ARC.size))
-    assert plain_json(final_state(ARC, riser, LINE.touch(ARC)))["min_bend_radius"] == {"value": None, "arc": 0.0}
+    final = final_state(Instant(ARC, riser, LINE.touch(ARC)))
+    assert plain_json(final)["min_bend_radius"] == {"value": None, "arc": 0.0}
 
 
 def test_a_pipe_bent_too_much_is_a_warning() -> None:
@@ -100,7 +103,7 @@ def test_angle_from_the_horizontal(tangent: tuple[float, ...], angle: float) -> 
 def test_extremes_know_when() -> None:
     extremes = Extremes()
     for t, a in ((0.0, 32.0), (0.1, 35.0), (0.2, 30.0)):
-        extremes.update(t, pack(Catenary(a, 30.0).riser(ARC), LINE.touch(ARC)))
+        extremes.update(t, pack(Instant(ARC, Catenary(a, 30.0).riser(ARC), LINE.touch(ARC))))
     nested = extremes.nested()
     assert nested["end"]["force"]["max"][0] == pytest.approx(WEIGHT * 35.0)
     assert nested["end"]["force"]["t_max"][0] == 0.1
@@ -116,7 +119,7 @@ def test_extremes_know_when() -> None:
 
 def test_extremes_mirror_the_final_state() -> None:
     extremes = Extremes()
-    extremes.update(0.0, pack(LINE.riser(ARC), LINE.touch(ARC)))
+    extremes.update(0.0, pack(Instant(ARC, LINE.riser(ARC), LINE.touch(ARC))))
     nested = extremes.nested()
     assert set(nested) == {"start", "end", PLACE} | WHOLE
     assert set(nested["start"]) == set(nested["end"]) == END
@@ -127,7 +130,7 @@ def test_extremes_mirror_the_final_state() -> None:
 def test_lifting_off_does_not_spoil_the_touchdown_extremes() -> None:
     extremes = Extremes()
     for t, arc in ((0.0, math.nan), (0.1, 20.0), (0.2, math.nan)):
-        extremes.update(t, pack(LINE.riser(ARC), replace(LINE.touch(ARC), touchdown_arc=arc)))
+        extremes.update(t, pack(Instant(ARC, LINE.riser(ARC), replace(LINE.touch(ARC), touchdown_arc=arc))))
     assert extremes.nested()["touchdown_arc"] == {"min": 20.0, "max": 20.0, "t_min": 0.1, "t_max": 0.1}
 
 
@@ -135,8 +138,8 @@ def test_never_touching_is_null(tmp_path: Path) -> None:
     summary = Summary(FACTS)
     stage = StageTally("hang", "static", steps=1)
     free = Touch(math.nan, np.full(3, math.nan), 0, 0.0, np.zeros(3))
-    stage.extremes.update(1.0, pack(LINE.riser(ARC), free))
-    stage.final = final_state(ARC, LINE.riser(ARC), free)
+    stage.extremes.update(1.0, pack(Instant(ARC, LINE.riser(ARC), free)))
+    stage.final = final_state(Instant(ARC, LINE.riser(ARC), free))
     summary.stages.append(stage)
     summary.write(tmp_path / "summary.json")
     written = strictly((tmp_path / "summary.json").read_text())["stages"][0]

@@ -1,0 +1,97 @@
+"""What an output is: a quantity, what it is called, where it is evaluated, and how it follows from what is told."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
+
+if TYPE_CHECKING:
+    from riser_soil.core.arrays import Array
+
+Seen = TypeVar("Seen")
+Where = Literal["nodes", "model", "summary", "soil points", "soil cells", "step"]
+Need = Literal["", "pressures", "min_bend_radius", "ground", "friction"]
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of the screen's table: its words, the unit shown, and how many of it are one of SI."""
+
+    words: str
+    unit: str = ""
+    scale: float = 1.0
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A number or vector of the summary, whose extremes over a stage are kept as well.
+
+    name: key in the summary, dotted where it is nested. of: the figure by the output's value. size: 1 or 3. node: index
+    by the output's value of the node that it sits on, None where it sits on none. row: on the screen, None for none.
+    """
+
+    name: str
+    of: Callable[[Any], Any] = lambda value: value
+    size: int = 1
+    node: Callable[[Any], Any] | None = None
+    row: Row | None = None
+
+    @property
+    def path(self) -> tuple[str, ...]:
+        return tuple(self.name.split("."))
+
+
+@dataclass(frozen=True)
+class Output(Generic[Seen]):
+    """A quantity that a run tells.
+
+    units, text and sign (what its sign means, where it has one) go into results.nc, with units as UDUNITS writes them.
+    get: the value by what is seen, `Instant`, `SoilSnapshot` or `StepRecord`; (nn,) at nodes, (nv,) at points of the
+    soil, (nc,) in its cells, one number in the rest; by three where it is a vector, in global axes.
+    needs: what must be known for it. always: recorded along the riser even where the scene does not ask for it.
+    """
+
+    name: str
+    symbol: str
+    units: str
+    text: str
+    where: Where
+    get: Callable[[Seen], Any]
+    sign: str = ""
+    vector: bool = False
+    dtype: str = "f8"
+    needs: Need = ""
+    always: bool = False
+    figures: tuple[Figure, ...] = ()
+
+    @property
+    def chosen(self) -> bool:
+        """Whether the scene says if it is recorded."""
+        return self.where in ("nodes", "soil points", "soil cells") and not self.always
+
+    @property
+    def numbers(self) -> int:
+        """How many of each node, cell or instant."""
+        return 3 if self.vector else 1
+
+
+def least(name: str, row: Row | None = None) -> Figure:
+    """The smallest value along the riser, with its place."""
+    return Figure(name, lambda along: along.min(), node=lambda along: along.argmin(), row=row)
+
+
+def greatest(name: str, row: Row | None = None) -> Figure:
+    """The largest value along the riser, with its place."""
+    return Figure(name, lambda along: along.max(), node=lambda along: along.argmax(), row=row)
+
+
+def bend_radius(curvature: float) -> float:
+    """Radius [m] of a curvature [1/m]; infinite for a straight pipe."""
+    return float(1.0 / curvature) if curvature > 0.0 else math.inf
+
+
+def angle_deg(tangent: Array) -> float:
+    """Angle of a tangent (3,) from the horizontal [deg]; positive where the riser rises with its arc."""
+    return math.degrees(math.atan2(tangent[2], math.hypot(tangent[0], tangent[1])))

@@ -1,0 +1,119 @@
+"""The figures of summary.json: those of one instant packed into a vector, nested as in the file, and their extremes."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from riser_soil.core import outputs
+from riser_soil.core.arrays import Array
+from riser_soil.core.output import Figure
+from riser_soil.core.snapshot import Instant
+
+_END = ("position", "force", "moment", "effective_tension", "angle_deg")
+# In the order of the file; what the table of outputs has beyond them comes behind.
+_ORDER = (
+    *(f"start.{name}" for name in _END),
+    *(f"end.{name}" for name in _END),
+    "touchdown_arc",
+    "touchdown_position",
+    "touchdown_points",
+    "max_bending_moment",
+    "max_curvature",
+    "min_bend_radius",
+    "max_bend_utilisation",
+    "min_effective_tension",
+    "min_wall_tension",
+    "max_wall_tension",
+    "max_penetration",
+    "max_embedment",
+    "contact_force",
+)
+_FIGURES = outputs.figures(_ORDER)
+# Left out where nothing is known of what they need, or they are not wanted.
+_SOMETIMES = frozenset(figure.name for output, figure in _FIGURES if output.needs)
+_SIZE = sum(figure.size for _, figure in _FIGURES)
+
+
+def pack(seen: Instant) -> Array:
+    """All figures of one instant as one vector, in the order of the summary; nan for what is not known."""
+    values, vector, first = _values(seen), np.empty(_SIZE), 0
+    for output, figure in _FIGURES:
+        vector[first : first + figure.size] = _figure(figure, values[output.name])
+        first += figure.size
+    return vector
+
+
+def _values(seen: Instant) -> dict[str, Any]:
+    return {output.name: output.get(seen) for output in outputs.of_instant() if output.figures}
+
+
+def _figure(figure: Figure, value: Any) -> Any:
+    return math.nan if value is None else figure.of(value)
+
+
+def unpack(vector: Array) -> dict[str, Any]:
+    """The nested form of a packed vector: scalars as numbers, vectors as lists."""
+    nested: dict[str, Any] = {}
+    first = 0
+    for _, figure in _FIGURES:
+        values = [float(x) for x in vector[first : first + figure.size]]
+        _put(nested, figure.path, values if figure.size > 1 else values[0])
+        first += figure.size
+    return nested
+
+
+def final_state(seen: Instant) -> dict[str, Any]:
+    """The summary's `final`: the figures, with the arc length [m] of those that sit on one node."""
+    values = _values(seen)
+    final: dict[str, Any] = {}
+    for output, figure in _FIGURES:
+        found = _figure(figure, values[output.name])
+        if figure.name in _SOMETIMES and not np.isfinite(found).all():
+            continue
+        told: Any = [float(x) for x in found] if figure.size > 1 else float(found)
+        if figure.node is not None:
+            told = {"value": told, "arc": float(seen.arc[figure.node(values[output.name])])}
+        _put(final, figure.path, told)
+    return final
+
+
+class Extremes:
+    """Smallest and largest of every figure, with their times; nan does not count."""
+
+    def __init__(self) -> None:
+        self._least, self._most = np.full(_SIZE, np.inf), np.full(_SIZE, -np.inf)
+        self._t_least, self._t_most = np.full(_SIZE, np.nan), np.full(_SIZE, np.nan)
+
+    def update(self, t: float, vector: Array) -> None:
+        """t: s (static stages: load factor); vector: from `pack`."""
+        less, more = vector < self._least, vector > self._most
+        self._least[less], self._most[more] = vector[less], vector[more]
+        self._t_least[less], self._t_most[more] = t, t
+
+    def nested(self) -> dict[str, Any]:
+        """{min, max, t_min, t_max} at each figure's place; vectors by component."""
+        columns = {"min": self._least, "max": self._most, "t_min": self._t_least, "t_max": self._t_most}
+        parts = {key: unpack(values) for key, values in columns.items()}
+        nested: dict[str, Any] = {}
+        for _, figure in _FIGURES:
+            least = _get(parts["min"], figure.path)
+            if figure.name not in _SOMETIMES or np.isfinite(least).all():
+                _put(nested, figure.path, {key: _get(part, figure.path) for key, part in parts.items()})
+        return nested
+
+
+def _put(nested: dict[str, Any], path: tuple[str, ...], value: Any) -> None:
+    *outer, last = path
+    for key in outer:
+        nested = nested.setdefault(key, {})
+    nested[last] = value
+
+
+def _get(nested: dict[str, Any], path: tuple[str, ...]) -> Any:
+    value: Any = nested
+    for key in path:
+        value = value[key]
+    return value

@@ -1,0 +1,51 @@
+"""Runs with outputs that the table gets for a while, one along the riser, one of the soil, one of each step:
+python run_with_toys.py FOLDER leaves FOLDER/solved, FOLDER/told and FOLDER/schema.json, and the screen's tables.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from riser_soil.core import outputs, step_outputs
+from riser_soil.core.output import Output, Row, greatest
+from riser_soil.core.snapshot import Instant, SoilSnapshot, StepRecord
+
+HEIGHT: Output[Instant] = Output(
+    "height",
+    "z",
+    "m",
+    "height of the riser's axis",
+    "nodes",
+    lambda instant: instant.riser.position[:, 2],
+    "positive upwards",
+    figures=(greatest("max_height", Row("greatest height", "km", 1e-3)),),
+)
+SETTLEMENT: Output[SoilSnapshot] = Output(
+    "settlement", "s", "m", "settlement", "soil points", lambda soil: -soil.displacement[:, 2]
+)
+WHOLE_ENERGY: Output[StepRecord] = Output(
+    "stored_energy", "", "J", "all energy stored", "step", lambda step: step.ledger.stored
+)
+
+
+def main(folder: Path) -> None:
+    """The table is complete before anything that uses it is imported."""
+    outputs.ALONG_RISER = (*outputs.ALONG_RISER, HEIGHT)
+    outputs.OF_SOIL = (*outputs.OF_SOIL, SETTLEMENT)
+    step_outputs.OF_STEP = (*step_outputs.OF_STEP, WHOLE_ENERGY)
+    from riser_soil.run import run
+    from riser_soil.scene.reader import scene_from_mapping
+    from riser_soil.scene.schema import schema_text
+    from tests.support.coupled_scenes import LAY, touchdown
+    from tests.support.recorded_run import block, record
+
+    scene = touchdown(LAY, su=1000.0) | {"output": {"fields": ["height"]}}
+    del scene["soil"]
+    run(scene_from_mapping(scene), folder / "solved")
+    record(folder / "told", mesh=block(4, 3, 2), duration=0.5)
+    (folder / "schema.json").write_text(schema_text(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
