@@ -17,6 +17,7 @@ import h5py
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.results.growing_file import GrowingFile, appending
 
 _ON_RISER = "exerted by the support on the riser; global axes, z up"
@@ -219,6 +220,13 @@ class SeriesFile:
             for name, variable in self._variables.items():
                 _describe(file, name, variable, arc.size)
         return content.getvalue()
+
+    def state(self) -> Saved:
+        """What tells the rows to come apart; rows themselves are the file's."""
+        return {"steps": np.array(self._steps), "stages": packed(self._stages)}
+
+    def restore(self, saved: Saved) -> None:
+        self._steps, self._stages = int(saved["steps"]), unpacked(saved["stages"])
 
 
 def _kept(value: object) -> object:

@@ -27,6 +27,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed
 from riser_soil.core.part import Block, Energy, Forces, Part, State, Traits, Weights, Work
 from riser_soil.core.roles import MomentumCorrecting
+from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back
 from riser_soil.riser import hermite
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
@@ -41,7 +42,7 @@ class MidpointInertia:
     instant: the same mass as it acts at an instant, which is asked for at accepted states.
     """
 
-    name, traits = "inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting,))
+    name, traits = "inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting, Stateful))
 
     def __init__(self, instant: Inertia) -> None:
         self.instant, self.line = instant, instant.line
@@ -114,6 +115,12 @@ class MidpointInertia:
     def commit(self, state: State) -> None:
         self._tangents.commit(state.t, _turning(self.line, state.u))
 
+    def state(self) -> Saved:
+        return self._tangents.state()
+
+    def restore(self, saved: Saved) -> None:
+        self._tangents.restore(saved)
+
 
 class MidpointRotaryInertia:
     """The sections' rotary inertia in steps of the midpoint rule (group I): mass that sits on their directors.
@@ -122,7 +129,7 @@ class MidpointRotaryInertia:
     on each of the directors [kg m2], (ne, 1, 1).
     """
 
-    name, traits = "rotary inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting,))
+    name, traits = "rotary inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting, Stateful))
 
     def __init__(self, instant: RotaryInertia) -> None:
         self.instant, self.line = instant, instant.line
@@ -196,6 +203,16 @@ class MidpointRotaryInertia:
     def commit(self, state: State) -> None:
         for director in self._directors:
             director.commit(state.t, _turning(self.line, state.u))
+
+    def state(self) -> Saved:
+        return gathered(self._by_number)
+
+    def restore(self, saved: Saved) -> None:
+        give_back(self._by_number, saved)
+
+    @property
+    def _by_number(self) -> dict[str, Carried]:
+        return {str(k): director for k, director in enumerate(self._directors)}
 
 
 def over_steps(instant: Part) -> Part:

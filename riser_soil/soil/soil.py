@@ -9,6 +9,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
@@ -54,7 +55,7 @@ class Soil:
         self._shape = self._gradients.weights.shape
         depth = np.maximum(level - self._gradients.points[..., 2], 0.0).ravel()
         self.law = law(depth)
-        self.traits = Traits("E", self.law.symmetric)
+        self.traits = Traits("E", self.law.symmetric, roles=(Stateful,))
         initial = _geostatic(depth, unit_weight, K0) if start == "geostatic" else np.zeros((depth.size, 6))
         self._check_start(initial, depth, K0)
         self._initial, self._stress, self._history = initial, initial.copy(), self.law.start()
@@ -155,6 +156,12 @@ class Soil:
                 f"soil.K0 = {K0}: at depth {at:.3g} m the geostatic stress is {ratio:.3g} times "
                 "what the soil bears; bring K0 nearer to 1 or raise su"
             )
+
+    def state(self) -> Saved:
+        return {"stress": self._stress, "history": self._history}
+
+    def restore(self, saved: Saved) -> None:
+        self._stress, self._history = saved["stress"], saved["history"]
 
 
 def _check_level(grid: Grid, level: float) -> None:
