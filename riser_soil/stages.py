@@ -136,7 +136,7 @@ class Course:
     assembly: Assembly
     stage: Stage
     stepper: TimeStepper
-    control: Control
+    control: StepControl | AutoSteps
     observer: Follower
 
     def state(self) -> Saved:
@@ -219,7 +219,7 @@ def _settings(assembly: Assembly) -> NewtonSettings:
     return NewtonSettings(solver.tolerance, solver.max_iterations, assembly.scales.force_floor)
 
 
-def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> Control:
+def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> StepControl | AutoSteps:
     """The steps of a stage, from its beginning to its end."""
     solver = assembly.scene.solver
     if isinstance(stage, StaticStage):

@@ -48,12 +48,6 @@ class Control(Protocol):
         """Shorten the step that failed; False when it can't be shortened any more."""
         ...
 
-    def state(self) -> Saved:
-        """How far it has come, see `saved_state`."""
-        ...
-
-    def restore(self, saved: Saved) -> None: ...
-
 
 class StepControl:
     """Walks from 0 to `end` in nominal steps of size `step`; never below `smallest`."""

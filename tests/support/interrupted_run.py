@@ -14,7 +14,7 @@ from mpi4py import MPI
 
 from riser_soil.assembly import Assembly, build
 from riser_soil.core.part import State
-from riser_soil.core.saved_state import Saved
+from riser_soil.core.saved_state import AnyArray, Saved
 from riser_soil.core.system import Clock
 from riser_soil.results.observer import Observer
 from riser_soil.scene.scene import Scene
@@ -73,11 +73,11 @@ def _go_on(assembly: Assembly, first: int, before: State, observer: Observer, cl
 def differing(one: Saved, other: Saved) -> list[str]:
     """Names of what is not the same to the last bit, times of the computer left out."""
     names = [name for name in one.keys() | other.keys() if not name.startswith(TIMES)]
-    return sorted(n for n in names if n not in one or n not in other or not np.array_equal(one[n], other[n], _has_nan(one[n])))
+    return sorted(n for n in names if n not in one or n not in other or not _same(one[n], other[n]))
 
 
-def _has_nan(value: Any) -> bool:
-    return bool(value.dtype.kind == "f")
+def _same(one: AnyArray, other: AnyArray) -> bool:
+    return np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
 
 
 def differing_rows(one: Path, other: Path) -> list[str]:
@@ -87,7 +87,7 @@ def differing_rows(one: Path, other: Path) -> list[str]:
         for name in a.variables:
             n = len(b[name]) if b[name].dims[:1] in (("time",), ("step",)) else 0
             x, y = (v[name].values[-n:] if n else v[name].values for v in (a, b))
-            if not np.array_equal(x, y, x.dtype.kind == "f"):
+            if not _same(x, y):
                 found.append(str(name))
         return found
 
