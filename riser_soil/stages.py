@@ -10,7 +10,7 @@ from riser_soil.assembly import Assembly
 from riser_soil.assembly.stage import scheme_of, times_to_hit
 from riser_soil.core.part import Model, State
 from riser_soil.core.roles import Adaptive, with_role
-from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back, values_of, within
+from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back, within
 from riser_soil.core.system import Clock, System
 from riser_soil.errors import SolveError
 from riser_soil.interruption import check, undivided
@@ -39,8 +39,18 @@ class Follower(Stateful, Protocol):
     def relaxed(self, relaxed: Relaxed) -> None: ...
 
 
+class Onlooker:
+    """A follower that has nothing to go on with in a stage that is resumed."""
+
+    def state(self) -> Saved:
+        return {}
+
+    def restore(self, saved: Saved) -> None:
+        pass
+
+
 @dataclass
-class Laying:
+class Laying(Onlooker):
     """Counts the load steps and relaxations of a stage that the scene does not have."""
 
     steps: int = 0
@@ -54,12 +64,6 @@ class Laying:
 
     def relaxed(self, relaxed: Relaxed) -> None:
         self.relaxations += 1
-
-    def state(self) -> Saved:
-        return values_of(self)
-
-    def restore(self, saved: Saved) -> None:
-        self.steps, self.relaxations = int(saved["steps"]), int(saved["relaxations"])
 
 
 def lay(assembly: Assembly, clock: Clock) -> tuple[State, Laying | None]:
