@@ -18,7 +18,7 @@ from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
 from riser_soil.solve.dynamic_relaxation import Relaxed
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from riser_soil.stages import run_stage
+from riser_soil.stages import Onlooker, run_stage
 
 SCENE = Path(__file__).parent.parent / "tests" / "scenes" / "tank.yaml"
 DURATION = 30.0  # s
@@ -28,7 +28,7 @@ TOLERANCES = (3e-2, 1e-2, 3e-3, 1e-3)  # m
 
 
 @dataclass
-class Course:
+class Course(Onlooker):
     """What the accepted steps of a stage tell of the riser."""
 
     assembly: Assembly

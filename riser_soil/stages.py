@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol
 
 from riser_soil.assembly import Assembly
 from riser_soil.assembly.stage import scheme_of, times_to_hit
 from riser_soil.core.part import Model, State
+from riser_soil.core.roles import Adaptive, with_role
+from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back, within
 from riser_soil.core.system import Clock, System
 from riser_soil.errors import SolveError
 from riser_soil.interruption import check, undivided
@@ -22,7 +25,11 @@ from riser_soil.solve.time_stepper import Accepted, TimeStepper
 MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
 
 
-class Follower(Protocol):
+Keep = Callable[[Callable[[], Saved]], None]
+"""Told between steps: with what it is given it may have the state as it is then, to resume the stage from."""
+
+
+class Follower(Stateful, Protocol):
     """Who is told how a stage goes on."""
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None: ...
@@ -32,8 +39,18 @@ class Follower(Protocol):
     def relaxed(self, relaxed: Relaxed) -> None: ...
 
 
+class Onlooker:
+    """A follower that has nothing to go on with in a stage that is resumed."""
+
+    def state(self) -> Saved:
+        return {}
+
+    def restore(self, saved: Saved) -> None:
+        pass
+
+
 @dataclass
-class Laying:
+class Laying(Onlooker):
     """Counts the load steps and relaxations of a stage that the scene does not have."""
 
     steps: int = 0
@@ -61,24 +78,94 @@ def lay(assembly: Assembly, clock: Clock) -> tuple[State, Laying | None]:
         raise SolveError(f"{assembly.too_slack}: {err}") from err
 
 
-def run_stage(assembly: Assembly, stage: Stage, before: State, observer: Follower, clock: Clock) -> State:
+def run_stage(
+    assembly: Assembly, stage: Stage, before: State, observer: Follower, clock: Clock, keep: Keep | None = None
+) -> State:
     """Take one stage to its end; the state that it leaves, increments zero."""
-    return _take(assembly, assembly.begin(stage), stage, before, observer, clock)
+    return _take(assembly, assembly.begin(stage), stage, before, observer, clock, keep)
 
 
-def _take(assembly: Assembly, model: Model, stage: Stage, before: State, observer: Follower, clock: Clock) -> State:
+def resume_stage(
+    assembly: Assembly, saved: Saved, observer: Follower, clock: Clock, keep: Keep | None = None
+) -> tuple[Stage, State]:
+    """Take the stage that was saved on its way to its end; the stage, and the state that it leaves.
+
+    assembly, observer: built anew from the scene. The stages before were taken in the run that was saved.
+    """
+    assembly.restore(within(saved, "assembly"))
+    stage, model = assembly.resume()
+    return stage, _take(assembly, model, stage, saved, observer, clock, keep)
+
+
+def _take(
+    assembly: Assembly,
+    model: Model,
+    stage: Stage,
+    begin: State | Saved,
+    observer: Follower,
+    clock: Clock,
+    keep: Keep | None = None,
+) -> State:
+    """From the state that the stage begins with, or from where it was saved."""
     system = System(assembly.comm, model, clock)
+    if not isinstance(begin, State):
+        _restore(system, begin)
     newton = Newton(system, _settings(assembly))
     try:
-        stepper = TimeStepper(system, newton, scheme_of(stage), replace(before, t=0.0))
-        with undivided():
-            observer.begin_stage(stage, stepper)
-        return _walk(assembly, stage, stepper, observer)
+        course = _course(assembly, stage, system, newton, begin, observer)
+        return _walk(course, keep)
     except SolveError as err:
         raise SolveError(f"{err}{_overload(assembly)}") from err
     finally:
         newton.destroy()
         system.destroy()
+
+
+def _restore(system: System, saved: Saved) -> None:
+    give_back(_owners(system.model), saved)
+    if with_role(system.model.parts, Adaptive):
+        system.renew_pattern()
+
+
+def _owners(model: Model) -> dict[str, Stateful]:
+    """Fields and parts that keep something from step to step."""
+    fields: dict[str, Stateful] = {f"fields/{field.name}": field for field in model.fields}
+    return fields | {f"parts/{part.name}": part for part in with_role(model.parts, Stateful)}
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """A stage on its way: who takes it, and who is told."""
+
+    assembly: Assembly
+    stage: Stage
+    stepper: TimeStepper
+    control: StepControl | AutoSteps
+    observer: Follower
+
+    def state(self) -> Saved:
+        """All that the stage goes on from, see `saved_state`."""
+        own: dict[str, Stateful] = {"assembly": self.assembly, "stepper": self.stepper}
+        return gathered(_owners(self.stepper.system.model) | own | self.told)
+
+    @property
+    def told(self) -> dict[str, Stateful]:
+        """Who is told of each step."""
+        return {"control": self.control, "observer": self.observer, "clock": self.stepper.system.clock}
+
+
+def _course(
+    assembly: Assembly, stage: Stage, system: System, newton: Newton, begin: State | Saved, observer: Follower
+) -> Course:
+    if isinstance(begin, State):
+        stepper = TimeStepper(system, newton, scheme_of(stage), replace(begin, t=0.0))
+        with undivided():
+            observer.begin_stage(stage, stepper)
+        return Course(assembly, stage, stepper, steps_of(assembly, stage, stepper), observer)
+    stepper = TimeStepper(system, newton, scheme_of(stage), within(begin, "stepper"))
+    course = Course(assembly, stage, stepper, steps_of(assembly, stage, stepper), observer)
+    give_back(course.told, begin)
+    return course
 
 
 def _overload(assembly: Assembly) -> str:
@@ -90,15 +177,17 @@ def _overload(assembly: Assembly) -> str:
     return overload(assembly)
 
 
-def _walk(assembly: Assembly, stage: Stage, stepper: TimeStepper, observer: Follower) -> State:
-    control = steps_of(assembly, stage, stepper)
+def _walk(course: Course, keep: Keep | None) -> State:
+    stepper, control = course.stepper, course.control
     while not control.finished:
-        static = isinstance(stage, StaticStage)
-        step = _static_step(assembly, stepper, control, observer) if static else stepper.advance(control)
+        static = isinstance(course.stage, StaticStage)
+        step = _static_step(course.assembly, stepper, control, course.observer) if static else stepper.advance(control)
         with undivided():
             stepper.commit(step, control)
-            observer.record(stepper, step, last=control.finished)
-        check(assembly.comm)
+            course.observer.record(stepper, step, last=control.finished)
+        if keep is not None:
+            keep(course.state)
+        check(course.assembly.comm)
     return stepper.before
 
 
@@ -134,7 +223,7 @@ def _settings(assembly: Assembly) -> NewtonSettings:
     return NewtonSettings(solver.tolerance, solver.max_iterations, assembly.scales.force_floor)
 
 
-def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> Control:
+def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> StepControl | AutoSteps:
     """The steps of a stage, from its beginning to its end."""
     solver = assembly.scene.solver
     if isinstance(stage, StaticStage):

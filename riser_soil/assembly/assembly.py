@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING
 
 from mpi4py import MPI
 
-from riser_soil.assembly.motions import set_motions, vessels_of
+from riser_soil.assembly.motions import end_positions, set_motions, vessels_of
 from riser_soil.assembly.pressures import pressures_of
 from riser_soil.assembly.riser import attached_weight, attachments_of, elements_of, line_of, springs_of
 from riser_soil.assembly.scales import Scales, scales_of
 from riser_soil.assembly.sea_loads import sea_loads
 from riser_soil.assembly.shape import least_bend
 from riser_soil.assembly.stage import dynamic_parts, hold_spin, loads_of
+from riser_soil.core.arrays import Array
 from riser_soil.core.part import Field, Model, Part
+from riser_soil.core.saved_state import Saved
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
@@ -47,6 +49,7 @@ class Assembly:
     pressures: inside and outside the pipe; None where the tension in its wall is not told.
     contact_stiffness [N/m2]: force per length and penetration, by ground (soil, seabed).
     vessels: those that carry ends, None where there are none.
+    begun: by the names of the stages begun so far, where the ends were then (2, 3) [m]: their motions follow from it.
     """
 
     scene: Scene
@@ -63,6 +66,7 @@ class Assembly:
     friction: Friction | None = None
     contact_stiffness: dict[str, float] = field(default_factory=dict)
     vessels: Vessels | None = None
+    begun: dict[str, Array] = field(default_factory=dict)
 
     @property
     def fields(self) -> list[Field]:
@@ -129,12 +133,30 @@ class Assembly:
 
     def begin_laying(self, stage: StaticStage) -> Model:
         """Set the end in motion and name the parts: without a current's drag."""
-        model = self.begin(stage)
+        model = self._enter(stage, end_positions(self.line))
         return replace(model, parts=[part for part in model.parts if not part.traits.follows])
 
     def begin(self, stage: Stage) -> Model:
         """Set the ends in motion and name the parts of a stage."""
-        set_motions(self.line, stage, self.vessels)
+        self.begun[stage.name] = end_positions(self.line)
+        return self._enter(stage, self.begun[stage.name])
+
+    def resume(self) -> tuple[Stage, Model]:
+        """The last stage of those begun, its ends set in motion, and its parts: of an assembly that was restored."""
+        *before, stage = (stage for stage in self.scene.stages if stage.name in self.begun)
+        for earlier in before:
+            set_motions(self.line, earlier, self.vessels, self.begun[earlier.name])
+        return stage, self._enter(stage, self.begun[stage.name])
+
+    def state(self) -> Saved:
+        """What the motions follow from; fields and parts have states of their own."""
+        return dict(self.begun)
+
+    def restore(self, saved: Saved) -> None:
+        self.begun = dict(saved)
+
+    def _enter(self, stage: Stage, origins: Array) -> Model:
+        set_motions(self.line, stage, self.vessels, origins)
         hold_spin(self.scene, self.line, stage)
         parts = [*self.riser_parts, *loads_of(self.line, stage)]
         if isinstance(stage, DynamicStage):

@@ -31,11 +31,19 @@ def vessels_of(scene: Scene) -> Vessels | None:
     return Vessels(scene)
 
 
-def set_motions(line: Line, stage: Stage, vessels: Vessels | None) -> None:
-    """Give the held ends their motions in this stage, from where they are now; without one they stay there."""
-    for end, node, name in ((line.start, 0, "start"), (line.end, -1, "end")):
-        set_motion(end, name, line.to_global(line.x[node]), stage, vessels)
+def set_motions(line: Line, stage: Stage, vessels: Vessels | None, origins: Array) -> None:
+    """Give the held ends their motions in this stage, from where they are as it begins; without one they stay there.
+
+    origins (2, 3): positions of start and end, see `end_positions`.
+    """
+    for end, name, origin in ((line.start, "start", origins[0]), (line.end, "end", origins[1])):
+        set_motion(end, name, origin, stage, vessels)
     line.begin_stage()
+
+
+def end_positions(line: Line) -> Array:
+    """Of start and end now, (2, 3) [m], global axes."""
+    return np.stack([line.to_global(line.x[node]) for node in (0, -1)])
 
 
 def set_motion(end: End, name: str, origin: Array, stage: Stage, vessels: Vessels | None) -> None:

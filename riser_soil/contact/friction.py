@@ -11,7 +11,7 @@ from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.contact.station_forces import StationForces
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
-from riser_soil.core.roles import Remembering
+from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser import stations
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.trial import Trial
@@ -48,7 +48,7 @@ class Friction(LinePart):
     """
 
     name = "friction"
-    traits = Traits("E", symmetric=False, roles=(Remembering,))
+    traits = Traits("E", symmetric=False, keeps_way=True, roles=(Stateful,))
 
     def __init__(self, contact: SeabedContact, axial: float, lateral: float, stiffness: Array) -> None:
         super().__init__(contact.line)
@@ -127,16 +127,7 @@ class Friction(LinePart):
         traction[sliding.elements] = -sliding.resistance
         slid = np.zeros_like(self._slid)
         slid[sliding.elements] = self._slide(trial, sliding)
-        self.memory = self._friction_state_at(trial, traction), self._slid + slid
-
-    @property
-    def memory(self) -> tuple[FrictionState | None, Array]:
-        """Where the next step begins, and how far the stations have slid."""
-        return self._begun, self._slid
-
-    @memory.setter
-    def memory(self, kept: tuple[FrictionState | None, Array]) -> None:
-        self._begun, self._slid = kept
+        self._begun, self._slid = self._friction_state_at(trial, traction), self._slid + slid
 
     def _slide(self, trial: Trial, sliding: Sliding) -> Array:
         """What each station (m, ng) slides in the step beyond what the ground gives elastically [m]."""
@@ -159,6 +150,14 @@ class Friction(LinePart):
         sliding = self.evaluate(self.line.trial(state))
         per_station = self.contact.share[sliding.elements][..., None] * sliding.resistance
         return np.asarray(-self.line.basis @ per_station.sum(axis=(0, 1)))
+
+    def state(self) -> Saved:
+        """Where the next step begins, unless no step has been asked for yet, and how far the stations have slid."""
+        return {"slid": self._slid} | (self._begun._asdict() if self._begun is not None else {})
+
+    def restore(self, saved: Saved) -> None:
+        begun = [saved[name] for name in FrictionState._fields if name in saved]
+        self._begun, self._slid = FrictionState(*begun) if begun else None, saved["slid"]
 
 
 def mobilised_within(mobilisation: float, axial: float, lateral: float, weight: Array) -> Array:

@@ -11,7 +11,8 @@ from riser_soil.contact.station_forces import StationForces
 from riser_soil.contact.touchdown import Stretch, stretches, touchdown
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
-from riser_soil.core.roles import Predictor, Remembering
+from riser_soil.core.roles import Predictor
+from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
@@ -64,7 +65,7 @@ class SeabedContact(LinePart):
     """
 
     name = "seabed"
-    traits = Traits("E", symmetric=True, roles=(Predictor, Remembering))
+    traits = Traits("E", symmetric=True, keeps_way=True, roles=(Predictor, Stateful))
 
     def __init__(
         self,
@@ -234,3 +235,9 @@ class SeabedContact(LinePart):
         """Gap (nn,) of the nodes less that at which the force begins [m]."""
         value = self._distance(self.line.to_global(trial.x)).value
         return value - larger_beside(self._radius) - self.law.start
+
+    def state(self) -> Saved:
+        return {"memory": self.memory}
+
+    def restore(self, saved: Saved) -> None:
+        self.memory = saved["memory"]

@@ -23,6 +23,7 @@ from riser_soil.contact.touchdown import Stretch, stretches, touchdown
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
 from riser_soil.core.roles import Adaptive, Predictor
+from riser_soil.core.saved_state import Saved, Stateful
 
 FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
 
@@ -55,7 +56,7 @@ class SoilContact:
     """
 
     name = "contact"
-    traits = Traits("E", symmetric=True, roles=(Adaptive, Predictor))
+    traits = Traits("E", symmetric=True, roles=(Adaptive, Predictor, Stateful))
 
     def __init__(
         self,
@@ -239,6 +240,17 @@ class SoilContact:
         xy = self._riser.positions3(state)[nodes, :2]
         distance = ASPECT * self._footprint + self._reach.around
         return around(nodes, xy, detected.surface, self._soil.facets, distance).joined(self._missed)
+
+    def state(self) -> Saved:
+        """The pattern: another one, as wide as need be, gives the same forces but to round-off."""
+        if not self.active:
+            return {}
+        return {"patch": self._present_patch().pairs, "missed": self._missed.pairs, "outgrown": np.array(self.outgrown)}
+
+    def restore(self, saved: Saved) -> None:
+        if self.active:
+            self._detected, self.outgrown = None, bool(saved["outgrown"])
+            self._patch, self._missed = (Patch(len(self._soil.facets), saved[name]) for name in ("patch", "missed"))
 
 
 def _default_reach(riser: RiserNodes, soil: DeformedSurface) -> Reach:

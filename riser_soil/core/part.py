@@ -18,6 +18,7 @@ from typing import Protocol
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.saved_state import Saved
 
 GROUPS = "IFE"  # of forces; see the module's text
 
@@ -123,12 +124,14 @@ class Traits:
     groups: letters of those that its forces are in. In E they may jump from step to step, as where the riser lands.
     symmetric: its tangent.
     follows: its forces follow the line, but hardly stiffen or soften it, such as the drag of a current.
+    keeps_way: its state is of the way that the riser took alone, and no part of the configuration that it has come to.
     roles: what it does beyond the contract of a part, see `roles`.
     """
 
     groups: str
     symmetric: bool
     follows: bool = False
+    keeps_way: bool = False
     roles: tuple[type, ...] = ()
 
     def __post_init__(self) -> None:
@@ -189,6 +192,14 @@ class Field(Protocol):
 
     def commit(self, state: State) -> None:
         """Accept the increments of the field's slice."""
+        ...
+
+    def state(self) -> Saved:
+        """The committed configuration, see `saved_state`."""
+        ...
+
+    def restore(self, saved: Saved) -> None:
+        """Take over a configuration that was saved."""
         ...
 
     def describe(self, entry: int) -> str:

@@ -1,7 +1,7 @@
 """What parts may do for the time stepper beyond their contract, each declared in the part's traits.
 
 A role that is declared without its methods, such as one that is misspelt, is an error at the stage's start, and so is
-one that is there and not declared.
+one that is there and not declared. Parts that keep something from step to step are `Stateful`, see `saved_state`.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import Any, Protocol, runtime_checkable
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part, State
+from riser_soil.core.saved_state import Stateful
 
 
 @runtime_checkable
@@ -31,13 +32,6 @@ class Predictor(Protocol):
 
 
 @runtime_checkable
-class Remembering(Protocol):
-    """A part whose forces depend on the way there; `memory` is what it keeps of that way, replaced by each commit."""
-
-    memory: Any
-
-
-@runtime_checkable
 class MomentumCorrecting(Protocol):
     """A part whose rates at the end of a step are more than the state's; it starts each step from the state's."""
 
@@ -48,7 +42,7 @@ class MomentumCorrecting(Protocol):
         ...
 
 
-ROLES = (Adaptive, Predictor, Remembering, MomentumCorrecting)
+ROLES = (Adaptive, Predictor, Stateful, MomentumCorrecting)
 
 
 def with_role(parts: Iterable[Part], role: type) -> list[Any]:

@@ -15,6 +15,7 @@ from riser_soil.core.matrix import Matrix
 from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import Block, Energy, Field, Forces, Model, Part, State, Weights, Work, local
 from riser_soil.core.roles import require_roles
+from riser_soil.core.saved_state import Saved
 
 
 @dataclass
@@ -35,6 +36,14 @@ class Clock:
     def total(self) -> float:
         """Seconds counted so far."""
         return sum(self.seconds.values())
+
+    def state(self) -> Saved:
+        return {name: np.array(seconds) for name, seconds in self.seconds.items()}
+
+    def restore(self, saved: Saved) -> None:
+        """Count what was spent before, too."""
+        for name, seconds in saved.items():
+            self.seconds[name] += float(seconds)
 
 
 class System:

@@ -16,10 +16,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
 
 import numpy as np
 
 from riser_soil.core.part import Energy, Work
+from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.snapshot import Ledger
 from riser_soil.solve.time_stepper import Accepted
 
@@ -59,6 +61,12 @@ class EnergyLedger:
             work_by=work_by,
         )
         return self.ledger.residual - before.residual
+
+    def state(self) -> Saved:
+        return {"begun": np.array(self._begun), "ledger": packed(asdict(self.ledger))}
+
+    def restore(self, saved: Saved) -> None:
+        self._begun, self.ledger = float(saved["begun"]), Ledger(**unpacked(saved["ledger"]))
 
 
 def _by_kind(turned: Mapping[str, Work]) -> list[tuple[str, Work]]:

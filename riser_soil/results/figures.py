@@ -10,6 +10,7 @@ import numpy as np
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.output import Figure
+from riser_soil.core.saved_state import Saved, values_of
 from riser_soil.core.snapshot import Instant
 
 _END = ("position", "force", "moment", "effective_tension", "angle_deg")
@@ -103,6 +104,12 @@ class Extremes:
             if figure.name not in _SOMETIMES or np.isfinite(least).all():
                 _put(nested, figure.path, {key: _get(part, figure.path) for key, part in parts.items()})
         return nested
+
+    def state(self) -> Saved:
+        return values_of(self)
+
+    def restore(self, saved: Saved) -> None:
+        vars(self).update({name: value.copy() for name, value in saved.items()})
 
 
 def _put(nested: dict[str, Any], path: tuple[str, ...], value: Any) -> None:

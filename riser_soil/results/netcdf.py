@@ -20,6 +20,7 @@ import numpy as np
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.output import Output
+from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.step_outputs import OF_STEP, TAKEN_OUT
 from riser_soil.results.growing_file import GrowingFile, appending
 
@@ -150,6 +151,13 @@ class SeriesFile:
             for name, variable in self._variables.items():
                 _describe(file, name, variable, arc.size)
         return content.getvalue()
+
+    def state(self) -> Saved:
+        """What tells the rows to come apart; rows themselves are the file's."""
+        return {"steps": np.array(self._steps), "stages": packed(self._stages)}
+
+    def restore(self, saved: Saved) -> None:
+        self._steps, self._stages = int(saved["steps"]), unpacked(saved["stages"])
 
 
 def _kept(value: object) -> object:

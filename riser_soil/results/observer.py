@@ -17,7 +17,8 @@ from riser_soil.assembly import Assembly
 from riser_soil.checks.inventory import built, dissipating, left_out, unknowns, working
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Forces, Model, State
+from riser_soil.core.part import Energy, Forces, Model, State
+from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back
 from riser_soil.core.snapshot import RiserSnapshot, RunFacts, SoilSnapshot, StepHealth, Touch
 from riser_soil.core.system import Clock
 from riser_soil.errors import Interruption, RiserSoilError, SolveError
@@ -72,16 +73,23 @@ class Observer:
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         """stepper: at the stage's beginning; collective."""
-        self._stage = stage
-        self._schedule.begin_stage(stage.kind)
-        scene = self._world.scene
-        self._balance = EnergyLedger(stepper.energy, isinstance(stage, StaticStage), dissipating(scene), working(scene))
-        self._relaxed = 0
-        self._plausibility.begin_stage(stage)
+        self._enter(stage, stepper.energy)
         if self._recorder is not None:
             self._recorder.begin_stage(stage.name, stage.kind)
         if stage is self._world.scene.stages[0] and not isinstance(stage, StaticStage):
             self._begin_at(stepper)
+        self._show(stage)
+
+    def _enter(self, stage: Stage, begun: Energy) -> None:
+        """begun: energy stored as the stage begins."""
+        scene, static = self._world.scene, isinstance(stage, StaticStage)
+        self._stage = stage
+        self._schedule.begin_stage(stage.kind)
+        self._balance = EnergyLedger(begun, static, dissipating(scene), working(scene))
+        self._relaxed = 0
+        self._plausibility.begin_stage(stage)
+
+    def _show(self, stage: Stage) -> None:
         self._progress.begin_stage(stage.name, stage.kind, 1.0 if isinstance(stage, StaticStage) else stage.duration)
 
     def _begin_at(self, stepper: TimeStepper) -> None:
@@ -154,6 +162,23 @@ class Observer:
             self._recorder.add_seconds(self._clock.seconds)
             self._recorder.finish()
             print_summary(self._recorder.summary.as_dict(), self._recorder.settlement)
+
+    def state(self) -> Saved:
+        stage = self._world.scene.stages.index(self._stage)
+        return gathered(self._owners) | {"stage": np.array(stage), "relaxed": np.array(self._relaxed)}
+
+    def restore(self, saved: Saved) -> None:
+        """Follow the stage on from where it was saved."""
+        self._enter(self._world.scene.stages[int(saved["stage"])], Energy())
+        give_back(self._owners, saved)
+        self._relaxed = int(saved["relaxed"])
+        self._show(self._stage)
+
+    @property
+    def _owners(self) -> dict[str, Stateful]:
+        told: dict[str, Stateful] = {} if self._recorder is None else {"recorder": self._recorder}
+        told |= {"schedule": self._schedule, "ledger": self._balance, "zone": self._zone}
+        return told | {"plausibility": self._plausibility}
 
 
 @contextmanager

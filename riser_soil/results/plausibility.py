@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 
 from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
+from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.snapshot import RiserSnapshot, Touch
 from riser_soil.riser.resolution import misfit
 from riser_soil.riser.section_forces import at_most
@@ -51,6 +52,7 @@ class Plausibility:
         self.radius = at_most(np.repeat(0.5 * elements.outer_diameter[:, None], 2, axis=1))
         self._middle = 0.5 * (assembly.line.arc[1:] + assembly.line.arc[:-1])
         self._touched = assembly.soil_contact is None
+        self._where, self._lowest = "", np.full(3, np.nan)
 
     def begin_stage(self, stage: Stage) -> None:
         self._last_stage = stage.name == self._world.scene.stages[-1].name
@@ -129,3 +131,14 @@ class Plausibility:
             f"in no stage did the riser touch the soil, x from {x0:.5g} to {x1:.5g} m and y from {y0:.5g} to {y1:.5g} "
             f"m: at the end it {self._where} [{down}] m; move the soil there, or leave it out"
         )
+
+    def state(self) -> Saved:
+        worst = [astuple(found) for found in (self._axial, self._bending, self._smooth, self._steep)]
+        seen = {"largest": np.array(self._largest), "touched": np.array(self._touched), "worst": np.array(worst)}
+        return seen | {"where": packed(self._where), "lowest": self._lowest}
+
+    def restore(self, saved: Saved) -> None:
+        """In the stage that has begun."""
+        self._largest, self._touched = float(saved["largest"]), bool(saved["touched"])
+        self._axial, self._bending, self._smooth, self._steep = (Worst(*row) for row in saved["worst"].tolist())
+        self._where, self._lowest = unpacked(saved["where"]), saved["lowest"]

@@ -14,6 +14,7 @@ import numpy as np
 
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
+from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back
 from riser_soil.core.snapshot import (
     Instant,
     Ledger,
@@ -280,6 +281,21 @@ class Recorder:
             self._waiting += _size(vars(soil))
             self._soil_frames.add(soil_frame(stamp, soil, self._fields))
             self._settlement = max(0.0, -float(soil.displacement[:, 2].min()))
+
+    def state(self) -> Saved:
+        """What is gathered on the way; what is written stays in the folder."""
+        latest = {} if self._latest is None else {"latest": self._latest}
+        settlement = {} if self._settlement is None else {"settlement": np.array(self._settlement)}
+        return gathered(self._owners) | latest | settlement | {"now": np.array(self.now)}
+
+    def restore(self, saved: Saved) -> None:
+        give_back(self._owners, saved)
+        self.now, self._latest = float(saved["now"]), saved.get("latest")
+        self._settlement = float(saved["settlement"]) if "settlement" in saved else None
+
+    @property
+    def _owners(self) -> dict[str, Stateful]:
+        return {"summary": self.summary, "time": self._time, "series": self._series}
 
 
 @contextmanager

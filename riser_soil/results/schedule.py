@@ -5,6 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
+from riser_soil.core.saved_state import Saved, gathered, give_back
+
 # Share of an interval by which a step may end early and still count: time is a sum of steps.
 _SLACK = 1e-6
 
@@ -35,6 +39,12 @@ class _Pace:
             return False
         self._count = passed + 1
         return True
+
+    def state(self) -> Saved:
+        return {"count": np.array(self._count)}
+
+    def restore(self, saved: Saved) -> None:
+        self._count = int(saved["count"])
 
 
 class Schedule:
@@ -68,3 +78,10 @@ class Schedule:
         pictures = self._pictures.reached(t) or last
         series = self._series.reached(t) or pictures
         return Due(series, pictures)
+
+    def state(self) -> Saved:
+        return gathered({"series": self._series, "pictures": self._pictures}) | {"static": np.array(self._static)}
+
+    def restore(self, saved: Saved) -> None:
+        give_back({"series": self._series, "pictures": self._pictures}, saved)
+        self._static = bool(saved["static"])

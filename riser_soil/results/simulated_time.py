@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from riser_soil.core.saved_state import Saved
+
 # Equilibria of static stages take no time; those that would share an instant are set this far apart [s],
 # because readers of time series want time to grow.
 TICK = 1e-6
@@ -39,3 +43,11 @@ class SimulatedTime:
         after = self._last_record + TICK
         self._last_record = self._now if self._now > self._last_record else after
         return self._last_record
+
+    def state(self) -> Saved:
+        times = {"begun": self._begun, "now": self._now, "last_record": self._last_record, "static": self._static}
+        return {name: np.array(value) for name, value in times.items()}
+
+    def restore(self, saved: Saved) -> None:
+        self._begun, self._now = float(saved["begun"]), float(saved["now"])
+        self._last_record, self._static = float(saved["last_record"]), bool(saved["static"])

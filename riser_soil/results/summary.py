@@ -14,6 +14,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.output import bend_radius
+from riser_soil.core.saved_state import Saved, gathered, give_back, packed, under, unpacked, within
 from riser_soil.core.snapshot import Ledger, RiserSnapshot, RunFacts, StepHealth
 from riser_soil.results.figures import Extremes
 from riser_soil.results.folder import write_atomically
@@ -121,6 +122,18 @@ class StageTally:
         off = energy_warnings(self.energy, *self.worst_residual) if self.kind == "dynamic" else ()
         return [*self.tightest.warnings("s" if self.kind == "dynamic" else "of the load"), *self.doubts, *off]
 
+    def state(self) -> Saved:
+        plain = {name: value for name, value in vars(self).items() if name != "extremes"}
+        told = plain | {"energy": asdict(self.energy), "tightest": asdict(self.tightest)}
+        return gathered({"extremes": self.extremes}) | {"told": packed(told)}
+
+    def restore(self, saved: Saved) -> None:
+        vars(self).update(unpacked(saved["told"]))
+        give_back({"extremes": self.extremes}, saved)
+        self.energy, self.tightest = Ledger(**vars(self)["energy"]), Bend(**vars(self)["tightest"])
+        worst, t = self.worst_residual
+        self.worst_residual, self.doubts = (worst, t), tuple(self.doubts)
+
 
 class Summary:
     """Keeps the whole summary and writes it."""
@@ -149,6 +162,16 @@ class Summary:
 
     def write(self, path: Path) -> None:
         write_atomically(path, json.dumps(plain_json(self.as_dict()), indent=2, allow_nan=False) + "\n")
+
+    def state(self) -> Saved:
+        stages = gathered({str(n): stage for n, stage in enumerate(self.stages)})
+        return under("stages", stages) | {"laying": packed(self.laying), "seconds": packed(self.seconds)}
+
+    def restore(self, saved: Saved) -> None:
+        self.laying, self.seconds = unpacked(saved["laying"]), Counter(unpacked(saved["seconds"]))
+        stages = within(saved, "stages")
+        self.stages = [StageTally("", "") for name in stages if name.endswith("/told")]
+        give_back({str(n): stage for n, stage in enumerate(self.stages)}, stages)
 
 
 def plain_json(value: Any) -> Any:

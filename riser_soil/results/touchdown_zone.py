@@ -10,6 +10,7 @@ import numpy as np
 from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
+from riser_soil.core.saved_state import Saved
 from riser_soil.core.snapshot import Touch
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
@@ -48,6 +49,12 @@ class TouchdownZone:
     def _embedded(self, state: State) -> Array:
         self._embedment = np.max([self._embedment, *(c.depth(state) for c in self._world.contacts)], axis=0)
         return self._embedment
+
+    def state(self) -> Saved:
+        return {"embedment": self._embedment}
+
+    def restore(self, saved: Saved) -> None:
+        self._embedment = saved["embedment"]
 
 
 def joined(stretches: Sequence[Stretch], near: float) -> list[Stretch]:

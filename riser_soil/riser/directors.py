@@ -19,6 +19,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.saved_state import Saved
 from riser_soil.riser import rotations
 from riser_soil.riser.hermite import interleave
 from riser_soil.riser.vectors import (
@@ -79,6 +80,10 @@ class PlanarTurn:
         """(ne, 2, 1, 1) from the residual conjugate to the tangents, F (ne, 2, 2)."""
         return np.asarray(_planar_geometric(self.tangent, F))
 
+    def state(self) -> Saved:
+        """What `PlanarFrames.turn_of` makes the same turn of."""
+        return {"angle": self.angle}
+
 
 class PlanarFrames:
     """Committed node angles of a plane line; angles grow without limit.
@@ -118,6 +123,15 @@ class PlanarFrames:
     def commit(self, increment: Array) -> None:
         self.angle = self.angle + increment[:, 0]
 
+    def turn_of(self, saved: Saved) -> PlanarTurn:
+        return PlanarTurn(saved["angle"], self.alpha0)
+
+    def state(self) -> Saved:
+        return {"angle": self.angle}
+
+    def restore(self, saved: Saved) -> None:
+        self.angle = saved["angle"]
+
 
 class SpatialTurn:
     """Trial orientation of a line in space; see `SpatialFrames` for the arguments."""
@@ -151,6 +165,10 @@ class SpatialTurn:
     def geometric(self, F: Array) -> Array:
         """(ne, 2, 3, 3) from the residual conjugate to the tangents, F (ne, 2, 3)."""
         return _spatial_geometric(self.Rn, self.H, self.Theta, self.tangent, F)
+
+    def state(self) -> Saved:
+        """What `SpatialFrames.turn_of` makes the same turn of, to the last bit."""
+        return {"R": self.Rn, "increment": self.Theta}
 
 
 class SpatialFrames:
@@ -191,6 +209,15 @@ class SpatialFrames:
     def commit(self, increment: Array) -> None:
         """Keep R, brought back to a rotation to second order (round-off would pile up over many steps)."""
         self.R = _turned(self.R, increment)
+
+    def turn_of(self, saved: Saved) -> SpatialTurn:
+        return SpatialTurn(saved["R"], saved["increment"], self.T0)
+
+    def state(self) -> Saved:
+        return {"R": self.R}
+
+    def restore(self, saved: Saved) -> None:
+        self.R = saved["R"]
 
 
 Frames = PlanarFrames | SpatialFrames

@@ -15,6 +15,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Block, State
+from riser_soil.core.saved_state import Saved, under, values_of, within
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames
@@ -198,9 +199,12 @@ class Line:
         that parts need not look at it anew, unless its rates have been changed since.
         """
         left = self._left
-        if left is not None and before.v is left.state.v and before.a is left.state.a and before.t == left.state.t:
-            return left
-        return self.trial(before)
+        return left if left is not None and self._same_rates(before, left.state) else self.trial(before)
+
+    def _same_rates(self, one: State, other: State) -> bool:
+        """Whether two states are of the same time and rates."""
+        pairs = (one.v, other.v), (one.a, other.a)
+        return one.t == other.t and all(a is b or np.array_equal(self.nodal(a), self.nodal(b)) for a, b in pairs)
 
     def forget(self) -> None:
         """Drop the trials that are kept."""
@@ -230,6 +234,26 @@ class Line:
         self._supports = {node: self.support(node, state.t) for node in self._supports}
         self.forget()
         self._left = trial
+
+    def state(self) -> Saved:
+        """Positions, chords and frames; where the supports have turned to, and from where; the trial of `left_at`."""
+        ends = tuple(self._supports)
+        supports, bases = (np.stack([at[node] for node in ends]) for at in (self._supports, self._bases))
+        left = {} if self._left is None else values_of(self._left.state) | under("turn", self._left.turn.state())
+        kept = {"x": self.x, "chord": self.chord, "supports": supports, "bases": bases}
+        return kept | under("frames", self.frames.state()) | under("left", left)
+
+    def restore(self, saved: Saved) -> None:
+        self.forget()
+        self.x, self.chord = saved["x"], saved["chord"]
+        self.frames.restore(within(saved, "frames"))
+        ends = tuple(self._supports)
+        self._supports, self._bases = (dict(zip(ends, saved[name], strict=True)) for name in ("supports", "bases"))
+        left = within(saved, "left")
+        if left:
+            state = State(float(left["t"]), left["u"], left["v"], left["a"])
+            rates = self.nodal(state.v), self.nodal(state.a)
+            self._left = Trial(state, self.x, self.chord, self.frames.turn_of(within(left, "turn")), rates)
 
     def begin_stage(self) -> None:
         """Supports turn from where they are now."""

@@ -15,6 +15,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
+from riser_soil.core.saved_state import Saved
 from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames, moment_stiffness, node_frames
 from riser_soil.riser.rotations import exp_coefficients
 from riser_soil.riser.vectors import (
@@ -144,6 +145,12 @@ class Carried:
     def commit(self, t: float, end: Array) -> None:
         """Accept a step; to be called before the line's frames do."""
         self._rate, self._t = self.rate(t, end), t
+
+    def state(self) -> Saved:
+        return {"t": np.array(self._t), "rate": self._rate}
+
+    def restore(self, saved: Saved) -> None:
+        self._t, self._rate = float(saved["t"]), saved["rate"]
 
     def geometric(self, secant: Secant, middle: Array, F: Array) -> Array:
         """(ne, 2, r, r): derivative of P^T F at fixed F (ne, 2, d)."""

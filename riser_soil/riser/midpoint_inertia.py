@@ -27,6 +27,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed
 from riser_soil.core.part import Block, Energy, Forces, Part, State, Traits, Weights
 from riser_soil.core.roles import MomentumCorrecting
+from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back
 from riser_soil.riser import hermite
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
@@ -42,7 +43,7 @@ class MidpointInertia(LinePart):
     instant: the same mass as it acts at an instant, which is asked for at accepted states.
     """
 
-    name, traits = "inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting,))
+    name, traits = "inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting, Stateful))
 
     def __init__(self, instant: Inertia) -> None:
         super().__init__(instant.line)
@@ -111,6 +112,12 @@ class MidpointInertia(LinePart):
     def commit(self, state: State) -> None:
         self._tangents.commit(state.t, _turning(self.line, state.u))
 
+    def state(self) -> Saved:
+        return self._tangents.state()
+
+    def restore(self, saved: Saved) -> None:
+        self._tangents.restore(saved)
+
 
 class MidpointRotaryInertia(LinePart):
     """The sections' rotary inertia in steps of the midpoint rule (group I): mass that sits on their directors.
@@ -119,7 +126,7 @@ class MidpointRotaryInertia(LinePart):
     on each of the directors [kg m2], (ne, 1, 1).
     """
 
-    name, traits = "rotary inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting,))
+    name, traits = "rotary inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting, Stateful))
 
     def __init__(self, instant: RotaryInertia) -> None:
         super().__init__(instant.line)
@@ -189,6 +196,16 @@ class MidpointRotaryInertia(LinePart):
     def commit(self, state: State) -> None:
         for director in self._directors:
             director.commit(state.t, _turning(self.line, state.u))
+
+    def state(self) -> Saved:
+        return gathered(self._by_number)
+
+    def restore(self, saved: Saved) -> None:
+        give_back(self._by_number, saved)
+
+    @property
+    def _by_number(self) -> dict[str, Carried]:
+        return {str(k): director for k, director in enumerate(self._directors)}
 
 
 def over_steps(instant: Part) -> Part:

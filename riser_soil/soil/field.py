@@ -6,6 +6,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import State
+from riser_soil.core.saved_state import Saved
 from riser_soil.soil.grid import Grid
 
 
@@ -39,6 +40,12 @@ class SoilField:
 
     def commit(self, state: State) -> None:
         self.total += self.own(state.u)
+
+    def state(self) -> Saved:
+        return {"total": self.total.copy()}
+
+    def restore(self, saved: Saved) -> None:
+        self.total = saved["total"].copy()
 
     def describe(self, entry: int) -> str:
         node, direction = divmod(entry, 3)

@@ -9,6 +9,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
@@ -56,7 +57,7 @@ class Soil:
         depth = np.maximum(level - self._gradients.points[..., 2], 0.0).ravel()
         initial = _geostatic(depth, unit_weight, K0) if start == "geostatic" else np.zeros((depth.size, 6))
         self.law = law(depth, initial)
-        self.traits = Traits("E", self.law.symmetric)
+        self.traits = Traits("E", self.law.symmetric, roles=(Stateful,))
         self._check_start(initial, depth, K0)
         self._initial, self._found = initial, _at_rest(self.law, initial)
         self._asked: tuple[State, Array, Response] | None = None
@@ -171,6 +172,13 @@ class Soil:
                 f"soil.K0 = {K0}: at depth {at:.3g} m the geostatic stress is {ratio:.3g} times "
                 "what the soil bears; bring K0 nearer to 1 or raise su"
             )
+
+    def state(self) -> Saved:
+        found = self._found
+        return {"stress": found.stress, "history": found.history, "stored": found.stored, "elastic": found.elastic}
+
+    def restore(self, saved: Saved) -> None:
+        self._found, self._asked = self._found._replace(**saved), None
 
 
 def _at_rest(law: Formula, initial: Array) -> Response:

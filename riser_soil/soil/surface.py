@@ -6,6 +6,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import State
+from riser_soil.core.saved_state import Saved
 from riser_soil.soil.field import components
 from riser_soil.soil.gathered import Gathered, top_facets
 from riser_soil.soil.grid import Grid
@@ -41,6 +42,12 @@ class SoilTop:
 
     def commit(self, state: State) -> None:
         self.committed += state.u[self.offset : self.offset + self.size].reshape(-1, 3)
+
+    def state(self) -> Saved:
+        return {"committed": self.committed.copy()}
+
+    def restore(self, saved: Saved) -> None:
+        self.committed = saved["committed"].copy()
 
     def describe(self, entry: int) -> str:
         node, direction = divmod(entry, 3)

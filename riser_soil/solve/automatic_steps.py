@@ -11,6 +11,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+import numpy as np
+
+from riser_soil.core.saved_state import Saved
+
 ORDER = 3  # of the local error in the step size
 AIM = 0.3  # of the tolerance: the local error that steps are chosen for
 DOWN, UP = 0.5, 0.1  # of the way to the size that would have fitted, by one step
@@ -81,6 +85,14 @@ class AutoSteps:
         self._size = max(self._smallest, min(LEAST_CUT * dt, max(MOST_CUT * dt, self._fit())) if wrong else 0.5 * dt)
         self._error, self._failed = 0.0, True
         return True
+
+    def state(self) -> Saved:
+        """Stops: those to come, the next one last."""
+        return {"now": np.array(self._now), "size": np.array(self._size), "stops": np.array(self._stops)}
+
+    def restore(self, saved: Saved) -> None:
+        self._now, self._size, self._stops = float(saved["now"]), float(saved["size"]), saved["stops"].tolist()
+        self._error, self._failed = 0.0, False
 
     def _fit(self) -> float:
         """Size that would have made the error aimed at."""

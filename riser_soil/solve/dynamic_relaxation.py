@@ -14,7 +14,8 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.core.part import Model, State
-from riser_soil.core.roles import Remembering, with_role
+from riser_soil.core.roles import with_role
+from riser_soil.core.saved_state import Stateful
 from riser_soil.core.system import Clock, System
 from riser_soil.errors import SolveError
 from riser_soil.riser.line import Line
@@ -168,11 +169,11 @@ def _step(system: System, newton: Newton, part: Relaxation, t: float, drag: floa
 
 def _pass_through(system: System, state: State) -> None:
     """Commit a state that is none of the stage's, so that its forces leave no trace."""
-    remembering = with_role(system.model.parts, Remembering)
-    kept = [part.memory for part in remembering]
+    keeping = [part for part in with_role(system.model.parts, Stateful) if part.traits.keeps_way]
+    kept = [part.state() for part in keeping]
     system.commit(state)
-    for part, memory in zip(remembering, kept, strict=True):
-        part.memory = memory
+    for part, saved in zip(keeping, kept, strict=True):
+        part.restore(saved)
 
 
 def _is_near(system: System, line: Line, solution: Solution) -> bool:

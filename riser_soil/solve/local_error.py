@@ -23,6 +23,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
+from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.solve.newton import Solution
 from riser_soil.solve.riser_mass import RiserMass
@@ -54,6 +55,12 @@ class LocalError:
         """Keep how fast the accelerations changed in a step from `start` to the accepted state `after`."""
         self._jerk, self._dt = (after.a - start.a) / dt, dt
         self._jerk[self._system.prescribed_dofs] = 0.0
+
+    def state(self) -> Saved:
+        return {} if self._jerk is None else {"jerk": self._jerk, "dt": np.array(self._dt)}
+
+    def restore(self, saved: Saved) -> None:
+        self._jerk, self._dt = saved.get("jerk"), float(saved.get("dt", 0.0))
 
     def of(self, start: State, moving: State, solution: Solution, dt: float) -> float:
         """Largest local error of a place [m] in a step from `start` that is solved, but not committed.

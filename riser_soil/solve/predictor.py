@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.saved_state import Saved
 
 STEPS = 4  # that a smooth motion is continued from, at most
 PARABOLA = 2
@@ -49,3 +50,9 @@ class Extrapolation:
             span += step
             found.append((found[-1] - before) / span)
         self._differences, self._steps = found, [dt, *self._steps[:kept]]
+
+    def state(self) -> Saved:
+        return {"differences": np.array(self._differences), "steps": np.array(self._steps)}
+
+    def restore(self, saved: Saved) -> None:
+        self._differences, self._steps = list(saved["differences"]), saved["steps"].tolist()

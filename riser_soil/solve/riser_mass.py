@@ -10,6 +10,7 @@ from scipy.linalg import solveh_banded
 
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import LineField, Part, State, Weights, local
+from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 
 MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
@@ -41,17 +42,26 @@ class RiserMass:
         mine = sum(part.energy(state).kinetic for part in self._parts)
         return float(self._system.comm.allreduce(mine))
 
+    def state(self) -> Saved:
+        """By line, the projectors of its nodes, once they are known: they hold for all configurations but to round-off.
+        """
+        return {mass.line.name: mass.moving for mass in self._lines if mass.moving is not None}
+
+    def restore(self, saved: Saved) -> None:
+        for mass in self._lines:
+            mass.moving = saved.get(mass.line.name)
+
 
 def _with_inertia(system: System) -> list[Part]:
     return [part for part in system.model.parts if part.active and "I" in part.traits.groups]
 
 
 class _LineMass:
-    """The mass of one line."""
+    """The mass of one line. moving: see `_moving`; None until it is first asked for."""
 
     def __init__(self, system: System, line: LineField) -> None:
         self.line, self._system, self._parts = line, system, _with_inertia(system)
-        self._moving: Array | None = None
+        self.moving: Array | None = None
 
     def solve(self, t: float, force: Array) -> Array:
         """With rotations counted by the way of the lever's end, so that all masses are in kg."""
@@ -61,12 +71,12 @@ class _LineMass:
         return self._solve_weighed(blocks / np.outer(of_element, of_element), force / levers) / levers
 
     def _solve_weighed(self, blocks: Array, force: Array) -> Array:
-        if self._moving is None:
-            self._moving = _moving(blocks, ~self.line.prescribed)
-        banded = _banded(_projected(blocks, self._moving), self.line.size)
-        _add_nodal(banded, (blocks.max() or 1.0) * (np.eye(self._moving.shape[1]) - self._moving))
-        nodal = force.reshape(len(self._moving), -1, 1)
-        return np.asarray(solveh_banded(banded, (self._moving @ nodal).ravel(), overwrite_ab=True))
+        if self.moving is None:
+            self.moving = _moving(blocks, ~self.line.prescribed)
+        banded = _banded(_projected(blocks, self.moving), self.line.size)
+        _add_nodal(banded, (blocks.max() or 1.0) * (np.eye(self.moving.shape[1]) - self.moving))
+        nodal = force.reshape(len(self.moving), -1, 1)
+        return np.asarray(solveh_banded(banded, (self.moving @ nodal).ravel(), overwrite_ab=True))
 
     def _element_matrices(self, t: float) -> Array:
         state = State.at_rest(t, self._system.numbering.size)

@@ -9,6 +9,10 @@ from __future__ import annotations
 import math
 from typing import Protocol
 
+import numpy as np
+
+from riser_soil.core.saved_state import Saved
+
 LEVELS = 20
 
 
@@ -85,6 +89,12 @@ class StepControl:
             return False
         self._level += 1
         return True
+
+    def state(self) -> Saved:
+        return {"at": np.array(self._at), "level": np.array(self._level)}
+
+    def restore(self, saved: Saved) -> None:
+        self._at, self._level = int(saved["at"]), int(saved["level"])
 
     @property
     def _stride(self) -> int:

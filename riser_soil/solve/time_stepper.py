@@ -10,6 +10,7 @@ from mpi4py import MPI
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Work, local
 from riser_soil.core.roles import Adaptive, MomentumCorrecting, Predictor, with_role
+from riser_soil.core.saved_state import Saved, Stateful, gathered, record_of, under, values_of, within
 from riser_soil.core.system import System, total
 from riser_soil.errors import SolveError
 from riser_soil.solve.local_error import LocalError
@@ -51,7 +52,7 @@ class Accepted:
 
 
 class TimeStepper:
-    """A stage on its way.
+    """A stage on its way, from the state `before` that it starts with, or from where another one was saved.
 
     before: the accepted state that the next step starts from, its increments zero; its rates leave out what contact
     adds to them (see `time_scheme`). now: the same state as the riser moves; energy: stored in it [J].
@@ -59,28 +60,41 @@ class TimeStepper:
     """
 
     def __init__(
-        self, system: System, newton: Newton, scheme: Scheme, before: State, largest_gain: float = LARGEST_ENERGY_GAIN
+        self,
+        system: System,
+        newton: Newton,
+        scheme: Scheme,
+        before: State | Saved,
+        largest_gain: float = LARGEST_ENERGY_GAIN,
     ) -> None:
         self.system, self.newton, self.scheme, self._largest_gain = system, newton, scheme, largest_gain
-        self._mass: RiserMass | None = None
+        self._mass = RiserMass(system) if scheme.dynamic else None
         self._error: LocalError | None = None
         parts = system.model.parts
         self._predictors: list[Predictor] = [*system.model.lines, *with_role(parts, Predictor)]
         self._adaptive: list[Adaptive] = with_role(parts, Adaptive)
         self._momentum_correcting: list[MomentumCorrecting] = with_role(parts, MomentumCorrecting)
+        if isinstance(before, State):
+            self._begin(before)
+        else:
+            self.restore(before)
+
+    def _begin(self, before: State) -> None:
         self.before = self.now = before
         self.restart()
-        if scheme.dynamic:
-            self._mass = RiserMass(system)
+        if self.scheme.dynamic:
             self._start_rates(before)
         self._begin_step()
         self._history = self.system.forces(self.before) if self._renews_history else None
-        self.energy = system.energy(self.before)
+        self.energy = self.system.energy(self.before)
 
     def restart(self) -> None:
         """Start anew from the configuration that the parts hold now."""
         self._forces = self.system.forces(self.before)
-        self._past = Extrapolation(self.system.numbering.size, smooth=self.system.smooth)
+        self._past = self._new_predictor()
+
+    def _new_predictor(self) -> Extrapolation:
+        return Extrapolation(self.system.numbering.size, smooth=self.system.smooth)
 
     def _start_rates(self, before: State) -> None:
         """Accelerations in balance with the forces at the start of a dynamic stage; prescribed rates."""
@@ -269,3 +283,29 @@ class TimeStepper:
             at = local(line)
             out[at] = line.in_new_axes(conjugate[at], increments[at])
         return out
+
+    def state(self) -> Saved:
+        """The accepted state with its forces and energy, and what the next step is foreseen and judged by."""
+        owners: dict[str, Stateful | None] = {"predictor": self._past, "mass": self._mass, "error": self._error}
+        kept = {"before": self.before, "forces": self._forces, "history": self._history, "energy": self.energy}
+        if self.now is not self.before:
+            kept["now"] = self.now
+        saved = gathered({name: owner for name, owner in owners.items() if owner is not None})
+        for name, record in kept.items():
+            saved |= under(name, values_of(record) if record is not None else {})
+        return saved
+
+    def restore(self, saved: Saved) -> None:
+        """Parts and lines must have been restored, too."""
+        self.before = record_of(State, within(saved, "before"))
+        self.now = record_of(State, now) if (now := within(saved, "now")) else self.before
+        self._forces = record_of(Forces, within(saved, "forces"))
+        self._history = record_of(Forces, history) if (history := within(saved, "history")) else None
+        self.energy = record_of(Energy, within(saved, "energy"))
+        self._past = self._new_predictor()
+        self._past.restore(within(saved, "predictor"))
+        if self._mass is not None:
+            self._mass.restore(within(saved, "mass"))
+        if error := within(saved, "error"):
+            self._error = self._new_error()
+            self._error.restore(error)

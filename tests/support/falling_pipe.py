@@ -10,6 +10,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.scene.stages import Stage
 from riser_soil.solve.dynamic_relaxation import Relaxed
 from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.stages import Onlooker
 from tests.support.coupled_scenes import Mapping
 
 WEIGHT, LENGTH, DROP = 700.0, 20.0, 1.0  # N/m, m, m
@@ -55,7 +56,7 @@ def tilted(k: float, dt: float, duration: float = 3.0) -> Mapping:
     return fall("rigid", "free", TILTED, k, dt, duration)
 
 
-class Energies:
+class Energies(Onlooker):
     """Energies of a stage [J], one entry a step; follows `riser_soil.stages.run_stage`."""
 
     def __init__(self) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.saved_state import Saved
 
 
 class Chain:
@@ -50,6 +51,12 @@ class Chain:
 
     def commit(self, state: State) -> None:
         self.z = self.heights(state)
+
+    def state(self) -> Saved:
+        return {"z": self.z}
+
+    def restore(self, saved: Saved) -> None:
+        self.z = saved["z"]
 
     def describe(self, entry: int) -> str:
         return f"mass {entry}"

@@ -10,7 +10,8 @@ from mpi4py import MPI
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Model, State, Traits
-from riser_soil.core.roles import Adaptive, MomentumCorrecting, Predictor, Remembering, with_role
+from riser_soil.core.roles import Adaptive, MomentumCorrecting, Predictor, with_role
+from riser_soil.core.saved_state import Stateful
 from riser_soil.core.system import Clock, System, total
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Floor
@@ -58,7 +59,7 @@ def start(kind: type[Floor]) -> System:
 def test_a_declared_role_is_played() -> None:
     system = start(Foreseen)
     assert len(with_role(system.model.parts, Predictor)) == 1
-    assert all(not with_role(system.model.parts, role) for role in (Adaptive, MomentumCorrecting, Remembering))
+    assert all(not with_role(system.model.parts, role) for role in (Adaptive, MomentumCorrecting, Stateful))
     system.destroy()
 
 

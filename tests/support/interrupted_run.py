@@ -1,0 +1,98 @@
+"""A run that is left after some of its steps and goes on elsewhere, beside the same run left alone."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from mpi4py import MPI
+
+from riser_soil.assembly import Assembly, build
+from riser_soil.core.part import State
+from riser_soil.core.saved_state import AnyArray, Saved
+from riser_soil.core.system import Clock
+from riser_soil.results.observer import Observer
+from riser_soil.scene.scene import Scene
+from riser_soil.stages import lay, resume_stage, run_stage
+
+TIMES = ("clock/", "observer/recorder/summary/seconds")  # what it took differs from run to run
+
+
+@dataclass
+class Kept:
+    """States of a run: after the steps that are wanted, by their number from 1, and after the last one."""
+
+    wanted: tuple[int, ...] = ()
+    states: dict[int, Saved] = field(default_factory=dict)
+    steps: int = 0
+    last: Saved = field(default_factory=dict)
+    gather: Callable[[], Saved] | None = None
+
+    def keep(self, gather: Callable[[], Saved]) -> None:
+        self.steps, self.gather = self.steps + 1, gather
+        if self.steps in self.wanted:
+            self.states[self.steps] = gather()
+
+    def end(self) -> None:
+        assert self.gather is not None
+        self.last = self.gather()
+
+
+def whole(scene: Scene, folder: Path, after: tuple[int, ...]) -> Kept:
+    """A run from its beginning, its states kept after some steps."""
+    kept, assembly, clock = Kept(after), build(scene, MPI.COMM_SELF), Clock.new()
+    with Observer.open(assembly, clock, folder, force=False) as observer:
+        before, laid = lay(assembly, clock)
+        if laid is not None:
+            observer.laid(assembly.slack, laid.steps, laid.relaxations)
+        _go_on(assembly, 0, before, observer, clock, kept)
+    return kept
+
+
+def resumed(scene: Scene, folder: Path, saved: Saved) -> Kept:
+    """The rest of a run, all things built anew."""
+    kept, assembly, clock = Kept(), build(scene, MPI.COMM_SELF), Clock.new()
+    with Observer.open(assembly, clock, folder, force=False) as observer:
+        stage, before = resume_stage(assembly, saved, observer, clock, kept.keep)
+        _go_on(assembly, scene.stages.index(stage) + 1, before, observer, clock, kept)
+    return kept
+
+
+def _go_on(assembly: Assembly, first: int, before: State, observer: Observer, clock: Clock, kept: Kept) -> None:
+    for stage in assembly.scene.stages[first:]:
+        before = run_stage(assembly, stage, before, observer, clock, kept.keep)
+    kept.end()
+    observer.finish()
+
+
+def differing(one: Saved, other: Saved) -> list[str]:
+    """Names of what is not the same to the last bit, times of the computer left out."""
+    names = [name for name in one.keys() | other.keys() if not name.startswith(TIMES)]
+    return sorted(n for n in names if n not in one or n not in other or not _same(one[n], other[n]))
+
+
+def _same(one: AnyArray, other: AnyArray) -> bool:
+    return np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
+
+
+def differing_rows(one: Path, other: Path) -> list[str]:
+    """Variables of results.nc whose last rows, as many as the shorter file has, are not the same to the last bit."""
+    with xr.open_dataset(one / "results.nc") as a, xr.open_dataset(other / "results.nc") as b:
+        found = []
+        for name in a.variables:
+            n = len(b[name]) if b[name].dims[:1] in (("time",), ("step",)) else 0
+            x, y = (v[name].values[-n:] if n else v[name].values for v in (a, b))
+            if not _same(x, y):
+                found.append(str(name))
+        return found
+
+
+def summary(folder: Path) -> dict[str, Any]:
+    """Less what it took in seconds."""
+    found: dict[str, Any] = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    return {name: value for name, value in found.items() if name != "seconds"}

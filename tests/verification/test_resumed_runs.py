@@ -1,0 +1,69 @@
+"""A run that is left between two steps and goes on from its saved state in things built anew gives what it would have
+given, to the last bit: riser, forces, energy ledger, extremes, sizes of steps.
+"""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from pathlib import Path
+
+import pytest
+
+from riser_soil.scene.reader import read_scene, scene_from_mapping
+from riser_soil.scene.scene import Scene
+from tests.support.coupled_scenes import LAY, heave, touchdown
+from tests.support.interrupted_run import differing, differing_rows, resumed, summary, whole
+
+ROOT = Path(__file__).parents[2]
+MIDPOINT = "stages.1.scheme={midpoint: {}}"
+IN_SPACE = ("dimension=3", "line_types.flexible.GJ=4.0e4")
+STORM = ("water.waves.jonswap.components=10", "water.waves.ramp=1.0", "output.xdmf_interval=0.4")
+COARSE = ("soil.mesh.size_at_riser=1.0", "soil.mesh.size_far=2.5", "soil.law.su=800.0", "stages.1.time_step=0.2")
+
+
+def shortened(file: str, duration: float, *overrides: str) -> Scene:
+    """A scene of two stages, the second of which lasts so long [s]."""
+    return read_scene(ROOT / file, (f"stages.1.duration={duration}", *overrides))
+
+
+def two_storms() -> Scene:
+    """The vessel goes on in the second one where it was at the end of the first."""
+    scene = shortened("demos/waves/scene.yaml", 0.8, *STORM)
+    hang, storm = scene.stages
+    return scene.model_copy(update={"stages": (hang, storm, storm.model_copy(update={"name": "storm on"}))})
+
+
+def plastic_clay_in_space() -> Scene:
+    return scene_from_mapping(touchdown(LAY, heave(0.6), dimension=3))
+
+
+SHORT = {
+    "first scene": (lambda: shortened("demos/first_scene.yaml", 1.0), (5,)),
+    "catenary": (lambda: shortened("demos/catenary/scene.yaml", 1.0), (1, 6)),
+    "catenary, static stages": (lambda: read_scene(ROOT / "demos/catenary/three_stages.yaml"), (2,)),
+    "tank": (lambda: shortened("demos/tank/scene.yaml", 0.5), (6,)),
+    "waves": (two_storms, (4, 7)),
+    "touchdown on clay": (lambda: shortened("demos/touchdown_clay/scene.yaml", 1.0, *COARSE), (4,)),
+    "plastic clay in space": (plastic_clay_in_space, (4,)),
+    "midpoint rule": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT), (6,)),
+    "midpoint rule in space": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT, *IN_SPACE), (6,)),
+    "automatic steps": (lambda: shortened("demos/catenary/scene.yaml", 2.0, "stages.1.time_step=auto"), (7,)),
+    "automatic steps on a seabed": (lambda: shortened("demos/first_scene.yaml", 1.0, "stages.1.time_step=auto"), (12,)),
+    "friction on clay that remembers": (lambda: shortened("tests/scenes/hysteretic.yaml", 1.5, *IN_SPACE), (8,)),
+}
+
+
+@pytest.mark.parametrize("name", SHORT)
+def test_a_resumed_run_goes_on_to_the_last_bit(name: str, tmp_path: Path) -> None:
+    make, after = SHORT[name]
+    scene = make()
+    alone = whole(scene, tmp_path / "alone", after)
+    for step in after:
+        saved = alone.states[step]
+        untouched = deepcopy(saved)
+        rest = resumed(scene, tmp_path / f"from {step}", saved)
+        assert rest.steps == alone.steps - step > 0
+        assert differing(alone.last, rest.last) == []
+        assert differing_rows(tmp_path / "alone", tmp_path / f"from {step}") == []
+        assert summary(tmp_path / "alone") == summary(tmp_path / f"from {step}")
+        assert differing(untouched, saved) == []
