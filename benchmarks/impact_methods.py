@@ -14,6 +14,7 @@ from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.roles import Predictor
 from riser_soil.seabed.law import Answer
 
 NEAR = 1e-8  # m: below it a difference quotient of the potential is round-off
@@ -22,7 +23,7 @@ NEAR = 1e-8  # m: below it a difference quotient of the potential is round-off
 class Averaged:
     """Contact in group F: its force counts as the time scheme weighs those of the riser, not at the step's end."""
 
-    traits = Traits("FE", symmetric=True)  # E, as the force may jump
+    traits = Traits("FE", symmetric=True, roles=(Predictor,))  # E, as the force may jump
     active = True
 
     def __init__(self, contact: SeabedContact) -> None:
