@@ -68,8 +68,8 @@ def stretches(arc: Array, share: Array, clearance: Array, force: Array) -> list[
 
     arc (n,): of points along the riser from its start, growing [m]. share (n,): of its length [m] by quadrature.
     clearance (n,): gap less that at which the force begins [m]. force (n,): per length [N/m], > 0 where it pushes.
-    Gaps no higher than the deepest point is deep part nothing: a stiff bed throws the riser off a little behind the
-    touchdown point.
+    A gap that is no higher than the deepest penetration does not end a stretch: just behind the touchdown point a stiff
+    bed lifts the riser off a little.
     """
     turned = float(np.sum(share)) - arc[::-1], share[::-1], clearance[::-1]
     found, n = [], len(arc)

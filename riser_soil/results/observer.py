@@ -122,7 +122,7 @@ class Observer:
         self._plausibility.look(recorder.now, stepper.now, riser, touching)
         if closely:
             self._plausibility.look_closely(recorder.now, stepper.now, elastic_residual(self._world, stepper))
-        recorder.summary.stages[-1].doubts = self._plausibility.warnings()
+        recorder.summary.stages[-1].implausible = self._plausibility.warnings()
 
     def record_last(self, end: SolveError | Interruption) -> None:
         """The run ends before its time: write the last accepted step; collective where the ranks end together."""

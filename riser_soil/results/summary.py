@@ -19,7 +19,7 @@ from riser_soil.core.snapshot import Ledger, RiserSnapshot, RunFacts, StepHealth
 from riser_soil.results.figures import Extremes
 from riser_soil.results.folder import write_atomically
 
-_NOT_PLAIN = ("extremes", "energy", "worst_residual", "tightest", "doubts")
+_NOT_PLAIN = ("extremes", "energy", "worst_residual", "tightest", "implausible")
 DOUBTFUL = 0.01  # share of the energy turned over above which what is wrong in its balance is a warning
 
 
@@ -74,7 +74,7 @@ class StageTally:
     energy: Ledger = field(default_factory=Ledger)
     tightest: Bend = Bend()
     worst_residual: tuple[float, float] = (0.0, math.nan)  # of the energy balance [J], and its time [s]
-    doubts: tuple[str, ...] = ()  # what is not plausible about the riser's shape, forces and surroundings
+    implausible: tuple[str, ...] = ()  # what is not plausible about the riser's shape, forces and surroundings
 
     def balance(self, t: float, ledger: Ledger) -> None:
         """t: s, total simulated time."""
@@ -120,7 +120,7 @@ class StageTally:
     def warnings(self) -> list[str]:
         """What is doubtful about the stage's results, with numbers and a remedy."""
         off = energy_warnings(self.energy, *self.worst_residual) if self.kind == "dynamic" else ()
-        return [*self.tightest.warnings("s" if self.kind == "dynamic" else "of the load"), *self.doubts, *off]
+        return [*self.tightest.warnings("s" if self.kind == "dynamic" else "of the load"), *self.implausible, *off]
 
     def state(self) -> Saved:
         plain = {name: value for name, value in vars(self).items() if name != "extremes"}
@@ -132,7 +132,7 @@ class StageTally:
         give_back({"extremes": self.extremes}, saved)
         self.energy, self.tightest = Ledger(**vars(self)["energy"]), Bend(**vars(self)["tightest"])
         worst, t = self.worst_residual
-        self.worst_residual, self.doubts = (worst, t), tuple(self.doubts)
+        self.worst_residual, self.implausible = (worst, t), tuple(self.implausible)
 
 
 class Summary:

@@ -83,7 +83,7 @@ LAW = OneOf(LAWS)
 
 
 class HystereticSeabed(BaseModel):
-    """A bed of clay that remembers: it resists penetration, holds the pipe by suction, and softens."""
+    """A bed of hysteretic clay: it resists penetration, holds the pipe by suction, and softens."""
 
     model_config = FROZEN
 

@@ -107,7 +107,7 @@ def test_seconds_spent_before_count_too() -> None:
 
 def test_a_tally_comes_back_as_it_was() -> None:
     tally = StageTally("heave", "dynamic", tightest=Bend(0.5, 3.0, 10.0, 0.1), worst_residual=(0.2, 0.1))
-    tally.doubts, tally.final = ("doubtful",), {"start": {"position": [0.0, 0.1, math.pi]}}
+    tally.implausible, tally.final = ("doubtful",), {"start": {"position": [0.0, 0.1, math.pi]}}
     again = StageTally("", "")
     again.restore(tally.state())
     assert {k: v for k, v in vars(again).items() if k != "extremes"} == {

@@ -1,4 +1,4 @@
-"""The water that a scene asks for, stage by stage; its plane; doubts about its waves."""
+"""The water that a scene asks for, stage by stage; its plane; plausibility of its waves."""
 
 from __future__ import annotations
 

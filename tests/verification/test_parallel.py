@@ -120,7 +120,7 @@ def test_small_scenes_agree_on_several_ranks(name: str, ranks: int) -> None:
 
 @pytest.mark.parametrize("name", ["sea", "clay"])
 def test_a_riser_alone_agrees_on_two_ranks(name: str) -> None:
-    """At sea; and on clay that remembers, with friction."""
+    """At sea; and on hysteretic clay, with friction."""
     assert_same(name, 2)
 
 

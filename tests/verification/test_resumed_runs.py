@@ -49,7 +49,7 @@ SHORT = {
     "midpoint rule in space": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT, *IN_SPACE), (6,)),
     "automatic steps": (lambda: shortened("demos/catenary/scene.yaml", 2.0, "stages.1.time_step=auto"), (7,)),
     "automatic steps on a seabed": (lambda: shortened("demos/first_scene.yaml", 1.0, "stages.1.time_step=auto"), (12,)),
-    "friction on clay that remembers": (lambda: shortened("tests/scenes/hysteretic.yaml", 1.5, *IN_SPACE), (8,)),
+    "friction on hysteretic clay": (lambda: shortened("tests/scenes/hysteretic.yaml", 1.5, *IN_SPACE), (8,)),
 }
 
 

@@ -1,4 +1,4 @@
-"""The touchdown point of a long steel riser, on clay that remembers as on springs."""
+"""The touchdown point of a long steel riser, on hysteretic clay as on springs."""
 
 from __future__ import annotations
 
