@@ -50,7 +50,7 @@ class Observer:
     """Follows a run: progress bar, energy ledger, files. recorder is None off rank 0."""
 
     def __init__(self, assembly: Assembly, clock: Clock, recorder: Recorder | None, progress: Progress) -> None:
-        self._world, self._clock, self._recorder, self._progress = assembly, clock, recorder, progress
+        self._assembly, self._clock, self._recorder, self._progress = assembly, clock, recorder, progress
         output = assembly.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         self._zone = TouchdownZone(assembly, _known_fields(assembly))
@@ -76,13 +76,13 @@ class Observer:
         self._enter(stage, stepper.energy)
         if self._recorder is not None:
             self._recorder.begin_stage(stage.name, stage.kind)
-        if stage is self._world.scene.stages[0] and not isinstance(stage, StaticStage):
+        if stage is self._assembly.scene.stages[0] and not isinstance(stage, StaticStage):
             self._begin_at(stepper)
         self._show(stage)
 
     def _enter(self, stage: Stage, begun: Energy) -> None:
         """begun: energy stored as the stage begins."""
-        scene, static = self._world.scene, isinstance(stage, StaticStage)
+        scene, static = self._assembly.scene, isinstance(stage, StaticStage)
         self._stage = stage
         self._schedule.begin_stage(stage.kind)
         self._balance = EnergyLedger(begun, static, dissipating(scene), working(scene))
@@ -96,7 +96,7 @@ class Observer:
         """Records the state before all stages, which no static stage has brought about."""
         soil = self._soil()
         if self._recorder is not None:
-            self._recorder.begin_at(riser_snapshot(self._world, stepper), self._zone.look(stepper.now), soil)
+            self._recorder.begin_at(riser_snapshot(self._assembly, stepper), self._zone.look(stepper.now), soil)
 
     def record(self, stepper: TimeStepper, step: Accepted, last: bool) -> None:
         """Tell the recorder of a step that has been committed; collective."""
@@ -108,7 +108,7 @@ class Observer:
         self._progress.update(step.t, step.dt, step.solution.iterations)
         if self._recorder is not None:
             health = StepHealth(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
-            riser, touching = riser_snapshot(self._world, stepper), self._zone.look(stepper.now)
+            riser, touching = riser_snapshot(self._assembly, stepper), self._zone.look(stepper.now)
             self._recorder.accept(step.t, due, riser, touching, health, self._balance.ledger, soil)
             if due.series:
                 self._judge(self._recorder, stepper, riser, touching, closely=due.pictures)
@@ -121,12 +121,12 @@ class Observer:
         """Look whether what was recorded is plausible; closely where it costs no more than what is written."""
         self._plausibility.look(recorder.now, stepper.now, riser, touching)
         if closely:
-            self._plausibility.look_closely(recorder.now, stepper.now, elastic_residual(self._world, stepper))
+            self._plausibility.look_closely(recorder.now, stepper.now, elastic_residual(self._assembly, stepper))
         recorder.summary.stages[-1].implausible = self._plausibility.warnings()
 
     def record_last(self, end: SolveError | Interruption) -> None:
         """The run ends before its time: write the last accepted step; collective where the ranks end together."""
-        together = self._world.comm.size == 1 or not isinstance(end, Interruption) or end.together
+        together = self._assembly.comm.size == 1 or not isinstance(end, Interruption) or end.together
         with undivided():
             soil = self._soil() if together else None
             if self._recorder is not None:
@@ -136,14 +136,14 @@ class Observer:
 
     def _soil(self) -> SoilSnapshot | None:
         """Collective where there is soil."""
-        return None if self._world.soil is None else self._world.soil.output_fields()
+        return None if self._assembly.soil is None else self._assembly.soil.output_fields()
 
     def laid(self, slack: float, steps: int, relaxations: int) -> None:
         """Before the stages, the end of a slack or steep riser was brought to its place from `slack` [m] beyond it."""
         if self._recorder is not None:
             self._recorder.summary.laying = {"slack": slack, "load_steps": steps, "relaxations": relaxations}
             helped = f" and {relaxations} dynamic relaxation(s)" if relaxations else ""
-            print(f"{self._world.hanging}: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
+            print(f"{self._assembly.hanging}: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
 
     def relaxed(self, relaxed: Relaxed) -> None:
         """Dynamic relaxation was needed; its Newton iterations count with the next step."""
@@ -164,12 +164,12 @@ class Observer:
             print_summary(self._recorder.summary.as_dict(), self._recorder.settlement)
 
     def state(self) -> Saved:
-        stage = self._world.scene.stages.index(self._stage)
+        stage = self._assembly.scene.stages.index(self._stage)
         return gathered(self._owners) | {"stage": np.array(stage), "relaxed": np.array(self._relaxed)}
 
     def restore(self, saved: Saved) -> None:
         """Follow the stage on from where it was saved."""
-        self._enter(self._world.scene.stages[int(saved["stage"])], Energy())
+        self._enter(self._assembly.scene.stages[int(saved["stage"])], Energy())
         give_back(self._owners, saved)
         self._relaxed = int(saved["relaxed"])
         self._show(self._stage)

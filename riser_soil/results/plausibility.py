@@ -47,26 +47,27 @@ class Plausibility:
 
     def __init__(self, assembly: Assembly) -> None:
         elements = assembly.elements
-        self._world = assembly
+        self._assembly = assembly
         self.EA = -at_most(np.repeat(-elements.EA[:, None], 2, axis=1))
         self.radius = at_most(np.repeat(0.5 * elements.outer_diameter[:, None], 2, axis=1))
         self._middle = 0.5 * (assembly.line.arc[1:] + assembly.line.arc[:-1])
         self._touched = assembly.soil_contact is None
-        self._where, self._lowest = "", np.full(3, np.nan)
+        self._where = ""
+        self._lowest: Array = np.full(3, np.nan)
 
     def begin_stage(self, stage: Stage) -> None:
-        self._last_stage = stage.name == self._world.scene.stages[-1].name
+        self._last_stage = stage.name == self._assembly.scene.stages[-1].name
         self._unit = "s" if stage.kind == "dynamic" else "of the load"
         self._largest = 0.0  # moment [N.m]
         self._axial = self._bending = self._smooth = self._steep = Worst()
 
     def look(self, t: float, state: State, riser: RiserSnapshot, touch: Touch) -> None:
         """t: s of the run (static stages: load factor)."""
-        arc = self._world.line.arc
+        arc = self._assembly.line.arc
         self._axial = self._axial.or_larger(np.abs(riser.effective_tension) / self.EA, arc, t)
         self._bending = self._bending.or_larger(self.radius * riser.curvature, arc, t)
         self._largest = max(self._largest, float(riser.bending_moment.max()))
-        contact = self._world.soil_contact
+        contact = self._assembly.soil_contact
         if contact is not None and not self._touched:
             self._touched = bool(contact.force_per_length(state).any())
         down = not math.isnan(touch.touchdown_arc)
@@ -75,12 +76,12 @@ class Plausibility:
 
     def look_closely(self, t: float, state: State, elastic: Array) -> None:
         """elastic: residual of the elements less its viscous share (ne, 2 ndof)."""
-        found = misfit(self._world.line, self._world.elements, state, elastic)
+        found = misfit(self._assembly.line, self._assembly.elements, state, elastic)
         self._smooth = self._grown(self._smooth, found.smooth, found.smooth_at, t)
         self._steep = self._grown(self._steep, found.steep, found.steep_at, t)
 
     def _grown(self, worst: Worst, moment: float, e: int, t: float) -> Worst:
-        elements = self._world.elements
+        elements = self._assembly.elements
         small = moment * elements.length[e] < SMALL_TURN * max(elements.EI_y[e], elements.EI_z[e])
         return worst if small else worst.or_larger(np.array([moment]), self._middle[[e]], t)
 
@@ -111,7 +112,7 @@ class Plausibility:
             largest = max(found.value, self._largest)
             share = found.value / largest if largest > 0.0 else 0.0
             if share > allowed:
-                length = float(self._world.line.length[np.abs(self._middle - found.arc).argmin()])
+                length = float(self._assembly.line.length[np.abs(self._middle - found.arc).argmin()])
                 yield (
                     f"elements of {length:.4g} m are too long for the bending at arc {found.arc:.5g} m: at "
                     f"{found.t:.5g} {self._unit} their turn and the moments at their ends differ by {found.value:.4g} "
@@ -124,8 +125,8 @@ class Plausibility:
         return f"{worst.value:.3g} at arc {worst.arc:.5g} m and {worst.t:.5g} {self._unit}"
 
     def _never(self) -> str:
-        assert self._world.soil is not None
-        (x0, y0, _), (x1, y1, _) = self._world.soil.grid.low, self._world.soil.grid.high
+        assert self._assembly.soil is not None
+        (x0, y0, _), (x1, y1, _) = self._assembly.soil.grid.low, self._assembly.soil.grid.high
         down = ", ".join(f"{x:.5g}" for x in self._lowest)
         return (
             f"in no stage did the riser touch the soil, x from {x0:.5g} to {x1:.5g} m and y from {y0:.5g} to {y1:.5g} "

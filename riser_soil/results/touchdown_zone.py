@@ -23,12 +23,12 @@ class TouchdownZone:
     """What the rank that holds contact tells of it. fields: those of `Touch` along the riser that are wanted."""
 
     def __init__(self, assembly: Assembly, fields: Sequence[str] = ()) -> None:
-        self._world, self._fields = assembly, fields
-        self._embedment = np.zeros(assembly.line.nodes)
+        self._assembly, self._fields = assembly, fields
+        self._embedment: Array = np.zeros(assembly.line.nodes)
 
     def look(self, state: State) -> Touch:
         """At each accepted state in turn: the embedment is the greatest depth yet."""
-        contacts, line = self._world.contacts, self._world.line
+        contacts, line = self._assembly.contacts, self._assembly.line
         lying = joined([s for contact in contacts for s in contact.stretches(state)], float(line.length.max()))
         arc = touchdown_arc(lying, line)
         return Touch(
@@ -39,15 +39,15 @@ class TouchdownZone:
             contact_force=np.asarray(sum((contact.force_on_riser(state) for contact in contacts), np.zeros(3))),
             penetration=self._penetration(state) if "penetration" in self._fields else None,
             embedment=self._embedded(state) if "embedment" in self._fields else None,
-            slip=self._world.friction.slip() if self._world.friction and "slip" in self._fields else None,
+            slip=self._assembly.friction.slip() if self._assembly.friction and "slip" in self._fields else None,
         )
 
     def _penetration(self, state: State) -> Array:
-        found = [contact.penetration(state) for contact in self._world.contacts]
+        found = [contact.penetration(state) for contact in self._assembly.contacts]
         return np.asarray(np.max(found, axis=0))
 
     def _embedded(self, state: State) -> Array:
-        self._embedment = np.max([self._embedment, *(c.depth(state) for c in self._world.contacts)], axis=0)
+        self._embedment = np.max([self._embedment, *(c.depth(state) for c in self._assembly.contacts)], axis=0)
         return self._embedment
 
     def state(self) -> Saved:

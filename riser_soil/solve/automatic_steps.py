@@ -91,7 +91,8 @@ class AutoSteps:
         return {"now": np.array(self._now), "size": np.array(self._size), "stops": np.array(self._stops)}
 
     def restore(self, saved: Saved) -> None:
-        self._now, self._size, self._stops = float(saved["now"]), float(saved["size"]), saved["stops"].tolist()
+        self._now, self._size = float(saved["now"]), float(saved["size"])
+        self._stops = [float(t) for t in saved["stops"]]
         self._error, self._failed = 0.0, False
 
     def _fit(self) -> float:

@@ -55,4 +55,4 @@ class Extrapolation:
         return {"differences": np.array(self._differences), "steps": np.array(self._steps)}
 
     def restore(self, saved: Saved) -> None:
-        self._differences, self._steps = list(saved["differences"]), saved["steps"].tolist()
+        self._differences, self._steps = list(saved["differences"]), [float(dt) for dt in saved["steps"]]
