@@ -9,3 +9,8 @@ import signal
 
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+from hypothesis import settings  # noqa: E402
+
+settings.register_profile("unhurried", deadline=None)  # nothing hangs on how busy the machine is
+settings.load_profile("unhurried")
