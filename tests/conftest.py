@@ -10,7 +10,7 @@ import signal
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-from hypothesis import settings  # noqa: E402
+from hypothesis import settings
 
 settings.register_profile("unhurried", deadline=None)  # nothing hangs on how busy the machine is
 settings.load_profile("unhurried")
