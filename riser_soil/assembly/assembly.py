@@ -69,9 +69,12 @@ class Assembly:
     begun: dict[str, Array] = field(default_factory=dict)
 
     @property
+    def ground_fields(self) -> list[Field]:
+        return [self.soil.field, self.soil.surface] if self.soil is not None else []
+
+    @property
     def fields(self) -> list[Field]:
-        soil: list[Field] = [self.soil.field, self.soil.surface] if self.soil is not None else []
-        return [self.line, *soil]
+        return [self.line, *self.ground_fields]
 
     @property
     def contacts(self) -> list[SoilContact | SeabedContact]:
@@ -164,7 +167,7 @@ class Assembly:
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
         soil = [self.soil] if self.soil is not None else []
         friction = [self.friction] if self.friction is not None else []
-        return Model([self.line], [*parts, *soil, *self.contacts, *friction], self.fields[1:])
+        return Model([self.line], [*parts, *soil, *self.contacts, *friction], self.ground_fields)
 
 
 def build(scene: Scene, comm: MPI.Intracomm) -> Assembly:

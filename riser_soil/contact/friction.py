@@ -61,7 +61,7 @@ class Friction(LinePart):
 
     def evaluate(self, trial: Trial) -> Sliding:
         """Tractions of the elements that touch."""
-        found: Sliding = trial.once((self, "seen"), self._evaluate)
+        found: Sliding = trial.once((self, "sliding"), self._evaluate)
         return found
 
     def _evaluate(self, trial: Trial) -> Sliding:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from riser_soil.contact.landing import lifted
 from riser_soil.contact.station_forces import StationForces
 from riser_soil.contact.touchdown import Stretch, stretches, touchdown
 from riser_soil.core.arrays import Array, BoolArray, IntArray
@@ -28,8 +29,8 @@ Covered = Callable[[Array], BoolArray]
 class Touching(NamedTuple):
     """What touches at a trial, element by element: m elements, ng stations each, d dimensions.
 
-    elements (m,). force, slope (m, ng): force per length [N/m] and its derivative by the penetration [N/m2]. away
-    (m, ng, d): gradient of the distance from the ground; bend (m, ng, d, d) its derivative, None where it is zero.
+    elements (m,). force, slope (m, ng): force per length [N/m] and its derivative by the penetration [N/m2].
+    normal (m, ng, d): gradient of the distance from the ground; bend (m, ng, d, d) its derivative, None where zero.
     resistance (m, ng, d): minus the force per length on the riser [N/m]. history (m, ng, nh) and energy stored per
     length (m, ng) [N]: what the law tells of a step that ends here.
     """
@@ -45,8 +46,8 @@ class Touching(NamedTuple):
 
 
 class StationContact(NamedTuple):
-    """The line over the ground at a trial: position (ne, ng, d) and penetration (ne, ng) of the stations [m]; away
-    (ne, ng, d): gradient of their distance from the ground.
+    """The line over the ground at a trial: position (ne, ng, d) and penetration (ne, ng) of the stations [m];
+    normal (ne, ng, d): gradient of their distance from the ground.
     """
 
     position: Array
@@ -88,7 +89,7 @@ class SeabedContact(LinePart):
 
     def evaluate(self, trial: Trial) -> StationContact:
         """The stations over the ground, and what touches."""
-        found: StationContact = trial.once((self, "seen"), self._evaluate)
+        found: StationContact = trial.once((self, "stations"), self._evaluate)
         return found
 
     def _evaluate(self, trial: Trial) -> StationContact:
@@ -218,18 +219,12 @@ class SeabedContact(LinePart):
         return self._arc.ravel(), self.share.ravel(), -found.penetration.ravel() - self.law.start, force.ravel()
 
     def predict(self, guess: State) -> Array:
-        """First guess of a step: the guess's increment, lifted where a node would sink below its present depth.
-
-        The motion of the last step carries landing nodes deep into the ground, where the law is far stiffer than
-        at the depth at which they come to rest. They start instead from half the law's rounded corner.
-        """
+        """Increments of a first guess that lands, see `landing`."""
         if not self.line.active:
             return guess.u
-        now = self._clearance(self.line.trial(State.at_rest(guess.t, guess.u.size)))
-        lift = np.maximum(np.minimum(now, -0.5 * self.law.start) - self._clearance(self.line.trial(guess)), 0.0)
-        predicted = guess.u.copy()
-        self.line.nodal(predicted)[:, self.line.dimension - 1] += lift
-        return predicted
+        here, there = self.line.trial(State.at_rest(guess.t, guess.u.size)), self.line.trial(guess)
+        heights = self.line.translation_dofs[:, -1]
+        return lifted(guess, heights, self._clearance(here), self._clearance(there), self.law.start)
 
     def _clearance(self, trial: Trial) -> Array:
         """Gap (nn,) of the nodes less that at which the force begins [m]."""

@@ -17,6 +17,7 @@ from riser_soil.contact.detection import (
 )
 from riser_soil.contact.gap import heights
 from riser_soil.contact.ground import ASPECT, ContactPoints, DeformedSurface, SoilSurface
+from riser_soil.contact.landing import lifted
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.patch import Patch, around
 from riser_soil.contact.touchdown import Stretch, stretches, touchdown
@@ -92,8 +93,6 @@ class SoilContact:
 
     def blocks(self) -> dict[str, Block]:
         """Translations of a node and dofs of a facet, candidate pair by pair."""
-        if not self.active:
-            return {}
         patch = self._present_patch()
         rows = np.hstack([self._riser.translation_dofs[patch.nodes], self._soil.facet_dofs(patch.facet)])
         return {SOIL: Block(rows, rows)}
@@ -107,21 +106,19 @@ class SoilContact:
 
     def residual(self, state: State, forces: Forces) -> None:
         """Add dψ/du: minus the force on the riser, minus the force on the soil."""
-        if self.active:
-            touching = self.detect(state).touching
-            add_shares(forces.end, touching.rows, touching.gradient)
+        touching = self.detect(state).touching
+        add_shares(forces.end, touching.rows, touching.gradient)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         """Add d²ψ/du², unweighted: contact stands at the end of the step."""
-        if self.active:
-            touching = self.detect(state).touching
-            places = self._present_patch().places(touching.node, touching.facet)
-            add_blocks(values[SOIL], places, touching.hessian)
-            self._note_missed(touching, places < 0)
+        touching = self.detect(state).touching
+        places = self._present_patch().places(touching.node, touching.facet)
+        add_blocks(values[SOIL], places, touching.hessian)
+        self._note_missed(touching, places < 0)
 
     def energy(self, state: State) -> Energy:
         """Potential of the penalty."""
-        return Energy(potential=self.detect(state).touching.potential) if self.active else Energy()
+        return Energy(potential=self.detect(state).touching.potential)
 
     def work(self, before: State, after: State) -> Work:
         """What the force at the end of the step took out beyond the change of its potential.
@@ -129,8 +126,6 @@ class SoilContact:
         ψ is convex in the gap, so this is ≥ 0 where the gap is linear in the step, as where soil and riser move
         vertically. Sliding along a sloping ground adds terms of second order in the sliding distance, of either sign.
         """
-        if not self.active:
-            return Work()
         touching = self.detect(after).touching
         taken = float(np.sum(touching.gradient * (after.u - before.u)[touching.rows]))
         return Work(dissipated=taken - self.energy(after).potential + self.energy(before).potential)
@@ -202,18 +197,12 @@ class SoilContact:
         return arc, share, self._clearance(state), self.force_per_length(state)
 
     def predict(self, guess: State) -> Array:
-        """First guess of a step: the guess's increment, lifted where a node would sink below its present depth.
-
-        The motion of the last step carries landing nodes deep into the ground, where the law is far stiffer than
-        at the depth at which they come to rest. They start instead from half the law's rounded corner.
-        """
+        """Increments of a first guess that lands, see `landing`."""
         if not self.active:
             return guess.u
-        now = np.minimum(self._clearance(State.at_rest(guess.t, guess.u.size)), -0.5 * self._rounding)
-        predicted = guess.u.copy()
-        lift = np.maximum(now - self._clearance(guess), 0.0)
-        predicted[self._riser.translation_dofs[:, -1]] += lift
-        return predicted
+        present = self._clearance(State.at_rest(guess.t, guess.u.size))
+        heights = self._riser.translation_dofs[:, -1]
+        return lifted(guess, heights, present, self._clearance(guess), self._rounding)
 
     def _clearance(self, state: State) -> Array:
         """Gap (nn,) less that at which the force begins [m], the least of a node's points; inf far away."""

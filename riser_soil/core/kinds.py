@@ -2,7 +2,9 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, TypeVar, Union, get_args
+from functools import reduce
+from operator import or_
+from typing import Annotated, Any, TypeVar, get_args
 
 from pydantic import BaseModel, Discriminator, GetCoreSchemaHandler, Tag
 from pydantic_core import CoreSchema
@@ -28,7 +30,7 @@ class OneOf:
         chosen = Discriminator(
             by_kind(dict(self.models)), custom_error_type="kind", custom_error_message=", ".join(self.models)
         )
-        return handler.generate_schema(Annotated[Union[tagged], chosen])  # noqa: UP007
+        return handler.generate_schema(Annotated[reduce(or_, tagged), chosen])
 
     @property
     def words(self) -> str:

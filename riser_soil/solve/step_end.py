@@ -19,11 +19,11 @@ from riser_soil.solve.riser_mass import RiserMass
 class CommittedStep:
     """A step just committed, and what its scheme may ask of the system there; collective.
 
-    solved: its state, increments included; forces: in balance there [N]; dt [s].
+    mass: None in statics. solved: its state, increments included; forces: in balance there [N]; dt [s].
     """
 
     system: System
-    mass: RiserMass
+    mass: RiserMass | None
     correcting: Sequence[MomentumCorrecting]
     solved: State
     forces: Forces
@@ -38,17 +38,21 @@ class CommittedStep:
     @cached_property
     def contact(self) -> Array | None:
         """Accelerations that contact causes [m/s2]; None where no forces may jump."""
-        return None if self.system.smooth else self.mass.accelerations(self.solved.t, -self.forces.end)
+        return None if self.system.smooth else self._accelerations(-self.forces.end)
 
     def with_momentum(self, state: State) -> State:
         """The state with the rates that have the momentum of the step's end."""
         missing = np.zeros_like(state.v)
         for part in self.correcting:
             part.add_momentum_correction(state, missing)
-        return State(state.t, state.u, state.v + self.mass.accelerations(state.t, missing), state.a)
+        return State(state.t, state.u, state.v + self._accelerations(missing), state.a)
 
     def in_balance(self, state: State) -> State:
         """The state with the accelerations that its forces cause."""
         prescribed = np.where(self.system.prescribed, state.a, 0.0)
         forces = self.system.forces(State(state.t, state.u, state.v, prescribed))
-        return State(state.t, state.u, state.v, prescribed + self.mass.accelerations(state.t, -total(forces)))
+        return State(state.t, state.u, state.v, prescribed + self._accelerations(-total(forces)))
+
+    def _accelerations(self, force: Array) -> Array:
+        assert self.mass is not None
+        return self.mass.accelerations(self.solved.t, force)

@@ -249,11 +249,7 @@ class TimeStepper:
     def _rates_after(self, step: Accepted) -> tuple[State, State]:
         """The state just committed, increments zero: with the bulk's rates alone, and as the riser moves."""
         solved, forces = step.solution.state, step.solution.forces
-        if self._mass is None:
-            still = State(solved.t, np.zeros_like(solved.u), solved.v, solved.a)
-            return still, still
-        correcting = self._momentum_correcting
-        end = CommittedStep(self.system, self._mass, correcting, solved, forces, step.dt)
+        end = CommittedStep(self.system, self._mass, self._momentum_correcting, solved, forces, step.dt)
         return self.scheme.rates_after(end)
 
     def _begin_step(self) -> None:
@@ -262,8 +258,9 @@ class TimeStepper:
 
     def _energy_after(self, step: Accepted) -> Energy:
         """Stored energy of the accepted state: the step's, but kinetic as the riser moves."""
-        if self._mass is None or self.now.v is step.solution.state.v:
+        if self.now.v is step.solution.state.v:
             return step.energy
+        assert self._mass is not None
         return replace(step.energy, kinetic=self._mass.kinetic_energy(self.now))
 
     @property

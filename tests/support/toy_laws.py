@@ -19,7 +19,7 @@ from riser_soil.scene.seabed import HystereticSeabed
 from riser_soil.scene.soil import SoilScene
 from riser_soil.seabed.law import Answer, SeabedLaw
 from riser_soil.soil import mandel
-from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Response, SoilLaw
+from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Formula, Response, SoilLaw
 from riser_soil.soil.linear_elastic import LinearElastic
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -43,10 +43,19 @@ def _read_anew() -> None:
         model.model_rebuild(force=True)
 
 
-class OtherElastic(LinearElastic):
+class OtherElastic(SoilLaw):
     """Linear elastic soil under another name."""
 
-    kind: Literal["toy"] = Field(description="the law's name")  # type: ignore[assignment]
+    kind: Literal["toy"] = Field(description="the law's name")
+    E: Stress = Field(description="Young's modulus [Pa]")
+    nu: PoissonRatio = Field(description="Poisson's ratio [-]")
+
+    @property
+    def surface_modulus(self) -> float:
+        return self.E
+
+    def at_points(self, depth: Array, initial: Array) -> Formula:
+        return LinearElastic(kind="linear-elastic", E=self.E, nu=self.nu).at_points(depth, initial)
 
 
 class Hardening(SoilLaw):

@@ -25,8 +25,8 @@ from riser_soil.results.observer import Observer
 
 usual, taken = Observer.record, []
 
-def record(self, march, step, last):
-    usual(self, march, step, last)
+def record(self, stepper, step, last):
+    usual(self, stepper, step, last)
     taken.append(step.t)
     if len(taken) == 14:
         os.kill(os.getpid(), signal.SIGNAL)

@@ -38,7 +38,7 @@ def scene(*stages: Mapping, attachments: list[Mapping], riser: Mapping | None = 
 
 
 def inside(assembly: Assembly) -> SectionForces:
-    """Section forces at the end of the world's only, static stage."""
+    """Section forces at the end of the scene's only, static stage."""
     (stage,) = assembly.scene.stages
     state = take(assembly, stage)
     parts = [p for p in assembly.begin(stage).parts if isinstance(p, HasElementForces)]

@@ -1,0 +1,22 @@
+"""First guess of a step in which the riser lands: the predictor of contacts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.part import State
+
+
+def lifted(guess: State, heights: IntArray, present: Array, guessed: Array, start: float) -> Array:
+    """The guess's increments, lifted where a node would sink below its present depth.
+
+    The motion of the last step carries landing nodes deep into the ground, where the law is far stiffer than at the
+    depth at which they come to rest. They start instead from half the law's rounded corner.
+
+    heights (nn,): local numbers of the nodes' vertical dofs. present, guessed (nn,): their gaps less that at which the
+    force begins, `start` [m].
+    """
+    increments = guess.u.copy()
+    increments[heights] += np.maximum(np.minimum(present, -0.5 * start) - guessed, 0.0)
+    return increments
