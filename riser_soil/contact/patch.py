@@ -62,3 +62,18 @@ def around(nodes: IntArray, xy: Array, points: Array, facets: IntArray, distance
     low, high = boxes[None, :, :2] - distance, boxes[None, :, 2:] + distance
     i, facet = np.nonzero(np.all((xy[:, None] >= low) & (xy[:, None] <= high), axis=2))
     return Patch.of(len(facets), nodes[i], facet)
+
+
+def touching_boxes(low: Array, high: Array, points: Array, facets: IntArray) -> tuple[IntArray, IntArray]:
+    """Pairs of boxes, low and high (n, 3), with facets whose boxes they touch: numbers of both, (m,) each.
+
+    points (np, 3): deformed points. facets (nf, nv).
+    """
+    boxes, z = bounds(points, facets), points[facets][:, :, 2]
+    bulge = 0.2 * np.ptp(z, axis=1)
+    near = np.flatnonzero(low[:, 2] <= np.max(z.max(axis=1) + bulge, initial=-np.inf))
+    low, high = low[near][:, None], high[near][:, None]
+    beside = np.all((low[..., :2] <= boxes[None, :, 2:]) & (high[..., :2] >= boxes[None, :, :2]), axis=2)
+    level = (low[..., 2] <= z.max(axis=1) + bulge) & (high[..., 2] >= z.min(axis=1) - bulge)
+    i, facet = np.nonzero(beside & level)
+    return near[i], facet

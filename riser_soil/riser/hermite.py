@@ -31,11 +31,19 @@ def shape(xi: float, L: float) -> Four:
     )
 
 
+@njit
 def slope(xi: float, L: float) -> Four:
     """dN1/ds..dN4/ds (1/m, 1, 1/m, 1) at xi; the first and third cancel, so x' depends on the chord only."""
     square = xi * xi
     bow = 6.0 * (xi - square) / L
     return -bow, 1.0 - 4.0 * xi + 3.0 * square, bow, 3.0 * square - 2.0 * xi
+
+
+@njit
+def bend(xi: float, L: float) -> Four:
+    """d²N1/ds²..d²N4/ds² (1/m2, 1/m, 1/m2, 1/m) at xi."""
+    bow = (6.0 - 12.0 * xi) / (L * L)
+    return -bow, (6.0 * xi - 4.0) / L, bow, (6.0 * xi - 2.0) / L
 
 
 def shapes(xi: Array, L: Array) -> Array:

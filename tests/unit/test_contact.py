@@ -13,6 +13,7 @@ from riser_soil.contact.law import Penalty
 from riser_soil.contact.soil_contact import Reach, SoilContact
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Forces, State, Weights
+from tests.support.soil_tops import Top, top
 
 LAW = Penalty(stiffness=2.0e5, smoothing=1e-3)
 WEIGHTS = Weights(inertia=0.0, force=0.0, shift_v=0.0, shift_a=0.0)
@@ -54,35 +55,6 @@ class Nodes:
 
     def positions3(self, state: State) -> Array:
         return np.asarray(self.position + state.u[self.translation_dofs] @ self.basis.T)
-
-
-@dataclass
-class Top:
-    """Soil surface of points and facets; `committed` deforms it."""
-
-    points: Array
-    facets: IntArray
-    committed: Array
-    offset: int = 0
-
-    @property
-    def size(self) -> int:
-        return self.points.size
-
-
-def top(kind: str, nx: int = 6, ny: int = 4, size: float = 0.5) -> Top:
-    """Level surface over [0, nx·size] × [−ny·size/2, ny·size/2], of squares or pairs of triangles."""
-    n = 1 if kind == "quad4" else 2
-    x = np.linspace(0.0, nx * size, n * nx + 1)
-    y = np.linspace(-0.5 * ny * size, 0.5 * ny * size, n * ny + 1)
-    points = np.array([[a, b, 0.0] for a in x for b in y])
-    number = np.arange(len(points)).reshape(len(x), len(y))
-    cells = [number[n * i : n * i + n + 1, n * j : n * j + n + 1] for i in range(nx) for j in range(ny)]
-    quads = [[c[0, 0], c[1, 0], c[1, 1], c[0, 1]] for c in cells]
-    lower = [[c[0, 0], c[-1, 0], c[-1, -1], c[n // 2, 0], c[-1, n // 2], c[n // 2, n // 2]] for c in cells]
-    upper = [[c[0, 0], c[-1, -1], c[0, -1], c[n // 2, n // 2], c[n // 2, -1], c[0, n // 2]] for c in cells]
-    facets = np.array(quads if kind == "quad4" else lower + upper)
-    return Top(points, facets, np.zeros_like(points))
 
 
 def in_plane(angle: float = 0.0) -> Array:

@@ -1,0 +1,243 @@
+"""Distance of points of the soil from the pipe's cylinder around its curved axis, with its exact first and second
+derivatives.
+
+The axis is the cubic c(s) = Σ N_a(s) q_a of a beam element. With s the closest place to the point p, d = p - c,
+rho = |d|, n = d/rho, tau = c'/|c'|, b = tau x n and kappa = n·c'', the gap g = rho - R to the radius R has
+
+    δg   = n·(δp - N δq)
+    δs   = (c'·(δp - N δq) + rho n·N'δq)/(c'² - rho kappa)
+    δ²g  = (b·(δp - N δq))²/rho + rho (ε + kappa δs)²/c'² - 2 ε δs - kappa δs²,    ε = n·N'δq
+
+so four linear forms hold everything. At an end of the element s stays, and δ²g is that of the distance from a point:
+the sum over two directions square to n. A point that has come through to above the axis is taken to lie below it, with
+rho < 0: the pipe pushes it down all the same.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.contact.facets import shape
+from riser_soil.contact.integration_points import area, place
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
+from riser_soil.riser.hermite import Four, bend, slope
+from riser_soil.riser.hermite import shape as axis_shape
+
+FORMS = 4
+MAX_ITERATIONS = 30
+CONVERGED = 1e-14  # step along an element, as a part of its length
+THROUGH = 0.5  # radii beside the axis within which a point above it has come through
+PARALLEL = 1e-12  # sine of the angle below which two directions are one
+THINNEST = 1e-3  # radii: nearer to the axis the direction from it means nothing
+
+
+class Axis(NamedTuple):
+    """The riser's axis in global axes: q (ne, 4, 3), see `hermite`, lengths and radii (ne,) [m]."""
+
+    q: Array
+    length: Array
+    radius: Array
+
+
+class Surface(NamedTuple):
+    """facets (nf, nv); their divisions (nf, 2); undeformed and deformed points (np, 3) [m]."""
+
+    facets: IntArray
+    parts: IntArray
+    at_first: Array
+    deformed: Array
+
+
+class NearPoints(NamedTuple):
+    """Integration points near the pipe (n,): element and facet, place xi (n,) on the element's axis, (xi, eta) (n, 2) on
+    the facet, area [m2], and gap [m].
+    """
+
+    element: IntArray
+    facet: IntArray
+    along: Array
+    xi: Array
+    area: Array
+    gap: Array
+
+
+def near_points(axis: Axis, surface: Surface, elements: IntArray, facets: IntArray, within: float) -> NearPoints:
+    """Points of candidate pairs (m,) of an element and a facet whose gap is less than `within` [m]."""
+    order = np.lexsort((elements, facets))
+    elements, facets = elements[order], facets[order]
+    first = np.flatnonzero(np.diff(facets, prepend=-1))
+    begin = np.append(first, len(facets))
+    kept = _near_points(axis, surface, elements, facets[first], begin, within)
+    return NearPoints(*kept)
+
+
+@njit
+def _near_points(
+    axis: Axis, surface: Surface, elements: IntArray, facets: IntArray, begin: IntArray, within: float
+) -> tuple[IntArray, IntArray, Array, Array, Array, Array]:
+    room = 0
+    for f in facets:
+        room += surface.parts[f, 0] * surface.parts[f, 1]
+    element, facet = np.empty(room, np.int64), np.empty(room, np.int64)
+    numbers, n, nv = np.empty((room, 5)), 0, surface.facets.shape[1]
+    for i, f in enumerate(facets):
+        nodes = surface.facets[f]
+        for k in range(surface.parts[f, 0] * surface.parts[f, 1]):
+            xi, eta, share = place(nv, surface.parts[f], k)
+            p = _point(surface.deformed, nodes, xi, eta)
+            e, along, gap = _nearest(axis, elements[begin[i] : begin[i + 1]], p)
+            if gap < within:
+                element[n], facet[n] = e, f
+                numbers[n, 0], numbers[n, 1], numbers[n, 2], numbers[n, 3] = along, gap, xi, eta
+                numbers[n, 4] = share * area(surface.at_first, nodes, xi, eta)
+                n += 1
+    values = numbers[:n]
+    return element[:n], facet[:n], values[:, 0].copy(), values[:, 2:4].copy(), values[:, 4].copy(), values[:, 1].copy()
+
+
+@njit
+def _point(points: Array, nodes: IntArray, xi: float, eta: float) -> tuple[float, float, float]:
+    N, _ = shape(len(nodes), xi, eta)
+    x = y = z = 0.0
+    for a in range(len(nodes)):
+        x += N[a] * points[nodes[a], 0]
+        y += N[a] * points[nodes[a], 1]
+        z += N[a] * points[nodes[a], 2]
+    return x, y, z
+
+
+@njit
+def _nearest(axis: Axis, elements: IntArray, p: tuple[float, float, float]) -> tuple[int, float, float]:
+    """Of some elements the one whose axis comes nearest to a point, the place on it, and the gap [m]; the first where
+    two come as near.
+    """
+    nearest, place_on, gap, distance = -1, 0.0, np.inf, np.inf
+    for e in elements:
+        along = _closest(axis.q[e], axis.length[e], p)
+        c = _combined(axis.q[e], axis_shape(along, axis.length[e]))
+        rho = _signed(c, p, axis.radius[e])
+        if abs(rho) < distance:
+            nearest, place_on, gap, distance = e, along, rho - axis.radius[e], abs(rho)
+    return nearest, place_on, gap
+
+
+@njit
+def _signed(c: tuple[float, float, float], p: tuple[float, float, float], radius: float) -> float:
+    """Distance of p from the axis at c [m], < 0 where it has come through to above."""
+    x, y, z = p[0] - c[0], p[1] - c[1], p[2] - c[2]
+    beside = math.sqrt(x * x + y * y)
+    rho = max(math.sqrt(beside * beside + z * z), THINNEST * radius)
+    return -rho if z > 0.0 and beside < THROUGH * radius else rho
+
+
+@njit
+def _closest(q: Array, L: float, p: tuple[float, float, float]) -> float:
+    """Place xi in 0..1 on an element's axis that is closest to a point."""
+    xi = 0.5
+    for _ in range(MAX_ITERATIONS):
+        c, c1 = _combined(q, axis_shape(xi, L)), _combined(q, slope(xi, L))
+        c2 = _combined(q, bend(xi, L))
+        against = ahead = turning = 0.0
+        for i in range(3):
+            against += (p[i] - c[i]) * c1[i]
+            ahead += c1[i] * c1[i]
+            turning += (p[i] - c[i]) * c2[i]
+        rate = ahead - turning
+        if rate <= 0.1 * ahead:  # far from the axis, beyond its centre of curvature
+            rate = ahead
+        new = min(max(xi + against / (rate * L), 0.0), 1.0)
+        step, xi = abs(new - xi), new
+        if step < CONVERGED:
+            break
+    return xi
+
+
+@njit
+def _combined(q: Array, N: Four) -> tuple[float, float, float]:
+    x = N[0] * q[0, 0] + N[1] * q[1, 0] + N[2] * q[2, 0] + N[3] * q[3, 0]
+    y = N[0] * q[0, 1] + N[1] * q[1, 1] + N[2] * q[2, 1] + N[3] * q[3, 1]
+    z = N[0] * q[0, 2] + N[1] * q[1, 2] + N[2] * q[2, 2] + N[3] * q[3, 2]
+    return x, y, z
+
+
+def gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array) -> tuple[Array, Array]:
+    """Linear forms (n, 4, 4 d + 3 nv) of the gap at some points and the symmetric matrices C (n, 4, 4) with which
+    δ²g = forms·C·forms; the first form is δg.
+
+    Columns: q of the element in axes basis (3, d), then the facet's nodes.
+    """
+    columns = 4 * basis.shape[1] + 3 * surface.facets.shape[1]
+    forms, C = np.empty((len(near.gap), FORMS, columns)), np.zeros((len(near.gap), FORMS, FORMS))
+    _gap_forms(axis, surface, near, basis, forms, C)
+    return forms, C
+
+
+@njit
+def _gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array, forms: Array, C: Array) -> None:
+    for i in range(len(near.gap)):
+        e, nodes, xi = near.element[i], surface.facets[near.facet[i]], near.along[i]
+        p = _point(surface.deformed, nodes, near.xi[i, 0], near.xi[i, 1])
+        vectors = _frame(axis.q[e], axis.length[e], axis.radius[e], xi, p, C[i])
+        _fill(vectors, basis, axis_shape(xi, axis.length[e]), slope(xi, axis.length[e]), forms[i])
+        N, _ = shape(len(nodes), near.xi[i, 0], near.xi[i, 1])
+        for k in range(FORMS):
+            for a in range(len(nodes)):
+                for j in range(3):
+                    forms[i, k, 4 * basis.shape[1] + 3 * a + j] = N[a] * vectors[k, 0, j]
+
+
+@njit
+def _fill(vectors: Array, basis: Array, N: Four, dN: Four, forms: Array) -> None:
+    """Columns of q: -N times the forms' vectors by δp - N δq, and N' times those by N'δq."""
+    d = basis.shape[1]
+    for k in range(FORMS):
+        for j in range(d):
+            moved = sloped = 0.0
+            for i in range(3):
+                moved += basis[i, j] * vectors[k, 0, i]
+                sloped += basis[i, j] * vectors[k, 1, i]
+            for a in range(4):
+                forms[k, a * d + j] = dN[a] * sloped - N[a] * moved
+
+
+@njit
+def _frame(q: Array, L: float, radius: float, xi: float, p: tuple[float, float, float], C: Array) -> Array:
+    """Vectors (4, 2, 3) of the forms δg, b·(…), ε and δs: by δp - N δq and by N'δq; writes C (4, 4), see `gap_forms`."""
+    c, c1, c2 = _combined(q, axis_shape(xi, L)), _combined(q, slope(xi, L)), _combined(q, bend(xi, L))
+    rho = _signed(c, p, radius)
+    vectors = np.zeros((FORMS, 2, 3))
+    n = ((p[0] - c[0]) / rho, (p[1] - c[1]) / rho, (p[2] - c[2]) / rho)
+    ahead = c1[0] * c1[0] + c1[1] * c1[1] + c1[2] * c1[2]
+    kappa = n[0] * c2[0] + n[1] * c2[1] + n[2] * c2[2]
+    b = _square_to(c1, n)
+    free = 0.0 < xi < 1.0
+    third = n if free else _square_to(b, n)
+    for i in range(3):
+        vectors[0, 0, i], vectors[1, 0, i] = n[i], b[i]
+        vectors[2, int(free), i] = third[i]
+    C[1, 1] = 1.0 / rho
+    if not free:
+        C[2, 2] = 1.0 / rho
+        return vectors
+    for i in range(3):
+        vectors[3, 0, i] = c1[i] / (ahead - rho * kappa)
+        vectors[3, 1, i] = rho * n[i] / (ahead - rho * kappa)
+    C[2, 2] = rho / ahead
+    C[2, 3] = C[3, 2] = rho * kappa / ahead - 1.0
+    C[3, 3] = rho * kappa * kappa / ahead - kappa
+    return vectors
+
+
+@njit
+def _square_to(t: tuple[float, float, float], n: tuple[float, float, float]) -> tuple[float, float, float]:
+    """Unit vector along t x n; where they are parallel, one that is square to n."""
+    x, y, z = t[1] * n[2] - t[2] * n[1], t[2] * n[0] - t[0] * n[2], t[0] * n[1] - t[1] * n[0]
+    size = math.sqrt(x * x + y * y + z * z)
+    if size < PARALLEL * math.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]):
+        x, y, z = (-n[1], n[0], 0.0) if abs(n[2]) < 0.5 else (0.0, -n[2], n[1])
+        size = math.sqrt(x * x + y * y + z * z)
+    return x / size, y / size, z / size

@@ -1,0 +1,67 @@
+"""Integration points of contact on the soil's surface: facets divided evenly, as fine as the contact asks for.
+
+Points are fixed to the soil: each keeps its place on its facet and the undeformed area that it stands for. quad4 is cut
+into rows and columns, tri6 into n² equal triangles; the points lie in the middles.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from riser_soil.contact.facets import QUAD, shape
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
+
+LARGEST = 512  # divisions of a facet's side
+
+
+def divisions(points: Array, facets: IntArray, along: Array, spacing: tuple[float, float]) -> IntArray:
+    """Into how many parts (nf, 2) facets are cut in xi and eta: their points lie no farther apart than the spacing.
+
+    points (np, 3): undeformed [m]. facets (nf, 4 or 6). along (2,): horizontal unit vector of the riser. spacing: of
+    points along and across it [m].
+    """
+    at = points[facets][:, :, :2]
+    if facets.shape[1] == len(QUAD):
+        sides = 0.5 * np.stack([at[:, 1] + at[:, 2] - at[:, 0] - at[:, 3], at[:, 2] + at[:, 3] - at[:, 0] - at[:, 1]], 1)
+        counted = _parts(sides, along, spacing)
+    else:
+        sides = np.stack([at[:, 1] - at[:, 0], at[:, 2] - at[:, 1], at[:, 0] - at[:, 2]], axis=1)
+        counted = np.repeat(_parts(sides, along, spacing).max(axis=1)[:, None], 2, axis=1)
+    return np.clip(counted, 1, LARGEST)
+
+
+def _parts(sides: Array, along: Array, spacing: tuple[float, float]) -> IntArray:
+    """Parts (nf, k) of sides (nf, k, 2) [m]."""
+    axes = np.array([along, [-along[1], along[0]]])
+    parts: IntArray = np.ceil(np.max(np.abs(sides @ axes.T) / np.array(spacing), axis=2) - 1e-9).astype(np.int64)
+    return parts
+
+
+@njit
+def place(nodes: int, parts: IntArray, k: int) -> tuple[float, float, float]:
+    """(xi, eta) of the k-th point of a facet, and the area in (xi, eta) that it stands for."""
+    n, m = parts[0], parts[1]
+    if nodes == 4:
+        return -1.0 + (2 * (k // m) + 1) / n, -1.0 + (2 * (k % m) + 1) / m, 4.0 / (n * m)
+    left = n * n - k  # triangles from this one on: those of m rows fill m²
+    m = int(math.sqrt(left))
+    m += m * m < left
+    row, column = n - m, k - (n * n - m * m)
+    third = (1 + column % 2) / 3.0
+    return (row + third) / n, (column // 2 + third) / n, 0.5 / (n * n)
+
+
+@njit
+def area(points: Array, facet: IntArray, xi: float, eta: float) -> float:
+    """Area of a facet per area in (xi, eta) [m2]."""
+    _, dN = shape(len(facet), xi, eta)
+    a, b = np.zeros(3), np.zeros(3)
+    for v in range(len(facet)):
+        for i in range(3):
+            a[i] += points[facet[v], i] * dN[v, 0]
+            b[i] += points[facet[v], i] * dN[v, 1]
+    x, y, z = a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+    return math.sqrt(x * x + y * y + z * z)
