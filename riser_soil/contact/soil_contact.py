@@ -161,6 +161,12 @@ class SoilContact(LyingContact):
         d = self.line.basis.shape[1]
         return np.asarray(-self.line.basis @ self.detect(state).touching.gradient[:, :d].sum(axis=0))
 
+    def nodal_forces(self, state: State) -> Array:
+        """Residual (nn, ndof) at the riser's nodes."""
+        forces = Forces.zeros(state.u.size)
+        self.residual(state, forces)
+        return self.line.nodal(forces.end)
+
     def force_on_soil(self, state: State) -> Array:
         """Sum of the contact forces on the soil (3,) [N], global axes."""
         if not self.active:
