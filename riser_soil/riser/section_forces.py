@@ -109,7 +109,8 @@ def end_reactions(
 ) -> tuple[Reaction, Reaction]:
     """Reactions at start and end.
 
-    residual: from `element_residual`; nodal: from `nodal_residual`. A spring is a support, so its moment belongs to the reaction.
+    residual: from `element_residual`; nodal: from `nodal_residual`. A spring is a support, so its moment belongs to the
+    reaction.
     """
     force, moment = end_forces(line, line.trial(state), residual)
     at_nodes = np.zeros((line.nodes, line.ndof)) if nodal is None else nodal
