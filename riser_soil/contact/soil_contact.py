@@ -15,7 +15,7 @@ from riser_soil.contact.detection import (
     add_shares,
 )
 from riser_soil.contact.gap import heights
-from riser_soil.contact.ground import ASPECT, ContactPoints, DeformedSurface, SoilSurface
+from riser_soil.contact.ground import ASPECT, ContactPoints, DeformedSurface
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.lying import Lying, LyingContact
 from riser_soil.contact.patch import Patch, around
@@ -24,6 +24,7 @@ from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, 
 from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line import Line
+from riser_soil.soil.surface import SoilTop
 
 FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
 
@@ -62,7 +63,7 @@ class SoilContact(LyingContact):
         self,
         line: Line,
         radius: Array,
-        surface: SoilSurface,
+        surface: SoilTop,
         law: Penalty,
         *,
         footprint: float | None = None,

@@ -1,4 +1,4 @@
-"""The contact part on a stand-in for the soil's surface: derivatives, balance, pattern, readings."""
+"""The contact part without soil below its surface: derivatives, balance, pattern, readings."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ from riser_soil.contact.contact import Contact
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.contact.soil_contact import Reach, SoilContact
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Weights
 from riser_soil.riser import shapes
 from riser_soil.riser.line import End, Line
 from riser_soil.riser.shapes import Curve
 from riser_soil.riser.stations import ENDS
 from riser_soil.seabed.grounds import Plane
+from riser_soil.soil.surface import SoilTop
 
 LAW = Penalty(stiffness=2.0e5, smoothing=1e-3)
 WEIGHTS = Weights(inertia=0.0, force=0.0, shift_v=0.0, shift_a=0.0)
@@ -39,21 +40,7 @@ def riser_at(position: Array, plane: float | None = None, active: bool = True) -
     return Line(3 if plane is None else 2, layout, End(True), End(False), direction, active=active)
 
 
-@dataclass
-class Top:
-    """Soil surface of points and facets; `committed` deforms it."""
-
-    points: Array
-    facets: IntArray
-    committed: Array
-    offset: int = 0
-
-    @property
-    def size(self) -> int:
-        return self.points.size
-
-
-def top(kind: str, nx: int = 6, ny: int = 4, size: float = 0.5) -> Top:
+def top(kind: str, nx: int = 6, ny: int = 4, size: float = 0.5) -> SoilTop:
     """Level surface over [0, nx·size] × [−ny·size/2, ny·size/2], of squares or pairs of triangles."""
     n = 1 if kind == "quad4" else 2
     x = np.linspace(0.0, nx * size, n * nx + 1)
@@ -65,7 +52,7 @@ def top(kind: str, nx: int = 6, ny: int = 4, size: float = 0.5) -> Top:
     lower = [[c[0, 0], c[-1, 0], c[-1, -1], c[n // 2, 0], c[-1, n // 2], c[n // 2, n // 2]] for c in cells]
     upper = [[c[0, 0], c[-1, -1], c[0, -1], c[n // 2, n // 2], c[n // 2, -1], c[0, n // 2]] for c in cells]
     facets = np.array(quads if kind == "quad4" else lower + upper)
-    return Top(points, facets, np.zeros_like(points))
+    return SoilTop(points, facets, np.arange(points.size), np.zeros(points.size, dtype=bool))
 
 
 @dataclass
@@ -73,14 +60,14 @@ class Case:
     """A riser over a surface; dofs of another field lie between them."""
 
     riser: Line
-    surface: Top
+    surface: SoilTop
     contact: SoilContact
 
     @classmethod
     def build(
         cls,
         riser: Line,
-        surface: Top,
+        surface: SoilTop,
         footprint: float = FOOTPRINT,
         along: Array | None = None,
     ) -> Case:
@@ -222,7 +209,7 @@ def test_force_on_riser_is_minus_its_residual() -> None:
     )
 
 
-def level_case(depth: Array, surface: Top, plane: float | None = None) -> Case:
+def level_case(depth: Array, surface: SoilTop, plane: float | None = None) -> Case:
     """A level row of nodes over x = 0.25, 0.75, …, each sunk in by its depth [m]."""
     n = len(depth)
     position = np.column_stack([0.25 + 0.5 * np.arange(n), np.zeros(n), RADIUS - depth])
@@ -377,7 +364,7 @@ def test_committed_settlement_counts_and_memory_is_dropped() -> None:
     np.testing.assert_allclose(case.contact.force_per_length(state), force - 0.005 * LAW.stiffness, rtol=1e-9)
 
 
-def soil_springs(surface: Top, stiffness: float) -> Array:
+def soil_springs(surface: SoilTop, stiffness: float) -> Array:
     """Matrix of a soft bed: springs to the ground, and between all nodes of a facet, in each direction."""
     n = len(surface.points)
     K = np.zeros((n, n))
