@@ -28,6 +28,7 @@ from riser_soil.scene.stages import DynamicStage, MovedEnds, Stage, StaticStage
 
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels
+    from riser_soil.contact.contact import Contact
     from riser_soil.contact.friction import Friction
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
@@ -77,9 +78,10 @@ class Assembly:
         return [self.line, *self.ground_fields]
 
     @property
-    def contacts(self) -> list[SoilContact | SeabedContact]:
+    def contacts(self) -> list[Contact]:
         """What the riser may touch."""
-        return [contact for contact in (self.soil_contact, self.seabed) if contact is not None]
+        both: tuple[Contact | None, Contact | None] = (self.soil_contact, self.seabed)
+        return [contact for contact in both if contact is not None]
 
     @property
     def size(self) -> int:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from riser_soil.contact.friction import Friction
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
+    from riser_soil.contact.surface_contact import SurfaceContact
     from riser_soil.seabed.grounds import Ground
     from riser_soil.seabed.law import NormalLaw
     from riser_soil.soil.grid import Grid
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
     from riser_soil.soil.surface import SoilTop
 
 GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within it, three leave ten times the error
+# Integration points across the width that touches at rest, as parts of the diameter, and how much farther apart along.
+POINTS_ACROSS, FINEST, COARSEST, ALONG = 4.0, 1.0 / 200.0, 1.0 / 16.0, 4.0
 # Of the outer diameter: a penalty's corner, sharper ones cost Newton iterations; the slide that mobilises friction.
 NARROWEST_CORNER, WIDEST_CORNER, MOBILISATION = 1.0 / 3000.0, 1.0 / 300.0, 1.0 / 30.0
 
@@ -64,8 +67,10 @@ def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Gr
 
 def soil_contact_of(
     scene: Scene, settings: ContactScene, line: Line, elements: Elements, surface: SoilTop, stiffness: float
-) -> SoilContact:
+) -> SoilContact | SurfaceContact:
     """Contact of the riser with the soil; evaluated on the first rank. stiffness: of the penalty [N/m2]."""
+    if settings.method == "surface":
+        return _surface_contact_of(scene, settings, line, elements, surface, stiffness)
     from riser_soil.contact.law import Penalty
     from riser_soil.contact.soil_contact import FOOTPRINT, SoilContact
 
@@ -78,8 +83,37 @@ def soil_contact_of(
         Penalty(stiffness, smoothing(settings, scales, "soil", stiffness)),
         footprint=FOOTPRINT * outer_radius,  # also where the axis touches: a single point finds no balance on a kink
         along=line.direction[:2],
-        active=line.active,
     )
+
+
+def _surface_contact_of(
+    scene: Scene, settings: ContactScene, line: Line, elements: Elements, surface: SoilTop, stiffness: float
+) -> SurfaceContact:
+    """Contact of the pipe's cylinder: the penalty's stiffness [N/m2] is spread over the width that touches at rest."""
+    from riser_soil.contact.law import Penalty
+    from riser_soil.contact.surface_contact import SurfaceContact
+
+    assert scene.soil is not None
+    scales = scales_of(elements)
+    width = contact_width(scales, scene.soil.law.surface_modulus)
+    smoothing = 0.0 if settings.smoothing == "auto" else float(settings.smoothing)
+    across = float(np.clip(width / POINTS_ACROSS, FINEST * scales.diameter, COARSEST * scales.diameter))
+    return SurfaceContact(
+        line,
+        contact_radius(scene, elements),
+        surface,
+        Penalty(stiffness / width, smoothing),
+        (ALONG * across, across),
+        along=line.direction[:2],
+    )
+
+
+def contact_width(scales: Scales, E: float) -> float:
+    """Width [m] over which the pipe touches elastic soil at rest, 2 b with b² = 4 q R/(pi E): Hertz, the line contact of
+    a cylinder, for a modulus E [Pa] of soil without change of volume, 4/3 E; at most the diameter.
+    """
+    half = np.sqrt(4.0 * scales.weight * 0.5 * scales.diameter / (np.pi * 4.0 / 3.0 * E))
+    return float(min(2.0 * half, scales.diameter))
 
 
 def seabed_contact_of(
@@ -95,7 +129,7 @@ def seabed_contact_of(
         contact_radius(scene, elements),
         _ground(scene, scene.seabed),
         law,
-        {"node": ENDS, "line": gauss(GAUSS_POINTS)}[settings.method],
+        ENDS if settings.method == "node" else gauss(GAUSS_POINTS),
         covered=beside.covers if beside is not None else None,
     )
 

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.facets import shape
+from riser_soil.contact.facets import fill_shape
 from riser_soil.contact.integration_points import area, place
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
@@ -71,37 +71,41 @@ def near_points(axis: Axis, surface: Surface, elements: IntArray, facets: IntArr
     elements, facets = elements[order], facets[order]
     first = np.flatnonzero(np.diff(facets, prepend=-1))
     begin = np.append(first, len(facets))
-    kept = _near_points(axis, surface, elements, facets[first], begin, within)
+    kept = _near_points(axis, _bow(axis), surface, elements, facets[first], begin, within)
     return NearPoints(*kept)
 
 
 @njit
 def _near_points(
-    axis: Axis, surface: Surface, elements: IntArray, facets: IntArray, begin: IntArray, within: float
+    axis: Axis, bow: Array, surface: Surface, elements: IntArray, facets: IntArray, begin: IntArray, within: float
 ) -> tuple[IntArray, IntArray, Array, Array, Array, Array]:
     room = 0
     for f in facets:
         room += surface.parts[f, 0] * surface.parts[f, 1]
     element, facet = np.empty(room, np.int64), np.empty(room, np.int64)
     numbers, n, nv = np.empty((room, 5)), 0, surface.facets.shape[1]
+    N, dN = np.empty(nv), np.empty((nv, 2))
     for i, f in enumerate(facets):
         nodes = surface.facets[f]
         for k in range(surface.parts[f, 0] * surface.parts[f, 1]):
             xi, eta, share = place(nv, surface.parts[f], k)
-            p = _point(surface.deformed, nodes, xi, eta)
-            e, along, gap = _nearest(axis, elements[begin[i] : begin[i + 1]], p)
+            p = _point(surface.deformed, nodes, xi, eta, N, dN)
+            e, along, gap = _nearest(axis, bow, elements[begin[i] : begin[i + 1]], p, within)
             if gap < within:
                 element[n], facet[n] = e, f
                 numbers[n, 0], numbers[n, 1], numbers[n, 2], numbers[n, 3] = along, gap, xi, eta
-                numbers[n, 4] = share * area(surface.at_first, nodes, xi, eta)
+                numbers[n, 4] = share * area(surface.at_first, nodes, dN)
                 n += 1
     values = numbers[:n]
     return element[:n], facet[:n], values[:, 0].copy(), values[:, 2:4].copy(), values[:, 4].copy(), values[:, 1].copy()
 
 
 @njit
-def _point(points: Array, nodes: IntArray, xi: float, eta: float) -> tuple[float, float, float]:
-    N, _ = shape(len(nodes), xi, eta)
+def _point(
+    points: Array, nodes: IntArray, xi: float, eta: float, N: Array, dN: Array
+) -> tuple[float, float, float]:
+    """Place of a point on a facet [m]; writes the shape functions there to N and dN, see `fill_shape`."""
+    fill_shape(xi, eta, N, dN)
     x = y = z = 0.0
     for a in range(len(nodes)):
         x += N[a] * points[nodes[a], 0]
@@ -111,18 +115,44 @@ def _point(points: Array, nodes: IntArray, xi: float, eta: float) -> tuple[float
 
 
 @njit
-def _nearest(axis: Axis, elements: IntArray, p: tuple[float, float, float]) -> tuple[int, float, float]:
+def _nearest(
+    axis: Axis, bow: Array, elements: IntArray, p: tuple[float, float, float], within: float
+) -> tuple[int, float, float]:
     """Of some elements the one whose axis comes nearest to a point, the place on it, and the gap [m]; the first where
-    two come as near.
+    two come as near. -1 where none can come within that gap.
     """
     nearest, place_on, gap, distance = -1, 0.0, np.inf, np.inf
     for e in elements:
+        if _from_chord(axis.q[e], p) - bow[e] - axis.radius[e] >= within:
+            continue
         along = _closest(axis.q[e], axis.length[e], p)
         c = _combined(axis.q[e], axis_shape(along, axis.length[e]))
         rho = _signed(c, p, axis.radius[e])
         if abs(rho) < distance:
             nearest, place_on, gap, distance = e, along, rho - axis.radius[e], abs(rho)
     return nearest, place_on, gap
+
+
+@njit
+def _from_chord(q: Array, p: tuple[float, float, float]) -> float:
+    """Distance of a point from the straight line between an element's ends [m]."""
+    along = square = beside = 0.0
+    for i in range(3):
+        chord = q[2, i] - q[0, i]
+        along += (p[i] - q[0, i]) * chord
+        square += chord * chord
+    share = min(max(along / square, 0.0), 1.0)
+    for i in range(3):
+        beside += (p[i] - q[0, i] - share * (q[2, i] - q[0, i])) ** 2
+    return math.sqrt(beside)
+
+
+def _bow(axis: Axis) -> Array:
+    """How far (ne,) the axis leaves the chord at most [m]: no farther than its handles, being a Bézier curve."""
+    chord = axis.q[:, 2] - axis.q[:, 0]
+    third = axis.length[:, None] / 3.0
+    handles = axis.q[:, 1] * third - chord / 3.0, axis.q[:, 3] * third - chord / 3.0
+    return np.asarray(np.maximum(*(np.linalg.norm(handle, axis=1) for handle in handles)))
 
 
 @njit
@@ -178,14 +208,15 @@ def gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array) -> t
 
 @njit
 def _gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array, forms: Array, C: Array) -> None:
+    nv = surface.facets.shape[1]
+    N, dN = np.empty(nv), np.empty((nv, 2))
     for i in range(len(near.gap)):
         e, nodes, xi = near.element[i], surface.facets[near.facet[i]], near.along[i]
-        p = _point(surface.deformed, nodes, near.xi[i, 0], near.xi[i, 1])
+        p = _point(surface.deformed, nodes, near.xi[i, 0], near.xi[i, 1], N, dN)
         vectors = _frame(axis.q[e], axis.length[e], axis.radius[e], xi, p, C[i])
         _fill(vectors, basis, axis_shape(xi, axis.length[e]), slope(xi, axis.length[e]), forms[i])
-        N, _ = shape(len(nodes), near.xi[i, 0], near.xi[i, 1])
         for k in range(FORMS):
-            for a in range(len(nodes)):
+            for a in range(nv):
                 for j in range(3):
                     forms[i, k, 4 * basis.shape[1] + 3 * a + j] = N[a] * vectors[k, 0, j]
 

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from riser_soil.contact.facets import QUAD, shape
+from riser_soil.contact.facets import QUAD
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 
@@ -55,13 +55,11 @@ def place(nodes: int, parts: IntArray, k: int) -> tuple[float, float, float]:
 
 
 @njit
-def area(points: Array, facet: IntArray, xi: float, eta: float) -> float:
-    """Area of a facet per area in (xi, eta) [m2]."""
-    _, dN = shape(len(facet), xi, eta)
-    a, b = np.zeros(3), np.zeros(3)
+def area(points: Array, facet: IntArray, dN: Array) -> float:
+    """Area of a facet per area in (xi, eta) [m2], where its shape functions have the derivatives dN (nv, 2)."""
+    a1 = a2 = a3 = b1 = b2 = b3 = 0.0
     for v in range(len(facet)):
-        for i in range(3):
-            a[i] += points[facet[v], i] * dN[v, 0]
-            b[i] += points[facet[v], i] * dN[v, 1]
-    x, y, z = a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-    return math.sqrt(x * x + y * y + z * z)
+        x, y, z = points[facet[v], 0], points[facet[v], 1], points[facet[v], 2]
+        a1, a2, a3 = a1 + x * dN[v, 0], a2 + y * dN[v, 0], a3 + z * dN[v, 0]
+        b1, b2, b3 = b1 + x * dN[v, 1], b2 + y * dN[v, 1], b3 + z * dN[v, 1]
+    return math.sqrt((a2 * b3 - a3 * b2) ** 2 + (a3 * b1 - a1 * b3) ** 2 + (a1 * b2 - a2 * b1) ** 2)

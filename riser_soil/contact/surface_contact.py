@@ -10,13 +10,12 @@ import numpy as np
 from riser_soil.contact.cylinder_gap import Axis, NearPoints, Surface, gap_forms, near_points
 from riser_soil.contact.detection import SOIL, add_blocks, add_shares
 from riser_soil.contact.gap import heights
-from riser_soil.contact.ground import DeformedSurface, SoilSurface
+from riser_soil.contact.ground import DeformedSurface
 from riser_soil.contact.integration_points import divisions
-from riser_soil.contact.landing import lifted
 from riser_soil.contact.law import Penalty
+from riser_soil.contact.lying import Lying, LyingContact
 from riser_soil.contact.patch import Patch, touching_boxes
 from riser_soil.contact.soil_contact import Reach
-from riser_soil.contact.touchdown import Stretch, stretches, touchdown
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
@@ -25,6 +24,7 @@ from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.trial import Trial
+from riser_soil.soil.surface import SoilTop
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +32,8 @@ class Pressed:
     """What touches at a trial: n points in m pairs of an element and a facet.
 
     points: the n points. pair (n,): of each point; element, facet (m,): of each pair. forms, C: see `gap_forms`.
-    force (n,) [N] = area times pressure, slope (n,) [N/m]: derivative by the penetration. dimension: d of the line.
+    force (n,) [N] = area times pressure, slope (n,) [N/m]: derivative by the penetration;
+    potential [J] of all. dimension: d of the line.
     """
 
     points: NearPoints
@@ -43,6 +44,7 @@ class Pressed:
     C: Array
     force: Array
     slope: Array
+    potential: float
     dimension: int
 
     @property
@@ -77,7 +79,7 @@ class SurfaceState:
     pressed: Pressed
 
 
-class SurfaceContact:
+class SurfaceContact(LyingContact):
     """Part "contact": frictionless penalty contact between the pipe's cylinder and the soil's surface, in group E.
 
     A point of the soil's surface bears the pressure p(−gap) times its undeformed area, along the normal from the pipe's
@@ -99,17 +101,16 @@ class SurfaceContact:
         self,
         line: Line,
         radius: Array,
-        surface: SoilSurface,
+        surface: SoilTop,
         pressure: Penalty,
         spacing: tuple[float, float],
         *,
         along: Array | None = None,
         reach: Reach | None = None,
-        active: bool = True,
     ) -> None:
-        self.line, self.law, self.active, self.outgrown = line, pressure, active, False
-        self._radius = radius
-        if not active:
+        super().__init__(line, pressure)
+        self.outgrown, self._radius = False, radius
+        if not self.active:
             return
         self._soil = DeformedSurface(surface)
         self._reach = reach or Reach(0.5 * self._soil.facet_size, 0.5 * self._soil.facet_size)
@@ -132,8 +133,10 @@ class SurfaceContact:
         forms, C = gap_forms(axis, surface, near, self.line.basis)
         pairs, pair = np.unique(near.element * len(self._soil.facets) + near.facet, return_inverse=True)
         element, facet = np.divmod(pairs, len(self._soil.facets))
-        force, slope = near.area * self.law.force(-near.gap), near.area * self.law.slope(-near.gap)
-        return SurfaceState(trial, deformed, Pressed(near, pair, element, facet, forms, C, force, slope, self.line.dimension))
+        answer = self.law.update(-near.gap, self.law.initial_history(near.gap.shape))
+        weighed = near.area * answer.force, near.area * answer.slope, float(near.area @ answer.stored)
+        pressed = Pressed(near, pair, element, facet, forms, C, *weighed, self.line.dimension)
+        return SurfaceState(trial, deformed, pressed)
 
     def _axis(self, trial: Trial) -> Axis:
         q = trial.q @ self.line.basis.T
@@ -175,11 +178,16 @@ class SurfaceContact:
         elements, facets = self._pairs(axis, self._soil.deformed(state), self._reach)
         return Patch.of(len(self._soil.facets), elements, facets).joined(self._missed)
 
+    def element_forces(self, state: State) -> tuple[None, Array]:
+        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
+        found = self.evaluate(state)
+        return None, found.trial.pull_back(self._on_line(found))
+
     def residual(self, state: State, forces: Forces) -> None:
         """Add dψ/du: minus the force on the riser, minus the force on the soil."""
-        found = self.evaluate(state)
-        self.line.scatter(found.trial.pull_back(self._on_line(found)), forces.end)
-        add_shares(forces.end, self._soil.facet_dofs(found.pressed.facet), self._on_facets(found.pressed))
+        pressed = self.evaluate(state).pressed
+        self.line.scatter(self.element_forces(state)[1], forces.end)
+        add_shares(forces.end, self._soil.facet_dofs(pressed.facet), self._on_facets(pressed))
 
     def _on_line(self, found: SurfaceState) -> Array:
         """Residual conjugate to q (ne, 4, d)."""
@@ -219,8 +227,7 @@ class SurfaceContact:
 
     def energy(self, state: State) -> Energy:
         """Potential of the penalty."""
-        points = self.evaluate(state).pressed.points
-        return Energy(potential=float(points.area @ self.law.potential(-points.gap)))
+        return Energy(potential=self.evaluate(state).pressed.potential)
 
     def work(self, before: State, after: State) -> Work:
         """What the force at the end of the step took out beyond the change of its potential."""
@@ -247,17 +254,9 @@ class SurfaceContact:
             np.add.at(total, element + 1, along * pressed.on_line)
         return np.asarray(np.linalg.norm(total, axis=1) / self.line.tributary_length)
 
-    def penetration(self, state: State) -> Array:
-        """Deepest penetration (nn,) [m] of the soil's surface into the pipe near the nodes, 0 above it: an error."""
-        deepest = np.zeros(self.line.nodes)
-        if self.active:
-            points = self.evaluate(state).pressed.points
-            np.maximum.at(deepest, points.element + (points.along > 0.5), -points.gap)
-        return deepest
-
     def max_penetration(self, state: State) -> float:
-        """Largest penetration [m], >= 0: an error."""
-        return float(self.penetration(state).max())
+        """Deepest penetration of the soil's surface into the pipe [m], >= 0: an error."""
+        return float(np.max(-self.evaluate(state).pressed.points.gap, initial=0.0)) if self.active else 0.0
 
     def depth(self, state: State) -> Array:
         """Depth (nn,) [m] of the nodes' undersides below the soil's surface before the riser came, 0 above it."""
@@ -282,28 +281,11 @@ class SurfaceContact:
         facet, _ = self._soil.locate(xy, self._soil.settled)
         return np.asarray(facet >= 0)
 
-    def touchdown_arc(self, state: State) -> float:
-        """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""
-        if not self.active:
-            return float("nan")
-        return touchdown(*self._lying(state))
+    def lying(self, state: State) -> Lying:
+        """The nodes."""
+        return Lying(self.line.arc, self.line.tributary_length, self.clearance(state), self.force_per_length(state))
 
-    def stretches(self, state: State) -> list[Stretch]:
-        """Where the riser lies on the soil, from its start on."""
-        return stretches(*self._lying(state)) if self.active else []
-
-    def _lying(self, state: State) -> tuple[Array, Array, Array, Array]:
-        """Arc, share of the length, clearance and force per length of the nodes, all (nn,)."""
-        return self.line.arc, self.line.tributary_length, self._clearance(state), self.force_per_length(state)
-
-    def predict(self, guess: State) -> Array:
-        """Increments of a first guess that lands, see `landing`."""
-        if not self.active:
-            return guess.u
-        present = self._clearance(State.at_rest(guess.t, guess.u.size))
-        return lifted(guess, self.line.translation_dofs[:, -1], present, self._clearance(guess), self.law.start)
-
-    def _clearance(self, state: State) -> Array:
+    def clearance(self, state: State) -> Array:
         """Gap (nn,) under the nodes less that at which the force begins [m]; inf beside the soil."""
         return self._above(self.line.trial(state), self._soil.deformed(state)) - self.law.start
 

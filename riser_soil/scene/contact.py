@@ -45,7 +45,7 @@ class Contact(BaseModel):
 
     model_config = FROZEN
 
-    method: Literal["line", "node"] = Field(
+    method: Literal["line", "node", "surface"] = Field(
         default="line",
         description="where contact with the seabed is evaluated: line (along the elements, five Gauss points each) or "
         "node (at the riser's nodes); contact with soil is evaluated at nodes",

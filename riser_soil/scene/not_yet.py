@@ -17,7 +17,6 @@ KEYS: dict[tuple[str, ...], tuple[Any, ...]] = {
 # key -> values of the language that can't be chosen yet; the key is part of the models.
 VALUES: dict[tuple[str, ...], tuple[Any, ...]] = {
     ("soil", "inertia"): (True,),
-    ("contact", "method"): ("surface",),
 }
 
 

@@ -9,7 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.soil.field import components
 from riser_soil.soil.grid import Grid
+from riser_soil.soil.surface import SoilTop
 
 T = TypeVar("T", bound=np.generic)
 
@@ -33,6 +35,14 @@ def gather_rows(grid: Grid, rows: npt.NDArray[T]) -> npt.NDArray[T]:
     """Concatenate the ranks' rows on rank 0, in the order of ranks; no rows elsewhere (collective)."""
     pieces = grid.nodes.comm.gather(rows)
     return rows[:0] if pieces is None else np.concatenate(pieces)
+
+
+def top_of(grid: Grid, mesh: Gathered) -> SoilTop:
+    """The surface that looks upwards; without points where the mesh is not gathered."""
+    facets = top_facets(grid, mesh)
+    used = np.unique(facets)
+    points = mesh.points[used]
+    return SoilTop(points, np.searchsorted(used, facets), components(used), grid.supported(points).ravel())
 
 
 def top_facets(grid: Grid, mesh: Gathered) -> IntArray:

@@ -15,10 +15,9 @@ from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
 from riser_soil.soil.element import cell_gradients
 from riser_soil.soil.field import SoilField, components
-from riser_soil.soil.gathered import Gathered, gather, gather_rows
+from riser_soil.soil.gathered import Gathered, gather, gather_rows, top_of
 from riser_soil.soil.grid import Grid, on_all_ranks
 from riser_soil.soil.law import PLASTIC_STRAIN, Formula, Response
-from riser_soil.soil.surface import SoilTop
 
 
 class Soil:
@@ -48,7 +47,7 @@ class Soil:
         self.grid = grid
         self.field = SoilField(grid)
         self.mesh: Gathered = gather(grid)
-        self.surface = SoilTop(grid, self.mesh)
+        self.surface = top_of(grid, self.mesh)
         self._cells = np.ascontiguousarray(grid.nodes.cells)
         self._gradients = on_all_ranks(
             grid.nodes.comm, lambda: cell_gradients(grid.family, grid.nodes.points, self._cells)

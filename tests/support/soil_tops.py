@@ -2,28 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.soil.surface import SoilTop
 
 
-@dataclass
-class Top:
-    """Soil surface of points and facets; `committed` deforms it."""
-
-    points: Array
-    facets: IntArray
-    committed: Array
-    offset: int = 0
-
-    @property
-    def size(self) -> int:
-        return self.points.size
-
-
-def top(kind: str, nx: int = 6, ny: int = 4, size: float = 0.5) -> Top:
+def top(kind: str, nx: int = 6, ny: int = 4, size: float = 0.5) -> SoilTop:
     """Level surface over [0, nx·size] × [−ny·size/2, ny·size/2], of squares or pairs of triangles."""
     n = 1 if kind == "quad4" else 2
     x = np.linspace(0.0, nx * size, n * nx + 1)
@@ -35,4 +19,4 @@ def top(kind: str, nx: int = 6, ny: int = 4, size: float = 0.5) -> Top:
     lower = [[c[0, 0], c[-1, 0], c[-1, -1], c[n // 2, 0], c[-1, n // 2], c[n // 2, n // 2]] for c in cells]
     upper = [[c[0, 0], c[-1, -1], c[0, -1], c[n // 2, n // 2], c[n // 2, -1], c[0, n // 2]] for c in cells]
     facets = np.array(quads if kind == "quad4" else lower + upper)
-    return Top(points, facets, np.zeros_like(points))
+    return SoilTop(points, facets, np.arange(points.size), np.zeros(points.size, dtype=bool))

@@ -16,7 +16,8 @@ from riser_soil.riser import shapes
 from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
 from tests.support.differences import STENCIL
-from tests.support.soil_tops import Top, top
+from riser_soil.soil.surface import SoilTop
+from tests.support.soil_tops import top
 
 WEIGHTS = Weights(inertia=0.0, force=0.0, shift_v=0.0, shift_a=0.0)
 RADIUS, STIFFNESS = 0.15, 2.0e6  # m, N/m3
@@ -27,7 +28,7 @@ class Case:
     """A riser over a surface; dofs of another field lie between them."""
 
     line: Line
-    surface: Top
+    surface: SoilTop
     contact: SurfaceContact
 
     @property
@@ -55,7 +56,7 @@ class Case:
 
 
 def case(
-    points: Array, surface: Top, dimension: int = 3, spacing: float = 0.05, smoothing: float = 2e-3, radius: float = RADIUS
+    points: Array, surface: SoilTop, dimension: int = 3, spacing: float = 0.05, smoothing: float = 2e-3, radius: float = RADIUS
 ) -> Case:
     """A riser through points (n, 3), smooth at the nodes."""
     arc = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
@@ -64,7 +65,7 @@ def case(
     curved = shapes.from_nodes(points, shapes.nodal_tangents(points))
     straight = shapes.straight(arc, points[0], direction)
     layout = shapes.layout(arc, np.full(len(arc) - 1, 2.0 * radius), straight, curved)
-    line = Line(dimension, layout, End(held=False), End(held=False), direction=direction)
+    line = Line(dimension, layout, End(False), End(False), direction=direction)
     line.offset = 2
     surface.offset = 2 + line.size + 3
     contact = SurfaceContact(
