@@ -9,7 +9,7 @@ from typing import Protocol
 from riser_soil.assembly import Assembly
 from riser_soil.assembly.stage import scheme_of, times_to_hit
 from riser_soil.core.part import Model, State
-from riser_soil.core.roles import Adaptive, with_role
+from riser_soil.core.roles import Adaptive, owners, with_role
 from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back, within
 from riser_soil.core.system import Clock, System
 from riser_soil.errors import SolveError
@@ -122,15 +122,9 @@ def _take(
 
 
 def _restore(system: System, saved: Saved) -> None:
-    give_back(_owners(system.model), saved)
+    give_back(owners(system.model), saved)
     if with_role(system.model.parts, Adaptive):
         system.renew_pattern()
-
-
-def _owners(model: Model) -> dict[str, Stateful]:
-    """Fields and parts that keep something from step to step."""
-    fields: dict[str, Stateful] = {f"fields/{field.name}": field for field in model.fields}
-    return fields | {f"parts/{part.name}": part for part in with_role(model.parts, Stateful)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +140,7 @@ class Course:
     def state(self) -> Saved:
         """All that the stage goes on from, see `saved_state`."""
         own: dict[str, Stateful] = {"assembly": self.assembly, "stepper": self.stepper}
-        return gathered(_owners(self.stepper.system.model) | own | self.told)
+        return gathered(owners(self.stepper.system.model) | own | self.told)
 
     @property
     def told(self) -> dict[str, Stateful]:

@@ -29,7 +29,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 from pydantic import Field
 
@@ -92,7 +92,7 @@ class Clay:
 
     diameter: float
     given: RandolphQuiggin
-    columns: tuple[str, ...] = Past._fields
+    columns: ClassVar[tuple[str, ...]] = Past._fields
 
     @cached_property
     def _ultimate(self) -> PowerLaw:
