@@ -23,6 +23,7 @@ from riser_soil.contact.patch import Patch, around
 from riser_soil.contact.touchdown import Stretch, stretches, touchdown
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.remembered import Remembered
 from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 
@@ -73,6 +74,7 @@ class SoilContact:
     ) -> None:
         self.active, self.outgrown = active, False
         self._riser, self._radius, self._rounding = riser, radius, law.smoothing
+        self._detected = Remembered[State, ContactState]()
         if not active:
             return
         self._soil = DeformedSurface(surface)
@@ -83,13 +85,10 @@ class SoilContact:
         self._detection = ContactDetection(riser, radius, points, law, self._soil, self._reach.above)
         self._patch: Patch | None = None
         self._missed = Patch.none(len(self._soil.facets))
-        self._detected: ContactState | None = None
 
     def detect(self, state: State) -> ContactState:
         """Riser and ground at a state; kept for the state asked last, whose arrays must not change then."""
-        if self._detected is None or self._detected.state is not state:
-            self._detected = self._detection.detect(state)
-        return self._detected
+        return self._detected.made_of(state, self._detection.detect)
 
     def blocks(self) -> dict[str, Block]:
         """Translations of a node and dofs of a facet, candidate pair by pair."""
@@ -132,7 +131,7 @@ class SoilContact:
 
     def commit(self, state: State) -> None:
         """Nothing is kept but the pattern."""
-        self._detected = None
+        self._detected.forget()
 
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m], ≥ 0."""
@@ -238,7 +237,8 @@ class SoilContact:
 
     def restore(self, saved: Saved) -> None:
         if self.active:
-            self._detected, self.outgrown = None, bool(saved["outgrown"])
+            self._detected.forget()
+            self.outgrown = bool(saved["outgrown"])
             self._patch, self._missed = (Patch(len(self._soil.facets), saved[name]) for name in ("patch", "missed"))
 
 
