@@ -65,7 +65,6 @@ class ContactState:
     entry for each ground.
     """
 
-    state: State
     points: ContactPoints
     facet: IntArray
     gap: Array
@@ -94,7 +93,7 @@ class ContactDetection:
         ground = heights(facet, xi, self._soil.facets, surface)
         gap = x[points.node, 2] - self._radius[points.node] - ground
         at = np.flatnonzero(gap < self._law.smoothing)
-        return ContactState(state, points, facet, gap, surface, self._touch(points, facet, gap, surface, at, xi[at]))
+        return ContactState(points, facet, gap, surface, self._touch(points, facet, gap, surface, at, xi[at]))
 
     def _touch(
         self, points: ContactPoints, facet: IntArray, gap: Array, surface: Array, at: IntArray, xi: Array

@@ -21,6 +21,7 @@ from riser_soil.contact.lying import Lying, LyingContact
 from riser_soil.contact.patch import Patch, around
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.remembered import Remembered
 from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line import Line
@@ -72,6 +73,7 @@ class SoilContact(LyingContact):
     ) -> None:
         super().__init__(line, law)
         self.outgrown, self._radius = False, radius
+        self._detected = Remembered[State, ContactState]()
         if not self.active:
             return
         self._soil = DeformedSurface(surface)
@@ -82,13 +84,10 @@ class SoilContact(LyingContact):
         self._detection = ContactDetection(line, radius, points, law, self._soil, self._reach.above)
         self._patch: Patch | None = None
         self._missed = Patch.none(len(self._soil.facets))
-        self._detected: ContactState | None = None
 
     def detect(self, state: State) -> ContactState:
         """Riser and ground at a state; kept for the state asked last, whose arrays must not change then."""
-        if self._detected is None or self._detected.state is not state:
-            self._detected = self._detection.detect(state)
-        return self._detected
+        return self._detected.made_of(state, self._detection.detect)
 
     def blocks(self) -> dict[str, Block]:
         """Translations of a node and dofs of a facet, candidate pair by pair."""
@@ -131,7 +130,7 @@ class SoilContact(LyingContact):
 
     def commit(self, state: State) -> None:
         """Nothing is kept but the pattern."""
-        self._detected = None
+        self._detected.forget()
 
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m], ≥ 0."""
@@ -218,7 +217,8 @@ class SoilContact(LyingContact):
 
     def restore(self, saved: Saved) -> None:
         if self.active:
-            self._detected, self.outgrown = None, bool(saved["outgrown"])
+            self._detected.forget()
+            self.outgrown = bool(saved["outgrown"])
             self._patch, self._missed = (Patch(len(self._soil.facets), saved[name]) for name in ("patch", "missed"))
 
 
