@@ -112,8 +112,8 @@ def contact_width(scales: Scales, E: float) -> float:
     """Width [m] over which the pipe touches elastic soil at rest, 2 b with b² = 4 q R/(pi E): Hertz, the line contact of
     a cylinder, for a modulus E [Pa] of soil without change of volume, 4/3 E; at most the diameter.
     """
-    half = np.sqrt(4.0 * scales.weight * 0.5 * scales.diameter / (np.pi * 4.0 / 3.0 * E))
-    return float(min(2.0 * half, scales.diameter))
+    plane = np.pi * max(4.0 / 3.0 * E, scales.weight / scales.diameter)  # very soft soil lets all of the pipe in
+    return float(min(2.0 * np.sqrt(2.0 * scales.weight * scales.diameter / plane), scales.diameter))
 
 
 def seabed_contact_of(
@@ -204,13 +204,15 @@ def smoothing(settings: ContactScene, scales: Scales, ground: str, stiffness: fl
 
 def stiffnesses(scene: Scene, settings: ContactScene, scales: Scales) -> dict[str, float]:
     """Force per length and penetration [N/m2] by ground: the scene's own, else the automatic choice."""
-    from riser_soil.contact.law import automatic_stiffness
+    from riser_soil.contact.law import STIFFNESS_OVER_SOIL, SURFACE_STIFFNESS_OVER_SOIL, automatic_stiffness
+
+    over_soil = SURFACE_STIFFNESS_OVER_SOIL if settings.method == "surface" else STIFFNESS_OVER_SOIL
 
     def penalty(E: float | None) -> float:
         """Where the pipe must not enter; E: Young's modulus [Pa], None of a rigid ground."""
         if settings.stiffness != "auto":
             return float(settings.stiffness)
-        return automatic_stiffness(E, scales.weight, scales.diameter)
+        return automatic_stiffness(E, scales.weight, scales.diameter, over_soil)
 
     out = {"soil": penalty(scene.soil.law.surface_modulus)} if scene.soil is not None else {}
     match scene.seabed:

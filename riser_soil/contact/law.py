@@ -20,6 +20,8 @@ PENETRATION_AT_REST = 1e-3
 #: Contact stiffness over Young's modulus at the surface. A strip that loads a half space settles by about
 #: force per length over E, so the penalty adds about a tenth to the settlement that it passes on.
 STIFFNESS_OVER_SOIL = 10.0
+#: The same where pressure is integrated over the width that touches: less than a fiftieth.
+SURFACE_STIFFNESS_OVER_SOIL = 50.0
 
 
 @dataclass(frozen=True)
@@ -74,8 +76,10 @@ class Penalty:
         return factor * self.smoothing if self.smoothing > 0.0 else 1.0
 
 
-def automatic_stiffness(E_soil: float | None, weight_per_length: float, outer_diameter: float) -> float:
-    """Penalty stiffness k [N/m2] from what touches: k = max(10·E_soil, weight / (10⁻³·OD)).
+def automatic_stiffness(
+    E_soil: float | None, weight_per_length: float, outer_diameter: float, over_soil: float = STIFFNESS_OVER_SOIL
+) -> float:
+    """Penalty stiffness k [N/m2] from what touches: k = max(over_soil·E_soil, weight / (10⁻³·OD)).
 
     The first term keeps the penalty's give at about a tenth of the soil's own settlement; the second keeps
     the penetration of a riser at rest at a thousandth of its diameter. On a rigid floor (E_soil is None) the
@@ -87,4 +91,4 @@ def automatic_stiffness(E_soil: float | None, weight_per_length: float, outer_di
     outer_diameter: [m].
     """
     at_rest = weight_per_length / (PENETRATION_AT_REST * outer_diameter)
-    return at_rest if E_soil is None else max(STIFFNESS_OVER_SOIL * E_soil, at_rest)
+    return at_rest if E_soil is None else max(over_soil * E_soil, at_rest)

@@ -47,19 +47,21 @@ class Contact(BaseModel):
 
     method: Literal["line", "node", "surface"] = Field(
         default="line",
-        description="where contact with the seabed is evaluated: line (along the elements, five Gauss points each) or "
-        "node (at the riser's nodes); contact with soil is evaluated at nodes",
+        description="where contact is evaluated. With a seabed: node (at the riser's nodes) or else along the elements, "
+        "at five Gauss points each. With soil: surface (all over the soil's surface, with the pipe's cylinder) or else "
+        "at the riser's nodes",
     )
     stiffness: AutoOrBedStiffness = Field(
         default="auto",
         description="force per length of pipe and penetration [N/m2], or auto: the larger of 10 times the "
-        "soil's Young's modulus at the surface and (submerged weight)/(0.001 outer diameter); a spring "
-        "seabed has its own",
+        "soil's Young's modulus at the surface, 50 times with method: surface, and (submerged weight)/(0.001 outer "
+        "diameter); a spring seabed has its own. With method: surface it is spread over the width by which the pipe "
+        "touches elastic soil under its weight",
     )
     smoothing: AutoOrLengthOrNone = Field(
         default="auto",
         description="contact sets in smoothly between this gap and this penetration [m], or auto: 1/300 of the outer "
-        "diameter on soil; on a seabed what the riser sinks in by its weight, within 1/3000 and 1/300 of the diameter",
+        "diameter on soil, 0 there with method: surface; on a seabed what the riser sinks in by its weight, within 1/3000 and 1/300 of the diameter",
     )
     friction: Friction | None = Field(default=None, description="friction on the seabed; none by default")
     suction: Suction | None = Field(

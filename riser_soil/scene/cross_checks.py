@@ -163,6 +163,16 @@ def _seabed_can_do_so(scene: Scene) -> Iterator[Problem]:
         yield Problem(("contact", "suction"), "a hysteretic seabed has its own, in seabed.law", "leave it out")
 
 
+def _surface_of_a_pipe_and_soil(scene: Scene) -> Iterator[Problem]:
+    if scene.contact is None or scene.contact.method != "surface":
+        return
+    if scene.soil is None:
+        remedy = "add soil, or take line or node"
+        yield Problem(("contact", "method"), "surface is contact with soil, and the scene has none", remedy)
+    if scene.contact_at == "axis":
+        yield Problem(("seabed", "contact_at"), "the axis has no surface to touch with", "write outer")
+
+
 def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
     if not scene.contact:
         return
@@ -277,6 +287,7 @@ _CHECKS: tuple[_Check, ...] = (
     _contact_with_something,
     _seabed_has_one_shape,
     _seabed_can_do_so,
+    _surface_of_a_pipe_and_soil,
     _ends_above_seabed,
     _initial_shape_possible,
     _straight_without_slack,
