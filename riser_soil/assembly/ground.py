@@ -96,13 +96,12 @@ def _surface_contact_of(
     assert scene.soil is not None
     scales = scales_of(elements)
     width = contact_width(scales, scene.soil.law.surface_modulus)
-    smoothing = 0.0 if settings.smoothing == "auto" else float(settings.smoothing)
     across = float(np.clip(width / POINTS_ACROSS, FINEST * scales.diameter, COARSEST * scales.diameter))
     return SurfaceContact(
         line,
         contact_radius(scene, elements),
         surface,
-        Penalty(stiffness / width, smoothing),
+        Penalty(stiffness / width, smoothing(settings, scales, "soil", stiffness)),
         (ALONG * across, across),
         along=line.direction[:2],
     )
@@ -196,8 +195,8 @@ def smoothing(settings: ContactScene, scales: Scales, ground: str, stiffness: fl
     """
     if settings.smoothing != "auto":
         return float(settings.smoothing)
-    if ground == "soil":
-        return WIDEST_CORNER * scales.diameter
+    if ground == "soil":  # integrated over a width, the force has no corner
+        return 0.0 if settings.method == "surface" else WIDEST_CORNER * scales.diameter
     at_rest = scales.weight / stiffness
     return float(np.clip(at_rest, NARROWEST_CORNER * scales.diameter, WIDEST_CORNER * scales.diameter))
 

@@ -20,8 +20,8 @@ PENETRATION_AT_REST = 1e-3
 #: Contact stiffness over Young's modulus at the surface. A strip that loads a half space settles by about
 #: force per length over E, so the penalty adds about a tenth to the settlement that it passes on.
 STIFFNESS_OVER_SOIL = 10.0
-#: The same where pressure is integrated over the width that touches: less than a fiftieth.
-SURFACE_STIFFNESS_OVER_SOIL = 50.0
+#: The same where pressure is integrated over the width that touches: some 3 per cent.
+SURFACE_STIFFNESS_OVER_SOIL = 20.0
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,7 @@ class Contact(BaseModel):
     stiffness: AutoOrBedStiffness = Field(
         default="auto",
         description="force per length of pipe and penetration [N/m2], or auto: the larger of 10 times the "
-        "soil's Young's modulus at the surface, 50 times with method: surface, and (submerged weight)/(0.001 outer "
+        "soil's Young's modulus at the surface, 20 times with method: surface, and (submerged weight)/(0.001 outer "
         "diameter); a spring seabed has its own. With method: surface it is spread over the width by which the pipe "
         "touches elastic soil under its weight",
     )

@@ -1,0 +1,157 @@
+"""The pipe's cylinder on soil: Hertz's contact, no hold on the mesh, balances and tangents in coupled scenes."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from riser_soil.assembly import Assembly
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.driven_stage import FirstStep, built, take
+
+D, E, NU = 0.5, 1.2e6, 0.49
+INDENTATION = 0.01  # m
+
+
+def slice_of_soil(cells: int, method: str = "surface") -> Mapping:
+    """A stiff pipe over a slice of elastic soil, 8 m wide and 4 m deep, with so many cells across the diameter."""
+    size = D / cells
+    ends = {end: {"position": [x, 0.0, 0.5 * D], "rotation": "fixed"} for end, x in (("start", 0.0), ("end", 1.0))}
+    pipe = {"outer_diameter": D, "submerged_weight": 700.0, "mass": 70.0, "EA": 1e10, "EI": 1e9}
+    block = {"x": [0.5 - 0.5 * size, 0.5 + 0.5 * size], "y": [-4.0, 4.0], "depth": 4.0}
+    down = {end: [*ends[end]["position"][:2], 0.5 * D - INDENTATION] for end in ends}
+    return {
+        "title": "Slice of soil under a pipe",
+        "gravity": 9.81,
+        "dimension": 2,
+        "line_types": {"pipe": pipe},
+        "riser": {"segments": [{"line_type": "pipe", "length": 1.0, "elements": 8}], **ends, "initial": "straight"},
+        "soil": {
+            "block": block,
+            "mesh": {"kind": "hex", "size_at_riser": size, "size_far": max(size, 0.5)},
+            "law": {"kind": "linear-elastic", "E": E, "nu": NU},
+        },
+        "contact": {"method": method},
+        "stages": [{"name": "push", "kind": "static", "move": down}],
+    }
+
+
+class Pushed:
+    """The pipe pushed in: force per length q [N/m], and what Hertz says of it."""
+
+    def __init__(self, cells: int, method: str = "surface") -> None:
+        self.assembly = built(slice_of_soil(cells, method))
+        self.state = take(self.assembly, self.assembly.scene.stages[0])
+        assert self.assembly.soil is not None
+        assert self.assembly.soil_contact is not None
+        grid = self.assembly.soil.grid
+        self.thickness = float(grid.high[0] - grid.low[0])
+        self.q = -float(self.assembly.soil_contact.force_on_soil(self.state)[2]) / self.thickness
+        self.modulus = E / (1.0 - NU**2)
+        self.half_width = float(np.sqrt(2.0 * self.q * D / (np.pi * self.modulus)))
+
+    def approach(self, depth: float) -> float:
+        """How far the pipe comes nearer to a point so deep below it [m]; Johnson, Contact Mechanics, 5.6."""
+        log = 2.0 * np.log(2.0 * depth / self.half_width) - NU / (1.0 - NU)
+        return float(self.q / (np.pi * self.modulus) * log)
+
+    def settled(self, depth: float) -> float:
+        """Downward displacement of the soil at so deep below the pipe [m]."""
+        assert self.assembly.soil is not None
+        field = self.assembly.soil.field
+        y, z = field.points[:, 1], field.points[:, 2]
+        middle = np.abs(y) < np.abs(y).min() + 1e-9
+        order = np.argsort(-z[middle])
+        return -float(np.interp(depth, -z[middle][order], field.total[2::3][middle][order]))
+
+
+@cache
+def pushed(cells: int, method: str = "surface") -> Pushed:
+    return Pushed(cells, method)
+
+
+def test_the_indentation_is_that_of_hertz() -> None:
+    """Relative to a point half a metre below the pipe, where the block is nearly a half space; less the penalty's give."""
+    case = pushed(64)
+    assert case.assembly.soil_contact is not None
+    given = case.assembly.soil_contact.max_penetration(case.state)
+    assert given < 0.05 * INDENTATION
+    assert INDENTATION - given - case.settled(0.5) == pytest.approx(case.approach(0.5), rel=0.025)
+
+
+def test_the_pressure_is_that_of_hertz() -> None:
+    case = pushed(64)
+    points = case.assembly.soil_contact.evaluate(case.state).pressed  # type: ignore[union-attr]
+    peak = 2.0 * case.q / (np.pi * case.half_width)
+    assert (points.force / points.points.area).max() == pytest.approx(peak, rel=0.05)
+    assert points.points.area.sum() / case.thickness == pytest.approx(2.0 * case.half_width, rel=0.05)
+
+
+def test_the_force_converges_as_the_cells_resolve_the_contact() -> None:
+    """To what 128 cells across the diameter say: from D/8 on the error falls by more than half with the size."""
+    reference = pushed(128).q
+    errors = np.array([abs(pushed(cells).q / reference - 1.0) for cells in (8, 16, 32)])
+    assert errors[0] > 0.05, errors
+    assert errors[1] < 0.04, errors
+    assert errors[2] < 0.02, errors
+
+
+def test_contact_at_nodes_has_no_limit() -> None:
+    """What surface contact is for: at nodes the force hangs on the cells, and on whether a node meets one at all."""
+    with_nodes = np.array([pushed(cells, "node").q for cells in (4, 8)])
+    assert np.ptp(with_nodes) > 0.1 * with_nodes.max()
+
+
+def laid(kind: str, dimension: int, *more: Mapping, su: float = 1000.0) -> Assembly:
+    scene = touchdown(LAY, *more, kind=kind, dimension=dimension, su=su, tolerance=1e-10)
+    scene["contact"] = {"method": "surface", "smoothing": 1e-3}
+    return built(scene)
+
+
+@pytest.mark.parametrize(("kind", "dimension"), [("hex", 2), ("tet", 3)])
+def test_supports_and_grounds_bear_the_weight(kind: str, dimension: int) -> None:
+    assembly = laid(kind, dimension)
+    forces = []
+
+    def keep(system: object, step: object) -> None:
+        state = step.solution.state  # type: ignore[attr-defined]
+        forces.append(np.sum([c.force_on_riser(state) for c in assembly.contacts], axis=0))
+        contact = assembly.soil_contact
+        assert contact is not None
+        apart = contact.force_on_riser(state) + contact.force_on_soil(state)
+        assert np.abs(apart).max() < 1e-12 * np.linalg.norm(contact.force_on_soil(state)) or dimension == 2
+
+    take(assembly, assembly.scene.stages[0], watch=keep)
+    weight = float(assembly.elements.weight @ assembly.line.length)
+    assert 0.2 * weight < forces[-1][2] < weight
+
+
+@pytest.mark.parametrize(("kind", "dimension"), [("hex", 2), ("hex", 3), ("tet", 2)])
+def test_the_matrix_is_the_slope_of_the_residual(kind: str, dimension: int) -> None:
+    step = FirstStep(laid(kind, dimension, heave(1.0, time_step=0.01)))
+    random = np.random.default_rng(5)
+    x = 1e-4 * random.normal(size=step.free)
+    matrix, h = step.matrix(x), 1e-6
+    for _ in range(3):
+        direction = 1e-3 * random.normal(size=step.free)
+        at = {k: step.residual(x + k * h * direction) for k in (-2, -1, 1, 2)}
+        wanted = (8.0 * (at[1] - at[-1]) - (at[2] - at[-2])) / (12.0 * h)
+        assert np.linalg.norm(matrix @ direction - wanted) < 1e-6 * np.linalg.norm(wanted)
+
+
+def test_a_riser_that_heaves_only_gives_energy_to_the_soil() -> None:
+    """Newton needs few iterations a step, and contact gains nothing in impact."""
+    assembly = laid("hex", 2, heave(1.5), su=6000.0)
+    before = take(assembly, assembly.scene.stages[0])
+    iterations, lost = list[int](), list[float]()
+
+    def watch(system: object, step: object) -> None:
+        iterations.append(step.solution.iterations)  # type: ignore[attr-defined]
+        lost.append(step.turned["contact"].dissipated)  # type: ignore[attr-defined]
+
+    take(assembly, assembly.scene.stages[1], before, watch)
+    assert np.mean(iterations) <= 6.0
+    assert max(iterations) <= 10
+    assert sum(lost) >= 0.0
