@@ -15,7 +15,7 @@ from riser_soil.assembly.riser import attached_weight, attachments_of, elements_
 from riser_soil.assembly.scales import Scales, scales_of
 from riser_soil.assembly.sea_loads import sea_loads
 from riser_soil.assembly.shape import least_bend
-from riser_soil.assembly.stage import dynamic_parts, hold_spin, loads_of
+from riser_soil.assembly.stage import dynamic_parts, loads_of, prescribe_spin
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Field, Model, Part
 from riser_soil.core.saved_state import Saved
@@ -160,7 +160,7 @@ class Assembly:
 
     def _enter(self, stage: Stage, origins: Array) -> Model:
         set_motions(self.line, stage, self.vessels, origins)
-        hold_spin(self.scene, self.line, stage)
+        prescribe_spin(self.scene, self.line, stage)
         parts = [*self.riser_parts, *loads_of(self.line, stage)]
         if isinstance(stage, DynamicStage):
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)

@@ -32,7 +32,7 @@ def vessels_of(scene: Scene) -> Vessels | None:
 
 
 def set_motions(line: Line, stage: Stage, vessels: Vessels | None, origins: Array) -> None:
-    """Give the held ends their motions in this stage, from where they are as it begins; without one they stay there.
+    """Give the prescribed ends their motions in a stage, from their places at its start; without one they stay there.
 
     origins (2, 3): positions of start and end, see `end_positions`.
     """

@@ -101,7 +101,9 @@ def line_of(
 
 
 def _end(given: str | Support) -> End:
-    return End(held=isinstance(given, Support), rotation_fixed=isinstance(given, Support) and given.rotation == "fixed")
+    if not isinstance(given, Support):
+        return End(prescribed=False)
+    return End(prescribed=True, rotation_fixed=given.rotation == "fixed")
 
 
 def spins_freely(riser: Riser) -> bool:

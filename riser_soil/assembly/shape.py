@@ -80,7 +80,7 @@ def _catenary(scene: Scene, elements: sections.Elements, attachments: Sequence[A
     from riser_soil.riser.catenary import catenary
 
     start, end = _ends(scene.riser)
-    assert start is not None, "the scene's checks let no catenary start without two held ends"
+    assert start is not None, "the scene's checks let no catenary start without two prescribed ends"
     assert end is not None
     return catenary(
         elements.arc,

@@ -56,9 +56,9 @@ def _multiples(interval: float, end: float) -> list[float]:
     return [n * interval for n in range(1, int(end / interval) + 1)]
 
 
-def hold_spin(scene: Scene, line: Line, stage: Stage) -> None:
-    """Hold the start's spin about the pipe's axis in stages where neither an end nor inertia resists it."""
-    line.hold_spin(spins_freely(scene.riser) and isinstance(stage, StaticStage))
+def prescribe_spin(scene: Scene, line: Line, stage: Stage) -> None:
+    """Prescribe the start's spin about the pipe's axis in stages where neither an end nor inertia resists it."""
+    line.prescribe_spin(spins_freely(scene.riser) and isinstance(stage, StaticStage))
 
 
 def loads_of(line: Line, stage: Stage) -> list[Part]:

@@ -33,7 +33,7 @@ def lying(assembly: Assembly) -> IntArray:
 
 
 def _long_in_boundary_layers(assembly: Assembly) -> Iterator[str]:
-    """Elements beside a touchdown point or a held rotation against the boundary layer there."""
+    """Elements beside a touchdown point or a prescribed rotation against the boundary layer there."""
     if assembly.catenary is None:
         return
     H, line = assembly.catenary.H, assembly.line

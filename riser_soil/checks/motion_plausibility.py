@@ -81,10 +81,10 @@ def _stretched(scene: Scene) -> Iterator[str]:
 
 
 def _places(scene: Scene) -> Iterator[dict[str, Array]]:
-    """Where the held ends are (nt, 3) [m] at the times of each stage."""
+    """Positions of the prescribed ends (nt, 3) [m] at the times of each stage."""
     ends = {name: getattr(scene.riser, name) for name in ("start", "end")}
     last = {name: np.array(given.position) for name, given in ends.items() if isinstance(given, Support)}
-    end, vessels = End(held=True), vessels_of(scene)
+    end, vessels = End(prescribed=True), vessels_of(scene)
     for stage in scene.stages:
         place = {}
         for name, origin in last.items():
@@ -139,7 +139,7 @@ def _shock(path: str, name: str, unit: str, before: Course, after: Course) -> It
 
 def _courses(scene: Scene, name: str, support: Support) -> Iterator[Courses]:
     """What each stage does with an end."""
-    end, position, vessels = End(held=True), np.array(support.position), vessels_of(scene)
+    end, position, vessels = End(prescribed=True), np.array(support.position), vessels_of(scene)
     for stage in scene.stages:
         set_motion(end, name, position, stage, vessels)
         duration = stage.duration if isinstance(stage, DynamicStage) else 1.0

@@ -31,9 +31,9 @@ class Within:
     zero: bool = False
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_after_validator_function(self.held, handler(source))
+        return core_schema.no_info_after_validator_function(self.checked, handler(source))
 
-    def held(self, value: float) -> float:
+    def checked(self, value: float) -> float:
         """The value, or PydanticCustomError."""
         if value == 0.0 or self.least <= abs(value) <= self.most:
             return value

@@ -53,7 +53,7 @@ class GrowingFile:
         draft_of(self.path).unlink(missing_ok=True)
 
     def _catch_up(self, draft: Path) -> None:
-        if self._lacking is None or _held(draft):
+        if self._lacking is None or _open_elsewhere(draft):
             draft.unlink(missing_ok=True)
             shutil.copyfile(self.path, draft)
         else:
@@ -68,7 +68,7 @@ def _write(path: Path, changes: Mapping[int, bytes], size: int) -> None:
         file.truncate(size)
 
 
-def _held(path: Path) -> bool:
+def _open_elsewhere(path: Path) -> bool:
     """Whether a reader has the file open; where there are no locks, nobody can tell."""
     with path.open("r+b") as file:
         try:

@@ -82,7 +82,7 @@ def _chain(l0: Array, w: Array, EA: Array, ends: tuple[float, float], level: flo
 
 
 def _hang_on(chain: Chain, points: Array) -> None:
-    """Add point weights to the joints around them; what hangs on a held end is no matter of the line."""
+    """Add point weights to the joints around them; what hangs on a prescribed end is no matter of the line."""
     along = np.append(0.0, np.cumsum(chain.l0))
     bar = np.clip(np.searchsorted(along, points[:, 0], side="right") - 1, 0, chain.l0.size - 1)
     share = (points[:, 0] - along[bar]) / chain.l0[bar]

@@ -9,7 +9,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.riser.directors import SpatialTurn, Turn
 
-HELD = 1e-9  # of the line's length, or a radian: what moves less at a support is held there, or does not move at all
+STILL = 1e-9  # of the line's length, or a radian: what moves less does not move
 
 
 def free_turns(x: Array, turn: Turn, prescribed: BoolArray, length: float) -> Array:
@@ -22,17 +22,17 @@ def free_turns(x: Array, turn: Turn, prescribed: BoolArray, length: float) -> Ar
     motions /= units
     none = np.zeros((len(motions), 1))
     _, sizes, combined = np.linalg.svd(np.hstack([motions[:, prescribed], none]).T)
-    free = _independent(combined[np.count_nonzero(sizes > HELD) :] @ motions.reshape(len(motions), -1))
+    free = _independent(combined[np.count_nonzero(sizes > STILL) :] @ motions.reshape(len(motions), -1))
     free = free.reshape(-1, *units.shape)
     largest = np.abs(free[..., : x.shape[1]]).max(axis=(1, 2), initial=0.0)
-    moving = largest > HELD
+    moving = largest > STILL
     return np.asarray(free[moving] / largest[moving][:, None, None] * units)
 
 
 def _independent(motions: Array) -> Array:
     """Orthonormal motions (k, n) that make up the same ones: a straight line spins as it turns about itself."""
     _, sizes, basis = np.linalg.svd(motions, full_matrices=False)
-    return np.asarray(basis[sizes > HELD])
+    return np.asarray(basis[sizes > STILL])
 
 
 def unit_lengths(shape: tuple[int, ...], dofs: int, length: float) -> Array:

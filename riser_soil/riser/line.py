@@ -49,7 +49,7 @@ class Line:
     """Field "riser": committed configuration, dofs and ends of the line; see the module's text and `Layout`.
 
     dimension: 2 or 3. A planar line needs a layout in one vertical plane (`shapes.vertical_direction`).
-    Where no end holds the rotation of a line in space, `hold_spin` keeps the start from spinning about the
+    Where no end prescribes the rotation of a line in space, `prescribe_spin` keeps the start from spinning about the
     pipe's axis: nothing else would in statics, as a round pipe spins at no cost.
     active: whether this rank evaluates and owns the riser.
     """
@@ -64,7 +64,7 @@ class Line:
         start: End,
         end: End,
         direction: Array | None = None,
-        hold_spin: bool = False,
+        prescribe_spin: bool = False,
         active: bool = True,
     ) -> None:
         self.dimension, self.start, self.end, self.active = dimension, start, end, active
@@ -88,7 +88,7 @@ class Line:
         self._left: Trial | None = None
         self._trials: deque[Trial] = deque(maxlen=2)
         self._number()
-        self.hold_spin(hold_spin)
+        self.prescribe_spin(prescribe_spin)
 
     def _axes(self, first: Array) -> tuple[Array, Array]:
         """Constant basis (3, d) and origin of the in-plane coordinates; z is counted from zero, not from the
@@ -115,15 +115,15 @@ class Line:
         self.global_index: IntArray = np.arange(self.size, dtype=np.int64)
         self.owned: BoolArray = np.full(self.size, self.active)
 
-    def hold_spin(self, held: bool) -> None:
+    def prescribe_spin(self, spin: bool) -> None:
         """Whether the start of a line in space is kept from spinning about the pipe's axis; until the next call."""
         prescribed = np.zeros((self.nodes, self.ndof), dtype=bool)
         for node, end in ((0, self.start), (-1, self.end)):
-            prescribed[node, : self.dimension] = end.held
+            prescribed[node, : self.dimension] = end.prescribed
             prescribed[node, self.dimension :] = end.rotation_fixed
-        prescribed[0, self.dimension] |= held and self.dimension == 3
+        prescribed[0, self.dimension] |= spin and self.dimension == 3
         self.prescribed: BoolArray = prescribed.ravel()
-        self._held: IntArray = np.flatnonzero(self.prescribed)
+        self._prescribed_dofs: IntArray = np.flatnonzero(self.prescribed)
 
     @property
     def part(self) -> slice:
@@ -268,7 +268,7 @@ class Line:
         return base if turning is None else self.frames.turned(base, turning(t).rotation @ self.turning_axes)
 
     def predict(self, guess: State) -> Array:
-        """First guess of a step: the guess's increment, with what the held ends move beyond it spread along the line.
+        """First guess of a step: the guess's increment, with the rest of the ends' motion spread along the line.
 
         Left to the last element alone, that remainder stretches it, and its false tension spoils the first
         iteration. The cube of the distance from the other end keeps the far part, often on the seabed, where it is.
@@ -276,7 +276,7 @@ class Line:
         predicted = guess.u.copy()
         moved = self.nodal(predicted)[:, : self.dimension]
         for node, end in self._ends:
-            if end.held and end.motion is not None:
+            if end.prescribed and end.motion is not None:
                 moved += self._reach[node] * (self._to(end.motion(guess.t)[0], node) - moved[node])
         return predicted
 
@@ -323,11 +323,11 @@ class Line:
         return self.to_global(self.trial(state).x)
 
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
-        """Write the increments, rates and accelerations of the held ends into views of the field's slice."""
+        """Write the increments, rates and accelerations of the prescribed ends into views of the field's slice."""
         for values in (u, v, a):
-            values[self._held] = 0.0
+            values[self._prescribed_dofs] = 0.0
         for node, end in self._ends:
-            if end.held and end.motion is not None:
+            if end.prescribed and end.motion is not None:
                 at = slice(node * self.ndof, node * self.ndof + self.dimension)
                 position, velocity, acceleration = end.motion(t)
                 u[at] = self._to(position, node)

@@ -1,4 +1,4 @@
-"""Prescribed motions of held ends in dynamic stages."""
+"""Prescribed motions of the ends in dynamic stages."""
 
 import math
 from functools import cached_property
@@ -238,7 +238,7 @@ class EndMotion(BaseModel):
 
 
 class Motion(BaseModel):
-    """Prescribed motions of held ends."""
+    """Prescribed motions of the ends."""
 
     model_config = FROZEN
 

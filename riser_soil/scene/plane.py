@@ -71,17 +71,17 @@ def leaving_the_plane(scene: Scene) -> Iterator[Path]:
 
 
 def _ends(scene: Scene) -> tuple[Vector, ...]:
-    """Points that fix the plane: the held ends, or those of the unstressed shape."""
+    """Points that fix the plane: the prescribed ends, or those of the unstressed shape."""
     riser = scene.riser
-    held = tuple(end.position for end in (riser.start, riser.end) if isinstance(end, Support))
-    if len(held) == 2:
-        return held
+    prescribed = tuple(end.position for end in (riser.start, riser.end) if isinstance(end, Support))
+    if len(prescribed) == 2:
+        return prescribed
     if isinstance(riser.unstressed, PointsShape):
         return riser.unstressed.points
     if isinstance(riser.unstressed, ArcShape):
         arc = riser.unstressed.arc
         return arc.from_point, plus(arc.from_point, cross(arc.axis, (0.0, 0.0, 1.0)))
-    return held or ((0.0, 0.0, 0.0),)
+    return prescribed or ((0.0, 0.0, 0.0),)
 
 
 def _direction(points: tuple[Vector, ...]) -> Vector:

@@ -84,7 +84,7 @@ class Load(BaseModel):
 
 
 class MovedEnds(BaseModel):
-    """New positions of held ends, reached linearly with the stage's load factor."""
+    """New prescribed positions of ends, reached linearly with the stage's load factor."""
 
     model_config = FROZEN
 
@@ -160,7 +160,7 @@ class StaticStage(BaseModel):
 
     name: Text = Field(min_length=1, description="name of the stage, different from the others")
     kind: Literal["static"] = Field(description="static or dynamic")
-    move: MovedEnds | None = Field(default=None, description="new positions of held ends, {start, end}")
+    move: MovedEnds | None = Field(default=None, description="new prescribed positions of ends, {start, end}")
     loads: tuple[Load, ...] = Field(default=(), description="loads on the riser during this stage")
 
 
@@ -181,7 +181,7 @@ class DynamicStage(BaseModel):
         description="with time_step: auto, the largest local error of a step: an estimate of how far any node of the "
         "riser is off its path after this one step [m]; by default 0.02 of its outer diameter",
     )
-    motion: Motion | None = Field(default=None, description="prescribed motions of held ends, {start, end}")
+    motion: Motion | None = Field(default=None, description="prescribed motions of ends, {start, end}")
     loads: tuple[Load, ...] = Field(default=(), description="loads on the riser during this stage")
     scheme: Scheme = Field(
         default=GeneralizedAlphaScheme(generalized_alpha=GeneralizedAlpha()),

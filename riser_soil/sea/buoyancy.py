@@ -23,7 +23,7 @@ class Dry(Protocol):
         ...
 
     def add_tangent(self, K: Array, trial: Trial, weights: Weights) -> None:
-        """Add its tangent to K (ne, n, n), directors held."""
+        """Add its tangent to K (ne, n, n), directors held constant."""
         ...
 
     def potential(self, trial: Trial) -> float:

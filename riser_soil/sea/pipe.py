@@ -84,7 +84,7 @@ class Pipe:
         return stations.inner(self.share, f, g)
 
     def add_tangent(self, K: Array, trial: Trial, weights: Weights, by: stations.Derivatives) -> None:
-        """Add to K (ne, n, n) what a force per length with these derivatives has as tangent, directors held."""
+        """Add to K (ne, n, n) the tangent of a force per length with these derivatives, directors held constant."""
         q, rate, acceleration = trial.columns(weights)
         own = K if self._points is None else np.zeros((len(self.at.N), *K.shape[1:]))
         first, second, third = (self._own(c.tangent) for c in (q, rate, acceleration))

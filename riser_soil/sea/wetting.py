@@ -94,8 +94,8 @@ class PartlyWet:
         wet, by = self._wetting.at(trial), self._loads.derivatives(trial, weights)
         inertia, force = self._submerged(trial)
         whole = weights.inertia * inertia + weights.force * force
-        held = Derivatives(*(wet.share[..., None, None] * d for d in by))
-        return held._replace(position=held.position + whole[..., :, None] * wet.gradient[..., None, :])
+        wetted = Derivatives(*(wet.share[..., None, None] * d for d in by))
+        return wetted._replace(position=wetted.position + whole[..., :, None] * wet.gradient[..., None, :])
 
     def momentum(self, trial: Trial, v: Array) -> Array:
         return self._wetting.at(trial).share[..., None] * self._loads.momentum(trial, v)

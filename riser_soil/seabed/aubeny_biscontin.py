@@ -176,8 +176,8 @@ class Trench:
         lower = self._lower(z, loop)
         upper = self._upper(z, loop, lower)
         edge, edge_slope = (np.where(down, u, l) for u, l in zip(upper, lower, strict=True))
-        held = np.where(down, (inner > edge) | (z >= past.z1), inner < edge)
-        value, derivative = np.where(held, edge, inner), np.where(held, edge_slope, slope)
+        on_edge = np.where(down, (inner > edge) | (z >= past.z1), inner < edge)
+        value, derivative = np.where(on_edge, edge, inner), np.where(on_edge, edge_slope, slope)
         return np.where(z > 0.0, value, 0.0), np.where(z > 0.0, derivative, 0.0)
 
     def _hyperbola(self, d: Array, P: Array, loop: Loop) -> tuple[Array, Array]:

@@ -38,8 +38,8 @@ class Grid:
         near = 1e-6 * float(np.max(self.high - self.low))
         at_side = (points < self.low + near) | (points > self.high - near)
         bottom = points[:, 2] < self.low[2] + near
-        held: BoolArray = np.column_stack((at_side[:, 0] | bottom, at_side[:, 1] | bottom, bottom))
-        return held
+        prescribed: BoolArray = np.column_stack((at_side[:, 0] | bottom, at_side[:, 1] | bottom, bottom))
+        return prescribed
 
 
 def block_grid(comm: MPI.Intracomm, spec: BlockSpec) -> Grid:

@@ -14,7 +14,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, local
 from riser_soil.core.system import System
 from riser_soil.solve.linear_solver import PREFIX, defaults, factorise_directly
-from riser_soil.solve.stability import hold_free_turns, unstable_modes
+from riser_soil.solve.stability import prescribe_free_turns, unstable_modes
 from riser_soil.solve.time_scheme import Scheme, Static
 
 CONVERGED = PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
@@ -193,7 +193,7 @@ class Newton:
             self._trial(x)
             self.system.assemble(self._balanced, self._weights)
             if self._weights.inertia == 0.0:
-                hold_free_turns(self.system, self._balanced, self.settings.tolerance * self._scale(self._forces))
+                prescribe_free_turns(self.system, self._balanced, self.settings.tolerance * self._scale(self._forces))
 
     def _reusable(self) -> bool:
         """Whether the tangent of the iteration before will do."""

@@ -9,8 +9,8 @@ of n equal elements with hinged ends that is a load above P_cr by less than 0.7 
 A strut with a free end counts as one twice as long.
 
 A turn t of the whole riser that its supports leave free has no stiffness where the loads don't tell one direction from
-another, and what Newton's tolerance leaves of the residual makes a small one of either sign. As K t = 0, holding one
-dof that it moves takes it away and leaves all else as it is: v - c t, with that dof zero, has the energy of v.
+another, and what Newton's tolerance leaves of the residual makes a small one of either sign. As K t = 0, prescribing
+one dof that it moves takes it away and leaves all else as it is: v - c t, with that dof zero, has the energy of v.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ def unstable_modes(system: System, state: State, weights: Weights, forces: float
     if judged is None:
         return 0
     system.assemble(state, weights, judged)
-    held = _one_dof_each(system, _neutral(system, state, NO_STIFFNESS * forces))
+    prescribed = _one_dof_each(system, _neutral(system, state, NO_STIFFNESS * forces))
     diagonal = system.matrix.mat.getDiagonal()
     bounds = _row_bounds(system, diagonal.array)
-    mine = _of_this_rank(system, held)
+    mine = _of_this_rank(system, prescribed)
     diagonal.array_w[:] += (-EPS if doubtful else EPS) * bounds
     diagonal.array_w[mine] += bounds[mine]
     system.matrix.mat.setDiagonal(diagonal)
@@ -55,14 +55,14 @@ def unstable_modes(system: System, state: State, weights: Weights, forces: float
     return negative_pivots(system)
 
 
-def hold_free_turns(system: System, state: State, least: float) -> None:
-    """Hold free turns of the riser that meet less than `least` [N] in the assembled matrix, each at a dof; collective.
+def prescribe_free_turns(system: System, state: State, least: float) -> None:
+    """Prescribe a dof of each free turn of the riser that meets less than `least` [N] in the matrix; collective.
 
     It is singular there, so that round-off would decide where a step ends among equilibria that differ by a turn.
     """
-    held = _one_dof_each(system, _neutral(system, state, least))
-    if held.size:
-        diagonal, mine = system.matrix.mat.getDiagonal(), _of_this_rank(system, held)
+    prescribed = _one_dof_each(system, _neutral(system, state, least))
+    if prescribed.size:
+        diagonal, mine = system.matrix.mat.getDiagonal(), _of_this_rank(system, prescribed)
         diagonal.array_w[mine] += np.abs(diagonal.array_r[mine])
         system.matrix.mat.setDiagonal(diagonal)
         diagonal.destroy()

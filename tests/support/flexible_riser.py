@@ -69,7 +69,7 @@ def hang(count: int, dimension: int = 2, EI: float = EI) -> Hanging:
     """Newton from the catenary."""
     e = properties(count, EI)
     layout = shapes.layout(e.arc, e.outer_diameter, shapes.straight(e.arc), guess(e).curve)
-    line = Line(dimension, layout, End(True), End(True), hold_spin=True)
+    line = Line(dimension, layout, End(True), End(True), prescribe_spin=True)
     beam = Beam(line, e)
     iterations = solve(line, [beam])
     state = State.at_rest(1.0, line.size)
@@ -82,7 +82,7 @@ def elastica_H() -> tuple[float, float]:
     """H and the vertical force at the start of the extensible elastica, from its boundary value problem.
 
     With force (H, V0 + w s) on the section and strain e = T/EA: x' = (1 + e) cos, z' = (1 + e) sin, EI theta'
-    = M, M' = (1 + e) (H sin - V cos); both ends held, free to turn. Lengths are over LENGTH, forces over w
+    = M, M' = (1 + e) (H sin - V cos); both ends pinned. Lengths are over LENGTH, forces over w
     LENGTH.
     """
     e = properties(700)

@@ -36,7 +36,7 @@ def riser_scene(
     return scene
 
 
-def held(*position: float, rotation: Any = "free") -> Mapping:
+def prescribed(*position: float, rotation: Any = "free") -> Mapping:
     return {"position": list(position), "rotation": rotation}
 
 
@@ -63,8 +63,8 @@ def in_waves(time_step: float, top: float, rho_inf: float = 0.8) -> Mapping:
         pipe=IN_WAVES,
         length=26.0,
         elements=8,
-        start=held(0.0, 0.0, 3.0),
-        end=held(14.0, 0.0, top),
+        start=prescribed(0.0, 0.0, 3.0),
+        end=prescribed(14.0, 0.0, top),
         water=water,
         gravity=9.81,
         solver={"tolerance": 1e-10},

@@ -133,7 +133,7 @@ def sample(
     radius, normal = 6.0, np.cross(UP, DIRECTION)
     bend = shapes.circle(e.arc, START - radius * UP, START, 8.0 / radius, normal)
     layout = shapes.layout(e.arc, e.outer_diameter, bend, shapes.through(e.arc, planar_points()))
-    start, end = ends or (End(held=True), End(held=False))
+    start, end = ends or (End(prescribed=True), End(prescribed=False))
     made = Sample(Line(dimension, layout, start, end, direction=DIRECTION), e)
     made.line.offset = 0
     for seed in range(3 if shaken else 0):

@@ -10,17 +10,17 @@ from riser_soil.core.saved_state import Saved
 
 
 class Chain:
-    """Field of n heights z; the first may be held."""
+    """Field of n heights z; the first may be prescribed."""
 
     name, space = "chain", "chain"
 
-    def __init__(self, z: Array, held: bool = False, owner: bool = True) -> None:
+    def __init__(self, z: Array, prescribed: bool = False, owner: bool = True) -> None:
         self.z: Array = np.asarray(z, dtype=float)
         self.size, self.offset = len(self.z), 0
         self.global_index: IntArray = np.arange(self.size)
         self.owned: BoolArray = np.full(self.size, owner)
         self.prescribed: BoolArray = np.zeros(self.size, dtype=bool)
-        self.prescribed[0] = held
+        self.prescribed[0] = prescribed
 
     lever = 1.0
 

@@ -52,8 +52,8 @@ def balanced(chain: Chain, parts: list[Part], scheme: Scheme, v0: list[float], e
 
 
 def swing(scheme: Scheme, dt: float = 0.1, cubic: float = 0.0) -> Seen:
-    """A held chain under weight."""
-    chain = Chain(np.arange(4.0), held=True)
+    """A chain under weight, its first height prescribed."""
+    chain = Chain(np.arange(4.0), prescribed=True)
     parts: list[Part] = [Springs(chain, 1.0, 20.0, cubic, weight=1.0), Inertia(chain, 1.0)]
     return balanced(chain, parts, scheme, [0.0, 0.3, 0.1, 0.8], 3.0, dt)
 

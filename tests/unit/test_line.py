@@ -31,7 +31,7 @@ def prescribed(line: Line, t: float) -> tuple[Array, Array, Array]:
 
 
 @both_dimensions
-def test_held_ends_follow_their_motion_and_nothing_else_is_written(dimension: int) -> None:
+def test_prescribed_ends_follow_their_motion_and_nothing_else_is_written(dimension: int) -> None:
     def motion(t: float) -> Kinematics:
         return START + 2.0 * t * DIRECTION, 2.0 * DIRECTION, 0.5 * DIRECTION
 
@@ -47,13 +47,13 @@ def test_held_ends_follow_their_motion_and_nothing_else_is_written(dimension: in
     assert np.array_equal(np.isfinite(u.ravel()), line.prescribed)
 
 
-def test_spin_is_held_at_the_start_about_the_pipes_axis() -> None:
+def test_spin_is_prescribed_at_the_start_about_the_pipes_axis() -> None:
     made = sample(3, shaken=False).line
     tangent = made.trial(State.at_rest(0.0, made.size)).turn.tangent[0, 0]
-    held = Line(3, shapes_layout(), End(True), End(True), hold_spin=True)
-    assert np.flatnonzero(held.prescribed).tolist() == [0, 1, 2, 3, *range(held.size - 6, held.size - 3)]
-    held.hold_spin(False)
-    assert not held.prescribed[3]
+    spinless = Line(3, shapes_layout(), End(True), End(True), prescribe_spin=True)
+    assert np.flatnonzero(spinless.prescribed).tolist() == [0, 1, 2, 3, *range(spinless.size - 6, spinless.size - 3)]
+    spinless.prescribe_spin(False)
+    assert not spinless.prescribed[3]
     spin = np.zeros((made.nodes, 3))
     spin[0, 0] = 0.4
     assert made.frames.turn(spin).tangent[0, 0] == pytest.approx(tangent, abs=1e-15)

@@ -71,7 +71,7 @@ def walk(
 
 def swing(scheme: GeneralizedAlpha, sizes: Array) -> tuple[list[tuple[Array, Array]], Given]:
     """A mass of 1 kg on a spring of 4 N/m, from rest length 1 m, moving off at 1 m/s."""
-    chain, steps = Chain(np.array([0.0, 1.0]), held=True), Given(sizes)
+    chain, steps = Chain(np.array([0.0, 1.0]), prescribed=True), Given(sizes)
     parts: list[Part] = [Springs(chain, 1.0, 4.0), Inertia(chain, 2.0)]
     return walk(chain, parts, scheme, np.array([0.0, 1.0]), steps), steps
 
@@ -110,7 +110,7 @@ def test_uneven_steps_need_accelerations_of_their_own_time(monkeypatch: pytest.M
 
 def test_impact_shorter_than_the_step_is_seen() -> None:
     """A mass at 1 m/s meets a stiff floor: what it can't go on is the error's order. At rest there is none."""
-    chain, dt = Chain(np.array([0.0, 0.105]), held=True), 0.02
+    chain, dt = Chain(np.array([0.0, 0.105]), prescribed=True), 0.02
     steps = Given(np.full(200, dt))
     parts: list[Part] = [Springs(chain, 0.0, 1e-9), Inertia(chain, 2.0), Floor(chain, 1e7)]
     walk(chain, parts, SCHEMES[1], np.array([0.0, -1.0]), steps)
@@ -118,8 +118,8 @@ def test_impact_shorter_than_the_step_is_seen() -> None:
     assert max(steps.errors[5:7]) > 0.5 * dt
 
 
-def test_held_places_have_no_error() -> None:
-    chain, steps = Chain(np.array([0.0, 1.0]), held=True), Given(np.full(5, 0.1))
+def test_prescribed_places_have_no_error() -> None:
+    chain, steps = Chain(np.array([0.0, 1.0]), prescribed=True), Given(np.full(5, 0.1))
     parts: list[Part] = [Springs(chain, 1.0, 4.0), Inertia(chain, 2.0)]
     walk(chain, parts, SCHEMES[0], np.zeros(2), steps)
     assert max(steps.errors) == 0.0

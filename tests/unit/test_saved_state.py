@@ -118,9 +118,9 @@ def test_a_tally_comes_back_as_it_was() -> None:
 @pytest.mark.parametrize("scheme", [GeneralizedAlpha.newmark(), GeneralizedAlpha.from_rho_inf(0.5)])
 def test_a_stepper_goes_on_to_the_last_bit(scheme: GeneralizedAlpha) -> None:
     """Masses on springs, 20 steps; another stepper takes over after 7."""
-    chain = Chain(np.array([0.0, 1.1, 1.9]), held=True)
+    chain = Chain(np.array([0.0, 1.1, 1.9]), prescribed=True)
     saved, alone = stepped(chain, scheme, State.at_rest(0.0, 3), 0, 20, save_after=7)
-    other = Chain(np.array([0.0, 1.1, 1.9]), held=True)
+    other = Chain(np.array([0.0, 1.1, 1.9]), prescribed=True)
     other.restore(within(saved, "chain"))
     _, rest = stepped(other, scheme, within(saved, "stepper"), 7, 20)
     assert rest == alone[7:]

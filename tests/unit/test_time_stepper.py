@@ -41,8 +41,8 @@ def walk_through(
 
 
 def oscillate(scheme: Scheme, dt: float) -> float:
-    """Height of the free end of a held nonlinear chain after 3 s."""
-    chain = Chain(np.arange(4.0), held=True)
+    """Height of the free end of a nonlinear chain after 3 s, the other end prescribed."""
+    chain = Chain(np.arange(4.0), prescribed=True)
     parts: list[Part] = [Springs(chain, 1.0, 20.0, 50.0), Inertia(chain, 1.0)]
     walk_through(chain, parts, scheme, np.array([0.0, 0.3, 0.1, 0.8]), 3.0, dt)
     return float(chain.z[-1])
@@ -67,7 +67,7 @@ def test_spectral_radius_one_is_the_average_acceleration() -> None:
 
 @pytest.mark.parametrize("scheme", [AVERAGE, Midpoint()])
 def test_average_acceleration_and_midpoint_rule_keep_the_energy_of_a_linear_chain(scheme: Scheme) -> None:
-    chain = Chain(np.arange(6.0), held=True)
+    chain = Chain(np.arange(6.0), prescribed=True)
     inertia = Inertia(chain, 1.0)
     parts: list[Part] = [Springs(chain, 1.0, 50.0, weight=2.0), inertia]
     v0 = np.array([0.0, 1.0, -1.0, 0.5, 0.2, 2.0])

@@ -24,7 +24,7 @@ from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import distance, dynamic, held, riser_scene, static, tell
+from tests.support.riser_scenes import distance, dynamic, prescribed, riser_scene, static, tell
 
 PIPE = {"EA": 1.0e7, "EI": 1.0e5, "GJ": 1.0e5, "mass": 50.0, "submerged_weight": 200.0, "outer_diameter": 0.2}
 END, REFERENCE = [40.0, 0.0, 3.0], [55.0, 4.0, -2.0]
@@ -57,8 +57,8 @@ def mapping(*stages: Mapping, rotation: Any = "free", waves: Mapping = AIRY, **m
         pipe=PIPE,
         length=60.0,
         elements=6,
-        start=held(0.0, 0.0, -30.0),
-        end=held(*END, rotation=rotation),
+        start=prescribed(0.0, 0.0, -30.0),
+        end=prescribed(*END, rotation=rotation),
         gravity=9.81,
         water={"surface_level": 10.0, "waves": waves},
         **more,

@@ -12,7 +12,7 @@ from riser_soil.errors import SolveError
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
-from tests.support.riser_scenes import AVERAGE, dynamic, held, riser_scene, tell
+from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, tell
 
 CATENARY = Path(__file__).parents[1] / "scenes/catenary.yaml"
 AUTO = ("stages.1.time_step=auto", "riser.segments.0.elements=30")
@@ -65,7 +65,14 @@ def test_error_falls_with_the_tolerance(scheme: dict[str, object]) -> None:
         pipe = {"EA": 1e6, "EI": 500.0, "mass": 60.0, "outer_diameter": 0.2}
         hung = {"name": "hang", "kind": "static"}
         scene = riser_scene(
-            hung, stage, pipe=pipe, length=20.0, elements=10, start=held(0, 0, 0), end=held(12, 0, 4), gravity=9.81
+            hung,
+            stage,
+            pipe=pipe,
+            length=20.0,
+            elements=10,
+            start=prescribed(0, 0, 0),
+            end=prescribed(12, 0, 4),
+            gravity=9.81,
         )
         return tell(scene)[1].position[-1]
 
@@ -81,7 +88,7 @@ def test_a_tolerance_out_of_reach_is_told() -> None:
         pipe={"EA": 1e6, "EI": 500.0, "mass": 60.0, "outer_diameter": 0.2},
         length=10.0,
         elements=5,
-        start=held(0, 0, 0, rotation="fixed"),
+        start=prescribed(0, 0, 0, rotation="fixed"),
         end="free",
         riser={"initial": "straight"},
         solver={"min_time_step": 0.01},

@@ -24,7 +24,7 @@ from riser_soil.riser.sections import LineType, Segment, Surroundings, elements
 from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import solve, tangent
 from tests.support.driven_stage import built, take
-from tests.support.riser_scenes import AVERAGE, dynamic, held, riser_scene, static, tell
+from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, static, tell
 from tests.support.sample_line import sample
 
 G, RHO = 9.81, 1025.0
@@ -52,7 +52,14 @@ def test_tension_jumps_by_the_weight_of_what_hangs(dimension: int) -> None:
     clumps: list[Mapping] = [{"at": [6.0, 20.0], "mass": 50.0}, {"at": 10.7, "mass": 300.0, "volume": 0.1}]
     down = {"unstressed": {"points": [[0.0, 0.0, 20.0], [0.0, 0.0, 0.0]]}}
     assembly = built(
-        scene(static(), attachments=clumps, riser=down, start=held(0.0, 0.0, 20.0), end="free", dimension=dimension)
+        scene(
+            static(),
+            attachments=clumps,
+            riser=down,
+            start=prescribed(0.0, 0.0, 20.0),
+            end="free",
+            dimension=dimension,
+        )
     )
     arc, tension = assembly.line.arc, inside(assembly).effective_tension
     weights = {6.0: 50.0 * G, 10.7: (300.0 - 0.1 * RHO) * G, 20.0: 50.0 * G}
@@ -65,7 +72,7 @@ def test_a_buoy_holds_its_mooring_straight_up(dimension: int) -> None:
     buoy = [{"at": 20.0, "mass": 200.0, "volume": 1.0}]
     up = {"unstressed": {"points": [[0.0, 0.0, 0.0], [0.0, 0.0, 20.0]]}}
     assembly = built(
-        scene(static(), attachments=buoy, riser=up, start=held(0.0, 0.0, 0.0), end="free", dimension=dimension)
+        scene(static(), attachments=buoy, riser=up, start=prescribed(0.0, 0.0, 0.0), end="free", dimension=dimension)
     )
     lift = (RHO - 200.0) * G
     found = inside(assembly)
@@ -84,8 +91,8 @@ def test_a_lazy_wave_balances_at_every_node() -> None:
             attachments=modules,
             length=120.0,
             elements=60,
-            start=held(0.0, 0.0, 0.0),
-            end=held(60.0, 0.0, 60.0),
+            start=prescribed(0.0, 0.0, 0.0),
+            end=prescribed(60.0, 0.0, 60.0),
             riser={"initial": "catenary"},
         )
     )
@@ -184,7 +191,7 @@ def test_a_pendulum_of_a_rod_and_masses_keeps_time_and_energy(dimension: int) ->
         pipe=rod,
         length=10.0,
         elements=4,
-        start=held(0.0, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
         end="free",
         dimension=dimension,
     )
@@ -198,10 +205,10 @@ def test_a_pendulum_of_a_rod_and_masses_keeps_time_and_energy(dimension: int) ->
 
 @both_dimensions
 def test_the_support_moves_what_sits_at_its_end(dimension: int) -> None:
-    """A mass at a moving held end adds m (g + a) to the reaction there, and nothing to the line's tension."""
+    """A mass at a moving prescribed end adds m (g + a) to the reaction there, and nothing to the line's tension."""
     amplitude, period, t, mass = 0.2, 4.0, 5.3, 70.0
     motion = {"end": {"harmonic": {"amplitude": [0.0, 0.0, amplitude], "period": period, "ramp": 1.0}}}
-    ends = {"start": held(0.0, 0.0, 0.0), "end": held(10.0, 0.0, 12.0)}
+    ends = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(10.0, 0.0, 12.0)}
     soft = PIPE | {"EA": 1.0e6}
     bare, laden = (
         tell(scene(dynamic(t, 0.1, motion=motion), attachments=attached, dimension=dimension, pipe=soft, **ends))[0].end

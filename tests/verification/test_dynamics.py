@@ -12,7 +12,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import AVERAGE, Told, distance, dynamic, held, riser_scene, static, tell
+from tests.support.riser_scenes import AVERAGE, Told, distance, dynamic, prescribed, riser_scene, static, tell
 
 SCENES = Path(__file__).parents[1] / "scenes"
 FLEXIBLE = {
@@ -45,8 +45,8 @@ def plucked_string(dimension: int) -> Mapping:
         pipe=BEAM,
         length=LENGTH,
         elements=ELEMENTS,
-        start=held(0.0, 0.0, 0.0),
-        end=held(LENGTH, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(LENGTH, 0.0, 0.0),
         dimension=dimension,
         solver={"tolerance": 1e-9},
     )
@@ -89,8 +89,8 @@ def surging(time_step: float, **more: Any) -> Mapping:
         pipe=FLEXIBLE,
         length=350.0,
         elements=20,
-        start=held(0.0, 0.0, 0.0),
-        end=held(150.0, 0.0, 150.0),
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(150.0, 0.0, 150.0),
         gravity=9.81,
         water={"density": 1025.0},
         riser={"contents": {"density": 1025.0}, "initial": "catenary"},
@@ -135,8 +135,8 @@ def test_linear_beam_keeps_its_energy() -> None:
         pipe=pipe,
         length=30.0,
         elements=10,
-        start=held(0.0, 0.0, 0.0),
-        end=held(30.0, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(30.0, 0.0, 0.0),
         solver={"tolerance": 1e-9},
     )
     energy = np.array(tell(scene)[-1].energy)
@@ -161,7 +161,7 @@ def spun(dimension: int, axis: Array, direction: Array) -> list[Told]:
         pipe=SPIN,
         length=ARM,
         elements=4,
-        start=held(0.0, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
         end="free",
         dimension=dimension,
         riser={"initial": {"points": points}},
@@ -209,8 +209,8 @@ def oblique(dimension: int, unstressed: Any = "straight") -> Mapping:
         pipe=FLEXIBLE,
         length=60.0,
         elements=12,
-        start=held(*start, rotation="fixed"),
-        end=held(*(start + 35.0 * d + np.array([0.0, 0.0, 38.0])), rotation={"stiffness": 2.0e4}),
+        start=prescribed(*start, rotation="fixed"),
+        end=prescribed(*(start + 35.0 * d + np.array([0.0, 0.0, 38.0])), rotation={"stiffness": 2.0e4}),
         dimension=dimension,
         gravity=9.81,
         water={"density": 1025.0},

@@ -23,7 +23,7 @@ from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
 from tests.support.momentum import momentum
-from tests.support.riser_scenes import AVERAGE, dynamic, held, riser_scene, tell
+from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, tell
 
 MIDPOINT: Mapping = {"midpoint": {}}
 PULSE = {
@@ -150,7 +150,7 @@ def spin_up(folder: Path, axis: Array, along: Array, dimension: int) -> tuple[Ar
         pipe={"EA": EA, "EI": EI, "GJ": EI, "mass": MASS},
         length=LENGTH,
         elements=6,
-        start=held(0.0, 0.0, 0.0, rotation="fixed"),
+        start=prescribed(0.0, 0.0, 0.0, rotation="fixed"),
         end="free",
         dimension=dimension,
         solver={"tolerance": 1e-9},

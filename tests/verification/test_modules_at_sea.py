@@ -9,7 +9,7 @@ import pytest
 
 from riser_soil.sea.wet_section import wet_share
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import Told, dynamic, held, riser_scene, static, tell
+from tests.support.riser_scenes import Told, dynamic, prescribed, riser_scene, static, tell
 
 G, RHO = 9.81, 1025.0
 ROD: Mapping = {"EA": 1.0e9, "EI": 1.0e8, "GJ": 1.0e8, "mass": 1.0, "submerged_weight": 0.0}
@@ -48,7 +48,7 @@ def test_a_sinking_weight_falls_by_the_hyperbolic_tangent(dimension: int) -> Non
 def test_a_current_pushes_a_module_with_its_drag_area(dimension: int) -> None:
     module = {"at": 0.7, "mass": 10.0, "drag_area": 0.8}
     stream = WATER | {"current": {"profile": [[0.0, 1.3, 0.0]]}}
-    ends = {"start": held(0.0, 0.0, 0.0), "end": held(0.0, 0.0, 2.0)}
+    ends = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(0.0, 0.0, 2.0)}
     told = tell(scene(static(), module=module, water=stream, dimension=dimension, **ends))[0].end
     total = told.start_force + told.end_force
     assert total == pytest.approx([-0.5 * RHO * 0.8 * 1.3**2, 0.0, 10.0 * G], rel=1e-9, abs=1e-6)
@@ -60,7 +60,7 @@ def test_a_buoy_floats_at_the_draught_that_carries_its_rod(dimension: int) -> No
     buoy, rod = {"at": 2.0, "mass": 40.0, "volume": 0.2}, ROD | {"submerged_weight": 300.0}
     water = WATER | {"surface_level": 0.1}
     scene_ = scene(
-        static(), module=buoy, water=water, pipe=rod, start=held(0.0, 0.0, 0.0), end="free", dimension=dimension
+        static(), module=buoy, water=water, pipe=rod, start=prescribed(0.0, 0.0, 0.0), end="free", dimension=dimension
     )
     told = tell(scene_)[0].end
     share = (0.5 * 300.0 * 2.0 + 40.0 * G) / (RHO * G * 0.2)
@@ -75,7 +75,7 @@ def test_waves_accelerate_the_water_in_and_around_a_module() -> None:
     V, Ca, height, period, depth = 0.4, 0.6, 0.2, 8.0, 5.0
     module = {"at": 1.0, "mass": RHO * V, "volume": V, "added_mass": Ca}
     waves = {"airy": {"height": height, "period": period}, "stretching": "vertical", "ramp": 2.0}
-    ends = {"start": held(-1.0, 0.0, -depth, rotation="fixed"), "end": held(1.0, 0.0, -depth, rotation="fixed")}
+    ends = {key: prescribed(x, 0.0, -depth, rotation="fixed") for key, x in (("start", -1.0), ("end", 1.0))}
     water = WATER | {"surface_level": 0.0, "waves": waves}
     times: list[float] = []
     pushed: list[float] = []

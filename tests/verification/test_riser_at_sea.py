@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from riser_soil.core.arrays import Array
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import AVERAGE, Told, distance, dynamic, held, in_waves, riser_scene, static, tell
+from tests.support.riser_scenes import AVERAGE, Told, distance, dynamic, in_waves, prescribed, riser_scene, static, tell
 
 RHO, D, CD, CA, MASS = 1025.0, 0.3, 1.1, 1.0, 120.0
 PIPE: Mapping = {"EA": 1.0e6, "EI": 2.0e3, "GJ": 2.0e3, "outer_diameter": D, "mass": MASS}
@@ -38,8 +38,8 @@ def test_current_on_a_fixed_pipe_is_borne_by_its_ends(stage: str) -> None:
         pipe=PIPE | {"EI": 1.0e9, "EA": 1.0e9},
         length=20.0,
         elements=4,
-        start=held(0.0, 0.0, 0.0, rotation="fixed"),
-        end=held(0.0, 0.0, 20.0, rotation="fixed"),
+        start=prescribed(0.0, 0.0, 0.0, rotation="fixed"),
+        end=prescribed(0.0, 0.0, 20.0, rotation="fixed"),
         water={"density": RHO, "current": {"profile": [[0.0, SPEED, 0.0]]}},
     )
     end = tell(scene)[-1].end
@@ -54,8 +54,8 @@ def sheared(elements: int) -> Mapping:
         pipe=PIPE | {"EI": 4.0e4, "EA": 5.0e6},
         length=52.0,
         elements=elements,
-        start=held(0.0, 0.0, 0.0),
-        end=held(20.0, 0.0, 47.0),
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(20.0, 0.0, 47.0),
         water={"density": RHO, "current": {"profile": [[0.0, 0.2, 0.1], [47.0, 1.2, 0.7]]}},
         gravity=9.81,
         solver={"tolerance": 1e-10},

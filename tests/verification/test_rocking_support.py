@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from tests.support.riser_scenes import AVERAGE, Told, distance, dynamic, held, riser_scene, tell
+from tests.support.riser_scenes import AVERAGE, Told, distance, dynamic, prescribed, riser_scene, tell
 
 PIPE = {"EA": 1.0e7, "EI": 2.0e5, "GJ": 1.5e5, "mass": 40.0, "outer_diameter": 0.3, "rotary_inertia": True}
 ARM = 8.0
@@ -25,7 +25,7 @@ def rocked(
         pipe=PIPE,
         length=ARM,
         elements=4,
-        start=held(0.0, 0.0, 0.0, rotation=rotation),
+        start=prescribed(0.0, 0.0, 0.0, rotation=rotation),
         end="free",
         dimension=dimension,
         solver={"tolerance": 1e-11},

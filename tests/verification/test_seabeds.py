@@ -15,7 +15,7 @@ from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
 from riser_soil.seabed.laws import LAWS
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import distance, held, riser_scene, static, tell
+from tests.support.riser_scenes import distance, prescribed, riser_scene, static, tell
 
 SCENES = Path(__file__).parents[1] / "scenes"
 W, SLOPE = 700.0, 2.0  # N/m, deg; steeper, the riser would be pushed at its start, and lie down beside its plane
@@ -40,8 +40,8 @@ def lying(
         pipe=PIPE,
         length=length,
         elements=elements,
-        start=held(0.0, 0.0, 0.0),
-        end=held(88.0, 66.0, 60.0),
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(88.0, 66.0, 60.0),
         gravity=9.81,
         seabed={key: value for key, value in ground.items() if value is not None},
         contact={"method": method} | (more_contact or {}),

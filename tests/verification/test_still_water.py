@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from riser_soil.core.arrays import Array
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import AVERAGE, Told, dynamic, held, riser_scene, static, tell
+from tests.support.riser_scenes import AVERAGE, Told, dynamic, prescribed, riser_scene, static, tell
 
 RHO, D, CD, CA, MASS, WEIGHT = 1025.0, 0.3, 1.1, 1.0, 150.0, 800.0
 PIPE: Mapping = {"EA": 1.0e7, "EI": 1.0e4, "outer_diameter": D, "mass": MASS, "submerged_weight": WEIGHT}
@@ -68,8 +68,8 @@ def string(steps_per_cycle: int) -> Array:
         pipe=pipe,
         length=LENGTH,
         elements=16,
-        start=held(0.0, 0.0, 0.0),
-        end=held(LENGTH, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(LENGTH, 0.0, 0.0),
         water=WATER,
         solver={"tolerance": 1e-9},
     )

@@ -9,7 +9,7 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import AVERAGE, dynamic, held, riser_scene, static, tell
+from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, static, tell
 
 LENGTH, EA, EI, MASS, TENSION, RATIO, ELEMENTS, DT = 30.0, 1.0e9, 5.0e5, 80.0, 4.0e4, 0.02, 20, 0.02
 STRETCH = 1.0 + TENSION / EA
@@ -32,8 +32,8 @@ def plucked(dimension: int, tension: float, frequency: float, dt: float = DT) ->
         pipe=pipe,
         length=LENGTH,
         elements=ELEMENTS,
-        start=held(0.0, 0.0, 0.0),
-        end=held(LENGTH, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(LENGTH, 0.0, 0.0),
         dimension=dimension,
         solver={"tolerance": 1e-9},
     )
@@ -97,7 +97,7 @@ def swinging(dt: float, dimension: int, **damping: Any) -> Mapping:
         pipe={"EA": 2.0e5, "EI": 4.0e3, "GJ": 3.0e3, "mass": 20.0, "submerged_weight": 196.2, **damping},
         length=6.0,
         elements=6,
-        start=held(0.0, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
         end="free",
         dimension=dimension,
         gravity=9.81,

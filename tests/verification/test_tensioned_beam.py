@@ -40,7 +40,7 @@ def frequencies(dimension: int, count: int, tension: float = TENSION, added: flo
         return np.array([LENGTH * (1.0 + t * tension / EA), 0.0, 0.0]), np.zeros(3), np.zeros(3)
 
     layout = shapes.layout(e.arc, e.outer_diameter, straight, straight)
-    line = Line(dimension, layout, End(True), End(True, motion=stretch), hold_spin=True)
+    line = Line(dimension, layout, End(True), End(True, motion=stretch), prescribe_spin=True)
     beam, inertia = Beam(line, e), Inertia(line, e.mass)
     normal, none = np.full(count, added), np.zeros(count)
     masses = added_masses(RHO, np.full(count, DIAMETER), normal, none)

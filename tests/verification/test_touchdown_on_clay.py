@@ -18,7 +18,7 @@ from riser_soil.solve.time_stepper import Accepted, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
-from tests.support.riser_scenes import held, riser_scene, static
+from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.touchdown_reference import equivalent_point
 
 D, AREA, INERTIA = 0.27, 1.71405e-2, 1.32801e-4  # m, m2, m4 of a steel pipe whose wall is 22 mm
@@ -55,8 +55,8 @@ def laid(seabed: Mapping, size: float, *stages: Mapping, **more: Mapping) -> lis
         pipe=PIPE,
         length=2500.0,
         elements=round(2500.0 / size),
-        start=held(0.0, 0.0, 0.5 * D),
-        end=held(1500.0, 0.0, 1500.0),
+        start=prescribed(0.0, 0.0, 0.5 * D),
+        end=prescribed(1500.0, 0.0, 1500.0),
         seabed=seabed,
         gravity=9.81,
         dimension=2,

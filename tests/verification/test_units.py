@@ -23,7 +23,7 @@ from riser_soil.solve.time_stepper import Accepted, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher
-from tests.support.riser_scenes import dynamic, held, riser_scene, static
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 
 SCALES = (1e-6, 1e-3, 1e3, 1e6)
 SEABEDS: dict[str, Mapping] = {
@@ -53,8 +53,8 @@ def hose(s: float, seabed: str, dimension: int, time_step: float | str) -> Mappi
         pipe=pipe,
         length=40.0 * s,
         elements=60,
-        start=held(0.0, 0.0, 0.075 * s),
-        end=held(28.0 * s, 0.0, 15.0 * s),
+        start=prescribed(0.0, 0.0, 0.075 * s),
+        end=prescribed(28.0 * s, 0.0, 15.0 * s),
         seabed=ground,
         contact={"friction": {"axial": 0.4}},
         water={"density": 1025.0},
