@@ -1,4 +1,4 @@
-"""The command line: riser-soil run | check | schema.
+"""Command line interface: riser-soil run | check | schema.
 
 Exit status 0 done, 2 bad input, 3 the solve failed, 4 the disk or standard output took no more, 128 + n for signal n.
 """

@@ -1,4 +1,4 @@
-"""The errors that a user can meet; each carries the exit status that the command line returns for it."""
+"""Errors that a user can meet, each with the exit status of the command line."""
 
 import errno
 import signal

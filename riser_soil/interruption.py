@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM end a run where it keeps all that it has accepted: between two steps, never within a record.
+"""Signal handling: Ctrl-C and SIGTERM end a run between two steps, never within a record.
 
 Python calls a signal's handler between two of its own instructions, so an exception out of it can come anywhere. Alone,
 a process lets it come at once, unless it is accepting or recording a step. Several ranks would wait for one another for

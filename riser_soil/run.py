@@ -1,4 +1,4 @@
-"""The story of a run: scene, parts, stages, recorder."""
+"""Run of a scene: assembly, stages in turn, recorder."""
 
 from __future__ import annotations
 

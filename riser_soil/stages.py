@@ -1,4 +1,4 @@
-"""A stage from its beginning to its end: its system, its steps, and dynamic relaxation where statics need it."""
+"""Analysis of one stage, from its assembled system to its end, with dynamic relaxation where statics need it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Standard output that may be closed or full, as by `| head`: a run goes on for its files, and tells at its end."""
+"""Standard output that may be closed or full, as by `| head`; the run itself goes on."""
 
 from __future__ import annotations
 

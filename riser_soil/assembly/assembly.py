@@ -1,4 +1,4 @@
-"""The parts of a scene that live through all its stages."""
+"""The assembled model: the fields and parts of a scene that last through all its stages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the water of a scene acts on: the pipe, and the modules on it."""
+"""Bodies that carry hydrodynamic loads: the pipe, and the buoyancy modules and clump weights on it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the riser lies on: soil, seabed, and contact with them."""
+"""Assembly of soil, seabed and contact."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From the scene's motions of the ends to functions of time."""
+"""Assembly of the prescribed end motions of a stage as functions of time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The pressures inside and outside the pipe."""
+"""Assembly of the internal and external pressure of the pipe."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The riser's line, elements and end springs."""
+"""Assembly of the riser: its line, beam elements and rotational end springs."""
 
 from __future__ import annotations
 

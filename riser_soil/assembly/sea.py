@@ -1,4 +1,4 @@
-"""What the water of a scene does: the only place that asks what moves it."""
+"""Assembly of the sea: water surface, current and waves."""
 
 from __future__ import annotations
 

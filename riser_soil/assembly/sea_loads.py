@@ -1,4 +1,4 @@
-"""Loads of the water on the riser, as far as the scene has them."""
+"""Assembly of the hydrodynamic loads: Morison loads and buoyancy at the surface, as far as the scene has them."""
 
 from __future__ import annotations
 

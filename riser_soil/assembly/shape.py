@@ -1,4 +1,4 @@
-"""The riser's unstressed shape and the one that it starts from."""
+"""Assembly of the riser's unstressed shape and initial configuration."""
 
 from __future__ import annotations
 

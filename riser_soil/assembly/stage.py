@@ -1,4 +1,4 @@
-"""What a stage adds: loads, inertia, and its time scheme."""
+"""Assembly of a stage: its loads, inertia, damping, step control and time scheme."""
 
 from __future__ import annotations
 

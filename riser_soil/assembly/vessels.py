@@ -1,4 +1,4 @@
-"""Vessels that carry ends: their responses to the scene's waves, and where each stage finds them."""
+"""Assembly of vessels: RAOs applied to the scene's waves, and the ends that each vessel carries."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Plausibility of the elements: too long for the bending, or of very different lengths where waves meet them."""
+"""Plausibility of the element lengths: too long for the bending, or of very different lengths where waves pass."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a scene will be built of: parts, unknowns, memory, and physical warnings."""
+"""Report of `riser-soil check`: parts, unknowns, memory, disk, run time and plausibility warnings."""
 
 from __future__ import annotations
 

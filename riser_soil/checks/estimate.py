@@ -1,4 +1,4 @@
-"""How large a scene is, told from its numbers alone, before anything is built: unknowns, steps, memory, disk, time.
+"""Estimate of a scene's size before anything is built: unknowns, steps, memory, disk space, run time.
 
 Memory and disk are those of `check`'s report within some tens of per cent, the time within a factor of three or so.
 """

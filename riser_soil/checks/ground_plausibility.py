@@ -1,4 +1,4 @@
-"""Plausibility of the ground: penalties, friction where there is none, soil out of reach or off the seabed."""
+"""Plausibility of seabed and soil: penalty stiffness, friction without effect, soil out of reach or off the seabed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a scene is built of, and what is left out and why."""
+"""Inventory of a scene: which parts it is built of, and which are left out and why."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a scene may ask of the machine: told before anything is built, from the scene's numbers alone."""
+"""Memory and disk limits: a scene that exceeds them is refused before anything is built."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the machine has left for a run: memory and disk."""
+"""Available memory and free disk space of the machine."""
 
 from __future__ import annotations
 

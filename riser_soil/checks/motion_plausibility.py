@@ -1,4 +1,4 @@
-"""Plausibility of motions in time: ends that start or stop with a shock or go too far apart, too long steps."""
+"""Plausibility of prescribed motions: velocity jumps, ends too far apart, time steps too long for the periods."""
 
 from __future__ import annotations
 

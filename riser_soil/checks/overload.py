@@ -1,4 +1,4 @@
-"""Where the riser puts more on the ground than that bears: what to tell beside a solve that failed."""
+"""Bearing capacity check after a failed solve: where the riser's load exceeds what the ground bears."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Plausibility warnings of a scene as it is built, each with its numbers and a remedy."""
+"""Plausibility warnings of an assembled scene, each with its numbers and a remedy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Plausibility of a scene's waves: too steep for linear theory, or in water of another depth than the scene's."""
+"""Plausibility of waves: too steep for linear theory, or in a water depth that is not the scene's."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Coulomb friction with a finite mobilisation length, point by point.
+"""Return mapping of Coulomb friction with an elastic mobilisation length, point by point.
 
 Traction t (..., r) per length in r directions along the ground [N/m], what the riser feels; ds (..., r) its movement in
 the step. With the normal force N >= 0 at the end of the step and coefficients mu (r,):

@@ -1,4 +1,4 @@
-"""Riser and ground at one state: gaps, and the forces and stiffness where they touch."""
+"""Contact detection at a trial state: gaps of candidate pairs, contact forces and contact stiffness."""
 
 from __future__ import annotations
 

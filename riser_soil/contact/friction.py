@@ -1,4 +1,4 @@
-"""Friction of the riser on a seabed that has no dofs: a load along its elements, where the seabed presses on it."""
+"""Coulomb friction of the riser on the seabed, integrated along its elements: the part "friction"."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The soil's surface as a ground, and the points by which the riser stands on it."""
+"""The deformed soil surface as a contact surface, and the contact points of the riser's nodes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""First guess of a step in which the riser lands: the predictor of contacts."""
+"""Contact predictor: first guess of a step in which the riser touches down."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The penalty of normal contact: its force per length of riser by penetration, and the choice of its stiffness.
+"""Penalty law of normal contact: force per length by penetration, and the default penalty stiffness.
 
 Penetration δ = −gap [m]; force f [N/m] pushes the two sides apart; f = dψ/dδ with the potential ψ [N].
 """

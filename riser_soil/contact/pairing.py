@@ -1,4 +1,4 @@
-"""Which facet of a surface lies under a point, and where on it."""
+"""Contact search: the surface facet below a point, and the local coordinates on it."""
 
 from __future__ import annotations
 

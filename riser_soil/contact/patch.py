@@ -1,4 +1,4 @@
-"""Which entries of the tangent contact may need: the candidates, kept until the riser moves out of them."""
+"""Candidate contact pairs, which set the sparsity pattern of contact in the tangent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Forces per length at the stations of the elements that touch, brought to the line's dofs."""
+"""Contact forces per length at quadrature stations, assembled to the line's dofs."""
 
 from __future__ import annotations
 

@@ -1,29 +1,30 @@
-"""Where the riser comes down.
+"""Touchdown points from the contact forces along the riser.
 
 Where the contact force ends depends on how soft the ground is: on a bed of stiffness k the force near the touchdown
 point is spread over some layer length l = (4 EI/k)^(1/4), and ends about l beyond the place where the riser would leave
-a rigid floor. There, the force per length would be f0, with which the riser rests, up to the touchdown point, and a
-concentrated force R at that point (a straight pipe bears no moment, so the shear force jumps). The touchdown point is
-taken as the end d of that rigid contact which has the resultant and the moment of the forces found: with tau = S - d,
-S the line's end,
+a rigid floor. There, the force per length is f0, that of the riser at rest, up to the touchdown point, plus a
+concentrated force R at that point (a straight pipe has no moment, so the shear force jumps). The touchdown point is
+defined as the end d of that rigid contact which has the resultant and the moment of the computed forces: with tau = S -
+d, S the line's end,
 
     E0 = int (f - f0) ds = R - f0 tau,    E1 = int (f - f0)(S - s) ds = R tau - f0 tau²/2,
     R² = E0² + 2 f0 E1,                   tau = (R - E0)/f0.
 
-By statics neither d nor R knows how the force is spread. On a bed of springs under the tension H and small slopes, d
-lies sqrt(EI/H - H/k) before the place where the catenary of the hanging part touches down, sqrt(EI/H) on a rigid floor:
-an error of the order of 1/k, whereas the contact's end moves with the power -1/4 of k. On beds softer than H²/EI there
-is no such R, and d is that place itself. Quadrature along the line makes the sums as exact as the balance of forces.
+By statics neither d nor R depends on how the force is spread. On a bed of springs under the tension H and small slopes,
+d lies sqrt(EI/H - H/k) before the place where the catenary of the hanging part touches down, sqrt(EI/H) on a rigid
+floor: an error of the order of 1/k, whereas the contact's end moves with the power -1/4 of k. On beds softer than H²/EI
+there is no such R, and d is that place itself. With quadrature along the line the sums are as exact as the balance of
+forces.
 
-How far back the layer goes is told by the forces too, from the free side on: with m(x) the largest of them up to x,
+The extent of the layer follows from the forces too, counted from the free side: with m(x) the largest force up to x,
 and x from the end of the contact,
 
     B(x) = int m/m(x) dx,   A(x) = 4 int m/m(x) (1 - m/m(x)) dx,   depth = B/(DEEP A).
 
 A is the length in which the force rises to its peak, 0.45 l on stiff springs, B the length since the force began. Up to
-a depth of 3/4 all counts in E0 and E1, beyond 1 nothing does; f0 is a mean of what is deep. The depth is at least 3/4
-where half of the stretch's force acts on the free side: of two touchdown points, each has its half of what lies. All
-weights and means are continuous in the forces, and so is d: where a station begins to touch, it does so with none.
+a depth of 3/4 the force counts fully in E0 and E1, beyond 1 not at all; f0 is a mean over the deep part. The depth is
+at least 3/4 where half of the stretch's force acts on the free side: of two touchdown points, each has its half of the
+contact. All weights and means are continuous in the forces, and so is d: a station begins to touch with zero force.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Compiled kernels: `njit` for functions on arrays and tuples of numbers, kept on disk between runs.
+"""Compiled kernels: numba's `njit`, with a cache on disk between runs.
 
 numba's own cache doesn't notice an edit in another file whose functions it has inlined, and runs stale code. So each
 version of the kernels has a cache folder of its own, under NUMBA_CACHE_DIR, XDG_CACHE_HOME or ~/.cache, or a private

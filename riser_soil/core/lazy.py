@@ -1,4 +1,4 @@
-"""Modules that are imported when they are first used, for files that a scene's reader imports: it needs no numerics."""
+"""Lazy imports: modules that are loaded at first use, so that a scene is read without numerics."""
 
 from __future__ import annotations
 

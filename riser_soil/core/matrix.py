@@ -1,4 +1,4 @@
-"""The system's matrix: its pattern from the parts' blocks, and its assembly from their values.
+"""The system matrix: sparsity pattern from the parts' blocks, and assembly of their values.
 
 On one rank the blocks' values are added straight into the CSR array that PETSc works on; on several ranks PETSc sends
 entries to their owners.

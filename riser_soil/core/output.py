@@ -1,4 +1,4 @@
-"""What an output is: a quantity, what it is called, where it is evaluated, and how it follows from what is told."""
+"""Definition of an output: a quantity with its name, unit, place and evaluation from the snapshots."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The table of outputs: all that a run tells of an instant. From it come the scene's choices, the variables of
-results.nc, the fields of the XDMF files, the summary and the screen.
+"""Table of outputs at an instant: effective tension, bending moment, contact force, touchdown, soil stress and more.
 
-Each part of the table is in the order of results.nc, and of the list of fields in the scene.
+The scene's choices, the variables of results.nc, the fields of the XDMF files, the summary and the screen follow
+from it. Each part of the table is in the order of results.nc, and of the list of fields in the scene.
 """
 
 from __future__ import annotations

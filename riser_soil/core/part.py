@@ -1,4 +1,4 @@
-"""The contract between the parts of a scene and the system that solves them together.
+"""Interface of parts and fields: residual, tangent, energy and commit, as the system needs them.
 
 Every part adds its share to one residual R(u, v, a) = inertia·I + force·F + E, internal minus external:
 

@@ -1,4 +1,4 @@
-"""Number types with their bounds, and the settings shared by every model of the scene language.
+"""Physical quantities of the scene language: number types with their units and bounds.
 
 Every quantity has a physical range. A riser is from a tenth of a metre to some kilometres long; the ranges hold all
 that such a riser has when it is scaled in length by a millionth to a million, by Froude's law (forces by the cube of

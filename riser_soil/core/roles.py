@@ -1,4 +1,4 @@
-"""What parts may do for the time stepper beyond their contract, each declared in the part's traits.
+"""Optional roles of parts in the time stepping: adaptive sparsity pattern, predictor, momentum correction.
 
 A role that is declared without its methods, such as one that is misspelt, is an error at the stage's start, and so is
 one that is there and not declared. Parts that keep something from step to step are `Stateful`, see `saved_state`.

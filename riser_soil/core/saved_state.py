@@ -1,4 +1,4 @@
-"""State that can be saved: what all who hold committed state give as named arrays, and take back.
+"""Saved state: the committed state of all its owners as named arrays, for a restart between two steps.
 
 A stage is saved between two steps. Built anew from its scene and given the saved state back, it goes on as if it had
 not been left: to the last bit. So an owner saves all that the next steps depend on, unless it is the scene's, and

@@ -1,4 +1,4 @@
-"""What the recorder is told: plain arrays and numbers, SI units, global axes (z up).
+"""Snapshots for the recorder: results of a state as plain arrays, SI units, global axes (z up).
 
 nn riser nodes in the order of the arc length; nv points and nc cells of the soil's output mesh.
 """

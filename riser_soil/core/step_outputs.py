@@ -1,4 +1,4 @@
-"""The table of outputs of every accepted step: how hard the solver worked, and the balance of energy."""
+"""Table of outputs of every accepted step: Newton iterations, step size, energy balance."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""All parts of a stage as one system: residual, tangent, prescribed motion, commit."""
+"""The coupled system of a stage: residual, tangent, prescribed motion and commit of all parts together."""
 
 from __future__ import annotations
 

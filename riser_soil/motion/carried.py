@@ -1,4 +1,4 @@
-"""Ends that are carried along by a displacement and a rotation vector given together, as by a table or a vessel."""
+"""Prescribed end motion by a displacement and a rotation vector given together, as by a table or a vessel."""
 
 from __future__ import annotations
 

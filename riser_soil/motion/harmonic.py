@@ -1,4 +1,4 @@
-"""Harmonic motion that starts smoothly."""
+"""Harmonic prescribed motion with a smooth ramp."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Move of an end in a static stage."""
+"""Prescribed displacement of an end in a static stage, by the load factor."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An angle that swings: ends on an arc about a hub, and supports that rock about an axis."""
+"""Harmonic rotation: ends that swing on an arc about a hub, and supports that rock about an axis."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Motion through the rows of a table."""
+"""Time history of a prescribed motion: cubic splines through the rows of a table."""
 
 from __future__ import annotations
 

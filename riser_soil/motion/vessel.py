@@ -1,4 +1,4 @@
-"""An end that belongs to a vessel in waves."""
+"""Prescribed motion of an end on a vessel in waves."""
 
 from __future__ import annotations
 

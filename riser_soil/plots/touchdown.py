@@ -1,4 +1,4 @@
-"""Draws the touchdown zone off screen: python -m riser_soil.plots.touchdown FOLDER PNG [MAGNIFY]."""
+"""Picture of the touchdown zone, drawn off screen: python -m riser_soil.plots.touchdown FOLDER PNG [MAGNIFY]."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The energy ledger of a stage, step by step.
+"""Energy balance of a stage, step by step: the energy ledger.
 
 Two errors of the time integration are told apart. With F the forces of group F, E those of group E, and W the work of
 supports, all that acts takes

@@ -1,4 +1,4 @@
-"""A run's folder: the names in it, and how it is taken over without ever looking whole before it is."""
+"""The results folder of a run: file names, lock, and replacement of an earlier run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A file that grows by whole updates: who opens it, and a kill at any moment, meets it before an update or after one.
+"""Atomic file updates: a growing file that is whole at every moment, also for readers and after a kill.
 
 Two copies take turns. An update goes to the one that nobody sees, which then takes the name of the other; the other
 gets the same update before the next. So an update costs what it changes, however long the file has become. An HDF5 file

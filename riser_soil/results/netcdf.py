@@ -1,4 +1,4 @@
-"""results.nc: time series of one run (netCDF-4), readable at any moment, also after a kill.
+"""netCDF-4 time series of a run, results.nc; readable at any moment, also after a kill.
 
 The file is laid out once by h5netcdf. Rows are gathered in memory; `flush` appends them in one update, so that the
 file on disk is whole at every moment.

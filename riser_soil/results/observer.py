@@ -1,4 +1,4 @@
-"""From the parts' states to what the recorder is told; the same calls on every rank, files on rank 0 only."""
+"""Observer of a run: collects snapshots from the parts' states on all ranks and hands them to the recorder."""
 
 from __future__ import annotations
 

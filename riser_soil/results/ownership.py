@@ -1,4 +1,4 @@
-"""Which files of a result folder this program has written itself: those alone does a run replace.
+"""Ownership of result files: a run replaces only files that this program has written.
 
 A file of the same name that somebody else wrote, or changed since, is refused, whatever else is allowed.
 """

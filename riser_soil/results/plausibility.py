@@ -1,4 +1,4 @@
-"""Plausibility of results as they come: strains beyond small ones, bending that elements blur, soil never touched."""
+"""Plausibility of results: strains too large, bending that the elements do not resolve, soil never touched."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reads the folder of a run, finished or not, from its files alone."""
+"""Reader of a run's results, finished or not, from its files alone."""
 
 from __future__ import annotations
 

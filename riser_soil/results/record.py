@@ -1,4 +1,4 @@
-"""The recorder: told of every accepted step, it writes the run's folder. Lives on one rank only."""
+"""The recorder: writes every accepted step to the run's folder. Lives on one rank only."""
 
 from __future__ import annotations
 

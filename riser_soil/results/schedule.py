@@ -1,4 +1,4 @@
-"""When to write: decided from the step's time alone, so that every rank comes to the same answer."""
+"""Output schedule: which accepted steps are written to which file, by their time alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a finished run tells on the screen."""
+"""Screen output of a finished run: a table for each stage."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""summary.json: what a run was, how each stage ended, and the extremes on the way."""
+"""Summary of a run, summary.json: what was built, how each stage ended, extremes and warnings."""
 
 from __future__ import annotations
 

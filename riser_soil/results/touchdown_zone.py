@@ -1,4 +1,4 @@
-"""Where the riser touches the ground at an accepted state, over all grounds that it may touch."""
+"""Touchdown zone at an accepted state, over all seabeds and soils that the riser may touch."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Point masses and buoyancy modules on the line, and their weight less buoyancy: the part "attachments".
+"""Point masses and buoyancy modules on the line, with their weight less buoyancy: the part "attachments".
 
 What acts at xi of an element reaches its q by the shape functions N(xi): a weight w as w N, a mass m as m N N^T. At a
 node that is the classical lumped weight and mass. There it counts with the element after the node, so section forces

@@ -1,4 +1,4 @@
-"""Balance of a line without bending stiffness in a vertical plane, hanging or resting on a level seabed.
+"""Static equilibrium of an elastic cable in a vertical plane, hanging or resting on a level seabed.
 
 The line is a chain of bars with the weight lumped at their joints. A bar of unstressed length l0 that carries the
 horizontal tension H and the vertical force V, with T = sqrt(H^2 + V^2), spans

@@ -1,4 +1,4 @@
-"""The elastic catenary between two points in space, as the first shape of a line; `cable` finds its balance."""
+"""Elastic catenary between two points in space, as the initial configuration; `cable` finds its equilibrium."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The frame that follows a two-node beam element in space, and how it hands forces on to the nodes.
+"""Corotational frame of a two-node beam element in space, and nodal forces from forces in that frame.
 
 e1 lies along the chord; e2 is the second section axis of the first end, brought over by the shortest
 rotation of its tangent to e1. The strains of `strain3d` do not depend on how the frame is turned about

@@ -1,4 +1,4 @@
-"""Viscous forces of the elements of `beam2d`: stresses in proportion to the strains' rates.
+"""Stiffness-proportional (Kelvin-Voigt) damping of the plane elements of `beam2d`.
 
 The sections here are viscosities beta EA [N s] and beta EI [N m2 s]. With the rates of the chord and of the section
 angles as seen from the element's frame, the stresses are the Hessian of the elastic energy at no stress times the

@@ -1,4 +1,4 @@
-"""Viscous forces of the elements of `beam3d`: stresses in proportion to the strains' rates.
+"""Stiffness-proportional (Kelvin-Voigt) damping of the spatial elements of `beam3d`.
 
 The sections here are viscosities: beta EA [N s], beta EI and beta GJ [N m2 s]. Rates are those of the chord (m/s) and
 the spatial angular velocities of the nodes (rad/s). Strains do not change in a rigid motion, so it is never damped,

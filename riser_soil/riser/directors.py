@@ -1,4 +1,4 @@
-"""Node orientations: how rotation dofs turn the unit tangents at element ends, in the plane and in space.
+"""Node orientations (directors): unit tangents at element ends from rotation dofs, in the plane and in space.
 
 `PlanarFrames` keeps an angle per node, `SpatialFrames` a rotation matrix. Each gives the trial orientation
 for a rotation increment as a turn with the same members:

@@ -1,6 +1,4 @@
-"""The elastic elements of a line, in the plane and in space: trial state in, forces conjugate to its dofs
-out.
-"""
+"""Elastic forces and tangent of all elements of a line, in the plane and in space."""
 
 from __future__ import annotations
 

@@ -32,8 +32,8 @@ class End:
     """Boundary condition of an end.
 
     motion, when given, moves the prescribed position; without it the end stays where it is. turning, of the seconds
-    since the stage began, turns the support: a fixed rotation turns with it, and so does the rest direction of a rotational
-    spring. A free rotation is not affected.
+    since the stage began, turns the support: a fixed rotation turns with it, and so does the rest direction of a
+    rotational spring. A free rotation is not affected.
     """
 
     prescribed: bool

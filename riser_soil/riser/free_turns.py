@@ -1,5 +1,6 @@
-"""Motions of a whole line, as if it were rigid, that its supports leave free, such as the turn of a riser that is held
-at both ends about the line between them. They cost nothing where the loads don't tell one direction from another.
+"""Rigid-body motions of the line that its supports leave free, such as a turn about the chord between its ends.
+
+They take no energy where the loads do not depend on the direction.
 """
 
 from __future__ import annotations

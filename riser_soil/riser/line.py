@@ -1,4 +1,4 @@
-"""The riser's line: its dofs, committed configuration, ends and prescribed motion.
+"""The riser's line: dofs, committed configuration, end conditions and prescribed motion.
 
 Dofs are interleaved by node: in space x, y, z and a body-axes rotation vector; in a vertical plane p, z and
 an angle, p along the horizontal unit vector d, the angle positive from d towards z.

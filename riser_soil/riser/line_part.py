@@ -1,4 +1,4 @@
-"""What parts that act on a line have in common: its pattern; by default nothing is stored, turned over or kept."""
+"""Base class of the parts that act on a line: sparsity pattern, and defaults without energy or history."""
 
 from __future__ import annotations
 

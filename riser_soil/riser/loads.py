@@ -1,4 +1,4 @@
-"""Loads of a stage on the riser, growing by their own histories: the part "loads"."""
+"""Point and distributed loads of a stage on the riser, with their load histories: the part "loads"."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Directors fixed in the sections at element ends, from the start to the end of a step.
+"""Directors of the sections at element ends over a step of the midpoint rule.
 
 The midpoint rule needs of a director d its mean (d0 + d1)/2, its change d1 - d0, and how both follow the rotation
 increment Theta to the middle of the step; the end lies at twice that increment. A spin w of the middle turns the mean

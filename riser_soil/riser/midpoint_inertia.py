@@ -1,4 +1,4 @@
-"""Inertia for the midpoint rule, which keeps linear and angular momentum: the parts "inertia" and "rotary inertia".
+"""Momentum-conserving inertia of the midpoint rule: the parts "inertia" and "rotary inertia".
 
 The kinetic energy is 1/2 q' M q' with a constant mass M, q being positions and directors fixed in the sections. From
 q'(n+1) = 2 (q(n+1) - q(n))/dt - q'(n) the inertia force of a step is F = M (q'(n+1) - q'(n))/dt. It acts on the means

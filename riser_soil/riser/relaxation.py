@@ -1,4 +1,4 @@
-"""Artificial drag for pseudo-time steps towards equilibrium: the last resort of statics."""
+"""Artificial viscous drag for dynamic relaxation: the part "relaxation"."""
 
 from __future__ import annotations
 

@@ -1,14 +1,15 @@
-"""How well the elements of a line resolve its bending, judged by a solution itself.
+"""A posteriori estimate of the bending error: how well the elements resolve the curvature.
 
-The ends of an element turn against each other by the mean of its curvature k, and the moments and shear forces at its
-ends tell k and k' there. Where both describe one smooth curve, the formula of Euler and Maclaurin joins them:
+The relative rotation of an element's ends is the integral of its curvature k, and the moments and shear forces at its
+ends give k and k' there. Where both describe one smooth curve, the Euler-Maclaurin formula relates them:
 
     turn/L = (k1 + k2)/2 - L/12 (k2' - k1') + O(L^4 k'''')
 
-A tension T bends a line into shapes that a cubic can't follow, and spoils the moments of an element by about
-T L^4 k''/384, the fourth-order error of its deflection times T; what the two sides differ by is that error. Near a
-clamped end, where k falls off within sqrt(EI/T), shear and moment are spoilt alike. There the trapezoidal rule alone
-tells: its error is the drop of k within the element. At a pinned end, where k sets in, it is no error of the moment.
+A tension T bends a line into shapes that a cubic can't follow, and leaves an error in the moments of an element of
+about T L^4 k''/384, the fourth-order error of its deflection times T; the difference of the two sides is that error.
+Near a clamped end, where k decays within sqrt(EI/T), shear and moment have the same error. There the trapezoidal rule
+alone is used: its error is the drop of k within the element. At a pinned end, where k sets in, it is no error of the
+moment.
 """
 
 from __future__ import annotations

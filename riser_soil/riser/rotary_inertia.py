@@ -1,4 +1,4 @@
-"""Inertia of the cross-sections against turning: the part "rotary inertia" of dynamic stages."""
+"""Rotary inertia of the cross-sections: the part "rotary inertia" of dynamic stages."""
 
 from __future__ import annotations
 

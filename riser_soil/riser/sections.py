@@ -1,4 +1,4 @@
-"""From line types and segments to arrays per element."""
+"""Section properties of the line: from line types and segments to arrays per element."""
 
 from __future__ import annotations
 

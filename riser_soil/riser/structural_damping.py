@@ -1,4 +1,4 @@
-"""Damping within the pipe, in proportion to its stiffness: the part "structural damping" of dynamic stages."""
+"""Structural damping in proportion to the elastic stiffness: the part "structural damping" of dynamic stages."""
 
 from __future__ import annotations
 

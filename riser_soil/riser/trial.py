@@ -1,4 +1,4 @@
-"""The line at a trial state, and how loads on it reach its dofs."""
+"""Trial configuration of the line, and how loads per length reach its dofs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tension in the pipe's wall, from the effective tension and the pressures inside and outside.
+"""Wall tension of the pipe from effective tension, internal and external pressure.
 
     T_w = T + p_i A_i - p_o A_o,    p_i = p + rho_i g (z_p - z),    p_o = rho_o g (z_s - z), at least 0.
 

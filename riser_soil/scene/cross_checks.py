@@ -1,4 +1,4 @@
-"""Conflicts between parts of a scene that each by itself is well formed."""
+"""Consistency checks between parts of a scene, each of which is valid by itself."""
 
 import math
 from collections.abc import Callable, Iterator

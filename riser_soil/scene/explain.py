@@ -1,4 +1,4 @@
-"""Problems in the words of the scene from the errors of the models."""
+"""Error messages: from the models' validation errors to problems in the words of the scene."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Lengths of elements that grow geometrically along a segment."""
+"""Graded element lengths: geometric growth along a segment."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What the models say about a place of the scene: its keys, words and description."""
+"""Keys, words and descriptions of the scene language, looked up in its models."""
 
 from dataclasses import dataclass
 from types import UnionType

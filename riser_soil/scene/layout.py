@@ -1,4 +1,4 @@
-"""Where the riser's initial shape begins and ends."""
+"""End points of the riser's initial shape."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Where prescribed motions lead: vectors and axes that must lie in the riser's plane, or across it, to stay in it."""
+"""Plane motion check: vectors and axes of prescribed motions that must lie in the riser's plane or normal to it."""
 
 import math
 from collections.abc import Iterator

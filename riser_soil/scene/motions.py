@@ -1,4 +1,4 @@
-"""Prescribed motions of the ends in dynamic stages."""
+"""Scene language: prescribed motions of the ends in dynamic stages."""
 
 import math
 from functools import cached_property

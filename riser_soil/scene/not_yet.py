@@ -1,4 +1,4 @@
-"""Keys and values of the language that this version can't compute yet.
+"""Keys and values of the scene language that are not supported yet.
 
 They are named as such instead of being called unknown. A value that switches the thing off is dropped.
 """

@@ -1,4 +1,4 @@
-"""The vertical plane of a scene, and what leaves it."""
+"""The vertical plane of a two-dimensional scene, and what leaves it."""
 
 import math
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""A problem in a scene, and the one line that tells it."""
+"""A problem found in a scene, and its one-line message."""
 
 import difflib
 import json

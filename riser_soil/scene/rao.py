@@ -1,4 +1,4 @@
-"""Tables of a vessel's response amplitude operators (RAO)."""
+"""Tables of a vessel's response amplitude operators (RAOs)."""
 
 import cmath
 import math

@@ -1,4 +1,4 @@
-"""From a scene file to a checked scene."""
+"""Reader: from a scene file to a checked scene."""
 
 import re
 from collections.abc import Iterable, Sequence

@@ -1,4 +1,4 @@
-"""The riser: its segments, contents, ends and shapes."""
+"""Scene language: the riser, its segments, contents, end supports and shapes."""
 
 import math
 from itertools import accumulate

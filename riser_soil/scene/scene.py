@@ -1,4 +1,4 @@
-"""The scene: everything that a run is made of."""
+"""Scene language: the whole scene."""
 
 import math
 from typing import Any, Literal

@@ -1,4 +1,4 @@
-"""Conflicts between the stages and the rest of a scene."""
+"""Consistency checks of the stages with the rest of a scene."""
 
 import math
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""The stages of a run: statics and dynamics, with their moves, motions, loads and time schemes."""
+"""Scene language: static and dynamic stages with their moves, motions, loads and time schemes."""
 
 from itertools import pairwise
 from typing import Annotated, Literal, Self

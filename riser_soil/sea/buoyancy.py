@@ -1,4 +1,4 @@
-"""Buoyancy that the riser loses where it comes out of the water: the part "buoyancy"."""
+"""Buoyancy lost by the riser where it is out of the water: the part "buoyancy"."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What of the pipe is dry, so finely integrated that it floats by Archimedes' law at any inclination."""
+"""Lost buoyancy of the partly submerged pipe, integrated finely so that Archimedes' law holds at any inclination."""
 
 from __future__ import annotations
 

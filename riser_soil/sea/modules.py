@@ -1,4 +1,4 @@
-"""Buoyancy modules and clump weights in the water: drag and added mass that are the same in all directions.
+"""Hydrodynamic loads on buoyancy modules and clump weights: drag and added mass alike in all directions.
 
 At velocity v and acceleration a, a module of drag area Cd A and volume V with added mass coefficient Ca resists with
 

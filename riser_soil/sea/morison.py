@@ -1,4 +1,4 @@
-"""Hydrodynamic load on the riser: the part "morison" of stages under water that moves, or in which the riser does."""
+"""Hydrodynamic loads on the riser by Morison's formula: the part "morison"."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Loads of moving water on the pipe, per length at its stations: relative velocity, and accelerating water.
+"""Morison loads in moving water, per length: drag on the relative velocity, Froude-Krylov force and added mass.
 
 The pipe's velocity v and acceleration a meet those of the undisturbed water at its axis, u and u'. With the cross-
 section A = pi D^2/4 and the added mass m of `morison_law`,

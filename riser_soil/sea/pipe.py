@@ -1,4 +1,4 @@
-"""The pipe seen at the stations of its line, where the water acts on it."""
+"""Position, velocity and acceleration of the pipe at its quadrature stations, where the water acts on it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The water of a stage: its surface, and the flows below it."""
+"""The sea of a stage: its surface, and the sum of its current and waves."""
 
 from __future__ import annotations
 

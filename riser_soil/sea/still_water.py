@@ -1,4 +1,4 @@
-"""Loads of still water on the pipe, per length at its stations; what moving water and a surface build upon."""
+"""Morison loads in still water, per length: drag and added mass."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is dry of the line's elements, integrated finely enough for the waterline: loads along z, and their tangents.
+"""Quadrature at the waterline: lost buoyancy of partly submerged elements, with its tangent.
 
 Per element: z its heights (ne, 4), those of `hermite`'s q; h (ne, ng) the immersion at its Gauss stations; L length, b
 width of the wet section (ne,). A fine point at xi, of quadrature weight w, lies under the surface at the height that

@@ -1,4 +1,4 @@
-"""Where the water has a surface: the wet share of the stations, and loads on it alone."""
+"""Submerged share of the pipe at its stations, and loads on that share alone."""
 
 from __future__ import annotations
 

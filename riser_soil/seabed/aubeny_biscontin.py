@@ -1,4 +1,4 @@
-"""Hysteretic resistance of a trenched seafloor to a riser: backbone, bounding loop with suction, and turns within.
+"""Hysteretic seabed of Aubeny & Biscontin: backbone, bounding loop with suction, and reversals within.
 
 Source: C. Aubeny & G. Biscontin, Seafloor-riser interaction model, International Journal of Geomechanics 9 (2009).
 With y the penetration and (y1, P1) the deepest point so far, which lies on the backbone:

@@ -1,4 +1,4 @@
-"""What clay bears below a pipe pressed into it: strength, bearing resistance, and the weight of the clay displaced.
+"""Bearing capacity of clay below a pipe: shear strength, bearing resistance, buoyancy of the displaced clay.
 
 z: penetration of the pipe's lowest line [m], positive into the ground; functions return value and derivative by z.
 """

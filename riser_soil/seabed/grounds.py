@@ -1,4 +1,4 @@
-"""The shape of a seabed without dofs: how far a point is above it, with exact first and second derivatives.
+"""Seabed geometry: distance of a point from the ground, with exact first and second derivatives.
 
 Heights grow along z. A distance [m] is positive above the ground; its gradient points away from it and is a unit vector
 on a plane, and nearly so on a profile.

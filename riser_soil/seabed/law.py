@@ -1,4 +1,4 @@
-"""What a law of the seabed is: force per length of riser by its penetration, and its model in the scene.
+"""Interface of seabed laws: force per length by penetration, history per point, and the model in the scene.
 
 Penetration δ = −gap [m]; force f [N/m] pushes the two sides apart.
 """

@@ -1,4 +1,4 @@
-"""Hysteretic resistance of clay to a pipe, with suction and softened repenetration, after Randolph & Quiggin.
+"""Hysteretic seabed of Randolph & Quiggin: hyperbolic penetration, uplift with suction, softened repenetration.
 
 Source: M. Randolph & P. Quiggin, Non-linear hysteretic seabed model for catenary pipeline contact, OMAE2009-79236.
 With z the penetration, D the diameter, zeta = z Kmax/D, x = |z - z0| Kmax/D since the last turn at (z0, P0):

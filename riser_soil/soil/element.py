@@ -1,4 +1,4 @@
-"""Shape-function gradients at the quadrature points; constant, since strains are small.
+"""Shape-function gradients at the quadrature points (B-bar); constant, since strains are small.
 
 The strain-displacement operator B̄ replaces the volumetric part of the symmetric gradient by `volume`
 gradients: the cell's mean for hexahedra (mean dilatation: Hughes 1980, doi:10.1002/nme.1620150914; the full

@@ -1,4 +1,4 @@
-"""The two element families: eight-node hexahedra with mean dilatation, ten-node tetrahedra.
+"""Element families: eight-node hexahedra with mean dilatation (B-bar), ten-node tetrahedra.
 
 Undrained clay is nearly incompressible: fully integrated linear elements lock and never reach a collapse
 load. Node numbers are basix' (vertices 0.. in lexicographic order, then the edges' midpoints).

@@ -1,4 +1,4 @@
-"""The soil's displacement field: its dofs, supports and committed displacement."""
+"""Displacement field of the soil: dofs, supports and committed displacement."""
 
 from __future__ import annotations
 

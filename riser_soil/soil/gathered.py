@@ -1,4 +1,4 @@
-"""The whole soil mesh on rank 0: for output, and for contact, which sees the top surface there."""
+"""The soil mesh gathered on rank 0, for output and contact."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A plain block of soil and how its cells grow away from the riser; needs no mesh."""
+"""Mesh grading of a soil block: how its cells grow away from the riser; needs no mesh."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The soil's distributed mesh, from a block's description or a user's gmsh file."""
+"""Distributed mesh of the soil, from a block's description or a user's gmsh file."""
 
 from __future__ import annotations
 

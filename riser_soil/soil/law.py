@@ -1,4 +1,4 @@
-"""What a constitutive law of the soil is: its model in the scene, and its formula at n quadrature points.
+"""Interface of constitutive laws of the soil: stress update, consistent tangent and history at n quadrature points.
 
 Strains and stresses (n, 6) in the components of mandel.py, tension positive. The formula holds constants and the
 initial stress and no state: the caller keeps the history and decides when a trial becomes the start of the next step.

@@ -1,4 +1,4 @@
-"""The Soil part: a quasi-static, small-strain, elasto-plastic block of seabed."""
+"""Quasi-static, small-strain, elastoplastic soil: the part "soil"."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Perfectly plastic von Mises clay, undrained: q = √(3/2 s:s) ≤ √3·su.
+"""Undrained clay by von Mises plasticity, perfectly plastic: q = √(3/2 s:s) ≤ √3·su.
 
 The factor √3 makes simple shear (and plane strain flow) yield at the shear stress su; triaxial compression
 then fails at q = √3·su instead of 2·su. Radial return and its consistent tangent: Simo & Hughes,

@@ -1,9 +1,9 @@
-"""Dynamic relaxation: pseudo-time steps through an artificial drag, until equilibrium needs none.
+"""Dynamic relaxation: pseudo-time steps with artificial drag, until there is equilibrium without it.
 
 Used when Newton's method finds no equilibrium from the shape that a static stage starts with, and reported when used.
-The way there is none that the riser takes: the ground remembers nothing of it but its end.
-Where the equilibrium that it comes to is unstable, the riser leaves it in its mode of buckling: the first move is
-small, and the drag is that in which the mode grows to a multiple in each step, until the tangent is stable without it.
+The pseudo-time path has no physical meaning: the history of the ground is updated at its end only.
+An unstable equilibrium that it reaches is left in the buckling mode: the first displacement is small, and the drag is
+such that the mode grows by a constant factor in each step, until the tangent is stable without drag.
 """
 
 from __future__ import annotations

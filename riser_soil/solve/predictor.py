@@ -1,4 +1,4 @@
-"""The first guess of a step's increments: the motion of the steps before it continued."""
+"""Predictor: first guess of a step's increments, extrapolated from the steps before it."""
 
 from __future__ import annotations
 

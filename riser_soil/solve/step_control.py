@@ -1,4 +1,4 @@
-"""Step sizes of a stage: the nominal step, halved where a step fails, doubled again where it goes well.
+"""Step size control: the nominal step, halved where a step fails, doubled again where it goes well.
 
 All times lie on a binary refinement of the nominal steps, so that nominal times are always hit. The last nominal step
 ends where the stage does; it may be shorter than the others.

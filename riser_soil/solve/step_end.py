@@ -1,4 +1,4 @@
-"""What becomes of a dynamic step at its end: contact's share of the accelerations, momentum, balance."""
+"""End of a dynamic step: accelerations caused by contact, momentum correction, energy balance."""
 
 from __future__ import annotations
 

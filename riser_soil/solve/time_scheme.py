@@ -1,4 +1,4 @@
-"""From increments to rates, and from the groups of forces to one residual.
+"""Time integration schemes: Newmark, generalised-alpha, midpoint rule, and statics.
 
 One code path for statics, Newmark, generalised-alpha and the midpoint rule. With bulk forces I + F and end-of-step
 forces E (contact, quasi-static soil), the residual of a step from n to n + 1 is, but for the midpoint rule,

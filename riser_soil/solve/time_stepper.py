@@ -1,4 +1,4 @@
-"""One accepted step after the other: solve, balance the energy, commit, and keep the rates for the next."""
+"""Time stepping: solve a step, balance its energy, commit it, keep the rates for the next one."""
 
 from __future__ import annotations
 

@@ -127,8 +127,8 @@ def test_sprung_end(solve: Solve, dimension: int) -> None:
 def test_point_load_at_an_arc(solve: Solve, dimension: int, at: float) -> None:
     """A simply supported beam, at a node and within an element; deflection of the nodes left of the load."""
     load = {"at": at, "force": [0.0, 0.0, -FORCE]}
-    start, end = prescribed(0.0, 0.0, 0.0), prescribed(SPAN, 0.0, 0.0)
-    scene = beam(static(loads=[load]), start=start, end=end, dimension=dimension)
+    left, right = prescribed(0.0, 0.0, 0.0), prescribed(SPAN, 0.0, 0.0)
+    scene = beam(static(loads=[load]), start=left, end=right, dimension=dimension)
     done = solve(scene)
     x = done.arc[done.arc <= at]
     b = SPAN - at
@@ -143,8 +143,8 @@ def test_moment_at_an_arc(solve: Solve, dimension: int) -> None:
     """A simply supported beam turned at a node, right-handed about +y: M x (L^2 - 3 b^2 - x^2)/(6 EI L) up."""
     M, at = 30.0, 3.75
     load = {"at": at, "moment": [0.0, M, 0.0]}
-    start, end = prescribed(0.0, 0.0, 0.0), prescribed(SPAN, 0.0, 0.0)
-    scene = beam(static(loads=[load]), start=start, end=end, dimension=dimension)
+    left, right = prescribed(0.0, 0.0, 0.0), prescribed(SPAN, 0.0, 0.0)
+    scene = beam(static(loads=[load]), start=left, end=right, dimension=dimension)
     done = solve(scene)
     x = done.arc[done.arc <= at]
     b = SPAN - at
