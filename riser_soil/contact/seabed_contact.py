@@ -1,4 +1,4 @@
-"""Contact of the riser with a seabed that has no dofs: a load along its elements, by a law at their stations."""
+"""Contact of the riser with a rigid, spring or hysteretic seabed, integrated along its elements."""
 
 from __future__ import annotations
 

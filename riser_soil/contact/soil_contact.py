@@ -1,4 +1,4 @@
-"""The contact part: couples the riser's nodes to the soil that lies under them."""
+"""Penalty contact between the riser's nodes and the deformable soil below them: the part "contact"."""
 
 from __future__ import annotations
 

@@ -1,5 +1,4 @@
-"""Quadrature stations along the line's elements: from q to values there, and back to residuals and their
-blocks.
+"""Quadrature along the line's elements: values at Gauss points (stations), residuals and tangent blocks.
 
 Arrays follow `hermite`: q (ne, 4, d). A field has values (ne, ng, d) at the ng stations of each element, three Gauss
 points unless another rule is given.
