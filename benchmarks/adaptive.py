@@ -11,14 +11,14 @@ from mpi4py import MPI
 from riser_soil.assembly import Assembly, build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.results.observer import riser_snapshot
 from riser_soil.results.touchdown_zone import TouchdownZone
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
-from riser_soil.solve.dynamic_relaxation import Relaxed
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from riser_soil.stages import Onlooker, run_stage
+from riser_soil.solve.dynamic_relaxation import RelaxationResult
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
+from riser_soil.stages import StatelessObserver, run_stage
 
 SCENE = Path(__file__).parent.parent / "tests" / "scenes" / "tank.yaml"
 DURATION = 30.0  # s
@@ -28,7 +28,7 @@ TOLERANCES = (3e-2, 1e-2, 3e-3, 1e-3)  # m
 
 
 @dataclass
-class Course(Onlooker):
+class Course(StatelessObserver):
     """What the accepted steps of a stage tell of the riser."""
 
     assembly: Assembly
@@ -42,10 +42,10 @@ class Course(Onlooker):
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         self._zone = TouchdownZone(self.assembly)
 
-    def relaxed(self, relaxed: Relaxed) -> None:
+    def relaxed(self, relaxed: RelaxationResult) -> None:
         pass
 
-    def record(self, stepper: TimeStepper, step: Accepted, last: bool) -> None:
+    def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         self.t.append(step.t)
         self.dt.append(step.dt)
         self.tension.append(float(riser_snapshot(self.assembly, stepper).effective_tension[-1]))
@@ -61,7 +61,7 @@ def course(*overrides: str, scene_file: Path = SCENE) -> Course:
     before = State.at_rest(0.0, assembly.size)
     for stage in scene.stages:
         seen = Course(assembly)
-        before = run_stage(assembly, stage, before, seen, Clock.new())
+        before = run_stage(assembly, stage, before, seen, Timer.new())
     return seen
 
 

@@ -66,7 +66,7 @@ def listening() -> Iterator[None]:
 
 
 @contextmanager
-def undisturbed() -> Iterator[None]:
+def restoring_signal_handlers() -> Iterator[None]:
     """A block whose libraries keep no hold on Ctrl-C: gmsh takes it when it is imported, or a session of it begins."""
     usual = signal.getsignal(signal.SIGINT)
     try:

@@ -10,7 +10,7 @@ from mpi4py import MPI
 from riser_soil.assembly import Assembly, build
 from riser_soil.checks.limits import size_that_fits, tell, too_long
 from riser_soil.checks.plausibility import physical_warnings
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.errors import Interruption, SolveError
 from riser_soil.interruption import agreeing, listening, undivided
 from riser_soil.results.observer import Observer
@@ -28,7 +28,7 @@ def run(scene: Scene, folder: Path | str, force: bool = False) -> None:
     """
     folder = Path(folder)
     with listening():
-        comm, clock, since = MPI.COMM_WORLD, Clock.new(), time.perf_counter()
+        comm, clock, since = MPI.COMM_WORLD, Timer.new(), time.perf_counter()
         refuse_together(folder, force, comm)
         size = size_that_fits(scene, folder, comm)
         tell(size, comm)
@@ -41,7 +41,7 @@ def run(scene: Scene, folder: Path | str, force: bool = False) -> None:
             _take_all(assembly, observer, clock)
 
 
-def _take_all(assembly: Assembly, observer: Observer, clock: Clock) -> None:
+def _take_all(assembly: Assembly, observer: Observer, clock: Timer) -> None:
     try:
         before, laid = lay(assembly, clock)
         if laid is not None:

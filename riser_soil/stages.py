@@ -11,35 +11,35 @@ from riser_soil.assembly.stage import scheme_of, times_to_hit
 from riser_soil.core.part import Model, State
 from riser_soil.core.roles import Adaptive, with_role
 from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back, within
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
 from riser_soil.interruption import check, undivided
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.solve.automatic_steps import AutoSteps
-from riser_soil.solve.dynamic_relaxation import Relaxed, relax
+from riser_soil.solve.dynamic_relaxation import RelaxationResult, relax
 from riser_soil.solve.local_error import first_step
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import Control, StepControl
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
 MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
 
 
-Keep = Callable[[Callable[[], Saved]], None]
+Checkpoint = Callable[[Callable[[], Saved]], None]
 """Told between steps: with what it is given it may have the state as it is then, to resume the stage from."""
 
 
-class Follower(Stateful, Protocol):
+class StageObserver(Stateful, Protocol):
     """Who is told how a stage goes on."""
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None: ...
 
-    def record(self, stepper: TimeStepper, step: Accepted, last: bool) -> None: ...
+    def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None: ...
 
-    def relaxed(self, relaxed: Relaxed) -> None: ...
+    def relaxed(self, relaxed: RelaxationResult) -> None: ...
 
 
-class Onlooker:
+class StatelessObserver:
     """A follower that has nothing to go on with in a stage that is resumed."""
 
     def state(self) -> Saved:
@@ -50,7 +50,7 @@ class Onlooker:
 
 
 @dataclass
-class Laying(Onlooker):
+class LayingCounter(StatelessObserver):
     """Counts the load steps and relaxations of a stage that the scene does not have."""
 
     steps: int = 0
@@ -59,19 +59,19 @@ class Laying(Onlooker):
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         pass
 
-    def record(self, stepper: TimeStepper, step: Accepted, last: bool) -> None:
+    def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         self.steps += 1
 
-    def relaxed(self, relaxed: Relaxed) -> None:
+    def relaxed(self, relaxed: RelaxationResult) -> None:
         self.relaxations += 1
 
 
-def lay(assembly: Assembly, clock: Clock) -> tuple[State, Laying | None]:
+def lay(assembly: Assembly, clock: Timer) -> tuple[State, LayingCounter | None]:
     """Before all stages: where a slack riser's first shape ends beyond its place, bring its end there."""
     rest, stage = State.at_rest(0.0, assembly.size), assembly.laying
     if stage is None:
         return rest, None
-    follower = Laying()
+    follower = LayingCounter()
     try:
         return _take(assembly, assembly.begin_laying(stage), stage, rest, follower, clock), follower
     except SolveError as err:
@@ -79,14 +79,19 @@ def lay(assembly: Assembly, clock: Clock) -> tuple[State, Laying | None]:
 
 
 def run_stage(
-    assembly: Assembly, stage: Stage, before: State, observer: Follower, clock: Clock, keep: Keep | None = None
+    assembly: Assembly,
+    stage: Stage,
+    before: State,
+    observer: StageObserver,
+    clock: Timer,
+    keep: Checkpoint | None = None,
 ) -> State:
     """Take one stage to its end; the state that it leaves, increments zero."""
     return _take(assembly, assembly.begin(stage), stage, before, observer, clock, keep)
 
 
 def resume_stage(
-    assembly: Assembly, saved: Saved, observer: Follower, clock: Clock, keep: Keep | None = None
+    assembly: Assembly, saved: Saved, observer: StageObserver, clock: Timer, keep: Checkpoint | None = None
 ) -> tuple[Stage, State]:
     """Take the stage that was saved on its way to its end; the stage, and the state that it leaves.
 
@@ -102,9 +107,9 @@ def _take(
     model: Model,
     stage: Stage,
     begin: State | Saved,
-    observer: Follower,
-    clock: Clock,
-    keep: Keep | None = None,
+    observer: StageObserver,
+    clock: Timer,
+    keep: Checkpoint | None = None,
 ) -> State:
     """From the state that the stage begins with, or from where it was saved."""
     system = System(assembly.comm, model, clock)
@@ -134,14 +139,14 @@ def _owners(model: Model) -> dict[str, Stateful]:
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class StageRun:
     """A stage on its way: who takes it, and who is told."""
 
     assembly: Assembly
     stage: Stage
     stepper: TimeStepper
     control: StepControl | AutoSteps
-    observer: Follower
+    observer: StageObserver
 
     def state(self) -> Saved:
         """All that the stage goes on from, see `saved_state`."""
@@ -155,15 +160,15 @@ class Course:
 
 
 def _course(
-    assembly: Assembly, stage: Stage, system: System, newton: Newton, begin: State | Saved, observer: Follower
-) -> Course:
+    assembly: Assembly, stage: Stage, system: System, newton: Newton, begin: State | Saved, observer: StageObserver
+) -> StageRun:
     if isinstance(begin, State):
         stepper = TimeStepper(system, newton, scheme_of(stage), replace(begin, t=0.0))
         with undivided():
             observer.begin_stage(stage, stepper)
-        return Course(assembly, stage, stepper, steps_of(assembly, stage, stepper), observer)
+        return StageRun(assembly, stage, stepper, steps_of(assembly, stage, stepper), observer)
     stepper = TimeStepper(system, newton, scheme_of(stage), within(begin, "stepper"))
-    course = Course(assembly, stage, stepper, steps_of(assembly, stage, stepper), observer)
+    course = StageRun(assembly, stage, stepper, steps_of(assembly, stage, stepper), observer)
     give_back(course.told, begin)
     return course
 
@@ -177,7 +182,7 @@ def _overload(assembly: Assembly) -> str:
     return overload(assembly)
 
 
-def _walk(course: Course, keep: Keep | None) -> State:
+def _walk(course: StageRun, keep: Checkpoint | None) -> State:
     stepper, control = course.stepper, course.control
     while not control.finished:
         static = isinstance(course.stage, StaticStage)
@@ -191,7 +196,7 @@ def _walk(course: Course, keep: Keep | None) -> State:
     return stepper.before
 
 
-def _static_step(assembly: Assembly, stepper: TimeStepper, control: Control, observer: Follower) -> Accepted:
+def _static_step(assembly: Assembly, stepper: TimeStepper, control: Control, observer: StageObserver) -> AcceptedStep:
     """By Newton's method, in load steps that are halved a few times, else by dynamic relaxation.
 
     Where relaxation does not get to the load factor that was missed, it all begins again with half the step.
@@ -204,7 +209,7 @@ def _static_step(assembly: Assembly, stepper: TimeStepper, control: Control, obs
                 return stepper.advance(control, 0)
 
 
-def _relaxed(assembly: Assembly, stepper: TimeStepper, control: Control, observer: Follower) -> bool:
+def _relaxed(assembly: Assembly, stepper: TimeStepper, control: Control, observer: StageObserver) -> bool:
     """Whether an equilibrium was found at the load factor that Newton's method missed; else the step is halved."""
     system, settings, weight = stepper.system, _settings(assembly), assembly.scales.weight
     try:

@@ -37,7 +37,7 @@ class _Outlet(io.RawIOBase):
         return len(content)
 
 
-class Told:
+class OutputStatus:
     """What became of what was written: failure is None as long as all went out."""
 
     def __init__(self, output: _Outlet | None) -> None:
@@ -49,13 +49,13 @@ class Told:
 
 
 @contextmanager
-def outlasting() -> Iterator[Told]:
+def outlasting() -> Iterator[OutputStatus]:
     """In the block, nobody who writes to standard output or standard error meets an error; the former's is told."""
     former = sys.stdout, sys.stderr
     outlets = [_outlet(stream) for stream in former]
     sys.stdout, sys.stderr = (_text(outlet, stream) for outlet, stream in zip(outlets, former, strict=True))
     try:
-        yield Told(outlets[0])
+        yield OutputStatus(outlets[0])
     finally:
         for stream in (sys.stdout, sys.stderr):
             if stream is not None:

@@ -28,10 +28,10 @@ from riser_soil.scene.stages import DynamicStage, MovedEnds, Stage, StaticStage
 
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels
-    from riser_soil.contact.friction import Friction
+    from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
-    from riser_soil.riser.attachments import Attachment
+    from riser_soil.riser.attachments import PointAttachment
     from riser_soil.riser.catenary import Catenary
     from riser_soil.riser.wall_tension import Pressures
     from riser_soil.soil.soil import Soil
@@ -58,12 +58,12 @@ class Assembly:
     elements: Elements
     riser_parts: list[Part]
     catenary: Catenary | None
-    attachments: tuple[Attachment, ...] = ()
+    attachments: tuple[PointAttachment, ...] = ()
     pressures: Pressures | None = None
     soil: Soil | None = None
     soil_contact: SoilContact | None = None
     seabed: SeabedContact | None = None
-    friction: Friction | None = None
+    friction: CoulombFriction | None = None
     contact_stiffness: dict[str, float] = field(default_factory=dict)
     vessels: Vessels | None = None
     begun: dict[str, Array] = field(default_factory=dict)

@@ -14,8 +14,8 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 
 if TYPE_CHECKING:
-    from riser_soil.riser.attachments import Attachment
-    from riser_soil.sea.buoyancy import Dry
+    from riser_soil.riser.attachments import PointAttachment
+    from riser_soil.sea.buoyancy import LostBuoyancy
     from riser_soil.sea.pipe import Pipe
     from riser_soil.sea.still_water import Resistance
     from riser_soil.sea.wetting import WaterSurface, Wetting
@@ -58,7 +58,7 @@ class Body(Protocol):
         """How wet its stations are."""
         ...
 
-    def dry(self, surface: WaterSurface, gravity: float) -> Dry:
+    def dry(self, surface: WaterSurface, gravity: float) -> LostBuoyancy:
         """What of it is dry."""
         ...
 
@@ -108,7 +108,7 @@ class PipeInWater:
 
         return Wetting(self.pipe, surface)
 
-    def dry(self, surface: WaterSurface, gravity: float) -> Dry:
+    def dry(self, surface: WaterSurface, gravity: float) -> LostBuoyancy:
         from riser_soil.sea.dry_pipe import DryPipe
 
         return DryPipe(self.pipe, surface, gravity * self.displaced)
@@ -120,7 +120,7 @@ class ModulesInWater:
 
     rho: float
     line: Line
-    modules: Sequence[Attachment]
+    modules: Sequence[PointAttachment]
 
     @cached_property
     def pipe(self) -> Pipe:
@@ -156,7 +156,7 @@ class ModulesInWater:
 
         return Wetting(self.pipe, surface, diameters(self.modules)[:, None])
 
-    def dry(self, surface: WaterSurface, gravity: float) -> Dry:
+    def dry(self, surface: WaterSurface, gravity: float) -> LostBuoyancy:
         from riser_soil.sea.buoyancy import DryStations
 
         return DryStations(self.pipe, self.wetting(surface), gravity * self.displaced)

@@ -10,9 +10,9 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.quantities import Vector
-from riser_soil.riser.ends import End, Motion, Turning
+from riser_soil.riser.ends import End, Motion, SupportRotation
 from riser_soil.riser.line import Line
-from riser_soil.scene.motions import ArcMotion, Harmonic, Rotation, Table, Vessel, Way
+from riser_soil.scene.motions import ArcMotion, Harmonic, MotionKind, Rotation, Table, Vessel
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 
@@ -66,7 +66,7 @@ def _move(end: End, origin: Array, target: Vector | None) -> None:
         end.motion = SmoothMove(origin, np.asarray(target))
 
 
-def _set(end: End, name: str, origin: Array, stage: Stage, way: Way, vessels: Vessels | None) -> None:
+def _set(end: End, name: str, origin: Array, stage: Stage, way: MotionKind, vessels: Vessels | None) -> None:
     """One way of moving an end, or of turning it."""
     match way:
         case Harmonic():
@@ -86,9 +86,9 @@ def _set(end: End, name: str, origin: Array, stage: Stage, way: Way, vessels: Ve
 
 
 def _harmonic(origin: Array, given: Harmonic) -> Motion:
-    from riser_soil.motion.harmonic import Harmonic
+    from riser_soil.motion.harmonic import HarmonicMotion
 
-    return Harmonic(origin, np.array(given.amplitude), given.period, given.ramp, np.array(given.phases))
+    return HarmonicMotion(origin, np.array(given.amplitude), given.period, given.ramp, np.array(given.phases))
 
 
 def _arc(origin: Array, given: ArcMotion) -> Motion:
@@ -98,22 +98,22 @@ def _arc(origin: Array, given: ArcMotion) -> Motion:
     return SwingingEnd(origin, np.array(given.hub), np.array(given.axis), swing)
 
 
-def _rocking(given: Rotation) -> Callable[[float], Turning]:
-    from riser_soil.motion.swing import AngleOscillation, Rocking
+def _rocking(given: Rotation) -> Callable[[float], SupportRotation]:
+    from riser_soil.motion.swing import AngleOscillation, RockingSupport
 
     swing = AngleOscillation(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
-    return Rocking(np.array(given.axis) / np.linalg.norm(given.axis), swing)
+    return RockingSupport(np.array(given.axis) / np.linalg.norm(given.axis), swing)
 
 
 def _table(given: Table) -> SixDegreeMotion:
-    from riser_soil.motion.table import Table
+    from riser_soil.motion.table import TabulatedMotion
 
     values = np.hstack([given.displacements, given.rotations])
-    return Table(np.array(given.columns.values["t"]), values, given.ramp)
+    return TabulatedMotion(np.array(given.columns.values["t"]), values, given.ramp)
 
 
 def _carry(end: End, origin: Array, six: SixDegreeMotion) -> None:
-    from riser_soil.motion.carried import Displaced, Turned
+    from riser_soil.motion.carried import CarriedEnd, CarriedSupport
 
     once = lru_cache(maxsize=2)(six)  # a step asks again and again for its beginning and its end
-    end.motion, end.turning = Displaced(origin, once), Turned(once)
+    end.motion, end.turning = CarriedEnd(origin, once), CarriedSupport(once)

@@ -9,7 +9,7 @@ from riser_soil.riser.sections import Elements
 from riser_soil.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from riser_soil.riser.wall_tension import Head, Pressures
+    from riser_soil.riser.wall_tension import HydrostaticPressure, Pressures
 
 
 def no_wall_tension(scene: Scene) -> str:
@@ -32,20 +32,20 @@ def pressures_of(scene: Scene, line: Line, elements: Elements) -> Pressures | No
     return Pressures(_inside(scene, line), _outside(scene), elements.inner_diameter, elements.outer_diameter)
 
 
-def _inside(scene: Scene, line: Line) -> Head | None:
+def _inside(scene: Scene, line: Line) -> HydrostaticPressure | None:
     given = scene.riser.contents
     if given is None:
         return None
-    from riser_soil.riser.wall_tension import Head
+    from riser_soil.riser.wall_tension import HydrostaticPressure
 
     ends = line.to_global(line.x[[0, -1]])[:, 2]
     level = float(ends.max()) if given.pressure_level is None else given.pressure_level
-    return Head(level, scene.gravity * given.density, given.pressure)
+    return HydrostaticPressure(level, scene.gravity * given.density, given.pressure)
 
 
-def _outside(scene: Scene) -> Head | None:
+def _outside(scene: Scene) -> HydrostaticPressure | None:
     if scene.water is None or scene.water.surface_level is None:
         return None
-    from riser_soil.riser.wall_tension import Head
+    from riser_soil.riser.wall_tension import HydrostaticPressure
 
-    return Head(scene.water.surface_level, scene.gravity * scene.water.density)
+    return HydrostaticPressure(scene.water.surface_level, scene.gravity * scene.water.density)

@@ -37,7 +37,7 @@ TETRAHEDRA, NODES_OF_TETRAHEDRA = 6.0, 1.8  # in a cube of the size asked for; q
 
 
 @dataclass(frozen=True)
-class Size:
+class ProblemSize:
     """What a scene makes: elements and cells, unknowns, steps of all stages, records in results.nc, pictures.
 
     components: of the waves. entries: of a cell's matrix. auto: whether there are more steps, as some are automatic.
@@ -95,7 +95,7 @@ def soil_memory(ranks: int, cells: float, entries: int, unknowns: float) -> floa
     return ranks * SOIL_PROCESS + 8.0 * FACTOR * unknowns ** (4.0 / 3.0) + PER_CELL_ENTRY * entries * cells
 
 
-def size_of(scene: Scene) -> Size:
+def size_of(scene: Scene) -> ProblemSize:
     """The size of a scene."""
     elements = scene.riser.element_count
     cells, unknowns, entries = _soil(scene, scene.soil) if scene.soil is not None else (0.0, 0.0, 0)
@@ -107,7 +107,7 @@ def size_of(scene: Scene) -> Size:
     seconds = BUILD * elements + steps * (of_riser + cells * CELL + FACTORED * unknowns**2)
     dofs = 3 if resolved_dimension(scene) == 2 else 6
     auto = any(isinstance(stage, DynamicStage) and stage.time_step == "auto" for stage in scene.stages)
-    return Size(
+    return ProblemSize(
         elements=elements,
         components=components,
         riser_unknowns=dofs * (elements + 1),

@@ -46,7 +46,7 @@ class RiserNodes(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Touching:
+class ActiveContacts:
     """Contact points that carry force; n points, nr dofs each, the riser's d translations first.
 
     node, facet (n,). length (n,): of riser [m]. penetration (n,) [m]. rows (n, nr): local dofs. forms (n, 5, nr),
@@ -97,7 +97,7 @@ class ContactState:
     facet: IntArray
     gap: Array
     surface: Array
-    touching: Touching
+    touching: ActiveContacts
 
 
 class ContactDetection:
@@ -125,12 +125,12 @@ class ContactDetection:
 
     def _touch(
         self, points: ContactPoints, facet: IntArray, gap: Array, surface: Array, at: IntArray, xi: Array
-    ) -> Touching:
+    ) -> ActiveContacts:
         node, below = points.node[at], facet[at]
         forms, H = gap_forms(below, xi, self._soil.facets, surface)
         forms = np.concatenate((forms[:, :, :3] @ self._riser.basis, forms[:, :, 3:]), axis=2)
         rows = np.hstack((self._riser.translation_dofs[node], self._soil.facet_dofs(below)))
-        return Touching(self._law, node, below, points.length[at], -gap[at], rows, forms, H)
+        return ActiveContacts(self._law, node, below, points.length[at], -gap[at], rows, forms, H)
 
 
 @njit

@@ -19,7 +19,7 @@ from riser_soil.riser.trial import Trial
 UPRIGHT = 1e-6  # sine of the angle to the ground's normal below which a riser has no axial direction along the ground
 
 
-class Sliding(NamedTuple):
+class FrictionTraction(NamedTuple):
     """Elements that touch (m,); minus the traction on the riser (m, ng, d) [N/m], its derivative by the position
     (m, ng, d, d).
     """
@@ -39,7 +39,7 @@ class FrictionState(NamedTuple):
     traction: Array
 
 
-class Friction(LinePart):
+class CoulombFriction(LinePart):
     """Part "friction": Coulomb friction at the stations of a `SeabedContact`, whose normal forces it reads; group E.
 
     axial, lateral: coefficients, > 0. stiffness (ne,): of the ground along itself, per length [N/m2]; with the weight w
@@ -59,12 +59,12 @@ class Friction(LinePart):
         self._forces = StationForces(self.line, contact.at)
         self._slid: Array = np.zeros(contact.share.shape)
 
-    def evaluate(self, trial: Trial) -> Sliding:
+    def evaluate(self, trial: Trial) -> FrictionTraction:
         """Tractions of the elements that touch."""
-        found: Sliding = trial.once((self, "sliding"), self._evaluate)
+        found: FrictionTraction = trial.once((self, "sliding"), self._evaluate)
         return found
 
-    def _evaluate(self, trial: Trial) -> Sliding:
+    def _evaluate(self, trial: Trial) -> FrictionTraction:
         found = self.contact.evaluate(trial)
         touching, at = found.touching, found.touching.elements
         position, along, t_n = (values[at] for values in self._friction_state(trial))
@@ -74,7 +74,7 @@ class Friction(LinePart):
         N_slope = np.where(touching.force > 0.0, touching.slope, 0.0)
         stuck = k[..., None] * along @ by_elastic @ np.swapaxes(along, -1, -2)
         pressed = N_slope[..., None, None] * (along @ by_N[..., None]) * touching.normal[..., None, :]
-        return Sliding(at, -(along @ t[..., None])[..., 0], stuck + pressed)
+        return FrictionTraction(at, -(along @ t[..., None])[..., 0], stuck + pressed)
 
     def _friction_state(self, trial: Trial) -> FrictionState:
         if self._begun is None:
@@ -129,7 +129,7 @@ class Friction(LinePart):
         slid[sliding.elements] = self._slide(trial, sliding)
         self._begun, self._slid = self._friction_state_at(trial, traction), self._slid + slid
 
-    def _slide(self, trial: Trial, sliding: Sliding) -> Array:
+    def _slide(self, trial: Trial, sliding: FrictionTraction) -> Array:
         """What each station (m, ng) slides in the step beyond what the ground gives elastically [m]."""
         at = sliding.elements
         position, along, t_n = (values[at] for values in self._friction_state(trial))

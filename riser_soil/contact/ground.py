@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from riser_soil.contact.pairing import Pairing
+from riser_soil.contact.pairing import FacetSearch
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import State
 
@@ -71,7 +71,7 @@ class DeformedSurface:
 
     def __init__(self, surface: SoilSurface) -> None:
         self._surface = surface
-        self._pairing = Pairing(surface.points, surface.facets)
+        self._pairing = FacetSearch(surface.points, surface.facets)
         self.facets = np.ascontiguousarray(surface.facets, dtype=np.int64)
 
     @property

@@ -8,7 +8,7 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
 
 
-def lifted(guess: State, heights: IntArray, present: Array, guessed: Array, start: float) -> Array:
+def landing_predictor(guess: State, heights: IntArray, present: Array, guessed: Array, start: float) -> Array:
     """The guess's increments, lifted where a node would sink below its present depth.
 
     The motion of the last step carries landing nodes deep into the ground, where the law is far stiffer than at the

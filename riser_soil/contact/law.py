@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.seabed.law import Answer
+from riser_soil.seabed.law import SeabedResponse
 
 #: Penetration of a riser at rest under its own weight, in outer diameters: small beside what a pipe's size
 #: can show.
@@ -62,8 +62,8 @@ class Penalty:
     def active(self, penetration: Array, history: Array) -> BoolArray:
         return penetration > -self.smoothing
 
-    def update(self, penetration: Array, history: Array) -> Answer:
-        return Answer(self.force(penetration), self.slope(penetration), history, self.potential(penetration))
+    def update(self, penetration: Array, history: Array) -> SeabedResponse:
+        return SeabedResponse(self.force(penetration), self.slope(penetration), history, self.potential(penetration))
 
     def _rounded(self, penetration: Array) -> BoolArray:
         return np.abs(penetration) < self.smoothing

@@ -16,7 +16,7 @@ DIVERGED = 100.0  # (ξ, η) of a point that is nowhere near
 CONVERGED = 1e-10  # step in (ξ, η) after which one more Newton step would be below round-off
 
 
-class Pairing:
+class FacetSearch:
     """Finds facets below points by a tree over the facets' centres and Newton's method on the facets' map.
 
     The tree holds the reference geometry and only proposes; the answer depends on the deformed geometry

@@ -21,11 +21,11 @@ import numpy as np
 
 from riser_soil.contact.law import Penalty
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.seabed.law import Answer
+from riser_soil.seabed.law import SeabedResponse
 
 
 @dataclass(frozen=True)
-class Sticking:
+class SuctionLaw:
     """penalty: the law in compression. cap [N/m], reach [m] > cap/stiffness: ValueError else.
 
     History (..., 1): largest opening [m] since the last touch, inf before the first.
@@ -56,11 +56,11 @@ class Sticking:
         stuck = (-penetration < self.reach) & (history[..., 0] < self.reach)
         return self.penalty.active(penetration, history) | stuck
 
-    def update(self, penetration: Array, history: Array) -> Answer:
+    def update(self, penetration: Array, history: Array) -> SeabedResponse:
         pushed, w = self.penalty.update(penetration, history[..., :0]), self._opening(penetration)
         tension, stiffness = self._tension(w, history[..., 0])
         opened = np.maximum(-penetration[..., None], history)
-        return Answer(
+        return SeabedResponse(
             pushed.force - tension,
             pushed.slope + stiffness,
             np.where(penetration[..., None] >= 0.0, 0.0, opened),

@@ -40,7 +40,7 @@ LEAST = 60.0  # stations within a depth of 1 in a layer that the mesh doesn't re
 FADING = 8  # power of the depth with which stations count in f0: 1e-8 at the peak
 
 
-class Stretch(NamedTuple):
+class ContactInterval(NamedTuple):
     """Contact from one touchdown point to the next: their arc lengths [m], that of the line's end where it touches, and
     the first and last of the points that touch.
     """
@@ -64,7 +64,7 @@ def touchdown(arc: Array, share: Array, clearance: Array, force: Array) -> float
     return last.start if last.last == n - 1 and last.first > 0 else last.end
 
 
-def stretches(arc: Array, share: Array, clearance: Array, force: Array) -> list[Stretch]:
+def stretches(arc: Array, share: Array, clearance: Array, force: Array) -> list[ContactInterval]:
     """Where the riser lies, from its start on.
 
     arc (n,): of points along the riser from its start, growing [m]. share (n,): of its length [m] by quadrature.
@@ -78,7 +78,7 @@ def stretches(arc: Array, share: Array, clearance: Array, force: Array) -> list[
         f = np.where((np.arange(n) >= first) & (np.arange(n) <= last), force, 0.0)
         start = float(np.sum(share)) - _leaving(*turned, f[::-1], n - 1 - first) if first > 0 else 0.0
         end = _leaving(arc, share, clearance, f, last) if last < n - 1 else float(np.sum(share))
-        found.append(Stretch(start, end, first, last))
+        found.append(ContactInterval(start, end, first, last))
     return found
 
 

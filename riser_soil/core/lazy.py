@@ -6,7 +6,7 @@ import importlib
 from typing import Any
 
 
-class Lazy:
+class LazyModule:
     """A module by its full name; its names are looked up when they are asked for, each once."""
 
     def __init__(self, module: str) -> None:

@@ -44,7 +44,7 @@ class Figure:
 
 
 @dataclass(frozen=True)
-class Output(Generic[Seen]):
+class OutputQuantity(Generic[Seen]):
     """A quantity that a run tells.
 
     units, text and sign (what its sign means, where it has one) go into results.nc, with units as UDUNITS writes them.

@@ -54,7 +54,7 @@ class Weights:
 
 
 @dataclass(frozen=True, eq=False)
-class Block:
+class MatrixBlock:
     """A batch of m dense element matrices: local dof numbers of rows (m, nr) and columns (m, nc); -1 is absent."""
 
     rows: IntArray
@@ -150,7 +150,7 @@ class Part(Protocol):
         """Whether this rank evaluates the part; where not, it is asked for nothing that follows."""
         ...
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         """Patterns that the part adds to. Parts that share a key share the very same rows and columns."""
         ...
 

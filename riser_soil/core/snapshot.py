@@ -52,7 +52,7 @@ class SoilMesh:
 
 
 @dataclass(frozen=True, eq=False)
-class Touch:
+class ContactSnapshot:
     """Where the riser touches the seabed and what the seabed does to it."""
 
     touchdown_arc: float  # m, nan when nothing touches
@@ -71,11 +71,11 @@ class Instant:
 
     arc: Array
     riser: RiserSnapshot
-    touch: Touch
+    touch: ContactSnapshot
 
 
 @dataclass(frozen=True)
-class StepHealth:
+class StepStatistics:
     """How hard the solver worked for one accepted step."""
 
     newton_iterations: int
@@ -121,7 +121,7 @@ class Ledger:
 class StepRecord:
     """What is told of an accepted step."""
 
-    health: StepHealth
+    health: StepStatistics
     ledger: Ledger
 
 

@@ -13,19 +13,19 @@ from mpi4py import MPI
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.numbering import Numbering
-from riser_soil.core.part import Block, Energy, Field, Forces, Model, Part, State, Weights, Work, local
+from riser_soil.core.part import Energy, Field, Forces, MatrixBlock, Model, Part, State, Weights, Work, local
 from riser_soil.core.roles import require_roles
 from riser_soil.core.saved_state import Saved
 
 
 @dataclass
-class Clock:
+class Timer:
     """Seconds spent, by part."""
 
     seconds: defaultdict[str, float]
 
     @classmethod
-    def new(cls) -> Clock:
+    def new(cls) -> Timer:
         return cls(defaultdict(float))
 
     def add(self, name: str, since: float) -> None:
@@ -53,7 +53,7 @@ class System:
     lever: the longest one of a line, see `LineField`; levers (size,): of each local dof, 1 for translations.
     """
 
-    def __init__(self, comm: MPI.Intracomm, model: Model, clock: Clock) -> None:
+    def __init__(self, comm: MPI.Intracomm, model: Model, clock: Timer) -> None:
         self.comm, self.model, self.clock = comm, model, clock
         require_roles(model.parts)
         self._active = [part for part in model.parts if part.active]
@@ -76,7 +76,7 @@ class System:
         return max(line.lever for line in self.model.lines), levers
 
     def _new_matrix(self) -> Matrix:
-        blocks: dict[str, Block] = {}
+        blocks: dict[str, MatrixBlock] = {}
         for part in self._active:
             blocks.update(part.blocks())
         return Matrix(self.numbering, blocks, self.symmetric)

@@ -12,7 +12,7 @@ from riser_soil.riser.ends import Kinematics
 
 
 @dataclass(frozen=True, eq=False)
-class Response:
+class VesselResponse:
     """A vessel's motion at its reference point, the sum of Re(amplitude exp(i w t)); t: the waves' clock [s].
 
     frequency: w (n,) [rad/s]. amplitude: (n, 6), displacement [m] and rotation [rad] along and about global axes.
@@ -43,7 +43,7 @@ class VesselAttachment:
 
 
 @dataclass(frozen=True, eq=False)
-class Vessel:
+class VesselMotion:
     """Displacement from the mean and rotation vector (6,) of an end on a vessel, and their derivatives.
 
     r response + (1 - r) found, r being a smooth step of ramp [s]. Linear, as RAOs are: the response of the end is
@@ -51,7 +51,7 @@ class Vessel:
     [s]. since: how long the vessel has been moving then [s].
     """
 
-    response: Response
+    response: VesselResponse
     attachment: VesselAttachment
     ramp: float
     clock: float

@@ -51,7 +51,7 @@ def is_finished(folder: Path) -> bool:
     return isinstance(summary, dict) and summary.get("finished") is True
 
 
-class Claim:
+class FolderLock:
     """One run's hold on its folder, from its beginning to `release` or the process's end, however that comes.
 
     Raises SceneError where another run has it. On NFS the lock is the server's, so that runs on several machines see

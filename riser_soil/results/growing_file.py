@@ -98,7 +98,7 @@ def _exchange(draft: Path, path: Path) -> bool:
 def appending(file: GrowingFile) -> Iterator[h5py.File]:
     """The HDF5 file, to be changed; what has been written in the block becomes one update of it."""
     with file.path.open("rb") as base:
-        pages = _Pages(base, file.size)
+        pages = _MemoryFile(base, file.size)
         with h5py.File(pages, "r+") as store:
             yield store
     file.update(pages.changes(), pages.size)
@@ -115,7 +115,7 @@ def reading(path: Path) -> h5py.File:
         return h5py.File(path, "r", locking=False)
 
 
-class _Pages:
+class _MemoryFile:
     """A file to HDF5, which neither tells of a disk that is full nor survives it: what it writes stays in memory."""
 
     def __init__(self, base: BinaryIO, size: int) -> None:

@@ -19,7 +19,7 @@ import numpy as np
 
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
-from riser_soil.core.output import Output
+from riser_soil.core.output import OutputQuantity
 from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.step_outputs import OF_STEP, TAKEN_OUT
 from riser_soil.results.growing_file import GrowingFile, appending
@@ -46,7 +46,7 @@ class Variable:
 _ARC = Variable(("arc",), "m", "unstressed arc length from the start")
 
 
-def variable(output: Output[Any]) -> Variable:
+def variable(output: OutputQuantity[Any]) -> Variable:
     """Of results.nc, where an output is written along the riser, by instants or by steps."""
     along = {"nodes": ("time", "arc"), "model": ("time",), "step": ("step",)}[output.where]
     dims = (*along, "component") if output.vector else along

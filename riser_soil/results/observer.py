@@ -19,8 +19,8 @@ from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, Model, State
 from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back
-from riser_soil.core.snapshot import RiserSnapshot, RunFacts, SoilSnapshot, StepHealth, Touch
-from riser_soil.core.system import Clock
+from riser_soil.core.snapshot import ContactSnapshot, RiserSnapshot, RunFacts, SoilSnapshot, StepStatistics
+from riser_soil.core.system import Timer
 from riser_soil.errors import Interruption, RiserSoilError, SolveError
 from riser_soil.interruption import undivided
 from riser_soil.results.energy_ledger import EnergyLedger
@@ -42,14 +42,14 @@ from riser_soil.riser.section_forces import (
 )
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.stages import Stage, StaticStage
-from riser_soil.solve.dynamic_relaxation import Relaxed
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.dynamic_relaxation import RelaxationResult
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
 
 class Observer:
     """Follows a run: progress bar, energy ledger, files. recorder is None off rank 0."""
 
-    def __init__(self, assembly: Assembly, clock: Clock, recorder: Recorder | None, progress: Progress) -> None:
+    def __init__(self, assembly: Assembly, clock: Timer, recorder: Recorder | None, progress: Progress) -> None:
         self._assembly, self._clock, self._recorder, self._progress = assembly, clock, recorder, progress
         output = assembly.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
@@ -58,7 +58,7 @@ class Observer:
 
     @classmethod
     @contextmanager
-    def open(cls, assembly: Assembly, clock: Clock, folder: Path, force: bool) -> Iterator[Observer]:
+    def open(cls, assembly: Assembly, clock: Timer, folder: Path, force: bool) -> Iterator[Observer]:
         """Take the run's folder over; collective. What was written stays when the block is left early."""
         mesh = assembly.soil.output_mesh() if assembly.soil is not None else None
         known = facts(assembly)
@@ -98,7 +98,7 @@ class Observer:
         if self._recorder is not None:
             self._recorder.begin_at(riser_snapshot(self._assembly, stepper), self._zone.look(stepper.now), soil)
 
-    def record(self, stepper: TimeStepper, step: Accepted, last: bool) -> None:
+    def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Tell the recorder of a step that has been committed; collective."""
         since = time.perf_counter()
         due = self._schedule.due(step.t, last)
@@ -107,7 +107,7 @@ class Observer:
         change = self._balance.add(stepper.energy, step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
         if self._recorder is not None:
-            health = StepHealth(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
+            health = StepStatistics(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
             riser, touching = riser_snapshot(self._assembly, stepper), self._zone.look(stepper.now)
             self._recorder.accept(step.t, due, riser, touching, health, self._balance.ledger, soil)
             if due.series:
@@ -116,7 +116,7 @@ class Observer:
         self._clock.add("output", since)
 
     def _judge(
-        self, recorder: Recorder, stepper: TimeStepper, riser: RiserSnapshot, touching: Touch, closely: bool
+        self, recorder: Recorder, stepper: TimeStepper, riser: RiserSnapshot, touching: ContactSnapshot, closely: bool
     ) -> None:
         """Look whether what was recorded is plausible; closely where it costs no more than what is written."""
         self._plausibility.look(recorder.now, stepper.now, riser, touching)
@@ -145,7 +145,7 @@ class Observer:
             helped = f" and {relaxations} dynamic relaxation(s)" if relaxations else ""
             print(f"{self._assembly.hanging}: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
 
-    def relaxed(self, relaxed: Relaxed) -> None:
+    def relaxed(self, relaxed: RelaxationResult) -> None:
         """Dynamic relaxation was needed; its Newton iterations count with the next step."""
         self._relaxed += relaxed.iterations
         if self._recorder is not None:
@@ -205,7 +205,7 @@ def _known_fields(assembly: Assembly) -> tuple[str, ...]:
     return outputs.known(assembly.scene.output.fields, [need for need, there in has.items() if there])
 
 
-class Acting(NamedTuple):
+class ForceParts(NamedTuple):
     """Parts of a model whose forces are told apart."""
 
     within: list[HasElementForces]
@@ -214,9 +214,9 @@ class Acting(NamedTuple):
 
 
 @lru_cache(maxsize=1)
-def _acting(model: Model) -> Acting:
+def _acting(model: Model) -> ForceParts:
     """Looked for once a stage, as the question takes longer than the answer's use."""
-    return Acting(
+    return ForceParts(
         [p for p in model.parts if isinstance(p, HasElementForces)],
         [p for p in model.parts if isinstance(p, HasElementForces) and isinstance(p, HasViscousForces)],
         [p for p in model.parts if isinstance(p, HasNodalForces)],

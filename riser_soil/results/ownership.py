@@ -25,7 +25,7 @@ from riser_soil.results.folder import (
     SOIL_NUMBERS,
     SOIL_XDMF,
     SUMMARY,
-    Claim,
+    FolderLock,
     is_finished,
 )
 from riser_soil.results.growing_file import reading
@@ -55,7 +55,7 @@ def refuse(folder: Path, force: bool) -> None:
     try:
         if not force and is_finished(folder):
             raise SceneError(f"{folder}: holds a finished run; choose another folder (-o) or add --force")
-        Claim.try_out(folder)
+        FolderLock.try_out(folder)
         for name in NAMES:
             _refuse_foreign(folder / name)
     except OSError as err:
@@ -74,7 +74,7 @@ def refuse_together(folder: Path, force: bool, comm: Any) -> None:
         raise failure
 
 
-def prepare(folder: Path, force: bool) -> Claim:
+def prepare(folder: Path, force: bool) -> FolderLock:
     """Makes the folder, or clears a previous run's files (and no others) out of it; the hold on it.
 
     The old summary goes first, so that a kill in between cannot leave a folder that looks finished. The scene stays
@@ -82,7 +82,7 @@ def prepare(folder: Path, force: bool) -> Claim:
     """
     refuse(folder, force)
     try:
-        claim = Claim(folder)
+        claim = FolderLock(folder)
         claim.clear()
         for name in NAMES:
             _refuse_foreign(folder / name)

@@ -16,24 +16,24 @@ from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back
 from riser_soil.core.snapshot import (
+    ContactSnapshot,
     Instant,
     Ledger,
     RiserSnapshot,
     RunFacts,
     SoilMesh,
     SoilSnapshot,
-    StepHealth,
     StepRecord,
-    Touch,
+    StepStatistics,
 )
 from riser_soil.errors import SceneError, WriteError
 from riser_soil.results import folder as run_folder
 from riser_soil.results.figures import final_state, pack
-from riser_soil.results.folder import Claim
+from riser_soil.results.folder import FolderLock
 from riser_soil.results.netcdf import SeriesFile, ledger_variables
 from riser_soil.results.ownership import prepare, sealed
 from riser_soil.results.record_rows import series_row, soil_frame, step_row
-from riser_soil.results.schedule import Due
+from riser_soil.results.schedule import DueOutputs
 from riser_soil.results.simulated_time import SimulatedTime
 from riser_soil.results.summary import StageTally, Summary
 from riser_soil.results.xdmf import Frame, XdmfFile, polyline
@@ -45,12 +45,12 @@ _MOST_WAITING, _STEP = 1 << 24, 2000
 
 
 @dataclass
-class Last:
+class LastState:
     """The state told last, and what it has been written to."""
 
     seen: Instant
     soil: SoilSnapshot | None
-    written: Due
+    written: DueOutputs
     stamp: float = 0.0  # s, of its record in the series
 
 
@@ -63,7 +63,7 @@ class Recorder:
 
     def __init__(
         self,
-        claim: Claim,
+        claim: FolderLock,
         folder: Path,
         facts: RunFacts,
         arc: Array,
@@ -84,7 +84,7 @@ class Recorder:
         self._time = SimulatedTime()
         self.now = 0.0  # s of the run at the last step; in a static stage its load factor
         self._latest: Array | None = None
-        self._last: Last | None = None
+        self._last: LastState | None = None
         self._settlement: float | None = None
         self._next_flush = 0.0
         self._waiting = 0
@@ -154,20 +154,20 @@ class Recorder:
         self.summary.stages.append(stage)
         self._series.begin_stage(name)
 
-    def begin_at(self, riser: RiserSnapshot, touch: Touch, soil: SoilSnapshot | None = None) -> None:
+    def begin_at(self, riser: RiserSnapshot, touch: ContactSnapshot, soil: SoilSnapshot | None = None) -> None:
         """The state that the run begins with, where its first stage is dynamic: recorded at time zero."""
         seen = Instant(self._arc, riser, touch)
         self._latest = pack(seen)
         self.summary.stages[-1].extremes.update(self._time.now, self._latest)
-        self._record(seen, Due(series=True, pictures=True), soil)
+        self._record(seen, DueOutputs(series=True, pictures=True), soil)
 
     def accept(
         self,
         t: float,
-        due: Due,
+        due: DueOutputs,
         riser: RiserSnapshot,
-        touch: Touch,
-        health: StepHealth,
+        touch: ContactSnapshot,
+        health: StepStatistics,
         ledger: Ledger,
         soil: SoilSnapshot | None = None,
     ) -> None:
@@ -196,10 +196,10 @@ class Recorder:
         soil = last.soil or soil
         drawable = self._soil_frames is None or soil is not None
         if not last.written.series:
-            self._record(last.seen, Due(series=True, pictures=drawable), soil)
+            self._record(last.seen, DueOutputs(series=True, pictures=drawable), soil)
         elif drawable and not last.written.pictures:
             self._picture(last.stamp, series_row(last.stamp, last.seen, self._fields), soil)
-            last.written = Due(series=True, pictures=True)
+            last.written = DueOutputs(series=True, pictures=True)
 
     def add_seconds(self, seconds: Mapping[str, float]) -> None:
         """Adds wall time [s] to the named parts of the run."""
@@ -258,8 +258,8 @@ class Recorder:
         stage.final = final_state(seen)
         stage.bend(now, self._arc, seen.riser)
 
-    def _record(self, seen: Instant, due: Due, soil: SoilSnapshot | None) -> None:
-        self._last = Last(seen, soil, due)
+    def _record(self, seen: Instant, due: DueOutputs, soil: SoilSnapshot | None) -> None:
+        self._last = LastState(seen, soil, due)
         if due.series:
             self._last.stamp = self._time.stamp()
             row = series_row(self._last.stamp, seen, self._fields)

@@ -15,7 +15,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.output import bend_radius
 from riser_soil.core.saved_state import Saved, gathered, give_back, packed, under, unpacked, within
-from riser_soil.core.snapshot import Ledger, RiserSnapshot, RunFacts, StepHealth
+from riser_soil.core.snapshot import Ledger, RiserSnapshot, RunFacts, StepStatistics
 from riser_soil.results.figures import Extremes
 from riser_soil.results.folder import write_atomically
 
@@ -40,7 +40,7 @@ def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
 
 
 @dataclass(frozen=True)
-class Bend:
+class TightestBend:
     """Where and when the pipe is bent most for what is allowed: radius m, arc m, t s or load factor."""
 
     utilisation: float = 0.0
@@ -72,7 +72,7 @@ class StageTally:
     final: dict[str, Any] | None = None
     extremes: Extremes = field(default_factory=Extremes)
     energy: Ledger = field(default_factory=Ledger)
-    tightest: Bend = Bend()
+    tightest: TightestBend = TightestBend()
     worst_residual: tuple[float, float] = (0.0, math.nan)  # of the energy balance [J], and its time [s]
     implausible: tuple[str, ...] = ()  # what is not plausible about the riser's shape, forces and surroundings
 
@@ -87,9 +87,9 @@ class StageTally:
         at = int(riser.bend_utilisation.argmax())
         used = float(riser.bend_utilisation[at])
         if used > self.tightest.utilisation:
-            self.tightest = Bend(used, bend_radius(riser.curvature[at]), float(arc[at]), t)
+            self.tightest = TightestBend(used, bend_radius(riser.curvature[at]), float(arc[at]), t)
 
-    def count(self, health: StepHealth) -> None:
+    def count(self, health: StepStatistics) -> None:
         self.steps += 1
         self.newton_iterations += health.newton_iterations
         self.most_newton_iterations = max(self.most_newton_iterations, health.newton_iterations)
@@ -130,7 +130,7 @@ class StageTally:
     def restore(self, saved: Saved) -> None:
         vars(self).update(unpacked(saved["told"]))
         give_back({"extremes": self.extremes}, saved)
-        self.energy, self.tightest = Ledger(**vars(self)["energy"]), Bend(**vars(self)["tightest"])
+        self.energy, self.tightest = Ledger(**vars(self)["energy"]), TightestBend(**vars(self)["tightest"])
         worst, t = self.worst_residual
         self.worst_residual, self.implausible = (worst, t), tuple(self.implausible)
 

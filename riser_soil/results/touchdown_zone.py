@@ -11,27 +11,27 @@ from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved
-from riser_soil.core.snapshot import Touch
+from riser_soil.core.snapshot import ContactSnapshot
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
 
 if TYPE_CHECKING:
-    from riser_soil.contact.touchdown import Stretch
+    from riser_soil.contact.touchdown import ContactInterval
 
 
 class TouchdownZone:
-    """What the rank that holds contact tells of it. fields: those of `Touch` along the riser that are wanted."""
+    """Contact results of all grounds, on the rank that evaluates contact. fields: those of `ContactSnapshot` wanted."""
 
     def __init__(self, assembly: Assembly, fields: Sequence[str] = ()) -> None:
         self._assembly, self._fields = assembly, fields
         self._embedment: Array = np.zeros(assembly.line.nodes)
 
-    def look(self, state: State) -> Touch:
+    def look(self, state: State) -> ContactSnapshot:
         """At each accepted state in turn: the embedment is the greatest depth yet."""
         contacts, line = self._assembly.contacts, self._assembly.line
         lying = joined([s for contact in contacts for s in contact.stretches(state)], float(line.length.max()))
         arc = touchdown_arc(lying, line)
-        return Touch(
+        return ContactSnapshot(
             touchdown_arc=arc,
             touchdown_position=position_at(line, state, arc),
             touchdown_points=sum(int(s.start > line.arc[0]) + int(s.end < line.arc[-1]) for s in lying),
@@ -57,9 +57,9 @@ class TouchdownZone:
         self._embedment = saved["embedment"]
 
 
-def joined(stretches: Sequence[Stretch], near: float) -> list[Stretch]:
+def joined(stretches: Sequence[ContactInterval], near: float) -> list[ContactInterval]:
     """Those in order of the arc length, made one where one ground ends and the next begins within `near` [m]."""
-    found: list[Stretch] = []
+    found: list[ContactInterval] = []
     for this in sorted(stretches):
         if found and this.start - found[-1].end <= near:
             found[-1] = found[-1]._replace(end=max(found[-1].end, this.end))
@@ -68,7 +68,7 @@ def joined(stretches: Sequence[Stretch], near: float) -> list[Stretch]:
     return found
 
 
-def touchdown_arc(lying: Sequence[Stretch], line: Line) -> float:
+def touchdown_arc(lying: Sequence[ContactInterval], line: Line) -> float:
     """As `contact.touchdown` has it for one ground; nan where nothing touches."""
     if not lying:
         return float("nan")

@@ -7,7 +7,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser import beam2d, beam3d, increments
-from riser_soil.riser.directors import PlanarFrames, PlanarTurn, SpatialFrames, SpatialTurn
+from riser_soil.riser.directors import PlanarFrames, PlanarOrientation, SpatialFrames, SpatialOrientation
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.trial import Trial
@@ -19,11 +19,11 @@ class PlanarElements:
     def __init__(self, line: Line, frames: PlanarFrames, elements: Elements) -> None:
         first, second = (np.ascontiguousarray(frames.alpha0[:, i]) for i in (0, 1))
         self.reference = beam2d.reference(line.chord0, first, second, line.length)
-        self.section = beam2d.Section(elements.EA, elements.EI_y)
+        self.section = beam2d.PlanarSection(elements.EA, elements.EI_y)
 
     def configuration(self, trial: Trial) -> tuple[Array, Array, Array]:
         """Chords (ne, 2) and directions of the tangents at both ends (ne,)."""
-        assert isinstance(trial.turn, PlanarTurn)
+        assert isinstance(trial.turn, PlanarOrientation)
         angle = trial.turn.end_angle
         return trial.chord, angle[:, 0], angle[:, 1]
 
@@ -45,7 +45,7 @@ class SpatialElements:
     def __init__(self, line: Line, frames: SpatialFrames, elements: Elements) -> None:
         first, second = (np.ascontiguousarray(frames.T0[:, i]) for i in (0, 1))
         self.reference = beam3d.reference(line.chord0, first, second, line.length)
-        self.section = beam3d.Section(elements.EA, elements.EI_y, elements.EI_z, elements.GJ)
+        self.section = beam3d.SpatialSection(elements.EA, elements.EI_y, elements.EI_z, elements.GJ)
 
     def configuration(self, trial: Trial) -> tuple[Array, Array, Array]:
         """Chords (ne, 3) and section frames at both ends (ne, 3, 3)."""
@@ -73,8 +73,8 @@ def _add_planar_tangent(
     chord: Array,
     direction1: Array,
     direction2: Array,
-    reference: beam2d.Reference,
-    section: beam2d.Section,
+    reference: beam2d.PlanarReference,
+    section: beam2d.PlanarSection,
 ) -> None:
     f, K = np.empty(6), np.empty((6, 6))
     for e in range(len(chord)):
@@ -86,7 +86,12 @@ def _add_planar_tangent(
 
 @njit
 def _spatial_forces(
-    chord: Array, frame1: Array, frame2: Array, reference: beam3d.Reference, section: beam3d.Section, H: Array
+    chord: Array,
+    frame1: Array,
+    frame2: Array,
+    reference: beam3d.SpatialReference,
+    section: beam3d.SpatialSection,
+    H: Array,
 ) -> Array:
     f = beam3d.forces(chord, frame1, frame2, reference, section)
     increments.forces_to_increments(f, H)
@@ -100,8 +105,8 @@ def _add_spatial_tangent(
     chord: Array,
     frame1: Array,
     frame2: Array,
-    reference: beam3d.Reference,
-    section: beam3d.Section,
+    reference: beam3d.SpatialReference,
+    section: beam3d.SpatialSection,
     H: Array,
     Rn: Array,
     Theta: Array,
@@ -122,6 +127,6 @@ def elastic_elements(line: Line, elements: Elements) -> PlanarElements | Spatial
     return SpatialElements(line, line.frames, elements)
 
 
-def _spatial(trial: Trial) -> SpatialTurn:
-    assert isinstance(trial.turn, SpatialTurn)
+def _spatial(trial: Trial) -> SpatialOrientation:
+    assert isinstance(trial.turn, SpatialOrientation)
     return trial.turn

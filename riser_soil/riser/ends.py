@@ -15,7 +15,7 @@ axes.
 """
 
 
-class Turning(NamedTuple):
+class SupportRotation(NamedTuple):
     """A support turned from where it is at the stage's beginning, each (3,) in global axes.
 
     rotation: rotation vector [rad]; about one axis it may count whole turns. angular_velocity [rad/s],
@@ -39,4 +39,4 @@ class End:
     prescribed: bool
     rotation_fixed: bool = False
     motion: Motion | None = None
-    turning: Callable[[float], Turning] | None = None
+    turning: Callable[[float], SupportRotation] | None = None

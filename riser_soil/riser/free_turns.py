@@ -8,12 +8,12 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.riser.directors import SpatialTurn, Turn
+from riser_soil.riser.directors import Orientation, SpatialOrientation
 
 STILL = 1e-9  # of the line's length, or a radian: what moves less does not move
 
 
-def free_turns(x: Array, turn: Turn, prescribed: BoolArray, length: float) -> Array:
+def free_turns(x: Array, turn: Orientation, prescribed: BoolArray, length: float) -> Array:
     """Increments (k, nn, d + r) of independent rigid motions that move no prescribed dof; in space sections may spin.
 
     x (nn, d): positions; prescribed (nn, d + r). length: the line's [m]; also the largest displacement of each motion.
@@ -44,11 +44,11 @@ def unit_lengths(shape: tuple[int, ...], dofs: int, length: float) -> Array:
     return units
 
 
-def _rigid_motions(x: Array, turn: Turn, length: float) -> Array:
+def _rigid_motions(x: Array, turn: Orientation, length: float) -> Array:
     """Shifts by the length and turns by a radian about the first node; in space also a spin about the tangents."""
     nodes, d = x.shape
     arm, shifts = x - x[0], [np.tile(length * axis, (nodes, 1)) for axis in np.eye(d)]
-    if not isinstance(turn, SpatialTurn):
+    if not isinstance(turn, SpatialOrientation):
         turned, still = np.stack([-arm[:, 1], arm[:, 0]], axis=1), np.zeros((nodes, 1))
         return np.stack([np.hstack([moved, still]) for moved in shifts] + [np.hstack([turned, still + 1.0])])
     still = np.zeros((nodes, 3))

@@ -14,12 +14,12 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import Block, State
+from riser_soil.core.part import MatrixBlock, State
 from riser_soil.core.saved_state import Saved, under, values_of, within
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames
-from riser_soil.riser.ends import End, Turning
+from riser_soil.riser.ends import End, SupportRotation
 from riser_soil.riser.free_turns import free_turns, unit_lengths
 from riser_soil.riser.trial import Trial
 
@@ -148,11 +148,11 @@ class Line:
         _scatter(element, nodal)
         return nodal
 
-    def element_block(self) -> Block:
+    def element_block(self) -> MatrixBlock:
         """Pattern "riser": all dofs of each element."""
         first = self.offset + self.ndof * np.arange(self.nodes - 1, dtype=np.int64)
         dofs = first[:, None] + np.arange(2 * self.ndof)
-        return Block(dofs, dofs)
+        return MatrixBlock(dofs, dofs)
 
     @property
     def translation_dofs(self) -> IntArray:
@@ -335,7 +335,7 @@ class Line:
             if end.rotation_fixed and end.turning is not None:
                 self._turn(node, end.turning(t), self.support(node, t), (u, v, a))
 
-    def _turn(self, node: int, turning: Turning, support: Array, values: tuple[Array, Array, Array]) -> None:
+    def _turn(self, node: int, turning: SupportRotation, support: Array, values: tuple[Array, Array, Array]) -> None:
         """Write the increment, rate and acceleration of a rotation that follows its support."""
         at = slice(node * self.ndof + self.dimension, (node + 1) * self.ndof)
         u, v, a = values

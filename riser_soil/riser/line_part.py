@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from riser_soil.core.part import Block, Energy, State, Work
+from riser_soil.core.part import Energy, MatrixBlock, State, Work
 from riser_soil.riser.line import Line
 
 
@@ -16,7 +16,7 @@ class LinePart:
     def active(self) -> bool:
         return self.line.active
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         """All dofs of each element."""
         return {self.line.name: self.line.element_block()}
 

@@ -107,7 +107,7 @@ def directors(frames: Frames, column: int) -> Directors:
     return SpatialDirectors(frames, column)
 
 
-class Carried:
+class DirectorMotion:
     """Directors and their rates through a step.
 
     The rates (ne, 2, d) at its end are those of the midpoint rule, whose mean over the step is change/dt. They need not

@@ -25,14 +25,14 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed
-from riser_soil.core.part import Block, Energy, Forces, Part, State, Traits, Weights
+from riser_soil.core.part import Energy, Forces, MatrixBlock, Part, State, Traits, Weights
 from riser_soil.core.roles import MomentumCorrecting
 from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back
 from riser_soil.riser import hermite
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
-from riser_soil.riser.midpoint_directors import Carried, Secant, directors
+from riser_soil.riser.midpoint_directors import DirectorMotion, Secant, directors
 from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.trial import Trial
 
@@ -48,13 +48,13 @@ class MidpointInertia(LinePart):
     def __init__(self, instant: Inertia) -> None:
         super().__init__(instant.line)
         self.instant = instant
-        self._tangents = Carried(directors(self.line.frames, 0))
+        self._tangents = DirectorMotion(directors(self.line.frames, 0))
 
     def begin(self, state: State) -> None:
         """Start from an accepted state."""
         self._tangents.begin(state.t, _turning(self.line, state.v))
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         return self.instant.blocks()
 
     def q_rate(self, state: State) -> Array:
@@ -133,14 +133,14 @@ class MidpointRotaryInertia(LinePart):
         self.instant = instant
         on = instant.on_directors()
         self.masses = [mass[:, None, None] for mass in on.values()]
-        self._directors = [Carried(directors(self.line.frames, k)) for k in on]
+        self._directors = [DirectorMotion(directors(self.line.frames, k)) for k in on]
 
     def begin(self, state: State) -> None:
         """Start from an accepted state."""
         for director in self._directors:
             director.begin(state.t, _turning(self.line, state.v))
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         return self.instant.blocks()
 
     def rates(self, state: State) -> Sequence[Array]:
@@ -204,7 +204,7 @@ class MidpointRotaryInertia(LinePart):
         give_back(self._by_number, saved)
 
     @property
-    def _by_number(self) -> dict[str, Carried]:
+    def _by_number(self) -> dict[str, DirectorMotion]:
         return {str(k): director for k, director in enumerate(self._directors)}
 
 

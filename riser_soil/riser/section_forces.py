@@ -15,7 +15,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
-from riser_soil.riser.directors import SpatialTurn
+from riser_soil.riser.directors import SpatialOrientation
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.trial import Trial
@@ -152,7 +152,7 @@ def end_forces(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]
 def _global(line: Line, trial: Trial, dofs: Array, nodes: IntArray) -> tuple[Array, Array]:
     """Forces and moments (n, 3) in global axes from those conjugate to the dofs of the nodes (n, ndof)."""
     force, rest = dofs[:, : line.dimension] @ line.basis.T, dofs[:, line.dimension :]
-    if isinstance(trial.turn, SpatialTurn):
+    if isinstance(trial.turn, SpatialOrientation):
         return force, trial.turn.in_space(rest, nodes)
     return force, rest * line.normal
 
@@ -175,7 +175,7 @@ def _curvatures(trial: Trial, elements: Elements, bending: Array) -> tuple[Array
     """Bending moment over stiffness at both ends of the elements (ne,), about the section axes where there are two
     stiffnesses.
     """
-    if isinstance(trial.turn, SpatialTurn):
+    if isinstance(trial.turn, SpatialOrientation):
         return (
             _section_curvature(trial.turn.frame1, bending[:-1], elements),
             _section_curvature(trial.turn.frame2, bending[1:], elements),

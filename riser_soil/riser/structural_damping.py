@@ -7,7 +7,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Traits, Weights, Work
 from riser_soil.riser import beam2d, beam3d, damping2d, damping3d, increments
-from riser_soil.riser.directors import SpatialTurn
+from riser_soil.riser.directors import SpatialOrientation
 from riser_soil.riser.elastic import PlanarElements, SpatialElements, elastic_elements
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
@@ -20,7 +20,7 @@ class PlanarDamping:
 
     def __init__(self, elements: PlanarElements, beta: Array) -> None:
         self._elements = elements
-        self._viscosity = beam2d.Section(*(beta * stiffness for stiffness in elements.section))
+        self._viscosity = beam2d.PlanarSection(*(beta * stiffness for stiffness in elements.section))
 
     def forces(self, trial: Trial, v: Array) -> Array:
         """(ne, 6) from the rates of the dofs (nn, 3)."""
@@ -41,7 +41,7 @@ class SpatialDamping:
 
     def __init__(self, elements: SpatialElements, beta: Array) -> None:
         self._elements = elements
-        self._viscosity = beam3d.Section(*(beta * stiffness for stiffness in elements.section))
+        self._viscosity = beam3d.SpatialSection(*(beta * stiffness for stiffness in elements.section))
 
     def forces(self, trial: Trial, v: Array) -> Array:
         """(ne, 12), conjugate to displacements and rotation increments, from the rates of the dofs (nn, 6)."""
@@ -52,7 +52,7 @@ class SpatialDamping:
     def tangent(self, trial: Trial, v: Array, shift_v: float) -> Array:
         """(ne, 12, 12)."""
         turn = _spatial(trial)
-        nodes = damping3d.Nodes(turn.R, turn.H, turn.Rn, turn.Theta)
+        nodes = damping3d.NodeRotations(turn.R, turn.H, turn.Rn, turn.Theta)
         return np.asarray(damping3d.tangent(*self._at(trial, v), nodes, shift_v))
 
     def _at(self, trial: Trial, v: Array) -> tuple:
@@ -109,6 +109,6 @@ def _damping(elements: PlanarElements | SpatialElements, beta: Array) -> PlanarD
     return SpatialDamping(elements, beta)
 
 
-def _spatial(trial: Trial) -> SpatialTurn:
-    assert isinstance(trial.turn, SpatialTurn)
+def _spatial(trial: Trial) -> SpatialOrientation:
+    assert isinstance(trial.turn, SpatialOrientation)
     return trial.turn

@@ -12,10 +12,10 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed
 from riser_soil.core.part import State, Weights
 from riser_soil.riser import hermite
-from riser_soil.riser.directors import Turn
+from riser_soil.riser.directors import Orientation
 
 
-class ByIncrements(NamedTuple):
+class IncrementDerivatives(NamedTuple):
     """Derivatives of q, q' or q'' by the dofs: `tangent` (ne, 2, d, r) for the tangents, `shift` for the
     positions.
     """
@@ -24,13 +24,16 @@ class ByIncrements(NamedTuple):
     shift: float
 
 
+_Columns = tuple[IncrementDerivatives, IncrementDerivatives, IncrementDerivatives]
+
+
 class Trial:
     """The line at a trial state: x (nn, d), chord (ne, d), orientation `turn`; rates of q on demand."""
 
-    def __init__(self, state: State, x: Array, chord: Array, turn: Turn, rates: tuple[Array, Array]) -> None:
+    def __init__(self, state: State, x: Array, chord: Array, turn: Orientation, rates: tuple[Array, Array]) -> None:
         self.state, self.x, self.chord, self.turn = state, x, chord, turn
         self._v, self._a = rates
-        self._columns: dict[tuple[float, float], tuple[ByIncrements, ByIncrements, ByIncrements]] = {}
+        self._columns: dict[tuple[float, float], _Columns] = {}
         self._kept: dict[Hashable, Any] = {}
 
     def once(self, key: Hashable, make: Callable[[Trial], Any]) -> Any:
@@ -62,13 +65,13 @@ class Trial:
         """Element residual in the dofs (ne, 2 ndof) of F (ne, 4, d) conjugate to q."""
         return np.asarray(hermite.pull_back(F, self.turn.P))
 
-    def columns(self, weights: Weights) -> tuple[ByIncrements, ByIncrements, ByIncrements]:
+    def columns(self, weights: Weights) -> _Columns:
         """Derivatives of q, q' and q'' by the dofs, rates following by the shifts."""
         shifts = float(weights.shift_v), float(weights.shift_a)
         if shifts not in self._columns:
             d = self.x.shape[1]
             maps = self.turn.maps(self._v[:, d:], self._a[:, d:], *shifts)
-            q, rate, acceleration = map(ByIncrements, maps, (1.0, *shifts))
+            q, rate, acceleration = map(IncrementDerivatives, maps, (1.0, *shifts))
             self._columns[shifts] = q, rate, acceleration
         return self._columns[shifts]
 

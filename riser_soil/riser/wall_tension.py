@@ -17,7 +17,7 @@ from riser_soil.core.arrays import Array
 
 
 @dataclass(frozen=True)
-class Head:
+class HydrostaticPressure:
     """A fluid at rest: gauge pressure [Pa] at a level z [m], and its increase per depth [Pa/m]."""
 
     level: float
@@ -36,8 +36,8 @@ class Pressures:
     inner_diameter, outer_diameter: (ne,) m. At a joint the areas are the means of both sides, as section forces are.
     """
 
-    inside: Head | None
-    outside: Head | None
+    inside: HydrostaticPressure | None
+    outside: HydrostaticPressure | None
     inner_diameter: Array
     outer_diameter: Array
 

@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from riser_soil.scene.language import Spot, spot
+from riser_soil.scene.language import KeyInfo, spot
 from riser_soil.scene.problem import NOTHING, Path, Problem, did_you_mean, hint, value_at
 
 
@@ -30,12 +30,12 @@ class Failure:
         return value_at(self.data, self.path)
 
     @property
-    def here(self) -> Spot:
+    def here(self) -> KeyInfo:
         """What the language says about the place."""
         return spot(self.location)
 
     @property
-    def around(self) -> Spot:
+    def around(self) -> KeyInfo:
         """What the language says about the mapping or list that holds the place."""
         return spot(self.location[:-1])
 

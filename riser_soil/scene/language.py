@@ -12,7 +12,7 @@ from riser_soil.scene.scene import Scene
 
 
 @dataclass(frozen=True)
-class Spot:
+class KeyInfo:
     """A place of the language: the types that fit there and the description of its key."""
 
     types: tuple[Any, ...]
@@ -41,27 +41,27 @@ class Spot:
     def _models(self) -> list[type[BaseModel]]:
         return [kind for kind in self.types if isinstance(kind, type) and issubclass(kind, BaseModel)]
 
-    def under(self, item: str | int) -> "Spot":
+    def under(self, item: str | int) -> "KeyInfo":
         """The place below a key or index; an alternative's tag `<Model>` narrows the types."""
         if isinstance(item, str) and item.startswith("<"):
             chosen = tuple(model for model in self._models if f"<{model.__name__}>" == item)
-            return Spot(chosen or self.types, self.description)
+            return KeyInfo(chosen or self.types, self.description)
         if isinstance(item, int):
-            return Spot(tuple(t for kind in self.types for t in _item_types(kind, item)), self.description)
+            return KeyInfo(tuple(t for kind in self.types for t in _item_types(kind, item)), self.description)
         return self._key(item)
 
-    def _key(self, key: str) -> "Spot":
+    def _key(self, key: str) -> "KeyInfo":
         for model in self._models:
             for name, field in model.model_fields.items():
                 if (field.alias or name) == key:
-                    return Spot(_types(field), field.description or "")
+                    return KeyInfo(_types(field), field.description or "")
         values = (get_args(kind)[1] for kind in self.types if get_origin(kind) is dict)
-        return Spot(tuple(t for kind in values for t in _alternatives(kind)), self.description)
+        return KeyInfo(tuple(t for kind in values for t in _alternatives(kind)), self.description)
 
 
-def spot(location: tuple[str | int, ...]) -> Spot:
+def spot(location: tuple[str | int, ...]) -> KeyInfo:
     """The place of the language at a location with or without tags."""
-    here = Spot((Scene,), "the scene")
+    here = KeyInfo((Scene,), "the scene")
     for item in location:
         here = here.under(item)
     return here

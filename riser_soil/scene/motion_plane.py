@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import assert_never
 
 from riser_soil.core.quantities import Vector
-from riser_soil.scene.motions import ArcMotion, Harmonic, Rotation, Table, Vessel, Way
+from riser_soil.scene.motions import ArcMotion, Harmonic, MotionKind, Rotation, Table, Vessel
 from riser_soil.scene.problem import Path
 from riser_soil.scene.rao import ROTATIONS, TRANSLATIONS
 from riser_soil.scene.scene import Scene
@@ -50,7 +50,7 @@ def rotation_axes(scene: Scene) -> Iterator[tuple[Path, Vector]]:
                 assert_never(way)
 
 
-def _ways(scene: Scene) -> Iterator[tuple[Path, Way]]:
+def _ways(scene: Scene) -> Iterator[tuple[Path, MotionKind]]:
     """All motions of the ends, stage by stage."""
     for n, stage in enumerate(scene.stages):
         if isinstance(stage, DynamicStage) and stage.motion:

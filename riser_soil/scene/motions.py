@@ -186,7 +186,7 @@ class Vessel(BaseModel):
         return ((forward, across, 0.0), (-across, forward, 0.0), (0.0, 0.0, 1.0))[MODES.index(mode) % 3]
 
 
-Way = Harmonic | ArcMotion | Table | Vessel | Rotation
+MotionKind = Harmonic | ArcMotion | Table | Vessel | Rotation
 
 
 class EndMotion(BaseModel):
@@ -226,7 +226,7 @@ class EndMotion(BaseModel):
         return self
 
     @property
-    def ways(self) -> dict[str, Way]:
+    def ways(self) -> dict[str, MotionKind]:
         """What is given, by its key."""
         return {key: way for key, way in self if way is not None}
 

@@ -19,7 +19,7 @@ _FLAT = 1e-9
 
 
 @dataclass(frozen=True)
-class Plane:
+class VerticalPlane:
     """A vertical plane: a point of it [m], its horizontal unit direction from start to end, the riser's length [m]."""
 
     origin: Vector
@@ -49,10 +49,10 @@ class Plane:
         return math.hypot(*across) <= _FLAT * math.hypot(*axis)
 
 
-def vertical_plane(scene: Scene) -> Plane:
+def vertical_plane(scene: Scene) -> VerticalPlane:
     """The plane through the riser's start and end; along x when they give no direction."""
     points = _ends(scene)
-    return Plane(points[0], _direction(points), scene.riser.length)
+    return VerticalPlane(points[0], _direction(points), scene.riser.length)
 
 
 def resolved_dimension(scene: Scene) -> Literal[2, 3]:

@@ -11,11 +11,11 @@ Path = tuple[str | int, ...]
 _WIDTH = 60
 
 
-class Nothing:
+class Missing:
     """Stands for a value that is not there (None is a value: null)."""
 
 
-NOTHING = Nothing()
+NOTHING = Missing()
 
 
 @dataclass(frozen=True)

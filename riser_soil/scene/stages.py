@@ -92,7 +92,7 @@ class MovedEnds(BaseModel):
     end: Position | None = Field(default=None, description="new position of the end, [x, y, z] [m]")
 
 
-class Newmark(BaseModel):
+class NewmarkParameters(BaseModel):
     """Newmark's parameters."""
 
     model_config = FROZEN
@@ -106,10 +106,10 @@ class NewmarkScheme(BaseModel):
 
     model_config = FROZEN
 
-    newmark: Newmark = Field(description="beta and gamma")
+    newmark: NewmarkParameters = Field(description="beta and gamma")
 
 
-class GeneralizedAlpha(BaseModel):
+class GeneralizedAlphaParameters(BaseModel):
     """Parameter of the generalised-alpha scheme."""
 
     model_config = FROZEN
@@ -122,10 +122,10 @@ class GeneralizedAlphaScheme(BaseModel):
 
     model_config = FROZEN
 
-    generalized_alpha: GeneralizedAlpha = Field(description="rho_inf")
+    generalized_alpha: GeneralizedAlphaParameters = Field(description="rho_inf")
 
 
-class Midpoint(BaseModel):
+class MidpointParameters(BaseModel):
     """The midpoint rule has no parameters."""
 
     model_config = FROZEN
@@ -136,7 +136,7 @@ class MidpointScheme(BaseModel):
 
     model_config = FROZEN
 
-    midpoint: Midpoint = Field(description="no parameters: {}")
+    midpoint: MidpointParameters = Field(description="no parameters: {}")
 
 
 Scheme = Annotated[
@@ -184,7 +184,7 @@ class DynamicStage(BaseModel):
     motion: Motion | None = Field(default=None, description="prescribed motions of ends, {start, end}")
     loads: tuple[Load, ...] = Field(default=(), description="loads on the riser during this stage")
     scheme: Scheme = Field(
-        default=GeneralizedAlphaScheme(generalized_alpha=GeneralizedAlpha()),
+        default=GeneralizedAlphaScheme(generalized_alpha=GeneralizedAlphaParameters()),
         description="{newmark: {beta, gamma}}, {generalized_alpha: {rho_inf}} or {midpoint: {}}",
     )
 

@@ -15,7 +15,7 @@ from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.wetting import Wetting
 
 
-class Dry(Protocol):
+class LostBuoyancy(Protocol):
     """Weight, beyond the submerged one, of what is not wet: that of the water displaced, times the dry share 1 - S."""
 
     def residual(self, trial: Trial) -> Array:
@@ -62,7 +62,7 @@ class Buoyancy(LinePart):
 
     name = "buoyancy"
 
-    def __init__(self, pipe: Pipe, dry: Dry, flat: bool) -> None:
+    def __init__(self, pipe: Pipe, dry: LostBuoyancy, flat: bool) -> None:
         super().__init__(pipe.line)
         self._pipe, self._dry, self._flat = pipe, dry, flat
         self.traits = Traits("F", symmetric=flat)

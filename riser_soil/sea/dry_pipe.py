@@ -33,7 +33,7 @@ class _Sections(NamedTuple):
 
 
 class DryPipe:
-    """A `Dry`: sections of the pipe at many points of each element, under the surface as its stations see it.
+    """A `LostBuoyancy`: sections of the pipe at many points of each element, under the surface as its stations see it.
 
     displaced: weight of the water in the pipe's place [N/m] (ne,).
     """

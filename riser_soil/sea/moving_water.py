@@ -29,7 +29,7 @@ from riser_soil.sea.still_water import Resistance, StationLoads
 from riser_soil.sea.water import Water, WaterMotion
 
 
-class Stream:
+class FlowAtStations:
     """Moving water around the pipe."""
 
     def __init__(self, pipe: Pipe, water: Water) -> None:
@@ -65,7 +65,7 @@ class RelativeDrag:
 
     dissipative = False
 
-    def __init__(self, still: Resistance, stream: Stream) -> None:
+    def __init__(self, still: Resistance, stream: FlowAtStations) -> None:
         self._still, self._stream = still, stream
 
     def forces(self, trial: Trial) -> tuple[Array, Array]:
@@ -95,7 +95,7 @@ class AcceleratedWater:
 
     dissipative = False
 
-    def __init__(self, loads: StationLoads, stream: Stream, mass: Array, displaced: Array) -> None:
+    def __init__(self, loads: StationLoads, stream: FlowAtStations, mass: Array, displaced: Array) -> None:
         self._loads, self._stream, self._pipe = loads, stream, stream.pipe
         self._mass = mass + displaced[:, None]  # rho A is the same across and along the pipe
 

@@ -24,7 +24,7 @@ class StationFlow(NamedTuple):
     stretch: Array
 
 
-class Points(NamedTuple):
+class PointsOnLine(NamedTuple):
     """Single points of a line: their elements (m,), which may repeat, and `stations.points` there."""
 
     element: IntArray
@@ -38,7 +38,7 @@ class Pipe:
     forces, and the arc length that a point stands for is 1.
     """
 
-    def __init__(self, line: Line, points: Points | None = None) -> None:
+    def __init__(self, line: Line, points: PointsOnLine | None = None) -> None:
         self.line, self._points = line, points
         self.at = stations.stations(line.length) if points is None else points.at
 
@@ -88,7 +88,8 @@ class Pipe:
         q, rate, acceleration = trial.columns(weights)
         own = K if self._points is None else np.zeros((len(self.at.N), *K.shape[1:]))
         first, second, third = (self._own(c.tangent) for c in (q, rate, acceleration))
-        stations.add_tangent(own, self.at, by, stations.ByDofs(first, second, third, rate.shift, acceleration.shift))
+        by_dofs = stations.DofDerivatives(first, second, third, rate.shift, acceleration.shift)
+        stations.add_tangent(own, self.at, by, by_dofs)
         if self._points is not None:
             np.add.at(K, self._points.element, own)
 

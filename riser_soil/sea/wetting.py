@@ -36,7 +36,7 @@ class FlatSurface:
         return self._level - x[..., -1], gradient
 
 
-class Wet(NamedTuple):
+class WetShare(NamedTuple):
     """Wet share (ne, ng) and its gradient by position (ne, ng, d) [1/m]."""
 
     share: Array
@@ -55,14 +55,14 @@ class Wetting:
         given = np.maximum(pipe.line.outer_diameter[:, None], pipe.share) if span is None else span
         self._span = np.ascontiguousarray(np.broadcast_to(given, pipe.share.shape))
 
-    def at(self, trial: Trial) -> Wet:
-        wet: Wet = trial.once((self, "wet"), self._evaluate)
+    def at(self, trial: Trial) -> WetShare:
+        wet: WetShare = trial.once((self, "wet"), self._evaluate)
         return wet
 
-    def _evaluate(self, trial: Trial) -> Wet:
+    def _evaluate(self, trial: Trial) -> WetShare:
         h, gradient = self._surface.immersion(trial)
         share, slope = wet_section.wet_shares(h, self._span)
-        return Wet(share, slope[..., None] * gradient)
+        return WetShare(share, slope[..., None] * gradient)
 
     def dry_height(self, trial: Trial) -> Array:
         """`wet_section.dry_height` of the stations (ne, ng) [m]."""

@@ -9,14 +9,14 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from riser_soil.core.lazy import Lazy
+from riser_soil.core.lazy import LazyModule
 
 if TYPE_CHECKING:
     import numpy as np
 
     from riser_soil.core.arrays import Array
 else:
-    np = Lazy("numpy")
+    np = LazyModule("numpy")
 
 SHALLOW = 0.1  # z/D below which Randolph & Quiggin's bearing factor follows the square root
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from riser_soil.core.arrays import Array, BoolArray
 
 
-class Answer(NamedTuple):
+class SeabedResponse(NamedTuple):
     """At the end of a step to a penetration.
 
     force [N/m]: positive where it pushes the riser away. slope [N/m2]: its derivative by the penetration. history
@@ -57,7 +57,7 @@ class NormalLaw(Protocol):
         """Where there may be a force, or something stored."""
         ...
 
-    def update(self, penetration: Array, history: Array) -> Answer:
+    def update(self, penetration: Array, history: Array) -> SeabedResponse:
         """The answer to a step from a history to a penetration."""
         ...
 

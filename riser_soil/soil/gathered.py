@@ -9,33 +9,33 @@ import numpy as np
 import numpy.typing as npt
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.soil.grid import Grid
+from riser_soil.soil.grid import DistributedMesh
 
 T = TypeVar("T", bound=np.generic)
 
 
 @dataclass(frozen=True, eq=False)
-class Gathered:
+class GatheredMesh:
     """Points (n, 3) [m] by global node number and cells (nc, nn), rank by rank; empty on the other ranks."""
 
     points: Array
     cells: IntArray
 
 
-def gather(grid: Grid) -> Gathered:
+def gather(grid: DistributedMesh) -> GatheredMesh:
     """Bring the mesh to rank 0 (collective)."""
     nodes = grid.nodes
     points = gather_rows(grid, nodes.points[: nodes.owned])
-    return Gathered(points, gather_rows(grid, nodes.number[nodes.cells]))
+    return GatheredMesh(points, gather_rows(grid, nodes.number[nodes.cells]))
 
 
-def gather_rows(grid: Grid, rows: npt.NDArray[T]) -> npt.NDArray[T]:
+def gather_rows(grid: DistributedMesh, rows: npt.NDArray[T]) -> npt.NDArray[T]:
     """Concatenate the ranks' rows on rank 0, in the order of ranks; no rows elsewhere (collective)."""
     pieces = grid.nodes.comm.gather(rows)
     return rows[:0] if pieces is None else np.concatenate(pieces)
 
 
-def top_facets(grid: Grid, mesh: Gathered) -> IntArray:
+def top_facets(grid: DistributedMesh, mesh: GatheredMesh) -> IntArray:
     """Boundary facets that look upwards (nf, nv): counter-clockwise from above, ordered as `Family.faces`."""
     family = grid.family
     faces: IntArray = mesh.cells[:, np.array(family.faces)].reshape(-1, len(family.flip))

@@ -20,7 +20,7 @@ STRESS = ("stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_xz", "stre
 PLASTIC_STRAIN = "equivalent_plastic_strain"
 
 
-class Response(NamedTuple):
+class StressUpdate(NamedTuple):
     """At the end of a strain increment.
 
     stress (n, 6) [Pa]. tangent (n, 6, 6) [Pa]: its derivative by the increment. history (n, nh). stored (n,) [J/m3]:
@@ -53,7 +53,7 @@ class Formula(Protocol):
         """History (n, nh) of undisturbed soil, under its initial stress."""
         ...
 
-    def update(self, strain_increment: Array, history: Array) -> Response:
+    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
         """The answer to a strain increment (n, 6) from a history."""
         ...
 

@@ -8,16 +8,16 @@ from typing import Literal
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
 from riser_soil.soil.element import cell_gradients
 from riser_soil.soil.field import SoilField, components
-from riser_soil.soil.gathered import Gathered, gather, gather_rows
-from riser_soil.soil.grid import Grid, on_all_ranks
-from riser_soil.soil.law import PLASTIC_STRAIN, Formula, Response
+from riser_soil.soil.gathered import GatheredMesh, gather, gather_rows
+from riser_soil.soil.grid import DistributedMesh, on_all_ranks
+from riser_soil.soil.law import PLASTIC_STRAIN, Formula, StressUpdate
 from riser_soil.soil.surface import SoilTop
 
 
@@ -36,7 +36,7 @@ class Soil:
 
     def __init__(
         self,
-        grid: Grid,
+        grid: DistributedMesh,
         law: Callable[[Array, Array], Formula],
         *,
         level: float,
@@ -47,7 +47,7 @@ class Soil:
         _check_level(grid, level)
         self.grid = grid
         self.field = SoilField(grid)
-        self.mesh: Gathered = gather(grid)
+        self.mesh: GatheredMesh = gather(grid)
         self.surface = SoilTop(grid, self.mesh)
         self._cells = np.ascontiguousarray(grid.nodes.cells)
         self._gradients = on_all_ranks(
@@ -60,12 +60,12 @@ class Soil:
         self.traits = Traits("E", self.law.symmetric, roles=(Stateful,))
         self._check_start(initial, depth, K0)
         self._initial, self._found = initial, _at_rest(self.law, initial)
-        self._asked: tuple[State, Array, Response] | None = None
+        self._asked: tuple[State, Array, StressUpdate] | None = None
         self._load = self._internal(initial) if start == "geostatic" else self._weight(unit_weight)
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         rows = self.field.offset + components(self._cells)
-        return {"soil": Block(rows, rows)}
+        return {"soil": MatrixBlock(rows, rows)}
 
     def residual(self, state: State, forces: Forces) -> None:
         _, found = self._answer(state)
@@ -118,7 +118,7 @@ class Soil:
             gather_rows(self.grid, self._cell_mean(self._plastic_strain())),
         )
 
-    def _answer(self, state: State) -> tuple[Array, Response]:
+    def _answer(self, state: State) -> tuple[Array, StressUpdate]:
         """Strain increment (n, 6) of a trial state and the law's answer; kept for the state asked last, whose arrays
         must not change then.
         """
@@ -181,12 +181,12 @@ class Soil:
         self._found, self._asked = self._found._replace(**saved), None
 
 
-def _at_rest(law: Formula, initial: Array) -> Response:
+def _at_rest(law: Formula, initial: Array) -> StressUpdate:
     """Before the first step."""
-    return Response(initial, np.empty(0), law.start(), np.zeros(len(initial)), np.zeros_like(initial))
+    return StressUpdate(initial, np.empty(0), law.start(), np.zeros(len(initial)), np.zeros_like(initial))
 
 
-def _check_level(grid: Grid, level: float) -> None:
+def _check_level(grid: DistributedMesh, level: float) -> None:
     low, high = float(grid.low[2]), float(grid.high[2])
     slack = 1e-6 * (high - low)
     if not low + slack < level <= high + slack:

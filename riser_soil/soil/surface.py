@@ -8,8 +8,8 @@ from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved
 from riser_soil.soil.field import components
-from riser_soil.soil.gathered import Gathered, top_facets
-from riser_soil.soil.grid import Grid
+from riser_soil.soil.gathered import GatheredMesh, top_facets
+from riser_soil.soil.grid import DistributedMesh
 
 
 class SoilTop:
@@ -23,7 +23,7 @@ class SoilTop:
     name = "surface"
     space = "soil"
 
-    def __init__(self, grid: Grid, mesh: Gathered) -> None:
+    def __init__(self, grid: DistributedMesh, mesh: GatheredMesh) -> None:
         facets = top_facets(grid, mesh)
         used = np.unique(facets)
         self.kind = grid.family.facet_kind

@@ -23,12 +23,12 @@ from riser_soil.riser.section_forces import (
     end_reactions,
     section_forces,
 )
-from riser_soil.riser.sections import Elements, LineType, Segment, Surroundings, elements
+from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
 from tests.support.dense_chain import solve
 
 LENGTH, TOP = 350.0, np.array([150.0, 0.0, 150.0])
 EI, EA = 20.96e3, 15.38e8
-KIND = LineType(EA, EI, EI, GJ=2.0e4, outer_diameter=0.26, inner_diameter=0.20, mass=57.5)
+KIND = SectionProperties(EA, EI, EI, GJ=2.0e4, outer_diameter=0.26, inner_diameter=0.20, mass=57.5)
 FLOODED = Surroundings(gravity=9.81, contents=1025.0, water=1025.0)
 
 
@@ -58,7 +58,7 @@ class Hanging:
 
 
 def properties(count: int, EI: float = EI) -> Elements:
-    return elements([Segment.even(replace(KIND, EI_y=EI, EI_z=EI), LENGTH, count)], FLOODED)
+    return elements([MeshedSegment.even(replace(KIND, EI_y=EI, EI_z=EI), LENGTH, count)], FLOODED)
 
 
 def guess(e: Elements) -> Catenary:

@@ -13,11 +13,11 @@ from riser_soil.assembly import build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.snapshot import RiserSnapshot
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.results.observer import riser_snapshot
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher
@@ -96,7 +96,7 @@ def tell(scene: Mapping | Scene) -> list[Told]:
     for stage in assembly.scene.stages:
         now = Told()
 
-        def watch(stepper: TimeStepper, step: Accepted, now: Told = now) -> None:
+        def watch(stepper: TimeStepper, step: AcceptedStep, now: Told = now) -> None:
             now.t.append(step.t)
             now.dt.append(step.dt)
             now.cuts.append(step.cuts)
@@ -105,7 +105,7 @@ def tell(scene: Mapping | Scene) -> list[Told]:
             now.position.append(assembly.line.positions3(stepper.now))
             now.last = riser_snapshot(assembly, stepper)
 
-        before = run_stage(assembly, stage, before, Watcher(watch), Clock.new())
+        before = run_stage(assembly, stage, before, Watcher(watch), Timer.new())
         told.append(now)
     return told
 

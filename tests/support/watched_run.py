@@ -15,7 +15,7 @@ from riser_soil.core.part import State
 from riser_soil.core.system import System
 from riser_soil.run import run
 from riser_soil.scene.scene import Scene
-from riser_soil.solve.time_stepper import Accepted
+from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.driven_stage import before_commit
 
 
@@ -48,7 +48,7 @@ def watched_run(scene: Scene, folder: Path, at_each: Callable[[], None] | None =
     """Run a scene into a folder. at_each: called after every accepted step, instead of gathering its facts."""
     watched = WatchedRun(folder)
 
-    def watch(system: System, step: Accepted) -> None:
+    def watch(system: System, step: AcceptedStep) -> None:
         if at_each is not None:
             at_each()
         else:
@@ -59,7 +59,7 @@ def watched_run(scene: Scene, folder: Path, at_each: Callable[[], None] | None =
     return watched
 
 
-def _facts(system: System, step: Accepted) -> StepFacts:
+def _facts(system: System, step: AcceptedStep) -> StepFacts:
     after = step.solution.state
     before = State.at_rest(0.0, after.u.size)
     turned = {p.name: p.work(before, after) for p in system.model.parts if p.name in ("contact", "seabed", "soil")}

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.soil_contact import Reach, SoilContact
+from riser_soil.contact.soil_contact import CandidateRange, SoilContact
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Forces, State, Weights
 
@@ -109,7 +109,7 @@ class Case:
         surface.offset = 2 + riser.size + 3
         radius = np.full(len(riser.position), RADIUS)
         contact = SoilContact(
-            riser, radius, surface, LAW, footprint=footprint, along=along, reach=Reach(0.5, 0.3)
+            riser, radius, surface, LAW, footprint=footprint, along=along, reach=CandidateRange(0.5, 0.3)
         )
         return cls(riser, surface, contact)
 

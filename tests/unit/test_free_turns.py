@@ -10,7 +10,7 @@ import pytest
 
 from riser_soil.assembly import Assembly
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from riser_soil.riser.ends import End
 from riser_soil.solve import stability
 from riser_soil.solve.newton import Newton, NewtonSettings
@@ -75,7 +75,7 @@ def test_a_straight_line_turns_about_itself_as_its_sections_spin(axis: tuple[flo
 
 @contextmanager
 def started(assembly: Assembly) -> Iterator[tuple[System, Newton]]:
-    system = System(assembly.comm, assembly.begin(assembly.scene.stages[-1]), Clock.new())
+    system = System(assembly.comm, assembly.begin(assembly.scene.stages[-1]), Timer.new())
     newton = Newton(system, NewtonSettings(1e-8, 25, assembly.scales.force_floor))
     yield system, newton
     newton.destroy()

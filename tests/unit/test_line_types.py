@@ -59,7 +59,7 @@ def test_properties_of_the_same_name_reach_the_elements() -> None:
     for name in GIVEN.keys() - {"submerged_weight"}:
         assert getattr(made, name).tolist() == [GIVEN[name]] * 3, name
     assert made.weight.tolist() == [GIVEN["submerged_weight"]] * 3
-    alike = {each.name for each in fields(Elements)} & {each.name for each in fields(sections.LineType)}
+    alike = {each.name for each in fields(Elements)} & {each.name for each in fields(sections.SectionProperties)}
     formed = {"EI_y", "EI_z", "drag", "added_mass", "damping", "rotary_inertia"}
     assert alike & LineType.model_fields.keys() == GIVEN.keys() - {"submerged_weight"} | formed
 

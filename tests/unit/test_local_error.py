@@ -10,7 +10,7 @@ from mpi4py import MPI
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Model, Part, State
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from riser_soil.solve.local_error import LocalError, first_step
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.time_scheme import GeneralizedAlpha
@@ -57,7 +57,7 @@ def walk(
     chain: Chain, parts: list[Part], scheme: GeneralizedAlpha, v0: Array, steps: Given
 ) -> list[tuple[Array, Array]]:
     """Heights and velocities after each step, the beginning first."""
-    system = System(MPI.COMM_SELF, Model([chain], parts), Clock.new())
+    system = System(MPI.COMM_SELF, Model([chain], parts), Timer.new())
     newton = Newton(system, NewtonSettings(1e-10, 30, 1e-11))
     stepper = TimeStepper(system, newton, scheme, State(0.0, 0.0 * v0, v0.copy(), 0.0 * v0))
     seen = [(chain.z.copy(), v0.copy())]
@@ -127,7 +127,7 @@ def test_prescribed_places_have_no_error() -> None:
 
 def test_first_step_moves_the_riser_by_the_tolerance() -> None:
     chain = Chain(np.array([0.0, 1.0]))
-    system = System(MPI.COMM_SELF, Model([chain], [Springs(chain, 1.0, 4.0), Inertia(chain, 1.0)]), Clock.new())
+    system = System(MPI.COMM_SELF, Model([chain], [Springs(chain, 1.0, 4.0), Inertia(chain, 1.0)]), Timer.new())
     rest = State.at_rest(0.0, 2)
     assert first_step(system, rest, 1e-3) == np.inf
     falling = State(0.0, rest.u, rest.v, np.array([0.0, -9.81]))

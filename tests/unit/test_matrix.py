@@ -10,7 +10,7 @@ from mpi4py import MPI
 
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.numbering import Numbering
-from riser_soil.core.part import Block
+from riser_soil.core.part import MatrixBlock
 from tests.support.on_ranks import mpirun
 from tests.support.toy_chain import Chain
 
@@ -25,7 +25,7 @@ def test_rows_are_the_free_dofs() -> None:
 def test_blocks_add_up_and_absent_dofs_drop_out() -> None:
     chain = Chain(np.arange(4.0), prescribed=True)
     numbering = Numbering(MPI.COMM_SELF, [chain])
-    extra = Block(np.array([[3, -1]]), np.array([[3, -1]]))
+    extra = MatrixBlock(np.array([[3, -1]]), np.array([[3, -1]]))
     matrix = Matrix(numbering, {"riser": chain.pairs(), "extra": extra}, symmetric=True)
     for _ in range(2):  # assembly starts anew each time
         matrix.values["riser"][...] = np.array([[1.0, -1.0], [-1.0, 1.0]])

@@ -12,7 +12,7 @@ from riser_soil.assembly import Assembly
 from riser_soil.checks.overload import overload
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.seabed.bearing import Strength, strip_capacity
 from riser_soil.seabed.law import NormalLaw
 from riser_soil.stages import run_stage
@@ -41,7 +41,7 @@ def lying(seabed: dict[str, object]) -> Assembly:
     pipe = {"EA": 3e8, "EI": 5e4, "outer_diameter": D, "submerged_weight": W}
     ends = {"start": prescribed(0.0, 0.0, 0.5 * D), "end": prescribed(30.0, 0.0, 8.0)}
     assembly = built(riser_scene(static(), pipe=pipe, length=32.0, elements=64, gravity=9.81, seabed=seabed, **ends))
-    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(), Clock.new())
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(), Timer.new())
     return assembly
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from riser_soil.results.plausibility import Plausibility, Worst
+from riser_soil.results.plausibility import LargestValue, Plausibility
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
@@ -61,8 +61,8 @@ def test_a_stage_tells_its_worst_instant(tmp_path: Path) -> None:
 
 
 def test_the_worst_is_kept_with_its_place() -> None:
-    worst = Worst().or_larger(np.array([0.1, 0.3]), np.array([5.0, 6.0]), 1.0)
-    assert worst == Worst(0.3, 6.0, 1.0)
+    worst = LargestValue().or_larger(np.array([0.1, 0.3]), np.array([5.0, 6.0]), 1.0)
+    assert worst == LargestValue(0.3, 6.0, 1.0)
     assert worst.or_larger(np.array([0.3, 0.2]), np.array([5.0, 6.0]), 2.0) is worst
 
 

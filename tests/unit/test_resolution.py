@@ -8,34 +8,34 @@ import numpy as np
 import pytest
 
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.results.observer import elastic_residual
 from riser_soil.results.plausibility import SMOOTH_MISFIT, STEEP_MISFIT
-from riser_soil.riser.resolution import Misfit, misfit
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.riser.resolution import BendingMisfit, misfit
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
 from tests.support.riser_scenes import prescribed, riser_scene, static
 
 
-def found(scene: Mapping) -> tuple[Misfit, float]:
+def found(scene: Mapping) -> tuple[BendingMisfit, float]:
     """At the end of the last stage, and the riser's largest bending moment then [N.m]."""
     assembly = built(scene)
-    told: list[tuple[Misfit, float]] = []
+    told: list[tuple[BendingMisfit, float]] = []
 
-    def watch(stepper: TimeStepper, step: Accepted) -> None:
+    def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         residual = elastic_residual(assembly, stepper)
         moment = np.abs(residual[:, [2, -1]] if assembly.line.dimension == 2 else residual[:, [4, 10]])
         told.append((misfit(assembly.line, assembly.elements, stepper.now, residual), float(moment.max())))
 
     before = State.at_rest(0.0, assembly.size)
     for stage in assembly.scene.stages:
-        before = run_stage(assembly, stage, before, Watcher(watch), Clock.new())
+        before = run_stage(assembly, stage, before, Watcher(watch), Timer.new())
     return told[-1]
 
 
-def too_long(told: Misfit, largest: float) -> bool:
+def too_long(told: BendingMisfit, largest: float) -> bool:
     return told.smooth > SMOOTH_MISFIT * largest or told.steep > STEEP_MISFIT * largest
 
 

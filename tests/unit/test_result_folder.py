@@ -13,7 +13,7 @@ import h5py
 import pytest
 
 from riser_soil.errors import SceneError, WriteError
-from riser_soil.results.folder import NAMES, Claim
+from riser_soil.results.folder import NAMES, FolderLock
 from riser_soil.results.ownership import prepare, refuse, sealed
 from tests.support.recorded_run import a_recorder, block, record, step
 
@@ -118,9 +118,9 @@ def test_a_dead_run_holds_nothing(tmp_path: Path) -> None:
         assert other.stdout is not None
         assert other.stdout.readline() == "held\n"
         with pytest.raises(SceneError, match=f"process {other.pid}"):
-            Claim(tmp_path)
+            FolderLock(tmp_path)
         other.send_signal(signal.SIGKILL)
-    Claim(tmp_path).release()
+    FolderLock(tmp_path).release()
     assert list(tmp_path.iterdir()) == []
 
 

@@ -12,7 +12,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Model, State, Traits
 from riser_soil.core.roles import Adaptive, MomentumCorrecting, Predictor, with_role
 from riser_soil.core.saved_state import Stateful
-from riser_soil.core.system import Clock, System, total
+from riser_soil.core.system import System, Timer, total
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Floor
 
@@ -53,7 +53,7 @@ class Asleep(Floor):
 
 def start(kind: type[Floor]) -> System:
     chain = Chain(np.array([1.0, 2.0]))
-    return System(MPI.COMM_SELF, Model([chain], [kind(chain, 1e3)]), Clock.new())
+    return System(MPI.COMM_SELF, Model([chain], [kind(chain, 1e3)]), Timer.new())
 
 
 def test_a_declared_role_is_played() -> None:

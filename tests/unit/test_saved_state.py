@@ -21,8 +21,8 @@ from riser_soil.core.saved_state import (
     values_of,
     within,
 )
-from riser_soil.core.system import Clock, System
-from riser_soil.results.summary import Bend, StageTally
+from riser_soil.core.system import System, Timer
+from riser_soil.results.summary import StageTally, TightestBend
 from riser_soil.solve.automatic_steps import AutoSteps
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import Control, StepControl
@@ -98,7 +98,7 @@ def walked(control: Control, n: int) -> tuple[float, float]:
 
 
 def test_seconds_spent_before_count_too() -> None:
-    clock, again = Clock.new(), Clock.new()
+    clock, again = Timer.new(), Timer.new()
     clock.seconds |= {"riser": 2.0, "matrix": 1.0}
     again.seconds["riser"] = 0.5
     again.restore(clock.state())
@@ -106,7 +106,7 @@ def test_seconds_spent_before_count_too() -> None:
 
 
 def test_a_tally_comes_back_as_it_was() -> None:
-    tally = StageTally("heave", "dynamic", tightest=Bend(0.5, 3.0, 10.0, 0.1), worst_residual=(0.2, 0.1))
+    tally = StageTally("heave", "dynamic", tightest=TightestBend(0.5, 3.0, 10.0, 0.1), worst_residual=(0.2, 0.1))
     tally.implausible, tally.final = ("doubtful",), {"start": {"position": [0.0, 0.1, math.pi]}}
     again = StageTally("", "")
     again.restore(tally.state())
@@ -133,7 +133,7 @@ def stepped(
     """Energies and heights after each step; what was saved after one of them."""
     field: LineField = chain
     parts: list[Part] = [Springs(chain, 1.0, 100.0), Inertia(chain, 2.0)]
-    system = System(MPI.COMM_SELF, Model([field], parts), Clock.new())
+    system = System(MPI.COMM_SELF, Model([field], parts), Timer.new())
     newton, control = Newton(system, NewtonSettings(1e-10, 20, 1e-12)), StepControl(1.0, 0.05, 0.05)
     control.restore({"at": np.array(first), "level": np.array(0)})
     stepper, rows, saved = TimeStepper(system, newton, scheme, begin), list[tuple[float, ...]](), Saved()

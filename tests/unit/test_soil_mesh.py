@@ -14,7 +14,7 @@ from riser_soil.core.part import State
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil.block import BlockSpec, graded
 from riser_soil.soil.element import cell_gradients
-from riser_soil.soil.grid import Grid, block_grid, file_grid, silent_gmsh
+from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid, silent_gmsh
 from riser_soil.soil.soil import Soil
 from tests.support.soil_cases import CLAY, ELASTIC, KINDS, clay_block, small_block
 
@@ -22,7 +22,7 @@ COMM = MPI.COMM_SELF
 DEMO = BlockSpec((10.0, 50.0), (-2.5, 2.5), 2.5, 0.5, 1.5, riser=((0.0, 0.0), (80.0, 0.0)))
 
 
-def soil_on(grid: Grid) -> Soil:
+def soil_on(grid: DistributedMesh) -> Soil:
     return Soil(grid, ELASTIC, level=0.0, unit_weight=5.0e3)
 
 

@@ -9,7 +9,7 @@ import pytest
 from mpi4py import MPI
 
 from riser_soil.core.part import Forces, LineField, Model, Part, State
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
 from riser_soil.results import Run
 from riser_soil.run import run
@@ -17,7 +17,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Midpoint, Scheme
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from tests.support.toy_chain import Chain, Floor, Inertia, Springs
 
 AVERAGE = GeneralizedAlpha.newmark()
@@ -25,8 +25,8 @@ AVERAGE = GeneralizedAlpha.newmark()
 
 def walk_through(
     chain: LineField, parts: list[Part], scheme: Scheme, v0: np.ndarray, end: float, dt: float, tolerance: float = 1e-11
-) -> list[Accepted]:
-    system = System(MPI.COMM_SELF, Model([chain], parts), Clock.new())
+) -> list[AcceptedStep]:
+    system = System(MPI.COMM_SELF, Model([chain], parts), Timer.new())
     newton = Newton(system, NewtonSettings(tolerance, 20, 1e-12))
     nothing = np.zeros_like(v0)
     stepper = TimeStepper(system, newton, scheme, State(0.0, nothing, v0.copy(), nothing))

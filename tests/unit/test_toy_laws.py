@@ -12,7 +12,7 @@ from riser_soil.assembly import Assembly
 from riser_soil.checks.check import describe
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.errors import SceneError
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import scene_from_mapping
@@ -63,7 +63,7 @@ def on_soil(law: Mapping) -> Mapping:
 def at_rest(scene: Mapping) -> Assembly:
     """After its only stage."""
     assembly = built(scene)
-    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(), Clock.new())
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(), Timer.new())
     return assembly
 
 

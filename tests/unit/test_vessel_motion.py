@@ -18,7 +18,7 @@ from riser_soil.errors import SceneError
 from riser_soil.motion.rao import RaoTable
 from riser_soil.riser import rotations
 from riser_soil.riser.directors import SpatialFrames
-from riser_soil.riser.ends import Turning
+from riser_soil.riser.ends import SupportRotation
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
@@ -86,7 +86,7 @@ def displaced(assembly: Assembly, t: float) -> Array:
     return assembly.line.end.motion(t)[0] - END
 
 
-def turned(assembly: Assembly, t: float) -> Turning:
+def turned(assembly: Assembly, t: float) -> SupportRotation:
     assert assembly.line.end.turning is not None
     return assembly.line.end.turning(t)
 

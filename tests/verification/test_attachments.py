@@ -13,14 +13,14 @@ from scipy.special import ellipk
 from riser_soil.assembly import Assembly
 from riser_soil.core.part import State, Weights
 from riser_soil.riser import shapes
-from riser_soil.riser.attachments import Attachment, masses
+from riser_soil.riser.attachments import PointAttachment, masses
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.ends import End, Kinematics
 from riser_soil.riser.hermite import consistent_mass
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.section_forces import HasElementForces, SectionForces, element_residual, section_forces
-from riser_soil.riser.sections import LineType, Segment, Surroundings, elements
+from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import solve, tangent
 from tests.support.driven_stage import built, take
@@ -108,7 +108,7 @@ def test_a_lazy_wave_balances_at_every_node() -> None:
 
 def test_a_mass_at_a_node_is_the_lumped_mass() -> None:
     at = sample(2)
-    along, ends = masses(at.line, [Attachment(3.0, 7.0), Attachment(8.0, 5.0)])
+    along, ends = masses(at.line, [PointAttachment(3.0, 7.0), PointAttachment(8.0, 5.0)])
     expected = np.zeros((5, 4, 4))
     expected[2, 0, 0], expected[4, 2, 2] = 7.0, 5.0
     assert (along + ends).tolist() == expected.tolist()
@@ -120,7 +120,7 @@ def test_many_masses_are_a_mass_per_length() -> None:
     errors = []
     for n in (20, 40):
         elements_of_line = list(zip(line.arc[:-1], line.length, strict=True))
-        many = [Attachment(s + L * (k + 0.5) / n, 3.0 * L / n) for s, L in elements_of_line for k in range(n)]
+        many = [PointAttachment(s + L * (k + 0.5) / n, 3.0 * L / n) for s, L in elements_of_line for k in range(n)]
         M = masses(line, many).along
         errors.append(np.abs(M - consistent_mass(line.length, np.full(5, 3.0))).max())
     assert errors[0] < 5e-3
@@ -132,7 +132,7 @@ TAUT, EI, LENGTH, TENSION = 1.0e10, 500.0, 30.0, 4.0e4
 
 def lowest_frequency(place: float, mass: float, count: int) -> float:
     """Angular frequency [rad/s] of a mass on a taut massless line with pinned ends, in the plane."""
-    e = elements([Segment.even(LineType(TAUT, EI, EI), LENGTH, count)], Surroundings(gravity=0.0))
+    e = elements([MeshedSegment.even(SectionProperties(TAUT, EI, EI), LENGTH, count)], Surroundings(gravity=0.0))
     straight = shapes.straight(e.arc)
 
     def stretch(t: float) -> Kinematics:
@@ -140,7 +140,7 @@ def lowest_frequency(place: float, mass: float, count: int) -> float:
 
     line = Line(2, shapes.layout(e.arc, e.outer_diameter, straight, straight), End(True), End(True, motion=stretch))
     beam = Beam(line, e)
-    inertia = Inertia(line, e.mass, masses(line, [Attachment(place, mass)]))
+    inertia = Inertia(line, e.mass, masses(line, [PointAttachment(place, mass)]))
     solve(line, [beam], tolerance=1e-9)
     state, only_mass = State.at_rest(1.0, line.size), Weights(1.0, 0.0, 0.0, 1.0)
     across = np.zeros((line.nodes, 3), dtype=bool)

@@ -15,7 +15,7 @@ from scipy.special import ellipe, ellipk
 from riser_soil.assembly import Assembly, build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
@@ -96,7 +96,7 @@ def test_columns_of_many_elements_buckle(EA: float, dimension: int, elements: in
 def unstable_modes(scene: Mapping) -> int:
     """At the equilibrium that Newton's method finds in one step from the first shape."""
     assembly: Assembly = build(scene_from_mapping(scene), MPI.COMM_WORLD)
-    system = System(assembly.comm, assembly.begin(assembly.scene.stages[0]), Clock.new())
+    system = System(assembly.comm, assembly.begin(assembly.scene.stages[0]), Timer.new())
     newton = Newton(system, NewtonSettings(assembly.scene.solver.tolerance, 25, assembly.scales.force_floor))
     weights, still = Static().weights(1.0), State.at_rest(1.0, assembly.size)
     system.assemble(still, weights)

@@ -28,7 +28,7 @@ from benchmarks.impact import (
 from riser_soil.assembly import build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.results.observer import riser_snapshot
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
@@ -48,7 +48,7 @@ PAIRS = list(product((1e6, 1e7, 1e8), (0.1, 0.02, 0.005)))
 def energies(scene: Mapping) -> Energies:
     """Those of a scene's only stage."""
     assembly, seen = built(scene), Energies()
-    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), seen, Clock.new())
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), seen, Timer.new())
     return seen
 
 
@@ -159,7 +159,7 @@ def top_tension(dt: float) -> Array:
     assembly = build(scene, MPI.COMM_SELF)
     before = take(assembly, scene.stages[0])
     watcher = Watcher(lambda stepper, _: tension.append(float(riser_snapshot(assembly, stepper).effective_tension[-1])))
-    run_stage(assembly, scene.stages[1], before, watcher, Clock.new())
+    run_stage(assembly, scene.stages[1], before, watcher, Timer.new())
     return np.array(tension)
 
 
@@ -196,7 +196,7 @@ def no_energy_appears_in_the_tank(k: float, dt: float) -> None:
     scene = tank(k, dt, duration=6.0, ramp=2.0)
     assembly, seen = build(scene, MPI.COMM_SELF), Energies()
     before = take(assembly, scene.stages[0])
-    run_stage(assembly, scene.stages[1], before, seen, Clock.new())
+    run_stage(assembly, scene.stages[1], before, seen, Timer.new())
     print(f"tank, k {k:.0e} N/m2, dt {dt:g} s: {seen.report()}")
     turned_over = np.ptp(seen.gain)
     assert seen.gain.max() < 1e-4 * turned_over

@@ -13,7 +13,7 @@ from riser_soil.riser.beam import Beam
 from riser_soil.riser.ends import End, Kinematics
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
-from riser_soil.riser.sections import LineType, Segment, Surroundings, elements
+from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses
 from riser_soil.sea.pipe import Pipe
@@ -33,7 +33,8 @@ def exact(mass: float, n: Array) -> Array:
 
 def frequencies(dimension: int, count: int, tension: float = TENSION, added: float = 0.0) -> Array:
     """All transverse angular frequencies (rad/s), ascending; in space each comes twice."""
-    e = elements([Segment.even(LineType(EA, EI, EI, GJ=EI, mass=MASS), LENGTH, count)], Surroundings(gravity=0.0))
+    kind = SectionProperties(EA, EI, EI, GJ=EI, mass=MASS)
+    e = elements([MeshedSegment.even(kind, LENGTH, count)], Surroundings(gravity=0.0))
     straight = shapes.straight(e.arc)
 
     def stretch(t: float) -> Kinematics:

@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 import pytest
 
-from riser_soil.contact.touchdown import Stretch
+from riser_soil.contact.touchdown import ContactInterval
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
 from riser_soil.results.touchdown_zone import joined
@@ -148,7 +148,8 @@ def test_embedment_in_soil_counts_from_where_it_lay(tmp_path: Path) -> None:
 
 
 def test_ground_after_ground_is_one_stretch() -> None:
-    on_seabed, on_soil, far = Stretch(0.0, 10.0, 0, 9), Stretch(10.4, 20.0, 0, 5), Stretch(25.0, 30.0, 8, 9)
+    on_seabed, on_soil = ContactInterval(0.0, 10.0, 0, 9), ContactInterval(10.4, 20.0, 0, 5)
+    far = ContactInterval(25.0, 30.0, 8, 9)
     assert [s[:2] for s in joined([far, on_soil, on_seabed], near=0.5)] == [(0.0, 20.0), (25.0, 30.0)]
     assert len(joined([on_seabed, on_soil], near=0.3)) == 2
     assert joined([], near=1.0) == []

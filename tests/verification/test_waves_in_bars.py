@@ -16,9 +16,9 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.results.observer import riser_snapshot
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
@@ -51,10 +51,10 @@ def seen(mapping: Mapping, axis: int, v: Array, look: Callable[[Any, TimeStepper
     assembly.line.nodal(rates)[:, axis] = v
     before = State(0.0, np.zeros(assembly.size), rates, np.zeros(assembly.size))
 
-    def watch(stepper: TimeStepper, step: Accepted) -> None:
+    def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         rows.append((step.t / PASS, *look(assembly, stepper)))
 
-    run_stage(assembly, assembly.scene.stages[0], before, Watcher(watch), Clock.new())
+    run_stage(assembly, assembly.scene.stages[0], before, Watcher(watch), Timer.new())
     return np.array(rows).T
 
 
