@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.landing import lifted
+from riser_soil.contact.landing import landing_predictor
 from riser_soil.contact.station_forces import StationForces
-from riser_soil.contact.touchdown import Stretch, stretches, touchdown
+from riser_soil.contact.touchdown import ContactInterval, stretches, touchdown
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
 from riser_soil.core.roles import Predictor
@@ -22,11 +22,11 @@ from riser_soil.riser.trial import Trial
 from riser_soil.seabed.grounds import Distance, Ground
 from riser_soil.seabed.law import NormalLaw
 
-Covered = Callable[[Array], BoolArray]
+CoveredBySoil = Callable[[Array], BoolArray]
 """Horizontal positions (n, 2) [m] -> whether something other than the seabed lies there, such as a block of soil."""
 
 
-class Touching(NamedTuple):
+class ContactElements(NamedTuple):
     """What touches at a trial, element by element: m elements, ng stations each, d dimensions.
 
     elements (m,). force, slope (m, ng): force per length [N/m] and its derivative by the penetration [N/m2].
@@ -53,7 +53,7 @@ class StationContact(NamedTuple):
     position: Array
     penetration: Array
     normal: Array
-    touching: Touching
+    touching: ContactElements
 
 
 class SeabedContact(LinePart):
@@ -74,8 +74,8 @@ class SeabedContact(LinePart):
         radius: Array,
         ground: Ground,
         law: NormalLaw,
-        rule: stations.Rule = stations.THREE_POINTS,
-        covered: Covered | None = None,
+        rule: stations.QuadratureRule = stations.THREE_POINTS,
+        covered: CoveredBySoil | None = None,
     ) -> None:
         super().__init__(line)
         self.ground, self.law = ground, law
@@ -105,7 +105,7 @@ class SeabedContact(LinePart):
             local = self.line.basis.T @ hessian @ self.line.basis
             bend = local.reshape(*x.shape, x.shape[2])[at]
         resistance = -answer.force[..., None] * normal[at]
-        touching = Touching(
+        touching = ContactElements(
             at, answer.force, answer.slope, normal[at], bend, resistance, answer.history, answer.stored
         )
         return StationContact(x, penetration, normal, touching)
@@ -132,7 +132,7 @@ class SeabedContact(LinePart):
         t = self.evaluate(trial).touching
         self._forces.add_tangent(values[self.line.name], trial, t.elements, t.resistance, self._by_position(t))
 
-    def _by_position(self, t: Touching) -> Array:
+    def _by_position(self, t: ContactElements) -> Array:
         """Derivative (m, ng, d, d) of the resistance by the position."""
         pushed = t.slope[..., None, None] * t.normal[..., :, None] * t.normal[..., None, :]
         return pushed if t.bend is None else pushed - t.force[..., None, None] * t.bend
@@ -208,7 +208,7 @@ class SeabedContact(LinePart):
             return float("nan")
         return touchdown(*self._lying(state))
 
-    def stretches(self, state: State) -> list[Stretch]:
+    def stretches(self, state: State) -> list[ContactInterval]:
         """Where the riser lies on the seabed, from its start on."""
         return stretches(*self._lying(state)) if self.line.active else []
 
@@ -224,7 +224,7 @@ class SeabedContact(LinePart):
             return guess.u
         here, there = self.line.trial(State.at_rest(guess.t, guess.u.size)), self.line.trial(guess)
         heights = self.line.translation_dofs[:, -1]
-        return lifted(guess, heights, self._clearance(here), self._clearance(there), self.law.start)
+        return landing_predictor(guess, heights, self._clearance(here), self._clearance(there), self.law.start)
 
     def _clearance(self, trial: Trial) -> Array:
         """Gap (nn,) of the nodes less that at which the force begins [m]."""

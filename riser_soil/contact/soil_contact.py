@@ -8,21 +8,21 @@ import numpy as np
 
 from riser_soil.contact.detection import (
     SOIL,
+    ActiveContacts,
     ContactDetection,
     ContactState,
     RiserNodes,
-    Touching,
     add_blocks,
     add_shares,
 )
 from riser_soil.contact.gap import heights
 from riser_soil.contact.ground import ASPECT, ContactPoints, DeformedSurface, SoilSurface
-from riser_soil.contact.landing import lifted
+from riser_soil.contact.landing import landing_predictor
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.patch import Patch, around
-from riser_soil.contact.touchdown import Stretch, stretches, touchdown
+from riser_soil.contact.patch import CandidatePairs, around
+from riser_soil.contact.touchdown import ContactInterval, stretches, touchdown
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 
@@ -30,7 +30,7 @@ FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
 
 
 @dataclass(frozen=True)
-class Reach:
+class CandidateRange:
     """Candidates: nodes up to `above` [m] over the ground, facets up to `around` [m] beside a node."""
 
     above: float
@@ -68,7 +68,7 @@ class SoilContact:
         *,
         footprint: float | None = None,
         along: Array | None = None,
-        reach: Reach | None = None,
+        reach: CandidateRange | None = None,
         active: bool = True,
     ) -> None:
         self.active, self.outgrown = active, False
@@ -81,8 +81,8 @@ class SoilContact:
         axis = riser.basis[:2, 0] if along is None else along
         points = ContactPoints.of_nodes(riser.tributary_length, self._footprint, axis)
         self._detection = ContactDetection(riser, radius, points, law, self._soil, self._reach.above)
-        self._patch: Patch | None = None
-        self._missed = Patch.none(len(self._soil.facets))
+        self._patch: CandidatePairs | None = None
+        self._missed = CandidatePairs.none(len(self._soil.facets))
         self._detected: ContactState | None = None
 
     def detect(self, state: State) -> ContactState:
@@ -91,17 +91,17 @@ class SoilContact:
             self._detected = self._detection.detect(state)
         return self._detected
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         """Translations of a node and dofs of a facet, candidate pair by pair."""
         patch = self._present_patch()
         rows = np.hstack([self._riser.translation_dofs[patch.nodes], self._soil.facet_dofs(patch.facet)])
-        return {SOIL: Block(rows, rows)}
+        return {SOIL: MatrixBlock(rows, rows)}
 
     def rebuild(self, state: State) -> None:
         """Choose the candidates anew: around a state, and what was missed since the last time."""
         if self.active:
             self._patch = self._patch_around(state)
-            self._missed = Patch.none(len(self._soil.facets))
+            self._missed = CandidatePairs.none(len(self._soil.facets))
         self.outgrown = False
 
     def residual(self, state: State, forces: Forces) -> None:
@@ -187,7 +187,7 @@ class SoilContact:
             return float("nan")
         return touchdown(*self._lying(state))
 
-    def stretches(self, state: State) -> list[Stretch]:
+    def stretches(self, state: State) -> list[ContactInterval]:
         """Where the riser lies on the soil, from its start on."""
         return stretches(*self._lying(state)) if self.active else []
 
@@ -202,7 +202,7 @@ class SoilContact:
             return guess.u
         present = self._clearance(State.at_rest(guess.t, guess.u.size))
         heights = self._riser.translation_dofs[:, -1]
-        return lifted(guess, heights, present, self._clearance(guess), self._rounding)
+        return landing_predictor(guess, heights, present, self._clearance(guess), self._rounding)
 
     def _clearance(self, state: State) -> Array:
         """Gap (nn,) less that at which the force begins [m], the least of a node's points; inf far away."""
@@ -211,19 +211,19 @@ class SoilContact:
         np.minimum.at(least, detected.points.node, detected.gap - self._rounding)
         return least
 
-    def _note_missed(self, touching: Touching, missed: BoolArray) -> None:
+    def _note_missed(self, touching: ActiveContacts, missed: BoolArray) -> None:
         if missed.any():
             self.outgrown = True
             node, facet = touching.node[missed], touching.facet[missed]
-            self._missed = self._missed.joined(Patch.of(self._present_patch().facets, node, facet))
+            self._missed = self._missed.joined(CandidatePairs.of(self._present_patch().facets, node, facet))
 
-    def _present_patch(self) -> Patch:
+    def _present_patch(self) -> CandidatePairs:
         if self._patch is None:
             ends = self._riser.offset + self._riser.size, self._soil.end
             self._patch = self._patch_around(State.at_rest(0.0, max(ends)))
         return self._patch
 
-    def _patch_around(self, state: State) -> Patch:
+    def _patch_around(self, state: State) -> CandidatePairs:
         detected = self.detect(state)
         nodes = np.unique(detected.points.node[detected.gap < self._reach.above])
         xy = self._riser.positions3(state)[nodes, :2]
@@ -239,9 +239,10 @@ class SoilContact:
     def restore(self, saved: Saved) -> None:
         if self.active:
             self._detected, self.outgrown = None, bool(saved["outgrown"])
-            self._patch, self._missed = (Patch(len(self._soil.facets), saved[name]) for name in ("patch", "missed"))
+            facets = len(self._soil.facets)
+            self._patch, self._missed = (CandidatePairs(facets, saved[name]) for name in ("patch", "missed"))
 
 
-def _default_reach(riser: RiserNodes, soil: DeformedSurface) -> Reach:
+def _default_reach(riser: RiserNodes, soil: DeformedSurface) -> CandidateRange:
     length = float(riser.arc[-1] - riser.arc[0])
-    return Reach(0.01 * length, 0.5 * soil.facet_size)
+    return CandidateRange(0.01 * length, 0.5 * soil.facet_size)

@@ -19,21 +19,21 @@ POINTS = 0.5 + np.sqrt(0.6) * np.array([-0.5, 0.0, 0.5])
 GAUSS = np.array([5.0, 8.0, 5.0]) / 18.0
 
 
-class Rule(NamedTuple):
+class QuadratureRule(NamedTuple):
     """Quadrature over an element: places xi in 0..1 and weights that sum to one, each (ng,)."""
 
     points: Array
     weights: Array
 
 
-THREE_POINTS = Rule(POINTS, GAUSS)
-ENDS = Rule(np.array([0.0, 1.0]), np.array([0.5, 0.5]))
+THREE_POINTS = QuadratureRule(POINTS, GAUSS)
+ENDS = QuadratureRule(np.array([0.0, 1.0]), np.array([0.5, 0.5]))
 
 
-def gauss(n: int) -> Rule:
+def gauss(n: int) -> QuadratureRule:
     """Gauss and Legendre's rule of n points."""
     x, w = np.polynomial.legendre.leggauss(n)
-    return Rule(0.5 + 0.5 * x, 0.5 * w)
+    return QuadratureRule(0.5 + 0.5 * x, 0.5 * w)
 
 
 class Stations(NamedTuple):
@@ -48,7 +48,7 @@ class Stations(NamedTuple):
         return Stations(*(values[elements] for values in self))
 
 
-def stations(L: Array, rule: Rule = THREE_POINTS) -> Stations:
+def stations(L: Array, rule: QuadratureRule = THREE_POINTS) -> Stations:
     """Stations on elements of unstressed lengths L (ne,)."""
     N = np.stack([shapes(np.full(L.size, p), L) for p in rule.points], axis=1)
     dN = np.stack([slopes(np.full(L.size, p), L) for p in rule.points], axis=1)
@@ -180,7 +180,7 @@ def _follow_slope(A: Array, tau: Array, stretch: Array, D: Size) -> Array:
     return out
 
 
-class ByDofs(NamedTuple):
+class DofDerivatives(NamedTuple):
     """Derivatives by the dofs: of tangents in q, q' and q'' (ne, 2, d, r), of positions in q' and q'' the shifts."""
 
     q: Array
@@ -199,7 +199,7 @@ class Derivatives(NamedTuple):
     acceleration: Array
 
 
-def add_tangent(out: Array, at: Stations, by: Derivatives, columns: ByDofs) -> None:
+def add_tangent(out: Array, at: Stations, by: Derivatives, columns: DofDerivatives) -> None:
     """Add to out (ne, n, n) the derivative by the dofs of the residual of a force per length, P = dt/dTheta held."""
     _add_tangent(out, *at, *by, *columns, fixed(by.slope.shape[2]), fixed(columns.q.shape[3]))
 
