@@ -1,4 +1,4 @@
-"""Penalty contact that sticks: cap, reach, break-away, and what it stores."""
+"""Penalty contact with suction: cap, reach, breakaway, and stored energy."""
 
 from __future__ import annotations
 

@@ -121,7 +121,7 @@ CLAY = {"kind": "randolph-quiggin", "su": 2e3, "su_gradient": 1.5e3}
 
 
 @pytest.mark.parametrize("law", ["randolph-quiggin", "aubeny-biscontin"])
-def test_riser_at_rest_on_clay_that_remembers(law: str) -> None:
+def test_riser_at_rest_on_hysteretic_clay(law: str) -> None:
     """Well behind the touchdown point it lies as deep as the law answers with its weight."""
     clay = {"kind": "hysteretic", "stiffness": None, "law": CLAY | {"kind": law}}
     found = lying(clay, dimension=2)
