@@ -47,8 +47,8 @@ _pending = _Pending()
 
 
 @contextmanager
-def listening() -> Iterator[None]:
-    """Signals that would end the process raise Interruption in the block; those that somebody else listens to don't.
+def handling_signals() -> Iterator[None]:
+    """Signals that would end the process raise Interruption in the block; those that other code handles don't.
 
     A pipe that is closed is an error of its writer again, and no signal, which PETSc makes of it.
     """
@@ -67,7 +67,7 @@ def listening() -> Iterator[None]:
 
 @contextmanager
 def restoring_signal_handlers() -> Iterator[None]:
-    """A block whose libraries keep no hold on Ctrl-C: gmsh takes it when it is imported, or a session of it begins."""
+    """Restores the handler of Ctrl-C after the block: gmsh replaces it when it is imported, or a session begins."""
     usual = signal.getsignal(signal.SIGINT)
     try:
         yield
@@ -76,21 +76,21 @@ def restoring_signal_handlers() -> Iterator[None]:
             signal.signal(signal.SIGINT, usual)
 
 
-def deaf() -> None:
-    """From now on signals end this process at once and without a word."""
+def default_signal_handlers() -> None:
+    """From now on signals end this process at once and without a message."""
     for number in OURS:
         signal.signal(number, signal.SIG_DFL)
 
 
 def _is_free(number: int) -> bool:
-    """Only a process's first thread may listen."""
+    """Only a process's main thread may handle signals."""
     usual = signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler)
     return usual and threading.current_thread() is threading.main_thread()
 
 
 @contextmanager
-def undivided() -> Iterator[None]:
-    """A block that no signal divides: Interruption comes at its end."""
+def uninterrupted() -> Iterator[None]:
+    """A block that no signal interrupts: Interruption is raised at its end."""
     _pending.busy += 1
     try:
         yield

@@ -11,7 +11,7 @@ from typing import Any, TextIO
 
 
 class _Outlet(io.RawIOBase):
-    """A file descriptor; after the first failure what is written to it is lost."""
+    """A file descriptor that drops all output after the first failure."""
 
     def __init__(self, descriptor: int) -> None:
         super().__init__()
@@ -38,7 +38,7 @@ class _Outlet(io.RawIOBase):
 
 
 class OutputStatus:
-    """What became of what was written: failure is None as long as all went out."""
+    """Status of standard output: failure is None as long as all was written."""
 
     def __init__(self, output: _Outlet | None) -> None:
         self._output = output
@@ -49,8 +49,8 @@ class OutputStatus:
 
 
 @contextmanager
-def outlasting() -> Iterator[OutputStatus]:
-    """In the block, nobody who writes to standard output or standard error meets an error; the former's is told."""
+def failsafe_output() -> Iterator[OutputStatus]:
+    """In the block, writing to standard output or error never raises; a failure of the former is kept in the status."""
     former = sys.stdout, sys.stderr
     outlets = [_outlet(stream) for stream in former]
     sys.stdout, sys.stderr = (_text(outlet, stream) for outlet, stream in zip(outlets, former, strict=True))

@@ -25,7 +25,7 @@ def bending_warnings(assembly: Assembly) -> Iterator[str]:
     yield from _uneven_neighbours(assembly)
 
 
-def lying(assembly: Assembly) -> IntArray:
+def nodes_on_ground(assembly: Assembly) -> IntArray:
     """Nodes that lie on the ground in the first shape."""
     heights = assembly.line.to_global(assembly.line.x)[:, 2]
     lowest = heights.min() + 1e-6 * assembly.line.arc[-1]
@@ -53,7 +53,7 @@ def _boundary_layers(assembly: Assembly) -> Iterator[tuple[str, int]]:
         yield "at the start", 0
     if line.end.rotation_fixed:
         yield "at the end", line.length.size - 1
-    on_ground = lying(assembly)
+    on_ground = nodes_on_ground(assembly)
     if on_ground.size > 1:
         e = min(int(on_ground[-1]), line.length.size - 1)
         yield f"at the touchdown point (arc {line.arc[on_ground[-1]]:.4g} m)", e
@@ -87,7 +87,7 @@ def _long_in_the_bend(assembly: Assembly) -> Iterator[str]:
 def _hanging(assembly: Assembly) -> Array:
     """Whether elements hang free in the first shape (ne,)."""
     on_ground = np.zeros(assembly.line.nodes, dtype=bool)
-    on_ground[lying(assembly)] = lying(assembly).size > 1
+    on_ground[nodes_on_ground(assembly)] = nodes_on_ground(assembly).size > 1
     return np.asarray(~(on_ground[1:] & on_ground[:-1]))
 
 

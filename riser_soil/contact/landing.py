@@ -9,7 +9,7 @@ from riser_soil.core.part import State
 
 
 def landing_predictor(guess: State, heights: IntArray, present: Array, guessed: Array, start: float) -> Array:
-    """The guess's increments, lifted where a node would sink below its present depth.
+    """The guess's increments, raised where a node would sink below its present depth.
 
     The motion of the last step carries landing nodes deep into the ground, where the law is far stiffer than at the
     depth at which they come to rest. They start instead from half the law's rounded corner.

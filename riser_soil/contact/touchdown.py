@@ -55,16 +55,16 @@ def touchdown(arc: Array, share: Array, clearance: Array, force: Array) -> float
     """Arc length [m] of the touchdown point towards the riser's end; nan where nothing touches.
 
     Where the riser's end itself touches, but not all of the riser, it is where it comes down from the start. Arguments
-    as in `stretches`.
+    as in `contact_intervals`.
     """
-    found = stretches(arc, share, clearance, force)
+    found = contact_intervals(arc, share, clearance, force)
     if not found:
         return float("nan")
     last, n = found[-1], len(arc)
     return last.start if last.last == n - 1 and last.first > 0 else last.end
 
 
-def stretches(arc: Array, share: Array, clearance: Array, force: Array) -> list[ContactInterval]:
+def contact_intervals(arc: Array, share: Array, clearance: Array, force: Array) -> list[ContactInterval]:
     """Where the riser lies, from its start on.
 
     arc (n,): of points along the riser from its start, growing [m]. share (n,): of its length [m] by quadrature.

@@ -40,7 +40,7 @@ def gathered(owners: Mapping[str, Stateful]) -> Saved:
     return {f"{name}/{key}": value for name, owner in owners.items() for key, value in owner.state().items()}
 
 
-def give_back(owners: Mapping[str, Stateful], saved: Saved) -> None:
+def restore_all(owners: Mapping[str, Stateful], saved: Saved) -> None:
     """Restore owners from what `gathered` gave of them."""
     for name, owner in owners.items():
         owner.restore(within(saved, name))

@@ -18,11 +18,11 @@ from riser_soil.checks.inventory import built, dissipating, left_out, unknowns, 
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, Model, State
-from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back
+from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import ContactSnapshot, RiserSnapshot, RunFacts, SoilSnapshot, StepStatistics
 from riser_soil.core.system import Timer
 from riser_soil.errors import Interruption, RiserSoilError, SolveError
-from riser_soil.interruption import undivided
+from riser_soil.interruption import uninterrupted
 from riser_soil.results.energy_ledger import EnergyLedger
 from riser_soil.results.plausibility import Plausibility
 from riser_soil.results.progress import Progress
@@ -64,7 +64,7 @@ class Observer:
         known = facts(assembly)
         with Progress(enabled=assembly.comm.rank == 0) as progress:
             recorder = None
-            with _on_all_ranks(assembly.comm), undivided():
+            with _on_all_ranks(assembly.comm), uninterrupted():
                 if assembly.comm.rank == 0:
                     text, fields = dump_scene(assembly.scene), _known_fields(assembly)
                     recorder = Recorder.open(folder, known, assembly.line.arc, mesh, text, fields, force)
@@ -127,7 +127,7 @@ class Observer:
     def record_last(self, end: SolveError | Interruption) -> None:
         """The run ends before its time: write the last accepted step; collective where the ranks end together."""
         together = self._assembly.comm.size == 1 or not isinstance(end, Interruption) or end.together
-        with undivided():
+        with uninterrupted():
             soil = self._soil() if together else None
             if self._recorder is not None:
                 self._recorder.record_last(soil)
@@ -170,7 +170,7 @@ class Observer:
     def restore(self, saved: Saved) -> None:
         """Follow the stage on from where it was saved."""
         self._enter(self._assembly.scene.stages[int(saved["stage"])], Energy())
-        give_back(self._owners, saved)
+        restore_all(self._owners, saved)
         self._relaxed = int(saved["relaxed"])
         self._show(self._stage)
 

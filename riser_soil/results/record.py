@@ -14,7 +14,7 @@ import numpy as np
 
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
-from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back
+from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import (
     ContactSnapshot,
     Instant,
@@ -289,7 +289,7 @@ class Recorder:
         return gathered(self._owners) | latest | settlement | {"now": np.array(self.now)}
 
     def restore(self, saved: Saved) -> None:
-        give_back(self._owners, saved)
+        restore_all(self._owners, saved)
         self.now, self._latest = float(saved["now"]), saved.get("latest")
         self._settlement = float(saved["settlement"]) if "settlement" in saved else None
 

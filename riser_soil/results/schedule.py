@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.core.saved_state import Saved, gathered, give_back
+from riser_soil.core.saved_state import Saved, gathered, restore_all
 
 # Share of an interval by which a step may end early and still count: time is a sum of steps.
 _SLACK = 1e-6
@@ -83,5 +83,5 @@ class Schedule:
         return gathered({"series": self._series, "pictures": self._pictures}) | {"static": np.array(self._static)}
 
     def restore(self, saved: Saved) -> None:
-        give_back({"series": self._series, "pictures": self._pictures}, saved)
+        restore_all({"series": self._series, "pictures": self._pictures}, saved)
         self._static = bool(saved["static"])

@@ -14,7 +14,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.output import bend_radius
-from riser_soil.core.saved_state import Saved, gathered, give_back, packed, under, unpacked, within
+from riser_soil.core.saved_state import Saved, gathered, packed, restore_all, under, unpacked, within
 from riser_soil.core.snapshot import Ledger, RiserSnapshot, RunFacts, StepStatistics
 from riser_soil.results.figures import Extremes
 from riser_soil.results.folder import write_atomically
@@ -129,7 +129,7 @@ class StageTally:
 
     def restore(self, saved: Saved) -> None:
         vars(self).update(unpacked(saved["told"]))
-        give_back({"extremes": self.extremes}, saved)
+        restore_all({"extremes": self.extremes}, saved)
         self.energy, self.tightest = Ledger(**vars(self)["energy"]), TightestBend(**vars(self)["tightest"])
         worst, t = self.worst_residual
         self.worst_residual, self.implausible = (worst, t), tuple(self.implausible)
@@ -171,7 +171,7 @@ class Summary:
         self.laying, self.seconds = unpacked(saved["laying"]), Counter(unpacked(saved["seconds"]))
         stages = within(saved, "stages")
         self.stages = [StageTally("", "") for name in stages if name.endswith("/told")]
-        give_back({str(n): stage for n, stage in enumerate(self.stages)}, stages)
+        restore_all({str(n): stage for n, stage in enumerate(self.stages)}, stages)
 
 
 def plain_json(value: Any) -> Any:

@@ -29,12 +29,13 @@ class TouchdownZone:
     def look(self, state: State) -> ContactSnapshot:
         """At each accepted state in turn: the embedment is the greatest depth yet."""
         contacts, line = self._assembly.contacts, self._assembly.line
-        lying = joined([s for contact in contacts for s in contact.stretches(state)], float(line.length.max()))
-        arc = touchdown_arc(lying, line)
+        of_each = [interval for contact in contacts for interval in contact.contact_intervals(state)]
+        intervals = joined(of_each, float(line.length.max()))
+        arc = touchdown_arc(intervals, line)
         return ContactSnapshot(
             touchdown_arc=arc,
             touchdown_position=position_at(line, state, arc),
-            touchdown_points=sum(int(s.start > line.arc[0]) + int(s.end < line.arc[-1]) for s in lying),
+            touchdown_points=sum(int(s.start > line.arc[0]) + int(s.end < line.arc[-1]) for s in intervals),
             max_penetration=max((contact.max_penetration(state) for contact in contacts), default=0.0),
             contact_force=np.asarray(sum((contact.force_on_riser(state) for contact in contacts), np.zeros(3))),
             penetration=self._penetration(state) if "penetration" in self._fields else None,
@@ -57,10 +58,10 @@ class TouchdownZone:
         self._embedment = saved["embedment"]
 
 
-def joined(stretches: Sequence[ContactInterval], near: float) -> list[ContactInterval]:
+def joined(intervals: Sequence[ContactInterval], near: float) -> list[ContactInterval]:
     """Those in order of the arc length, made one where one ground ends and the next begins within `near` [m]."""
     found: list[ContactInterval] = []
-    for this in sorted(stretches):
+    for this in sorted(intervals):
         if found and this.start - found[-1].end <= near:
             found[-1] = found[-1]._replace(end=max(found[-1].end, this.end))
         else:
@@ -68,11 +69,11 @@ def joined(stretches: Sequence[ContactInterval], near: float) -> list[ContactInt
     return found
 
 
-def touchdown_arc(lying: Sequence[ContactInterval], line: Line) -> float:
+def touchdown_arc(intervals: Sequence[ContactInterval], line: Line) -> float:
     """As `contact.touchdown` has it for one ground; nan where nothing touches."""
-    if not lying:
+    if not intervals:
         return float("nan")
-    last = lying[-1]
+    last = intervals[-1]
     return last.start if last.end >= line.arc[-1] and last.start > line.arc[0] else last.end
 
 

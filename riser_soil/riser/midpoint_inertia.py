@@ -27,7 +27,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed
 from riser_soil.core.part import Energy, Forces, MatrixBlock, Part, State, Traits, Weights
 from riser_soil.core.roles import MomentumCorrecting
-from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back
+from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.riser import hermite
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
@@ -201,7 +201,7 @@ class MidpointRotaryInertia(LinePart):
         return gathered(self._by_number)
 
     def restore(self, saved: Saved) -> None:
-        give_back(self._by_number, saved)
+        restore_all(self._by_number, saved)
 
     @property
     def _by_number(self) -> dict[str, DirectorMotion]:

@@ -48,7 +48,7 @@ def shown(value: Any) -> str:
     return text if len(text) <= _WIDTH else text[: _WIDTH - 3] + "..."
 
 
-def told(problem: Problem, data: Any) -> str:
+def message(problem: Problem, data: Any) -> str:
     """Path, value, what is allowed and what to do, in one line."""
     value = value_at(data, problem.path)
     given = "missing" if value is NOTHING else f"value {shown(value)}"

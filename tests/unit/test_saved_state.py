@@ -14,9 +14,9 @@ from riser_soil.core.saved_state import (
     Saved,
     Stateful,
     gathered,
-    give_back,
     packed,
     record_of,
+    restore_all,
     unpacked,
     values_of,
     within,
@@ -47,7 +47,7 @@ def test_owners_have_names_within_names() -> None:
     assert set(saved) == {"fields/riser/value", "fields/riser top/value"}
     assert within(within(saved, "fields"), "riser").keys() == {"value"}
     first, second = Number(0.0), Number(0.0)
-    give_back({"fields/riser": first, "fields/riser top": second}, saved)
+    restore_all({"fields/riser": first, "fields/riser top": second}, saved)
     assert (first.value, second.value) == (1.0, 2.0)
 
 

@@ -53,7 +53,7 @@ class CandidatePairs:
         return np.where(self.pairs[at] == wanted, at, -1)
 
 
-def around(nodes: IntArray, xy: Array, points: Array, facets: IntArray, distance: float) -> CandidatePairs:
+def pairs_around(nodes: IntArray, xy: Array, points: Array, facets: IntArray, distance: float) -> CandidatePairs:
     """Nodes (n,) at xy (n, 2), paired with all facets whose horizontal box is within a distance [m].
 
     points (np, 3): deformed points. facets (nf, nv).
