@@ -9,7 +9,7 @@ import numpy as np
 
 from riser_soil.contact.landing import landing_predictor
 from riser_soil.contact.station_forces import StationForces
-from riser_soil.contact.touchdown import ContactInterval, stretches, touchdown
+from riser_soil.contact.touchdown import ContactInterval, contact_intervals, touchdown
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
 from riser_soil.core.roles import Predictor
@@ -206,13 +206,13 @@ class SeabedContact(LinePart):
         """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""
         if not self.line.active:
             return float("nan")
-        return touchdown(*self._lying(state))
+        return touchdown(*self._contact_along_line(state))
 
-    def stretches(self, state: State) -> list[ContactInterval]:
+    def contact_intervals(self, state: State) -> list[ContactInterval]:
         """Where the riser lies on the seabed, from its start on."""
-        return stretches(*self._lying(state)) if self.line.active else []
+        return contact_intervals(*self._contact_along_line(state)) if self.line.active else []
 
-    def _lying(self, state: State) -> tuple[Array, Array, Array, Array]:
+    def _contact_along_line(self, state: State) -> tuple[Array, Array, Array, Array]:
         """Arc, share of the length, clearance and force per length of the stations, all (ne ng,)."""
         found = self.evaluate(self.line.trial(state))
         force = self._at_stations(found.touching.elements, found.touching.force)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from riser_soil.contact.candidates import CandidatePairs, pairs_around
 from riser_soil.contact.detection import (
     SOIL,
     ActiveContacts,
@@ -19,8 +20,7 @@ from riser_soil.contact.gap import heights
 from riser_soil.contact.ground import ASPECT, ContactPoints, DeformedSurface, SoilSurface
 from riser_soil.contact.landing import landing_predictor
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.patch import CandidatePairs, around
-from riser_soil.contact.touchdown import ContactInterval, stretches, touchdown
+from riser_soil.contact.touchdown import ContactInterval, contact_intervals, touchdown
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Adaptive, Predictor
@@ -185,13 +185,13 @@ class SoilContact:
         """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""
         if not self.active:
             return float("nan")
-        return touchdown(*self._lying(state))
+        return touchdown(*self._contact_along_line(state))
 
-    def stretches(self, state: State) -> list[ContactInterval]:
+    def contact_intervals(self, state: State) -> list[ContactInterval]:
         """Where the riser lies on the soil, from its start on."""
-        return stretches(*self._lying(state)) if self.active else []
+        return contact_intervals(*self._contact_along_line(state)) if self.active else []
 
-    def _lying(self, state: State) -> tuple[Array, Array, Array, Array]:
+    def _contact_along_line(self, state: State) -> tuple[Array, Array, Array, Array]:
         """Arc, share of the length, clearance and force per length of the nodes, all (nn,)."""
         arc, share = self._riser.arc, self._riser.tributary_length
         return arc, share, self._clearance(state), self.force_per_length(state)
@@ -228,7 +228,7 @@ class SoilContact:
         nodes = np.unique(detected.points.node[detected.gap < self._reach.above])
         xy = self._riser.positions3(state)[nodes, :2]
         distance = ASPECT * self._footprint + self._reach.around
-        return around(nodes, xy, detected.surface, self._soil.facets, distance).joined(self._missed)
+        return pairs_around(nodes, xy, detected.surface, self._soil.facets, distance).joined(self._missed)
 
     def state(self) -> Saved:
         """The pattern: another one, as wide as need be, gives the same forces but to round-off."""
