@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 
 
 class Body(Protocol):
-    """Something in the water, at stations (ne, ng); forces and masses per length, for single modules as they are."""
+    """A body with hydrodynamic loads, at stations (ne, ng); forces and masses per length, for single modules as they
+    are.
+    """
 
     @property
     def pipe(self) -> Pipe:

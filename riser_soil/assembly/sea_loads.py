@@ -40,7 +40,7 @@ def sea_loads(
 
 @dataclass(frozen=True)
 class _BodyLoads:
-    """What the water of a scene does to a body in a stage."""
+    """Hydrodynamic loads on a body in a stage."""
 
     scene: Scene
     water: Water

@@ -38,7 +38,7 @@ TETRAHEDRA, NODES_OF_TETRAHEDRA = 6.0, 1.8  # in a cube of the size asked for; q
 
 @dataclass(frozen=True)
 class ProblemSize:
-    """What a scene makes: elements and cells, unknowns, steps of all stages, records in results.nc, pictures.
+    """Size of a scene: elements and cells, unknowns, steps of all stages, records in results.nc, pictures.
 
     components: of the waves. entries: of a cell's matrix. auto: whether there are more steps, as some are automatic.
     stops: times that they have to hit. seconds: on one core.

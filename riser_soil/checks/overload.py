@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Overload(NamedTuple):
-    """Of the node that is deepest in a ground which it loads beyond its capacity: load and capacity [N/m], depth [m],
+    """The deepest of the nodes that load the ground beyond its capacity: load and capacity [N/m], depth [m],
     arc length [m] and position (3,) [m]; what the capacity is.
     """
 

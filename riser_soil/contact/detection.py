@@ -19,7 +19,7 @@ SOIL = "contact.soil"
 
 
 class RiserNodes(Protocol):
-    """The riser as contact sees it; nn nodes in d = 2 or 3 dimensions.
+    """The riser's nodes for contact detection; nn nodes in d = 2 or 3 dimensions.
 
     arc (nn,) [m]. basis (3, d): the riser's axes in global ones. translation_dofs (nn, d): local numbers.
     """

@@ -11,7 +11,7 @@ from riser_soil.riser.trial import Trial
 
 
 class StationForces:
-    """Of a part with a resistance (m, ng, d) [N/m] at the stations `at` of some elements (m,); kept by trial."""
+    """Forces of a part with a resistance (m, ng, d) [N/m] at the stations `at` of some elements (m,); kept by trial."""
 
     def __init__(self, line: Line, at: stations.Stations) -> None:
         self._line, self._at = line, at

@@ -26,7 +26,9 @@ from riser_soil.seabed.law import SeabedResponse
 
 @dataclass(frozen=True)
 class SuctionLaw:
-    """penalty: the law in compression. cap [N/m], reach [m] > cap/stiffness: ValueError else.
+    """Penalty law with suction: tension up to a cap on uplift, zero from an opening of `reach` on.
+
+    penalty: the law in compression. cap [N/m], reach [m] > cap/stiffness: ValueError else.
 
     History (..., 1): largest opening [m] since the last touch, inf before the first.
     """

@@ -45,7 +45,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class OutputQuantity(Generic[Seen]):
-    """A quantity that a run tells.
+    """A quantity of the results.
 
     units, text and sign (what its sign means, where it has one) go into results.nc, with units as UDUNITS writes them.
     get: the value by what is seen, `Instant`, `SoilSnapshot` or `StepRecord`; (nn,) at nodes, (nv,) at points of the

@@ -17,7 +17,7 @@ from riser_soil.core.saved_state import Stateful
 
 @runtime_checkable
 class Adaptive(Protocol):
-    """A part whose pattern covers what may come; it says when the motion has left it."""
+    """A part whose sparsity pattern covers candidate contacts; it says when the motion has left them."""
 
     outgrown: bool
 
@@ -26,7 +26,7 @@ class Adaptive(Protocol):
 
 @runtime_checkable
 class Predictor(Protocol):
-    """A part that knows a better first guess of a step than the increments of `guess`."""
+    """A part with a predictor: a better first guess of a step than the increments of `guess`."""
 
     def predict(self, guess: State) -> Array: ...
 

@@ -53,7 +53,7 @@ class SoilMesh:
 
 @dataclass(frozen=True, eq=False)
 class ContactSnapshot:
-    """Where the riser touches the seabed and what the seabed does to it."""
+    """Contact of the riser with seabed and soil: touchdown, penetration and contact force."""
 
     touchdown_arc: float  # m, nan when nothing touches
     touchdown_position: Array  # (3,) m, of the riser's axis there; nan when nothing touches
@@ -76,7 +76,7 @@ class Instant:
 
 @dataclass(frozen=True)
 class StepStatistics:
-    """How hard the solver worked for one accepted step."""
+    """Solver statistics of one accepted step."""
 
     newton_iterations: int
     time_step: float  # s; in a static stage the increment of the load factor
@@ -119,7 +119,7 @@ class Ledger:
 
 @dataclass(frozen=True)
 class StepRecord:
-    """What is told of an accepted step."""
+    """Record of an accepted step."""
 
     health: StepStatistics
     ledger: Ledger
@@ -127,7 +127,7 @@ class StepRecord:
 
 @dataclass(frozen=True)
 class RunFacts:
-    """What is known of a run before its first step."""
+    """Facts about a run, known before its first step."""
 
     title: str
     version: str

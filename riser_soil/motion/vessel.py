@@ -30,7 +30,7 @@ class VesselResponse:
 
 @dataclass(frozen=True, eq=False)
 class VesselAttachment:
-    """Where an end belongs on its vessel at rest, and where the vessel found it.
+    """Position of an end on its vessel: its mean, and where it was found as the vessel began to move it.
 
     mean: (3,) the end while the vessel is at rest [m]. reference: (3,) the point that the response belongs to, then
     [m]. found: (6,) the end's displacement from there [m] and rotation vector [rad] as the vessel began to move: not

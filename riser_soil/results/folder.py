@@ -52,7 +52,7 @@ def is_finished(folder: Path) -> bool:
 
 
 class FolderLock:
-    """One run's hold on its folder, from its beginning to `release` or the process's end, however that comes.
+    """A run's lock on its folder, from its beginning to `release` or the process's end, however that comes.
 
     Raises SceneError where another run has it. On NFS the lock is the server's, so that runs on several machines see
     one another; where a file system has no locks at all, nobody is refused.

@@ -116,7 +116,7 @@ def reading(path: Path) -> h5py.File:
 
 
 class _MemoryFile:
-    """A file to HDF5, which neither tells of a disk that is full nor survives it: what it writes stays in memory."""
+    """In-memory file for HDF5, which neither reports a full disk nor survives it."""
 
     def __init__(self, base: BinaryIO, size: int) -> None:
         self.size = size

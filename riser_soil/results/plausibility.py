@@ -40,7 +40,7 @@ class LargestValue:
 
 
 class Plausibility:
-    """What a stage's results look like at the instants that are recorded; on the rank that holds the riser.
+    """Plausibility of a stage's results at the recorded instants; on the rank that holds the riser.
 
     EA [N] and radius [m] (nn,): the smaller and the larger of what the two elements beside a node have.
     """

@@ -46,7 +46,7 @@ _MOST_WAITING, _STEP = 1 << 24, 2000
 
 @dataclass
 class LastState:
-    """The state told last, and what it has been written to."""
+    """The last recorded state, and the files that it has been written to."""
 
     seen: Instant
     soil: SoilSnapshot | None

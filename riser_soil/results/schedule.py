@@ -15,7 +15,7 @@ _SLACK = 1e-6
 
 @dataclass(frozen=True)
 class DueOutputs:
-    """What a step is to be written to."""
+    """Files that a step is written to."""
 
     series: bool  # results.nc
     pictures: bool  # riser.xdmf and soil.xdmf

@@ -58,7 +58,7 @@ class TightestBend:
 
 @dataclass
 class StageTally:
-    """What is gathered of one stage while it runs. time: s simulated in it (0 in statics)."""
+    """Statistics of one stage, gathered while it runs. time: s simulated in it (0 in statics)."""
 
     name: str
     kind: str

@@ -102,7 +102,7 @@ class CableBalance:
 
 @dataclass(frozen=True)
 class SpanCondition:
-    """Ends h [m] apart, unless that takes less than least_H [N]."""
+    """Ends h [m] apart, unless the horizontal tension would fall below least_H [N]."""
 
     h: float
     least_H: float

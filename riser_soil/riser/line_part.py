@@ -7,7 +7,7 @@ from riser_soil.riser.line import Line
 
 
 class LinePart:
-    """Base of the parts that act on a line; asked on the rank alone that evaluates it."""
+    """Base of the parts that act on a line; called only on the rank that evaluates it."""
 
     def __init__(self, line: Line) -> None:
         self.line = line

@@ -32,7 +32,7 @@ from riser_soil.riser.vectors import (
 
 
 class Secant(NamedTuple):
-    """A director at element ends through a step: mean and change (ne, 2, d).
+    """A director at element ends over a step: mean and change (ne, 2, d).
 
     P (ne, 2, d, r): change of the mean by the spin of the middle that each rotation dof there gives. by_end (ne, 2, d,
     r): derivative by these dofs of the change, and of twice the mean.
@@ -108,7 +108,7 @@ def directors(frames: Frames, column: int) -> Directors:
 
 
 class DirectorMotion:
-    """Directors and their rates through a step.
+    """Directors and their rates over a step.
 
     The rates (ne, 2, d) at its end are those of the midpoint rule, whose mean over the step is change/dt. They need not
     be at right angles to the directors.

@@ -11,8 +11,9 @@ from riser_soil.riser.line_part import LinePart
 
 
 class Relaxation(LinePart):
-    """Part "relaxation": resists a pseudo-time step by `drag` times tributary length times translation, and turning as
-    a rod of that length would be resisted that turns about its middle.
+    """Part "relaxation": viscous drag on a pseudo-time step, `drag` times tributary length times translation.
+
+    Rotation meets the drag of a rod of the tributary length that turns about its middle.
 
     drag: N/m2, force per length and displacement in one step; large values allow small steps only. It may be changed
     between steps. The forces vanish with the increment, so that what it converges to is an equilibrium without it.

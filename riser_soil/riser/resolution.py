@@ -28,7 +28,7 @@ from riser_soil.riser.trial import Trial
 
 
 class BendingMisfit(NamedTuple):
-    """The largest difference [N m] between what an element's turn and its end moments say of its bending moment.
+    """The largest difference [N m] between an element's bending moment by its end rotations and by its end moments.
 
     smooth: by the formula with shear; steep: by the trapezoidal rule, without elements at ends where the moment sets
     in. Each with its element.

@@ -41,7 +41,7 @@ class HasViscousForces(Protocol):
 
 @runtime_checkable
 class HasNodalForces(Protocol):
-    """A part that acts on the line's nodes without holding them."""
+    """A part with forces on the line's nodes that are not support reactions."""
 
     def nodal_forces(self, state: State) -> Array:
         """Residual (nn, ndof) of what acts on nodes."""

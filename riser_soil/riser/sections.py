@@ -56,7 +56,7 @@ class MeshedSegment:
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What fills and surrounds the pipe: densities in kg/m3 (0: nothing), gravity in m/s2."""
+    """Fluids in and around the pipe: densities in kg/m3 (0: nothing), gravity in m/s2."""
 
     gravity: float = 9.81
     contents: float = 0.0

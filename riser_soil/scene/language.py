@@ -13,7 +13,7 @@ from riser_soil.scene.scene import Scene
 
 @dataclass(frozen=True)
 class KeyInfo:
-    """A place of the language: the types that fit there and the description of its key."""
+    """A key of the scene language: the types that fit there and the description of its key."""
 
     types: tuple[Any, ...]
     description: str

@@ -16,7 +16,7 @@ from riser_soil.sea.wetting import Wetting
 
 
 class LostBuoyancy(Protocol):
-    """Weight, beyond the submerged one, of what is not wet: that of the water displaced, times the dry share 1 - S."""
+    """Buoyancy lost where a body is dry: the weight of the displaced water times the dry share 1 - S."""
 
     def residual(self, trial: Trial) -> Array:
         """Conjugate to q (ne, 4, d)."""
@@ -32,7 +32,8 @@ class LostBuoyancy(Protocol):
 
 
 class DryStations:
-    """What is dry as it is at the stations of a pipe. displaced: weight of the water in its place [N/m] (ne,)."""
+    """Lost buoyancy by the dry share at the stations of a pipe. displaced: weight of the displaced water [N/m] (ne,).
+    """
 
     def __init__(self, pipe: Pipe, wetting: Wetting, displaced: Array) -> None:
         self._pipe, self._wetting, self._displaced = pipe, wetting, displaced[:, None]
@@ -55,7 +56,7 @@ class DryStations:
 
 
 class Buoyancy(LinePart):
-    """The weight of what is dry (group F), downwards.
+    """Lost buoyancy of the dry part of the riser (group F), downwards.
 
     flat: whether the surface is level and at rest; the force then has a potential. Waves do work on it instead.
     """

@@ -88,7 +88,7 @@ class RelativeDrag:
 
 
 class AcceleratedWater:
-    """What the water's acceleration adds to other loads: rho A u' and m u'.
+    """Froude-Krylov force and added mass by the water's acceleration, added to other loads: rho A u' and m u'.
 
     mass: (ne, 2) as in `StillWater`. displaced: rho A (ne,) [kg/m].
     """

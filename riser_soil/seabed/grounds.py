@@ -24,7 +24,7 @@ class Distance(NamedTuple):
 
 
 class Ground(Protocol):
-    """What the riser may touch."""
+    """A surface that the riser may touch."""
 
     def distance(self, x: Array) -> Distance:
         """Of points x (n, 3) in global axes."""

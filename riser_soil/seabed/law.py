@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class SeabedResponse(NamedTuple):
-    """At the end of a step to a penetration.
+    """Response of a seabed law at the end of a step.
 
     force [N/m]: positive where it pushes the riser away. slope [N/m2]: its derivative by the penetration. history
     (..., nh). stored [N]: energy per length that the ground gives back; what the force does beyond it is dissipated.
@@ -63,7 +63,7 @@ class NormalLaw(Protocol):
 
 
 class SeabedLaw(BaseModel, ABC):
-    """A law as a scene gives it: `kind`, a Literal of one word, and its constants."""
+    """The model of a seabed law in the scene: `kind`, a Literal of one word, and its constants."""
 
     model_config = FROZEN
 

@@ -18,7 +18,7 @@ from riser_soil.soil.families import Family
 
 @dataclass(frozen=True, eq=False)
 class Gradients:
-    """Of the nc cells of this rank.
+    """Shape-function gradients in the nc cells of this rank.
 
     full (nc, nq, nn, 3) [1/m]: dN/dx. volume (nc, 1 or nq, nn, 3) [1/m]: gradients that give the volume
     change. weights (nc, nq) [m3]: quadrature weight times the map's determinant. points (nc, nq, 3) [m].

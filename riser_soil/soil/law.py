@@ -21,7 +21,7 @@ PLASTIC_STRAIN = "equivalent_plastic_strain"
 
 
 class StressUpdate(NamedTuple):
-    """At the end of a strain increment.
+    """Result of a stress update, at the end of a strain increment.
 
     stress (n, 6) [Pa]. tangent (n, 6, 6) [Pa]: its derivative by the increment. history (n, nh). stored (n,) [J/m3]:
     free energy of the change since the start, beyond what the initial stress does on the elastic strain: it comes
@@ -63,14 +63,14 @@ class Formula(Protocol):
 
 
 class Bearing(NamedTuple):
-    """Force per length that the ground bears [N/m], and what that is."""
+    """Bearing capacity per length [N/m], and its meaning in words."""
 
     capacity: float
     meaning: str
 
 
 class SoilLaw(BaseModel, ABC):
-    """A law as a scene gives it: `kind`, a Literal of one word, and its constants."""
+    """The model of a soil law in the scene: `kind`, a Literal of one word, and its constants."""
 
     model_config = FROZEN
 

@@ -25,7 +25,7 @@ NEAR = 1e-9
 
 
 class AutoSteps:
-    """Walks from 0 to `end` [s] by steps whose local error stays within `tolerance` [m]; see the module's text.
+    """Adaptive steps from 0 to `end` [s] whose local error stays within `tolerance` [m]; see the module's text.
 
     smallest [s]: steps are not cut below it. first [s]: size to begin with. stops [s]: times to be hit, in any order;
     up to the next one all steps are equal unless the error changes.

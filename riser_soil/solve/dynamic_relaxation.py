@@ -36,7 +36,7 @@ NEARLY_THERE = 1e-2  # largest increment, in element lengths, from which equilib
 
 @dataclass
 class RelaxationResult:
-    """What it took: Newton iterations, and unstable equilibria that were left on the way."""
+    """Result of dynamic relaxation: Newton iterations, and unstable equilibria left on the way."""
 
     iterations: int = 0
     branch_switches: int = 0
@@ -61,8 +61,8 @@ def relax(
 
 @dataclass
 class EquilibriumAttempts:
-    """At an equilibrium without drag. After n failures for want of stability the next comes n steps later, and after an
-    unstable equilibrium was left not before the tangent is stable.
+    """Attempts at an equilibrium without drag. After n failures for want of stability the next comes n steps later, and
+    after an unstable equilibrium was left not before the tangent is stable.
     """
 
     failures: int = 0

@@ -29,7 +29,7 @@ class NotConvergedError(Exception):
 
 
 class UnstableError(NotConvergedError):
-    """A balance of forces from which the riser would buckle or swing away: `solution`."""
+    """An unstable equilibrium, from which the riser would buckle or swing away: `solution`."""
 
     def __init__(self, text: str, solution: Solution) -> None:
         super().__init__(text)

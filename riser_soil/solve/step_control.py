@@ -17,7 +17,7 @@ LEVELS = 20
 
 
 class Control(Protocol):
-    """Says how far the next step goes. Times in s; in a static stage load factors.
+    """Step size control: gives the end of the next step. Times in s; in a static stage load factors.
 
     judges_error: whether it asks for the local error of each step.
     """
@@ -50,7 +50,7 @@ class Control(Protocol):
 
 
 class StepControl:
-    """Walks from 0 to `end` in nominal steps of size `step`; never below `smallest`."""
+    """Steps from 0 to `end` of nominal size `step`; never below `smallest`."""
 
     judges_error = False
 

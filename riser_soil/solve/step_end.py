@@ -17,7 +17,7 @@ from riser_soil.solve.riser_mass import RiserMass
 
 @dataclass(eq=False)
 class CommittedStep:
-    """A step just committed, and what its scheme may ask of the system there; collective.
+    """A step just committed, and what its scheme needs from the system there; collective.
 
     mass: None in statics. solved: its state, increments included; forces: in balance there [N]; dt [s].
     """

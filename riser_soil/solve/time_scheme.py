@@ -25,7 +25,7 @@ from riser_soil.solve.step_end import CommittedStep
 
 
 class Scheme(Protocol):
-    """What a step needs to know of the time integration. dynamic: whether there are rates and inertia."""
+    """Interface of the time integration schemes. dynamic: whether there are rates and inertia."""
 
     dynamic: bool
 

@@ -52,7 +52,7 @@ class AcceptedStep:
 
 
 class TimeStepper:
-    """A stage on its way, from the state `before` that it starts with, or from where another one was saved.
+    """Time stepper of a stage, from the state `before` that it starts with, or from a saved state.
 
     before: the accepted state that the next step starts from, its increments zero; its rates leave out what contact
     adds to them (see `time_scheme`). now: the same state as the riser moves; energy: stored in it [J].
