@@ -27,7 +27,7 @@ CoveredBySoil = Callable[[Array], BoolArray]
 
 
 class ContactElements(NamedTuple):
-    """What touches at a trial, element by element: m elements, ng stations each, d dimensions.
+    """Elements in contact at a trial state: m elements, ng stations each, d dimensions.
 
     elements (m,). force, slope (m, ng): force per length [N/m] and its derivative by the penetration [N/m2].
     normal (m, ng, d): gradient of the distance from the ground; bend (m, ng, d, d) its derivative, None where zero.
@@ -46,8 +46,8 @@ class ContactElements(NamedTuple):
 
 
 class StationContact(NamedTuple):
-    """The line over the ground at a trial: position (ne, ng, d) and penetration (ne, ng) of the stations [m];
-    normal (ne, ng, d): gradient of their distance from the ground.
+    """Contact kinematics of the line at a trial state: position (ne, ng, d) and penetration (ne, ng) of the stations
+    [m]; normal (ne, ng, d): gradient of their distance from the ground.
     """
 
     position: Array
