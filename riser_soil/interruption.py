@@ -20,7 +20,7 @@ OURS = (signal.SIGINT, signal.SIGTERM)
 
 
 class _Pending:
-    """What this process has been told by signals."""
+    """Signals that this process has received and not yet handled."""
 
     def __init__(self) -> None:
         self.number = 0  # of the signal not yet obeyed; 0 for none
@@ -111,7 +111,8 @@ def agreeing(comm: Any) -> Iterator[None]:
 
 
 def check(comm: Any) -> None:
-    """Raises Interruption on all ranks if one has been told; collective in an `agreeing` block, nothing alone."""
+    """Raises Interruption on all ranks if one has received a signal; collective in an `agreeing` block, nothing alone.
+    """
     if _pending.agreeing:
         number = max(comm.allgather(_pending.number))
         if number:

@@ -46,7 +46,7 @@ class Assembly:
 
     catenary: the first shape, None for other ones.
     attachments: point masses and buoyancy modules on the line; their weight less buoyancy is among `riser_parts`.
-    pressures: inside and outside the pipe; None where the tension in its wall is not told.
+    pressures: inside and outside the pipe; None where the wall tension is not known.
     contact_stiffness [N/m2]: force per length and penetration, by ground (soil, seabed).
     vessels: those that carry ends, None where there are none.
     begun: by the names of the stages begun so far, where the ends were then (2, 3) [m]: their motions follow from it.
@@ -103,7 +103,7 @@ class Assembly:
 
     @property
     def slack(self) -> float:
-        """How far the end of the first shape lies beyond its place [m]."""
+        """Distance of the end of the initial shape from its prescribed position [m]."""
         return self.catenary.slack if self.catenary is not None else 0.0
 
     @property
@@ -118,7 +118,7 @@ class Assembly:
 
     @property
     def too_slack(self) -> str:
-        """What to tell where a riser whose first shape ends beyond its place finds no equilibrium."""
+        """Error message where a riser too slack for its elements finds no equilibrium."""
         bend = least_bend(self.elements)
         return (
             f"{self.hanging}: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "

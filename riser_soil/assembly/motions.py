@@ -47,7 +47,7 @@ def end_positions(line: Line) -> Array:
 
 
 def set_motion(end: End, name: str, origin: Array, stage: Stage, vessels: Vessels | None) -> None:
-    """Give an end that is at origin (3,) its motion in a stage; vessels want the stages in their order."""
+    """Give an end that is at origin (3,) its motion in a stage; with vessels, the stages come in their order."""
     end.motion = end.turning = None
     if isinstance(stage, StaticStage):
         target = getattr(stage.move, name, None)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def no_wall_tension(scene: Scene) -> str:
-    """Why the tension in the pipe's wall is not told; empty where it is."""
+    """Why there is no wall tension; empty where there is one."""
     if scene.water is None:
         return "" if scene.riser.contents else "without water and contents it is the effective tension"
     if scene.water.surface_level is None:
@@ -24,7 +24,7 @@ def no_wall_tension(scene: Scene) -> str:
 
 
 def pressures_of(scene: Scene, line: Line, elements: Elements) -> Pressures | None:
-    """Both pressures; None where the wall's tension is not told."""
+    """Both pressures; None where the wall tension is not known."""
     if no_wall_tension(scene):
         return None
     from riser_soil.riser.wall_tension import Pressures

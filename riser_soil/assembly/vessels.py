@@ -59,7 +59,7 @@ class Vessels:
                 self._responses[_key(vessel)] = self._response(path, vessel, waves)
 
     def motion(self, stage: Stage, end: str, origin: Array) -> VesselMotion:
-        """The motion of an end that is at origin (3,) as a stage begins; to be asked for in the order of the stages."""
+        """The motion of an end that is at origin (3,) as a stage begins; to be called in the order of the stages."""
         given = _vessel(stage, end)
         assert given is not None
         since, first = _beginning(self._scene, stage, end, given)
@@ -160,7 +160,7 @@ def _to_global(vessel: VesselScene) -> Array:
 def _beyond(
     path: str, vessel: VesselScene, waves: Components, responses: Array, beyond: tuple[BoolArray, BoolArray]
 ) -> EnergyOutsideTable | None:
-    """What lies beyond the table where the vessel may feel it; SceneError where it would for sure."""
+    """Wave energy outside the table where the vessel may respond to it; SceneError where it would for sure."""
     energy = 0.5 * waves.amplitude**2
     below, above = (float(energy[part].sum() / energy.sum()) for part in beyond)
     first, last = vessel.table.frequency[0], vessel.table.frequency[-1]

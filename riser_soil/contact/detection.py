@@ -101,7 +101,7 @@ class ContactState:
 
 
 class ContactDetection:
-    """Riser and soil, and the law by which they push: `detect` brings them together at a state.
+    """Contact detection between riser and soil: `detect` gives gaps and contact forces at a state.
 
     radius (nn,): [m] from the axis to the line that touches. near: height [m] over the soil's highest point up to which
     nodes are looked at.

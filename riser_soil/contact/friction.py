@@ -152,7 +152,7 @@ class CoulombFriction(LinePart):
         return np.asarray(-self.line.basis @ per_station.sum(axis=(0, 1)))
 
     def state(self) -> Saved:
-        """Where the next step begins, unless no step has been asked for yet, and how far the stations have slid."""
+        """The state at the start of the next step, if there was one, and the slip of the stations."""
         return {"slid": self._slid} | (self._begun._asdict() if self._begun is not None else {})
 
     def restore(self, saved: Saved) -> None:

@@ -67,7 +67,7 @@ class ContactPoints:
 
 
 class DeformedSurface:
-    """The deformed surface: what lies where, and the dofs behind it."""
+    """The deformed surface: its facets, and the dofs of their nodes."""
 
     def __init__(self, surface: SoilSurface) -> None:
         self._surface = surface

@@ -98,7 +98,7 @@ def _lowest_holding(
 def invert(xy: Array, points: Array, nodes: IntArray, work: Array) -> tuple[bool, float, float]:
     """Solve Σ N_a(ξ, η) p_a = xy for (ξ, η) by Newton's method from the facet's middle.
 
-    nodes (nv,): the facet. work (nv, 3): scratch. The first value tells success.
+    nodes (nv,): the facet. work (nv, 3): scratch. The first value is whether it has converged.
     """
     N, dN = work[:, 0], work[:, 1:]
     s, t = centre(len(nodes))

@@ -54,8 +54,8 @@ class ContactInterval(NamedTuple):
 def touchdown(arc: Array, share: Array, clearance: Array, force: Array) -> float:
     """Arc length [m] of the touchdown point towards the riser's end; nan where nothing touches.
 
-    Where the riser's end itself touches, but not all of the riser, it is where it comes down from the start. Arguments
-    as in `contact_intervals`.
+    Where the riser's end itself touches, but not all of the riser, it is the touchdown point next to the start.
+    Arguments as in `contact_intervals`.
     """
     found = contact_intervals(arc, share, clearance, force)
     if not found:
@@ -65,7 +65,7 @@ def touchdown(arc: Array, share: Array, clearance: Array, force: Array) -> float
 
 
 def contact_intervals(arc: Array, share: Array, clearance: Array, force: Array) -> list[ContactInterval]:
-    """Where the riser lies, from its start on.
+    """Intervals of contact along the riser, from its start on.
 
     arc (n,): of points along the riser from its start, growing [m]. share (n,): of its length [m] by quadrature.
     clearance (n,): gap less that at which the force begins [m]. force (n,): per length [N/m], > 0 where it pushes.
@@ -135,7 +135,7 @@ def _rise(x: Array) -> Array:
 
 
 def _resting(weight: Array, force: Array) -> float:
-    """Mean of the middle half of forces, by weight: what rests on a clump or bridges a dip does not tell."""
+    """Mean of the middle half of forces, by weight: stations loaded by a clump or bridging a dip do not count."""
     order = np.argsort(force)
     total = float(weight.sum())
     upto = np.clip(np.cumsum(weight[order]), 0.25 * total, 0.75 * total)

@@ -2,7 +2,7 @@
 
 numba's own cache doesn't notice an edit in another file whose functions it has inlined, and runs stale code. So each
 version of the kernels has a cache folder of its own, under NUMBA_CACHE_DIR, XDG_CACHE_HOME or ~/.cache, or a private
-temporary folder where that can't be written or is full, which is told. Division by zero gives inf or nan, as in numpy.
+temporary folder where that can't be written or is full, with a message. Division by zero gives inf or nan, as in numpy.
 Multiply-adds may be fused and divisions by constants become products, which changes the last digit only. Kernels are
 inlined where others call them: tuples then stay in registers, which halves the time of the elements in space.
 """

@@ -7,7 +7,7 @@ from typing import Any
 
 
 class LazyModule:
-    """A module by its full name; its names are looked up when they are asked for, each once."""
+    """A module by its full name; its names are looked up at first use."""
 
     def __init__(self, module: str) -> None:
         self._module = module

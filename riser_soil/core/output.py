@@ -50,7 +50,7 @@ class OutputQuantity(Generic[Seen]):
     units, text and sign (what its sign means, where it has one) go into results.nc, with units as UDUNITS writes them.
     get: the value by what is seen, `Instant`, `SoilSnapshot` or `StepRecord`; (nn,) at nodes, (nv,) at points of the
     soil, (nc,) in its cells, one number in the rest; by three where it is a vector, in global axes.
-    needs: what must be known for it. always: recorded along the riser even where the scene does not ask for it.
+    needs: what must be known for it. always: recorded along the riser even where the scene does not request it.
     """
 
     name: str

@@ -124,7 +124,7 @@ class Traits:
     groups: letters of those that its forces are in. In E they may jump from step to step, as where the riser lands.
     symmetric: its tangent.
     follows: its forces follow the line, but hardly stiffen or soften it, such as the drag of a current.
-    keeps_way: its state is of the way that the riser took alone, and no part of the configuration that it has come to.
+    keeps_way: its state depends on the path that the riser took, and is no part of its present configuration.
     roles: what it does beyond the contract of a part, see `roles`.
     """
 
@@ -147,7 +147,7 @@ class Part(Protocol):
 
     @property
     def active(self) -> bool:
-        """Whether this rank evaluates the part; where not, it is asked for nothing that follows."""
+        """Whether this rank evaluates the part; where not, no other method is called."""
         ...
 
     def blocks(self) -> dict[str, MatrixBlock]:
@@ -167,7 +167,7 @@ class Part(Protocol):
         ...
 
     def work(self, before: State, after: State) -> Work:
-        """This rank's share of the energy turned over by the step from `before` to `after`, asked before commit."""
+        """This rank's share of the energy turned over by the step from `before` to `after`, called before commit."""
         ...
 
     def commit(self, state: State) -> None:
@@ -210,7 +210,7 @@ class Field(Protocol):
 class LineField(Field, Protocol):
     """A field of translations (nn, d) and rotations along a line; it may turn as a whole.
 
-    lever: arm [m] by which a moment is weighed as the forces of a couple, so that nothing hangs on the unit of length.
+    lever: arm [m] by which moments are converted to forces in norms, so that nothing depends on the unit of length.
     """
 
     @property
@@ -222,7 +222,7 @@ class LineField(Field, Protocol):
         ...
 
     def predict(self, guess: State) -> Array:
-        """A better first guess of a step than the increments of `guess`, as its prescribed motion tells; a copy."""
+        """A better first guess of a step than the increments of `guess`, by its prescribed motion; a copy."""
         ...
 
     def inadmissible(self, state: State) -> str:

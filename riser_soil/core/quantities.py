@@ -2,8 +2,8 @@
 
 Every quantity has a physical range. A riser is from a tenth of a metre to some kilometres long; the ranges hold all
 that such a riser has when it is scaled in length by a millionth to a million, by Froude's law (forces by the cube of
-the length, EI by its fifth power) or with the materials kept (gravity by its inverse). What lies beyond is a slip of
-units or of powers of ten, and would end in overflow or round-off somewhere in the middle of the run.
+the length, EI by its fifth power) or with the materials kept (gravity by its inverse). Values beyond are mistakes of
+units or powers of ten, and would lead to overflow or round-off during the run.
 """
 
 from collections.abc import Callable

@@ -1,8 +1,8 @@
 """Saved state: the committed state of all its owners as named arrays, for a restart between two steps.
 
-A stage is saved between two steps. Built anew from its scene and given the saved state back, it goes on as if it had
-not been left: to the last bit. So an owner saves all that the next steps depend on, unless it is the scene's, and
-nothing that they find again by themselves.
+A stage is saved between two steps. Built anew from its scene and given the saved state back, it continues as if it had
+not been interrupted, to the last bit. So an owner saves all that the next steps depend on, unless it is the scene's,
+and nothing that they find again by themselves.
 
 An owner within another has its names after that one's and a "/": `stepper/before/u`. Numbers are arrays without axes;
 what is neither, such as texts and lists of them, is JSON as bytes, see `packed`. Each rank saves its own share.

@@ -1,15 +1,15 @@
 """Energy balance of a stage, step by step: the energy ledger.
 
-Two errors of the time integration are told apart. With F the forces of group F, E those of group E, and W the work of
-supports, all that acts takes
+Two errors of the time integration are distinguished. With F the forces of group F, E those of group E, and W the work
+of supports, all that acts takes
 
     B = du.((F(n) + F(n+1))/2 + E(n+1)) - W
 
 out of the motion in a step (`AcceptedStep.braking`). What the kinetic energy loses beyond it, -(K(n+1) - K(n)) - B, is
 the time scheme's own: with linear inertia exactly what alpha_m, alpha_f, beta and gamma dissipate, zero to round-off
-for average acceleration (for Newmark's scheme: Hughes, The Finite Element Method, 1987, section 9.4). What the parts'
-energies tell otherwise than B is the residual: the error of the mean of nonlinear forces over a step, zero for linear
-ones and else of second order. Inertia that turns adds its own such error to the scheme's share.
+for average acceleration (for Newmark's scheme: Hughes, The Finite Element Method, 1987, section 9.4). The difference
+between the change of the parts' energies and B is the residual: the error of the mean of nonlinear forces over a step,
+zero for linear ones and else of second order. Inertia that turns adds its own such error to the scheme's share.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ _LOCK = "lock"
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
-    """Replaces the file at once: a reader, or a kill, meets the old content or the new one."""
+    """Replaces the file at once: a reader, or a kill, finds the old content or the new one."""
     draft = draft_of(path)
     try:
         draft.write_bytes(content.encode() if isinstance(content, str) else content)
@@ -43,7 +43,7 @@ def draft_of(path: Path) -> Path:
 
 
 def is_finished(folder: Path) -> bool:
-    """Whether the folder holds a run that says of itself that it has finished."""
+    """Whether the folder has a run that is marked as finished."""
     try:
         summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
     except (OSError, ValueError):

@@ -1,7 +1,7 @@
 """Atomic file updates: a growing file that is whole at every moment, also for readers and after a kill.
 
-Two copies take turns. An update goes to the one that nobody sees, which then takes the name of the other; the other
-gets the same update before the next. So an update costs what it changes, however long the file has become. An HDF5 file
+Two copies alternate. An update is written to the hidden one, which is then renamed to the visible name; the other gets
+the same update before the next one. So the cost of an update depends on its size, not on that of the file. An HDF5 file
 can't be appended to in place: torn in mid-write it cannot be opened at all.
 """
 
@@ -69,7 +69,7 @@ def _write(path: Path, changes: Mapping[int, bytes], size: int) -> None:
 
 
 def _open_elsewhere(path: Path) -> bool:
-    """Whether a reader has the file open; where there are no locks, nobody can tell."""
+    """Whether a reader has the file open; not known where there are no locks."""
     with path.open("r+b") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -161,7 +161,7 @@ class SeriesFile:
 
 
 def _kept(value: object) -> object:
-    """A copy of what the solver goes on with; numbers stay as they are."""
+    """A copy of values that the solver continues to use; numbers stay as they are."""
     return value.copy() if isinstance(value, np.ndarray) else value
 
 

@@ -183,7 +183,7 @@ class Observer:
 
 @contextmanager
 def _on_all_ranks(comm: MPI.Intracomm) -> Iterator[None]:
-    """An error that one rank meets in the block is raised by all."""
+    """An error on one rank in the block is raised on all."""
     failure: RiserSoilError | None = None
     try:
         yield
@@ -195,7 +195,7 @@ def _on_all_ranks(comm: MPI.Intracomm) -> Iterator[None]:
 
 
 def _known_fields(assembly: Assembly) -> tuple[str, ...]:
-    """What the scene wants to be told of, as far as it is known."""
+    """Fields that the scene requests, as far as they can be computed."""
     has = {
         "pressures": assembly.pressures is not None,
         "min_bend_radius": bool(assembly.elements.min_bend_radius.any()),
@@ -206,7 +206,7 @@ def _known_fields(assembly: Assembly) -> tuple[str, ...]:
 
 
 class ForceParts(NamedTuple):
-    """Parts of a model whose forces are told apart."""
+    """Parts of a model whose forces are kept apart."""
 
     within: list[HasElementForces]
     viscous: list[HasViscousForces]

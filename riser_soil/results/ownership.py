@@ -109,7 +109,8 @@ def _refuse_foreign(path: Path) -> None:
 
 
 def _own_scene(path: Path) -> bool:
-    """By its seal. Earlier versions had none: theirs is older than the results beside it, if nobody has changed it."""
+    """By its seal. Earlier versions had none: theirs is older than the results beside it, if it has not been changed.
+    """
     text = path.read_bytes()
     if seal := _SEALED.match(text):
         return hashlib.sha256(text[seal.end() :]).hexdigest() == seal[1].decode()

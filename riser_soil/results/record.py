@@ -120,7 +120,7 @@ class Recorder:
 
     @property
     def reached(self) -> str:
-        """How far the run has come, to be told when it ends before its time."""
+        """Progress of the run, for the message of a run that ends early."""
         if self.summary.finished:
             return f"after the last stage; {self._folder} has the whole run"
         stages = [stage for stage in self.summary.stages if stage.steps]
@@ -206,7 +206,7 @@ class Recorder:
         self.summary.seconds.update(seconds)
 
     def flush(self) -> None:
-        """Brings everything told so far to disk: the frames, the series that tells how far they go, the summary."""
+        """Writes all records so far to disk: the frames, the series that gives their number, the summary."""
         begun = time.monotonic()
         with _told_when_full(self._folder, self._let_go):
             for frames in self._pictures:

@@ -166,7 +166,7 @@ def _is_slack(found: CableBalance, goal: SpanCondition | None) -> bool:
 
 
 def _solved(known: CableBalance, trial: CableBalance, goal: SpanCondition | None = None) -> CableBalance:
-    """The trial's chain in balance at its mu, and at its H or at the one that meets the goal.
+    """Equilibrium of the trial's chain at its mu, at its H or at the H that meets the span condition.
 
     Found by way of values of H and mu nearer to those of a known balance where theirs are far from it. Gives up where
     H falls far below the goal's least.

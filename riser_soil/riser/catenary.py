@@ -22,7 +22,7 @@ class Catenary:
     """Curve of the line, tensions at its nodes (nn,) N, and horizontal tension H (N).
 
     slack [m]: how far the end lies beyond its place, horizontally away from the start, where the line is too long to
-    hang there with the least H that was asked for; else 0.
+    hang there with the least H allowed; else 0.
     """
 
     curve: Curve
@@ -82,7 +82,7 @@ def _chain(l0: Array, w: Array, EA: Array, ends: tuple[float, float], level: flo
 
 
 def _hang_on(chain: BarChain, points: Array) -> None:
-    """Add point weights to the joints around them; what hangs on a prescribed end is no matter of the line."""
+    """Add point weights to the joints around them; weights at a prescribed end are carried by its support."""
     along = np.append(0.0, np.cumsum(chain.l0))
     bar = np.clip(np.searchsorted(along, points[:, 0], side="right") - 1, 0, chain.l0.size - 1)
     share = (points[:, 0] - along[bar]) / chain.l0[bar]

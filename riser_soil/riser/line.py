@@ -195,8 +195,8 @@ class Line:
         return trial
 
     def left_at(self, before: State) -> Trial:
-        """The line where a step begins, for all but the rotation dofs: the trial in which the last step has left it, so
-        that parts need not look at it anew, unless its rates have been changed since.
+        """The line where a step begins, for all but the rotation dofs: the trial at which the last step ended, so that
+        parts need not evaluate it again, unless its rates have been changed since.
         """
         left = self._left
         return left if left is not None and self._same_rates(before, left.state) else self.trial(before)
@@ -260,8 +260,8 @@ class Line:
         self._bases = self._supports
 
     def support(self, node: int, t: float) -> Array:
-        """Orientation of the support of the first or last node, as the turn's `at` gives that of the node: the
-        node's own at first, then as its turning says.
+        """Orientation of the support of the first or last node, as the turn's `at` gives that of the node: the node's
+        own at first, then turned by the support's rotation.
         """
         turning = (self.end if node else self.start).turning
         base = self._bases[node]
@@ -302,8 +302,8 @@ class Line:
     def inadmissible(self, state: State) -> str:
         """Where an element is folded (an end's tangent points against its chord) or wound up by whole turns.
 
-        A step of Newton's method that goes far astray ends in such a tangle; it balances the loads, even stably, but a
-        pipe knows nothing like it, and an end spring would count the turns.
+        A step of Newton's method that goes far astray ends in such a tangle; it balances the loads, even stably, but is
+        not physical for a pipe, and an end spring would count the turns.
         """
         trial = self.trial(state)
         faulty = _folded(trial.chord, trial.turn.tangent) | trial.turn.wound

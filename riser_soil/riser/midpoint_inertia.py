@@ -40,7 +40,7 @@ from riser_soil.riser.trial import Trial
 class MidpointInertia(LinePart):
     """The line's mass in steps of the midpoint rule (group I).
 
-    instant: the same mass as it acts at an instant, which is asked for at accepted states.
+    instant: the same mass at an instant, as evaluated at accepted states.
     """
 
     name, traits = "inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting, Stateful))
@@ -122,7 +122,7 @@ class MidpointInertia(LinePart):
 class MidpointRotaryInertia(LinePart):
     """The sections' rotary inertia in steps of the midpoint rule (group I): mass that sits on their directors.
 
-    instant: the same inertia as it acts at an instant, which is asked for at accepted states. masses: of element ends
+    instant: the same inertia at an instant, as evaluated at accepted states. masses: of element ends
     on each of the directors [kg m2], (ne, 1, 1).
     """
 

@@ -118,7 +118,7 @@ def _of_round_section(line: SectionProperties, around: Surroundings) -> float:
 
 
 def polar_inertia(line: SectionProperties, around: Surroundings) -> float:
-    """Inertia [kg m] about the pipe's own axis: twice that across it, or, where none is asked for, twice that of the
+    """Inertia [kg m] about the pipe's own axis: twice that across it, or, where none is given, twice that of the
     diameters. Without diameters m (EI_y + EI_z)/EA, as for a homogeneous section. Never zero but for a massless pipe.
     """
     if across := rotary_inertia(line, around):

@@ -150,7 +150,7 @@ class Vessel(BaseModel):
     """The end is part of a vessel that answers the scene's waves linearly, by its table of RAOs.
 
     Vessel axes: x forward along the heading, y to port, z up; rotations are right-handed (roll lowers starboard, pitch
-    the bow; yaw turns the bow to port). Wave directions count from the heading towards port and tell where waves run
+    the bow; yaw turns the bow to port). Wave directions count from the heading towards port and give where waves run
     to: 0 from astern, 90 from starboard, 180 from ahead. Phases are lags behind the crest at the reference point.
     """
 

@@ -80,7 +80,7 @@ class Segment(BaseModel):
 
     @property
     def _first_and_last(self) -> tuple[float, float]:
-        """The lengths asked for at the segment's start and at its end [m]."""
+        """The element lengths requested at the segment's start and end [m]."""
         given = self.element_length
         assert given is not None  # the validator has seen to it
         return given if isinstance(given, tuple) else (given, given)

@@ -5,7 +5,7 @@ At velocity v and acceleration a, a module of drag area Cd A and volume V with a
     1/2 rho Cd A |v| v + Ca rho V a,
 
 and in accelerating water it feels rho V (1 + Ca) u', as a pipe does (`moving_water`): its loads are those of a pipe,
-told per module instead of per length, at one station each. In section forces, the water's force on a module at the
+given per module instead of per length, at one station each. In section forces, the water's force on a module at the
 riser's very end counts with the last element.
 """
 

@@ -67,7 +67,7 @@ class Pipe:
         return found
 
     def flow(self, trial: Trial) -> StationFlow:
-        """The pipe's own motion, as still water meets it."""
+        """The pipe's own motion, relative to still water."""
         flow: StationFlow = trial.once((self, "flow"), self._evaluate)
         return flow
 

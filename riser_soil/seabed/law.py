@@ -41,7 +41,7 @@ class NormalLaw(Protocol):
 
     @property
     def start(self) -> float:
-        """Gap [m] at which a riser that comes down begins to feel the ground."""
+        """Gap [m] at which contact begins as the riser comes down."""
         ...
 
     @property

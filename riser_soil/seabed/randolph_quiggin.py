@@ -10,10 +10,11 @@ With z the penetration, D the diameter, zeta = z Kmax/D, x = |z - z0| Kmax/D sin
     bound, both ways      P <= e^min(0, -lambda_rep (1 - c d) + max(0, z - zm)/zm) P1(z)                     (5)
     decay in uplift       d = e^-((z0 - z)/(lambda_suc zm))                                                  (6)
 
-zm is the largest penetration of all; s and c, 0 to 1, say how much suction the next uplift can find and how whole the
-clay is. Both are 1 at first touch, decay by (6) and are 0 after the pipe has left the ground; s recovers to P/P1 where
-the pipe is pressed again, c by penetrating beyond zm. (3) with P0 + f_suc Pu in place of S is the usual form
-P0 - x/(S/Pu(z0) + x) S, and (4) from the origin is (2). The soil's buoyancy adds f_b gamma' A(z), A the area displaced.
+zm is the largest penetration of all; s and c, 0 to 1, are the share of suction available at the next uplift and the
+intactness of the clay. Both are 1 at first touch, decay by (6) and are 0 after the pipe has left the ground; s recovers
+to P/P1 where the pipe is pressed again, c by penetrating beyond zm. (3) with P0 + f_suc Pu in place of S is the usual
+form P0 - x/(S/Pu(z0) + x) S, and (4) from the origin is (2). The soil's buoyancy adds f_b gamma' A(z), A the area
+displaced.
 
 Certainty. Read in an extract of the manual of a program with the model (OrcaFlex): su(z), Nc with its square root (1),
 f_suc as the ratio of suction to Pu, zeta, the start (z0, P0) of an episode, the order of the modes, no force out of

@@ -119,7 +119,7 @@ class Soil:
         )
 
     def _answer(self, state: State) -> tuple[Array, StressUpdate]:
-        """Strain increment (n, 6) of a trial state and the law's answer; kept for the state asked last, whose arrays
+        """Strain increment (n, 6) of a trial state and the law's answer; kept for the last state, whose arrays
         must not change then.
         """
         if self._asked is None or self._asked[0] is not state:
@@ -128,7 +128,7 @@ class Soil:
         return self._asked[1:]
 
     def _plastic_strain(self) -> Array:
-        """Equivalent plastic strain (n,), 0 of a law that knows none."""
+        """Equivalent plastic strain (n,), 0 for a law without plasticity."""
         history, columns = self._found.history, self.law.columns
         return history[:, columns.index(PLASTIC_STRAIN)] if PLASTIC_STRAIN in columns else np.zeros(len(history))
 

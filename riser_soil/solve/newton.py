@@ -42,11 +42,10 @@ class NewtonSettings:
     system's lever.
 
     floor [N]: the norm that counts as zero, for round-off of a scene whose forces all vanish.
-    reuse: an iteration that leaves less than this share of the residual hands its factorised tangent on to the next of
+    reuse: an iteration that leaves less than this share of the residual leaves its factorised tangent to the next of
     the same step (Shamanskii's method), as long as each leaves less than this share: two or three such iterations cost
     less than one with its own tangent. Only in time steps without contact, which start near their end: contact has
-    corners, and an equilibrium may be far away.
-    least_iterations: before a residual counts as small.
+    corners, and an equilibrium may be far away. least_iterations: before a residual counts as small.
     """
 
     tolerance: float
@@ -203,7 +202,7 @@ class Newton:
 
     @property
     def _least_iterations(self) -> int:
-        """A motion that its guess alone carries on would keep its errors."""
+        """A motion that continues by its first guess alone would keep its errors."""
         return max(self.settings.least_iterations, int(self._starts_near))
 
     @property

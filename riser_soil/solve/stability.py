@@ -4,9 +4,9 @@ The negative pivots of a factorisation are counted. Entries of the tangent K and
 about eps. Such an error lies between -B and B, the diagonal matrix B_ii = eps d_i sum_j |K_ij|/d_j with any d > 0, as
 what remains of B is then diagonally dominant, once scaled by d. With d = sqrt(|K_ii|) the bound does not depend on
 units. The count is that of K + B: what it finds is certain, and what it misses lies above -B; that of K - B also finds
-the doubtful ones. For a strut of n equal elements with hinged ends that is a load above P_cr by less than 0.7 eps n^4
-of it, or by less than 4 eps (n/pi)^2 EA/P if that is more and the strut lies along no axis of the dofs: 2e-4 for n =
-1000, and 1e-3 for EA/P = 1e7. A strut with a free end counts as one twice as long.
+the doubtful ones. For a strut of n equal elements with hinged ends loads are doubtful above P_cr by less than 0.7 eps
+n^4 of it, or by less than 4 eps (n/pi)^2 EA/P if that is more and the strut lies along no axis of the dofs: 2e-4 for n
+= 1000, and 1e-3 for EA/P = 1e7. A strut with a free end counts as one twice as long.
 
 A turn t of the whole riser that its supports leave free has no stiffness where the loads don't tell one direction from
 another, and what Newton's tolerance leaves of the residual makes a small one of either sign. As K t = 0, prescribing

@@ -19,7 +19,7 @@ LEVELS = 20
 class Control(Protocol):
     """Step size control: gives the end of the next step. Times in s; in a static stage load factors.
 
-    judges_error: whether it asks for the local error of each step.
+    judges_error: whether it needs the local error of each step.
     """
 
     end: float

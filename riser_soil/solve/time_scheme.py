@@ -66,7 +66,7 @@ class Scheme(Protocol):
         ...
 
     def balanced_at(self, before: State, end: State, dt: float) -> State:
-        """Where in the step forces are asked for: at its end, or at another state that follows from the end."""
+        """Where in the step forces are evaluated: at its end, or at another state that follows from the end."""
         ...
 
     def past(self, start: Forces | None) -> Array | None:

@@ -56,7 +56,7 @@ class TimeStepper:
 
     before: the accepted state that the next step starts from, its increments zero; its rates leave out what contact
     adds to them (see `time_scheme`). now: the same state as the riser moves; energy: stored in it [J].
-    largest_gain: share of the energy in motion that a step may make out of nothing.
+    largest_gain: share of the kinetic energy that a step may create.
     """
 
     def __init__(
@@ -197,8 +197,8 @@ class TimeStepper:
         return AcceptedStep(control.target, control.dt, solution, cuts, self.system.energy(state), turned, braking)
 
     def _reject_energy_gain(self, step: AcceptedStep) -> None:
-        """A dynamic step that adds much to the energy in motion out of nothing is a root of the equations far from the
-        motion that it continues, or too long for it: NotConvergedError, so that it is cut.
+        """A dynamic step that creates much kinetic energy is a root of the equations far from the motion that it
+        continues, or too long: NotConvergedError, so that it is cut.
         """
         if not self.scheme.dynamic:
             return
