@@ -28,8 +28,8 @@ TOLERANCES = (3e-2, 1e-2, 3e-3, 1e-3)  # m
 
 
 @dataclass
-class Course(StatelessObserver):
-    """What the accepted steps of a stage tell of the riser."""
+class StepHistory(StatelessObserver):
+    """Tension and touchdown of the riser at the accepted steps of a stage."""
 
     assembly: Assembly
     t: list[float] = field(default_factory=list)
@@ -54,33 +54,33 @@ class Course(StatelessObserver):
         self.iterations = stepper.newton.iterations
 
 
-def course(*overrides: str, scene_file: Path = SCENE) -> Course:
+def step_history(*overrides: str, scene_file: Path = SCENE) -> StepHistory:
     """The last stage of a scene, without output times."""
     scene = read_scene(scene_file, ["output={}", *overrides])
     assembly = build(scene, MPI.COMM_SELF)
     before = State.at_rest(0.0, assembly.size)
     for stage in scene.stages:
-        seen = Course(assembly)
+        seen = StepHistory(assembly)
         before = run_stage(assembly, stage, before, seen, Timer.new())
     return seen
 
 
-def swing(time_step: float | str, *overrides: str) -> Course:
+def swing(time_step: float | str, *overrides: str) -> StepHistory:
     """The hose's swing by steps of one size, or `auto`."""
-    return course(f"stages.1.duration={DURATION}", f"stages.1.time_step={time_step}", *overrides)
+    return step_history(f"stages.1.duration={DURATION}", f"stages.1.time_step={time_step}", *overrides)
 
 
-def automatic(tolerance: float, *overrides: str) -> Course:
+def automatic(tolerance: float, *overrides: str) -> StepHistory:
     """The hose's swing by automatic steps."""
     return swing("auto", f"stages.1.tolerance={tolerance}", *overrides)
 
 
-def errors(seen: Course, reference: Course) -> tuple[float, float]:
+def errors(seen: StepHistory, reference: StepHistory) -> tuple[float, float]:
     """Root mean square in time of the errors in top tension [N] and touchdown arc [m]."""
     return _rms(seen, reference, "tension"), _rms(seen, reference, "touchdown")
 
 
-def _rms(seen: Course, reference: Course, name: str) -> float:
+def _rms(seen: StepHistory, reference: StepHistory, name: str) -> float:
     exact: Array = np.interp(seen.t, reference.t, getattr(reference, name))
     return float(np.sqrt(np.average((np.array(getattr(seen, name)) - exact) ** 2, weights=seen.dt)))
 
@@ -94,7 +94,7 @@ def report() -> None:
         _print(f"auto, tolerance {tolerance:g} m", automatic(tolerance), reference)
 
 
-def _print(name: str, seen: Course, reference: Course) -> None:
+def _print(name: str, seen: StepHistory, reference: StepHistory) -> None:
     tension, touchdown = errors(seen, reference)
     steps = f"{len(seen.t)} steps of {min(seen.dt):.3g} to {max(seen.dt):.3g} s, {seen.cuts} tried again"
     print(f"  {name:24s} {tension:6.3f} N {1e3 * touchdown:6.2f} mm {seen.iterations:6d} Newton iterations; {steps}")

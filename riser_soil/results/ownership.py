@@ -75,15 +75,15 @@ def refuse_together(folder: Path, force: bool, comm: Any) -> None:
 
 
 def prepare(folder: Path, force: bool) -> FolderLock:
-    """Makes the folder, or clears a previous run's files (and no others) out of it; the hold on it.
+    """Makes the folder, or clears a previous run's files (and no others) out of it; returns its lock.
 
     The old summary goes first, so that a kill in between cannot leave a folder that looks finished. The scene stays
     until there is another: it may be the one that is run.
     """
     refuse(folder, force)
     try:
-        claim = FolderLock(folder)
-        claim.clear()
+        lock = FolderLock(folder)
+        lock.clear()
         for name in NAMES:
             _refuse_foreign(folder / name)
         for name in NAMES:
@@ -91,7 +91,7 @@ def prepare(folder: Path, force: bool) -> FolderLock:
                 (folder / name).unlink(missing_ok=True)
     except OSError as err:
         raise _unusable(folder, err) from err
-    return claim
+    return lock
 
 
 def _unusable(folder: Path, err: OSError) -> RiserSoilError:

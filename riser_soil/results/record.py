@@ -63,7 +63,7 @@ class Recorder:
 
     def __init__(
         self,
-        claim: FolderLock,
+        lock: FolderLock,
         folder: Path,
         facts: RunFacts,
         arc: Array,
@@ -71,7 +71,7 @@ class Recorder:
         fields: tuple[str, ...],
     ) -> None:
         self.summary = Summary(facts)
-        self._claim, self._folder = claim, folder
+        self._lock, self._folder = lock, folder
         self._arc = arc
         self._fields = fields
         left_out = set(outputs.choices()) - set(fields)
@@ -107,14 +107,14 @@ class Recorder:
         Raises SceneError for an unknown field and for a folder that the run may not have (see `ownership`).
         """
         wanted = _check_fields(outputs.choices() if fields is None else fields)
-        claim = prepare(folder, force)
+        lock = prepare(folder, force)
         try:
             with _told_when_full(folder):
                 run_folder.write_atomically(folder / run_folder.SCENE, sealed(scene_text))
-                recorder = cls(claim, folder, facts, arc, soil_mesh, wanted)
+                recorder = cls(lock, folder, facts, arc, soil_mesh, wanted)
                 recorder.flush()
         except BaseException:
-            claim.release()
+            lock.release()
             raise
         return recorder
 
@@ -241,7 +241,7 @@ class Recorder:
         for frames in self._pictures:
             frames.close()
         self._series.close()
-        self._claim.release()
+        self._lock.release()
 
     @property
     def _pictures(self) -> list[XdmfFile]:

@@ -72,7 +72,7 @@ def in_waves(time_step: float, top: float, rho_inf: float = 0.8) -> Mapping:
 
 
 @dataclass
-class Told:
+class StageHistory:
     """A stage, step by step: end times, steps [s], energies [J], node positions (nn, 3), the riser at the last step."""
 
     t: list[float] = field(default_factory=list)
@@ -89,14 +89,14 @@ class Told:
         return self.last
 
 
-def tell(scene: Mapping | Scene) -> list[Told]:
+def stage_histories(scene: Mapping | Scene) -> list[StageHistory]:
     """Take all stages of a scene without files."""
     assembly = build(scene if isinstance(scene, Scene) else scene_from_mapping(scene), MPI.COMM_SELF)
-    before, told = State.at_rest(0.0, assembly.size), list[Told]()
+    before, told = State.at_rest(0.0, assembly.size), list[StageHistory]()
     for stage in assembly.scene.stages:
-        now = Told()
+        now = StageHistory()
 
-        def watch(stepper: TimeStepper, step: AcceptedStep, now: Told = now) -> None:
+        def watch(stepper: TimeStepper, step: AcceptedStep, now: StageHistory = now) -> None:
             now.t.append(step.t)
             now.dt.append(step.dt)
             now.cuts.append(step.cuts)

@@ -24,7 +24,7 @@ from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surround
 from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import solve, tangent
 from tests.support.driven_stage import built, take
-from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, static, tell
+from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, stage_histories, static
 from tests.support.sample_line import sample
 
 G, RHO = 9.81, 1025.0
@@ -195,7 +195,7 @@ def test_a_pendulum_of_a_rod_and_masses_keeps_time_and_energy(dimension: int) ->
         end="free",
         dimension=dimension,
     )
-    (told,) = tell(swing)
+    (told,) = stage_histories(swing)
     x = np.array([position[-1, 0] for position in told.position])
     crossings = [i for i, (a, b) in enumerate(pairwise(x)) if a > 0.0 >= b or a < 0.0 <= b]
     times = [told.t[i] + told.dt[i] * x[i] / (x[i] - x[i + 1]) for i in crossings]
@@ -210,8 +210,9 @@ def test_the_support_moves_what_sits_at_its_end(dimension: int) -> None:
     motion = {"end": {"harmonic": {"amplitude": [0.0, 0.0, amplitude], "period": period, "ramp": 1.0}}}
     ends = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(10.0, 0.0, 12.0)}
     soft = PIPE | {"EA": 1.0e6}
+    stage = dynamic(t, 0.1, motion=motion)
     bare, laden = (
-        tell(scene(dynamic(t, 0.1, motion=motion), attachments=attached, dimension=dimension, pipe=soft, **ends))[0].end
+        stage_histories(scene(stage, attachments=attached, dimension=dimension, pipe=soft, **ends))[0].end
         for attached in ([], [{"at": 20.0, "mass": mass}])
     )
     omega = 2.0 * np.pi / period

@@ -23,7 +23,7 @@ from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
 from tests.support.momentum import momentum
-from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, tell
+from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, stage_histories
 
 MIDPOINT: Mapping = {"midpoint": {}}
 PULSE = {
@@ -156,7 +156,7 @@ def spin_up(folder: Path, axis: Array, along: Array, dimension: int) -> tuple[Ar
         solver={"tolerance": 1e-9},
         riser={"initial": {"points": [[0.0, 0.0, 0.0], list(LENGTH * along)]}},
     )
-    told = tell(scene)[-1]
+    told = stage_histories(scene)[-1]
     tip, time, across = np.array(told.position)[:, -1], np.array(told.t), np.cross(axis, along)
     c, s = np.cos(hub_angle(time)), np.sin(hub_angle(time))
     x, y = tip @ along, tip @ across

@@ -37,7 +37,7 @@ from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built, take
 from tests.support.falling_pipe import FALL, Energies, flat, pinned, tilted
-from tests.support.riser_scenes import tell
+from tests.support.riser_scenes import stage_histories
 
 AVERAGE = {"newmark": {"beta": 0.25, "gamma": 0.5}}
 PAGE = Path(__file__).parents[2] / "docs" / "impact.md"
@@ -103,7 +103,7 @@ def test_automatic_steps_find_the_impact() -> None:
     """Before it steps are long; the impact, whose contact lasts about pi sqrt(m/k) = 3.4 ms, is as finely resolved as
     the tolerance asks. Its energy is still kept.
     """
-    coarse, fine = tell(automatic(2e-2))[0], tell(automatic(2e-3))[0]
+    coarse, fine = stage_histories(automatic(2e-2))[0], stage_histories(automatic(2e-3))[0]
     for told in (coarse, fine):
         assert max(told.dt[: len(told.dt) // 4]) > 5.0 * min(told.dt)
         assert sum(told.cuts) < 0.15 * len(told.dt)
@@ -115,10 +115,10 @@ def test_automatic_steps_find_the_impact() -> None:
 def test_a_pipe_that_lies_still_needs_no_cuts() -> None:
     """At rest on the floor no energy moves; what contact gives and takes within a step is none from nowhere."""
     for k, dt in ((1e6, 0.02), (1e8, 0.005)):
-        assert sum(tell(flat(k, dt))[0].cuts) == 0
+        assert sum(stage_histories(flat(k, dt))[0].cuts) == 0
     scene = flat(1e8, 0.1)
     scene["stages"][0] |= {"time_step": "auto"}
-    told = tell(scene)[0]
+    told = stage_histories(scene)[0]
     assert sum(told.cuts) < 15
     assert max(told.dt) > 0.05
 

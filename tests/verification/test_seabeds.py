@@ -15,7 +15,7 @@ from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
 from riser_soil.seabed.laws import LAWS
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import distance, prescribed, riser_scene, static, tell
+from tests.support.riser_scenes import distance, prescribed, riser_scene, stage_histories, static
 
 SCENES = Path(__file__).parents[1] / "scenes"
 W, SLOPE = 700.0, 2.0  # N/m, deg; steeper, the riser would be pushed at its start, and lie down beside its plane
@@ -48,7 +48,7 @@ def lying(
         solver={"tolerance": 1e-10},
         **more,
     )
-    return tell(scene)[-1].end
+    return stage_histories(scene)[-1].end
 
 
 def resting(found: RiserSnapshot) -> slice:

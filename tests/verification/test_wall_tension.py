@@ -13,7 +13,7 @@ from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import prescribed, riser_scene, static, tell
+from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
 
 G, RHO, OIL, L = 9.81, 1025.0, 850.0, 40.0
 OUTER, INNER, MASS = 0.3, 0.2, 120.0
@@ -31,7 +31,7 @@ def hanging(top: float, contents: Mapping | None = None, **more: Any) -> Mapping
 
 
 def settled(scene: Mapping) -> RiserSnapshot:
-    (stage,) = tell(scene)
+    (stage,) = stage_histories(scene)
     return stage.end
 
 
