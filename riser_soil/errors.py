@@ -55,7 +55,7 @@ class Interruption(KeyboardInterrupt):
 
     @property
     def exit_status(self) -> int:
-        """As shells have it."""
+        """Exit status by the convention of shells."""
         return 128 + self.number
 
     def __str__(self) -> str:

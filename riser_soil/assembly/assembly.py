@@ -78,7 +78,7 @@ class Assembly:
 
     @property
     def contacts(self) -> list[SoilContact | SeabedContact]:
-        """What the riser may touch."""
+        """Contact parts of the riser."""
         return [contact for contact in (self.soil_contact, self.seabed) if contact is not None]
 
     @property
@@ -108,8 +108,8 @@ class Assembly:
 
     @property
     def hanging(self) -> str:
-        """How the riser hangs whose first shape ends beyond its place: in a loop, or stretched and so steep that its
-        horizontal tension is less than a bend takes.
+        """Configuration of a riser whose initial shape ends beyond its prescribed position: in a loop, or stretched and
+        so steep that its horizontal tension is less than a bend takes.
         """
         ends = self.scene.riser.start, self.scene.riser.end
         points = [end.position for end in ends if isinstance(end, Support)]
@@ -128,7 +128,7 @@ class Assembly:
 
     @property
     def laying(self) -> StaticStage | None:
-        """What brings the end of a slack riser to its place before the scene's stages."""
+        """The stage that lays a slack riser: it moves the end to its prescribed position before the scene's stages."""
         end = self.scene.riser.end
         if self.slack == 0.0 or not isinstance(end, Support):
             return None
@@ -152,7 +152,7 @@ class Assembly:
         return stage, self._enter(stage, self.begun[stage.name])
 
     def state(self) -> Saved:
-        """What the motions follow from; fields and parts have states of their own."""
+        """The state of the prescribed motions; fields and parts have states of their own."""
         return dict(self.begun)
 
     def restore(self, saved: Saved) -> None:

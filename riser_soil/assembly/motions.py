@@ -42,7 +42,7 @@ def set_motions(line: Line, stage: Stage, vessels: Vessels | None, origins: Arra
 
 
 def end_positions(line: Line) -> Array:
-    """Of start and end now, (2, 3) [m], global axes."""
+    """Present positions of start and end, (2, 3) [m], global axes."""
     return np.stack([line.to_global(line.x[node]) for node in (0, -1)])
 
 

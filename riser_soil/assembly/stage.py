@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 def scheme_of(stage: Stage) -> Scheme:
-    """How the stage goes from one step to the next."""
+    """The time scheme of a stage."""
     if isinstance(stage, StaticStage):
         return Static()
     match stage.scheme:
@@ -92,7 +92,7 @@ def _factor(given: LoadScene, static: bool) -> Callable[[float], float]:
 def dynamic_parts(
     stage: DynamicStage, line: Line, elements: Elements, attachments: Sequence[PointAttachment] = ()
 ) -> list[Part]:
-    """What a riser has only in motion."""
+    """Parts of dynamic stages: inertia and damping."""
     parts = _inertia(line, elements, attachments)
     if isinstance(stage.scheme, MidpointScheme):
         from riser_soil.riser.midpoint_inertia import over_steps

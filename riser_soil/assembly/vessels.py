@@ -107,7 +107,7 @@ class Vessels:
 
 
 def _key(vessel: VesselScene) -> _Key:
-    """What makes a vessel another one."""
+    """Key that identifies a vessel."""
     return vessel.rao, vessel.reference, vessel.heading_deg
 
 

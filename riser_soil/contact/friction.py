@@ -30,8 +30,8 @@ class FrictionTraction(NamedTuple):
 
 
 class FrictionState(NamedTuple):
-    """Where a step begins: positions (ne, ng, d), directions along the ground (ne, ng, d, r), axial and, in space,
-    lateral; traction (ne, ng, d) on the riser.
+    """State at the start of a step: positions (ne, ng, d), directions along the ground (ne, ng, d, r), axial and, in
+    space, lateral; traction (ne, ng, d) on the riser.
     """
 
     position: Array
@@ -111,7 +111,7 @@ class CoulombFriction(LinePart):
         return float(np.sum(self.contact.share[elements] * per_length))
 
     def work(self, before: State, after: State) -> Work:
-        """What friction took out beyond the change of what it stores: never negative."""
+        """Energy dissipated by friction: its work less the change of the energy stored; never negative."""
         trial = self.line.trial(after)
         sliding, begun, at = self.evaluate(trial), self._friction_state(trial), self.evaluate(trial).elements
         moved = self.contact.evaluate(trial).position[at] - begun.position[at]
@@ -130,7 +130,7 @@ class CoulombFriction(LinePart):
         self._begun, self._slid = self._friction_state_at(trial, traction), self._slid + slid
 
     def _slide(self, trial: Trial, sliding: FrictionTraction) -> Array:
-        """What each station (m, ng) slides in the step beyond what the ground gives elastically [m]."""
+        """Plastic slip of each station (m, ng) in the step, beyond the elastic mobilisation [m]."""
         at = sliding.elements
         position, along, t_n = (values[at] for values in self._friction_state(trial))
         moved = self.contact.evaluate(trial).position[at] - position
@@ -140,7 +140,7 @@ class CoulombFriction(LinePart):
         return np.where(pressed, slid, 0.0)
 
     def slip(self) -> Array:
-        """How far the riser has slid over the ground so far, at its nodes (nn,) [m]: the length of its way, >= 0."""
+        """Accumulated slip of the riser over the ground at its nodes (nn,) [m], >= 0."""
         return self.contact.at_nodes(self._slid)
 
     def force_on_riser(self, state: State) -> Array:

@@ -108,7 +108,7 @@ def _leaving(arc: Array, share: Array, clearance: Array, force: Array, last: int
 
 
 def _edge(arc: Array, clearance: Array, last: int) -> float:
-    """Where the clearance vanishes beyond the last point that touches."""
+    """Arc length at which the clearance vanishes beyond the last point in contact."""
     if last == len(arc) - 1 or clearance[last] >= 0.0 or not np.isfinite(clearance[last + 1]):
         return float(arc[last])
     here, there = clearance[last], clearance[last + 1]
@@ -116,7 +116,7 @@ def _edge(arc: Array, clearance: Array, last: int) -> float:
 
 
 def _depth(share: Array, force: Array) -> Array:
-    """Of points (n,) from the free side on: how far behind the touchdown layer; see the module's text."""
+    """Depth of points (n,) behind the touchdown layer, counted from the free side; see the module's text."""
     pressing = np.maximum(force, 0.0)
     largest = np.maximum.accumulate(pressing)
     m = np.where(largest > 0.0, largest, 1.0)

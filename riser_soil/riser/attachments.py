@@ -51,7 +51,7 @@ def _shares(line: Line, attachments: Sequence[PointAttachment]) -> tuple[IntArra
 
 
 def split(line: Line, attachments: Sequence[PointAttachment]) -> tuple[list[PointAttachment], list[PointAttachment]]:
-    """Those along the line, and those at its two ends."""
+    """Attachments along the line, and those at its two ends."""
     ends = (0, 0.0), (line.length.size - 1, 1.0)
     sorted_out: tuple[list[PointAttachment], list[PointAttachment]] = ([], [])
     for attachment in attachments:

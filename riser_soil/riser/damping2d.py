@@ -41,7 +41,7 @@ class PlanarChange(NamedTuple):
 
 @njit
 def _move(at: PlanarCorotated, u: Vec2, w1: float, w2: float) -> PlanarChange:
-    """What changes when the nodes move by u = u2 - u1, in the element's axes, and turn by w_i."""
+    """Change of the configuration when the nodes move by u = u2 - u1, in the element's axes, and turn by w_i."""
     spin = u[1] / at.length
     return PlanarChange(u[0], spin, w1 - spin, w2 - spin)
 

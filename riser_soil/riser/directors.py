@@ -81,7 +81,7 @@ class PlanarOrientation:
         return np.asarray(_planar_geometric(self.tangent, F))
 
     def state(self) -> Saved:
-        """What `PlanarFrames.turn_of` makes the same turn of."""
+        """Arrays from which `PlanarFrames.turn_of` restores the orientation."""
         return {"angle": self.angle}
 
 
@@ -167,7 +167,7 @@ class SpatialOrientation:
         return _spatial_geometric(self.Rn, self.H, self.Theta, self.tangent, F)
 
     def state(self) -> Saved:
-        """What `SpatialFrames.turn_of` makes the same turn of, to the last bit."""
+        """Arrays from which `SpatialFrames.turn_of` restores the orientation, to the last bit."""
         return {"R": self.Rn, "increment": self.Theta}
 
 

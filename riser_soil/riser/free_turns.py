@@ -37,7 +37,7 @@ def _independent(motions: Array) -> Array:
 
 
 def unit_lengths(shape: tuple[int, ...], dofs: int, length: float) -> Array:
-    """What makes translations [m] and rotations comparable (nn, d + r): the line's length, and one."""
+    """Units that make translations [m] and rotations comparable (nn, d + r): the line's length, and one."""
     nodes, d = shape
     units = np.ones((nodes, dofs))
     units[:, :d] = length

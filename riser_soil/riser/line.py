@@ -282,7 +282,7 @@ class Line:
 
     @cached_property
     def _reach(self) -> dict[int, Array]:
-        """How far the end nodes take the others with them in a guess (nn, 1)."""
+        """Share of an end's motion that each node follows in a first guess (nn, 1)."""
         along = (self.arc / self.arc[-1])[:, None]
         return {0: (1.0 - along) ** 3, self.nodes - 1: along**3}
 

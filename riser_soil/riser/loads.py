@@ -115,7 +115,7 @@ class PointLoads(LinePart):
         return load.factor(t) * np.asarray(load.moment, dtype=float)
 
     def _conjugate(self, trial: Trial, node: int, moment: Array) -> Array:
-        """What the node's rotation dofs (r,) get of a moment in global axes."""
+        """Generalised forces on the node's rotation dofs (r,) of a moment in global axes."""
         if isinstance(trial.turn, SpatialOrientation):
             return np.asarray(trial.turn.H[node].T @ moment)
         return np.array([moment @ self.line.normal])

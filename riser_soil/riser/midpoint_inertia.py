@@ -144,7 +144,7 @@ class MidpointRotaryInertia(LinePart):
         return self.instant.blocks()
 
     def rates(self, state: State) -> Sequence[Array]:
-        """Of the directors, each (ne, 2, d), at the end of a step, as the midpoint rule has them."""
+        """Rates of the directors, each (ne, 2, d), at the end of a step of the midpoint rule."""
         return [director.rate(state.t, _turning(self.line, state.u)) for director in self._directors]
 
     def _step(self, trial: Trial) -> list[tuple[Secant, Array]]:

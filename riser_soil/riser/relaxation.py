@@ -30,7 +30,7 @@ class Relaxation(LinePart):
         line.nodal(forces.force)[...] += self.drag * self._shares(line.tributary_length) * line.nodal(state.u)
 
     def _shares(self, length: Array) -> Array:
-        """Of the drag, by node or element and dof of a node [m, m3]."""
+        """Shares of the drag, by node or element and dof of a node [m, m3]."""
         shares = np.repeat(length[:, None], self.line.ndof, axis=1)
         shares[:, self.line.dimension :] *= length[:, None] ** 2 / 12.0
         return shares

@@ -50,7 +50,8 @@ class HasNodalForces(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class SectionForces:
-    """What the line after a node exerts on the line before it, at nodes and in global axes: (nn, 3) or (nn,).
+    """Section forces and moments at nodes, exerted by the line after a node on the line before it, in global axes: (nn,
+    3) or (nn,).
 
     force N, moment N m; effective_tension N, positive in tension; bending_moment N m and curvature 1/m, magnitudes.
     curvature_beside (ne, 2): of the elements themselves at their ends; they differ where stiffnesses meet.

@@ -147,8 +147,7 @@ def _second_axis(tangent: Array) -> Array:
 
 
 def layout(arc: Array, outer_diameter: Array, unstressed: Curve, initial: Curve) -> Layout:
-    """What the line starts from: the unstressed shape's frames, and rotations that bring them to the initial
-    tangents.
+    """Layout of the line: the unstressed shape's frames, and rotations that bring them to the initial tangents.
 
     The first frame turns from the unstressed to the initial tangent by the smallest rotation, and along
     either curve frames turn by the smallest rotations, so the initial shape has no twist beyond that of its geometry. A

@@ -63,6 +63,6 @@ class EndSpring(LinePart):
         return Energy(strain=0.5 * self.stiffness * float(phi @ phi))
 
     def work(self, before: State, after: State) -> Work:
-        """Of the support's turning against the spring: the mean moment times the rotation."""
+        """Work of the support's rotation against the spring: the mean moment times the rotation."""
         rotation = self.line.frames.rotation(*(self.line.support(self.node, state.t) for state in (before, after)))
         return Work(external=0.5 * float((self.moment(before) + self.moment(after)) @ rotation))

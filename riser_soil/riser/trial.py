@@ -37,7 +37,7 @@ class Trial:
         self._kept: dict[Hashable, Any] = {}
 
     def once(self, key: Hashable, make: Callable[[Trial], Any]) -> Any:
-        """What a part makes of this trial under a key of its own; made when first asked for."""
+        """A value that a part computes at this trial, cached under a key of its own."""
         if key not in self._kept:
             self._kept[key] = make(self)
         return self._kept[key]

@@ -56,8 +56,8 @@ class Morison(LinePart):
         return Work(external=changed - resisted, inertial=changed)
 
     def _changed(self, first: Trial, last: Trial) -> float:
-        """What a change dm of the added mass, as it turns or gets wet, adds to its kinetic energy beyond the work of
-        its force.
+        """Change of kinetic energy by a change dm of the added mass, as it turns or gets wet, beyond the work of its
+        force.
 
         That force is m a, so the remainder is 1/2 v.dm v per length. Written in rates alone it does not depend on the
         accelerations, which are of first order only in generalised-alpha.

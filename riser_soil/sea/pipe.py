@@ -50,7 +50,7 @@ class Pipe:
         return self.line.length[:, None] * stations.GAUSS
 
     def _own(self, values: Array) -> Array:
-        """Of the elements' values, those where the stations are."""
+        """The elements' values at the stations."""
         return values if self._points is None else values[self._points.element]
 
     def _gather(self, values: Array) -> Array:

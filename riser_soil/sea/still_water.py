@@ -28,7 +28,7 @@ class StationLoads(Protocol):
         ...
 
     def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
-        """Of both groups, weighed and summed."""
+        """Derivatives of both groups, weighted and summed."""
         ...
 
     def momentum(self, trial: Trial, v: Array) -> Array:

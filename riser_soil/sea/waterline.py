@@ -36,7 +36,7 @@ def fine_points(n: int) -> FinePoints:
 
 @njit
 def _immersion(xi: float, lag: Array, z: Array, h: Array, at_stations: Array, L: float) -> float:
-    """Of one point; at_stations: heights of the element's stations (ng,)."""
+    """Immersion of one point; at_stations: heights of the element's stations (ng,)."""
     N = shape(xi, L)
     found = 0.0
     for g in range(lag.size):

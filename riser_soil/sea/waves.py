@@ -42,7 +42,9 @@ class WaveTrain(NamedTuple):
 
 
 class Heights(NamedTuple):
-    """Where linear theory is evaluated: height z (n,) from the mean surface [m], its gradient (n, 3) at the points."""
+    """Points at which linear theory is evaluated: height z (n,) from the mean surface [m], its gradient (n, 3) at the
+    points.
+    """
 
     z: Array
     gradient: Array

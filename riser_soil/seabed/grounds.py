@@ -16,7 +16,7 @@ from riser_soil.core.arrays import Array
 
 
 class Distance(NamedTuple):
-    """Of points (n, 3): value (n,) [m], gradient (n, 3), hessian (n, 3, 3) [1/m], None where it is zero."""
+    """Distance of points (n, 3): value (n,) [m], gradient (n, 3), hessian (n, 3, 3) [1/m], None where it is zero."""
 
     value: Array
     gradient: Array
@@ -27,7 +27,7 @@ class Ground(Protocol):
     """A surface that the riser may touch."""
 
     def distance(self, x: Array) -> Distance:
-        """Of points x (n, 3) in global axes."""
+        """Distance of points x (n, 3) in global axes."""
         ...
 
     @property

@@ -54,7 +54,7 @@ class NormalLaw(Protocol):
         ...
 
     def active(self, penetration: Array, history: Array) -> BoolArray:
-        """Where there may be a force, or something stored."""
+        """Points where there may be a force, or stored energy."""
         ...
 
     def update(self, penetration: Array, history: Array) -> SeabedResponse:

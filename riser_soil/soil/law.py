@@ -88,5 +88,5 @@ class SoilLaw(BaseModel, ABC):
         return None
 
     def bearing(self, width: float) -> Bearing | None:
-        """What the soil's surface bears on a strip of this width [m]; None without a limit."""
+        """Bearing capacity of the soil's surface under a strip of this width [m]; None without a limit."""
         return None

@@ -77,7 +77,7 @@ class Soil:
         kernels.add_stiffness(g.full, g.volume, g.weights, moduli, values["soil"])
 
     def energy(self, state: State) -> Energy:
-        """What the law stores of the change since the start, and potential of the unbalanced weight.
+        """Strain energy by the law since the start, and potential of the unbalanced weight.
 
         With σ0 the initial stress and εe the elastic strain since then, potential = ∫ σ0:εe − load·u, which is −∫ σ0:εp
         for a geostatic start: nothing, as long as K0 = 1.

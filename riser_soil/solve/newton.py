@@ -195,7 +195,7 @@ class Newton:
                 prescribe_free_turns(self.system, self._balanced, self.settings.tolerance * self._scale(self._forces))
 
     def _reusable(self) -> bool:
-        """Whether the tangent of the iteration before will do."""
+        """Whether the tangent of the previous iteration can be reused."""
         if not self._starts_near or len(self._norms) < 2:
             return False
         return self._norms[-1] < self.settings.reuse * self._norms[-2]

@@ -70,7 +70,7 @@ class Scheme(Protocol):
         ...
 
     def past(self, start: Forces | None) -> Array | None:
-        """What the forces at the start of the step, where needed, add to the local residual."""
+        """Contribution of the forces at the start of the step to the local residual."""
         ...
 
     def combine(self, forces: Forces, past: Array | None) -> Array:

@@ -184,7 +184,7 @@ class TimeStepper:
         return True
 
     def _account(self, solution: Solution, control: Control, cuts: int) -> AcceptedStep:
-        """What the step stores, dissipates and puts in."""
+        """Energy balance of the step: stored, dissipated and external."""
         state = solution.state
         turned = self.system.work(self.before, state)
         reactions = self.scheme.mean(*(self.system.reactions(f) for f in (self._forces, solution.forces)))
