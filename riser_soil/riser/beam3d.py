@@ -84,7 +84,7 @@ class SpatialChange(NamedTuple):
 
 
 class SpatialResponse(NamedTuple):
-    """What the variation of an element's forces needs besides its shape, in the element's frame."""
+    """Stresses and forces of an element in its own frame, as the variation of its forces needs them."""
 
     elastic: Strain  # what the stress comes from
     stress: Stress
@@ -177,7 +177,7 @@ def forces(chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, se
 
 @njit
 def move(at: Shape, u: Vec, w1: Vec, w2: Vec) -> SpatialChange:
-    """What changes, to first order, when the nodes move by u = u2 - u1 and spin by w1, w2."""
+    """First-order change of the configuration when the nodes move by u = u2 - u1 and spin by w1, w2."""
     spin = frame_spin(at.frame.length, u)
     spin1, spin2 = sub(w1, spin), sub(w2, spin)
     return SpatialChange(u[0], spin, spin1, spin2, rate(at.end1, spin1), rate(at.end2, spin2))
