@@ -19,7 +19,7 @@ UNEVEN, WAVE_IN_ELEMENTS = 4.0, 6.0
 
 
 def bending_warnings(assembly: Assembly) -> Iterator[str]:
-    """What an engineer would question about the elements' lengths, each with its numbers."""
+    """Warnings about the elements' lengths, each with its numbers."""
     yield from _long_in_boundary_layers(assembly)
     yield from _long_in_the_bend(assembly)
     yield from _uneven_neighbours(assembly)
@@ -47,7 +47,7 @@ def _long_in_boundary_layers(assembly: Assembly) -> Iterator[str]:
 
 
 def _boundary_layers(assembly: Assembly) -> Iterator[tuple[str, int]]:
-    """Where bending has boundary layers in the first shape, each with an element of the line."""
+    """Places of bending boundary layers in the initial shape, each with an element of the line."""
     line = assembly.line
     if line.start.rotation_fixed:
         yield "at the start", 0

@@ -136,7 +136,7 @@ def _stage(scene: Scene, stage: Stage) -> tuple[float, float, float, float]:
 
 
 def _due(duration: float, interval: float | None, steps: float) -> float:
-    """How often output is due: every step without an interval."""
+    """Number of outputs: every step without an interval."""
     return steps if interval is None else min(steps, duration / interval + 1.0)
 
 

@@ -25,7 +25,7 @@ POINTS, OFF_LEVEL = 20, 1e-3
 
 
 def ground_warnings(assembly: Assembly) -> Iterator[str]:
-    """What an engineer would question about the ground and contact with it, each with its numbers."""
+    """Warnings about seabed, soil and contact, each with its numbers."""
     yield from _penalty_against_soil(assembly)
     yield from _corner_against_weight(assembly)
     if assembly.soil is not None:

@@ -18,7 +18,7 @@ def built(scene: Scene) -> tuple[str, ...]:
 
 
 def left_out(scene: Scene) -> dict[str, str]:
-    """What is never built, imported or solved for, or not told of, each with its reason."""
+    """Parts and results that the scene leaves out, each with its reason."""
     told = {**_reasons(scene), "wall tension": no_wall_tension(scene)}
     return {name: reason for name, reason in told.items() if reason}
 

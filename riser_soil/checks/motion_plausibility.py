@@ -43,7 +43,7 @@ VelocitiesByEnd = dict[str, EndVelocities]
 
 
 def motion_warnings(scene: Scene) -> Iterator[str]:
-    """What an engineer would question about motions and time steps, each with its numbers."""
+    """Warnings about prescribed motions and time steps, each with its numbers."""
     for name, support in (("start", scene.riser.start), ("end", scene.riser.end)):
         if isinstance(support, Support):
             yield from _shocks(scene, name, support)
@@ -138,7 +138,7 @@ def _shock(path: str, name: str, unit: str, before: EndVelocities, after: EndVel
 
 
 def _courses(scene: Scene, name: str, support: Support) -> Iterator[VelocitiesByEnd]:
-    """What each stage does with an end."""
+    """Velocities of an end in each stage."""
     end, position, vessels = End(prescribed=True), np.array(support.position), vessels_of(scene)
     for stage in scene.stages:
         set_motion(end, name, position, stage, vessels)

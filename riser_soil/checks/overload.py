@@ -31,7 +31,7 @@ class Overload(NamedTuple):
 
 
 def overload(assembly: Assembly) -> str:
-    """Where a ground is loaded most, beyond what it bears, as the end of a message; empty where none is. Collective.
+    """The largest overload of the ground, as the end of a message; empty where there is none. Collective.
 
     A riser that sinks may yet be caught, as by firmer ground beside: this explains a failure and foretells none.
     """
@@ -73,6 +73,6 @@ def _limits(assembly: Assembly) -> Iterator[tuple[SoilContact | SeabedContact, f
 
 
 def _weight(assembly: Assembly) -> Array:
-    """Of the riser at the nodes (nn,) [N/m], downwards."""
+    """Weight of the riser at the nodes (nn,) [N/m], downwards."""
     weight = assembly.elements.weight
     return np.maximum(np.append(weight, weight[-1:]), np.append(weight[:1], weight))

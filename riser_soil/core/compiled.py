@@ -50,7 +50,9 @@ def fixed(n: int) -> tuple[int, ...]:
 
 
 def fingerprint(package: Path) -> str:
-    """Of all that compiled code depends on: sources of modules with kernels and of what they import, and versions."""
+    """Fingerprint of all that compiled code depends on: sources of modules with kernels and of what they import, and
+    versions.
+    """
     digest = hashlib.sha256(f"{numba.__version__} {platform.python_version()}".encode())
     for path, text in sorted(_sources(package).items()):
         digest.update(f"{path.relative_to(package)}\n{text}".encode())

@@ -73,7 +73,7 @@ class OutputQuantity(Generic[Seen]):
 
     @property
     def numbers(self) -> int:
-        """How many of each node, cell or instant."""
+        """Number of components per node, cell or instant."""
         return 3 if self.vector else 1
 
 

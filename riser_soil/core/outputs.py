@@ -182,7 +182,7 @@ def choices() -> tuple[str, ...]:
 
 
 def known(names: Iterable[str], has: Collection[str]) -> tuple[str, ...]:
-    """Those of the names whose needs are among what a run has."""
+    """The names of outputs whose needs a run meets."""
     unknown = {output.name for output in of_instant() if output.needs and output.needs not in has}
     return tuple(name for name in names if name not in unknown)
 

@@ -27,7 +27,7 @@ class Stateful(Protocol):
     """Owner of committed state, the same from one accepted step to the next."""
 
     def state(self) -> Saved:
-        """What is committed now, in arrays that do not change any more."""
+        """The committed state, in arrays that do not change any more."""
         ...
 
     def restore(self, saved: Saved) -> None:
@@ -47,7 +47,7 @@ def restore_all(owners: Mapping[str, Stateful], saved: Saved) -> None:
 
 
 def within(saved: Saved, name: str) -> Saved:
-    """What is saved of the owner of a name."""
+    """The saved state of the owner of a name."""
     first = f"{name}/"
     return {key[len(first) :]: value for key, value in saved.items() if key.startswith(first)}
 

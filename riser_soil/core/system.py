@@ -136,7 +136,7 @@ class System:
         return self.sum([float(reactions @ u[self.prescribed_dofs])])[0]
 
     def reactions(self, forces: Forces) -> Array:
-        """What the supports of this rank's prescribed dofs exert [N, N.m]."""
+        """Reactions at this rank's prescribed dofs [N, N.m]."""
         at = self.prescribed_dofs
         return forces.inertia[at] + forces.force[at] + forces.end[at]
 
@@ -147,7 +147,7 @@ class System:
             owner.commit(state)
 
     def describe(self, row: int) -> str:
-        """Where a row of the system sits; collective."""
+        """Description of a row's place, for messages; collective."""
         entries = np.flatnonzero(self.numbering.index == row)
         return next(filter(None, self.comm.allgather(self._describe(entries))), f"row {row}")
 

@@ -29,7 +29,7 @@ _MOMENT_COLOURS, _STRESS_COLOURS = "viridis", "YlOrBr"
 
 @dataclass(frozen=True, eq=False)
 class _Frame:
-    """What is drawn of one instant: arc (nn,) m, axis (nn, 3) m, moment (nn,) N.m, touchdown point (3,) m.
+    """Data of one picture: arc (nn,) m, axis (nn, 3) m, moment (nn,) N.m, touchdown point (3,) m.
 
     Where nothing touches, the riser's lowest point stands in for the touchdown point, and its arc is nan.
     """

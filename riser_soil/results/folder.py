@@ -36,7 +36,7 @@ def write_atomically(path: Path, content: str | bytes) -> None:
 
 
 def draft_of(path: Path) -> Path:
-    """Where a file of the folder is written before it takes its place."""
+    """Path at which a file of the folder is written before it is renamed."""
     workshop = path.parent / _WORKSHOP
     workshop.mkdir(exist_ok=True)
     return workshop / path.name

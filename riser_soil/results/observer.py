@@ -250,7 +250,7 @@ def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
 
 
 def elastic_residual(assembly: Assembly, stepper: TimeStepper) -> Array:
-    """Of the elements (ne, 2 ndof), less what follows from strain rates."""
+    """Residual of the elements (ne, 2 ndof) without viscous forces."""
     parts = _acting(stepper.system.model)
     residual = element_residual(assembly.line, parts.within, stepper.now)
     viscous = viscous_residual(assembly.line, parts.viscous, stepper.now)
@@ -284,7 +284,7 @@ def _contact_force(assembly: Assembly, state: State) -> Array:
 
 
 def facts(assembly: Assembly) -> RunFacts:
-    """What is known of a run before its first step; collective."""
+    """Facts about a run before its first step; collective."""
     return RunFacts(
         title=assembly.scene.title,
         version=__version__,

@@ -41,7 +41,7 @@ def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class TightestBend:
-    """Where and when the pipe is bent most for what is allowed: radius m, arc m, t s or load factor."""
+    """The tightest bend relative to the allowable radius: radius m, arc m, t s or load factor."""
 
     utilisation: float = 0.0
     radius: float = math.inf
@@ -97,7 +97,7 @@ class StageTally:
 
     @property
     def method(self) -> str | None:
-        """What it took to find the equilibria of a static stage."""
+        """The method by which the equilibria of a static stage were found."""
         if self.kind != "static":
             return None
         if self.relaxations:
@@ -118,7 +118,7 @@ class StageTally:
 
     @property
     def warnings(self) -> list[str]:
-        """What is doubtful about the stage's results, with numbers and a remedy."""
+        """Warnings about the stage's results, with numbers and a remedy."""
         off = energy_warnings(self.energy, *self.worst_residual) if self.kind == "dynamic" else ()
         return [*self.tightest.warnings("s" if self.kind == "dynamic" else "of the load"), *self.implausible, *off]
 

@@ -59,7 +59,7 @@ class TouchdownZone:
 
 
 def joined(intervals: Sequence[ContactInterval], near: float) -> list[ContactInterval]:
-    """Those in order of the arc length, made one where one ground ends and the next begins within `near` [m]."""
+    """The intervals in order of the arc length, merged where one ground ends and the next begins within `near` [m]."""
     found: list[ContactInterval] = []
     for this in sorted(intervals):
         if found and this.start - found[-1].end <= near:
@@ -70,7 +70,7 @@ def joined(intervals: Sequence[ContactInterval], near: float) -> list[ContactInt
 
 
 def touchdown_arc(intervals: Sequence[ContactInterval], line: Line) -> float:
-    """As `contact.touchdown` has it for one ground; nan where nothing touches."""
+    """Arc length of the touchdown point [m], as `contact.touchdown` gives it for one ground; nan without contact."""
     if not intervals:
         return float("nan")
     last = intervals[-1]
@@ -78,7 +78,7 @@ def touchdown_arc(intervals: Sequence[ContactInterval], line: Line) -> float:
 
 
 def position_at(line: Line, state: State, arc: float) -> Array:
-    """Of the riser's axis (3,) [m], global axes, at an arc length [m]; nan where that is."""
+    """Position of the riser's axis (3,) [m], global axes, at an arc length [m]; nan where that is."""
     if np.isnan(arc):
         return np.full(3, np.nan)
     e = int(np.clip(np.searchsorted(line.arc, arc) - 1, 0, line.length.size - 1))

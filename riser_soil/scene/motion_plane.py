@@ -59,7 +59,7 @@ def _ways(scene: Scene) -> Iterator[tuple[Path, MotionKind]]:
 
 
 def _modes(scene: Scene, path: Path, vessel: Vessel, among: tuple[str, ...]) -> Iterator[tuple[Path, Vector]]:
-    """What a vessel does in the scene's waves."""
+    """Modes in which a vessel responds to the scene's waves."""
     waves = scene.water.waves if scene.water else None
     if waves:
         moving = vessel.table.moving(math.radians(waves.direction_deg - vessel.heading_deg))

@@ -120,7 +120,7 @@ def _vectors(scene: Scene) -> Iterator[tuple[Path, Vector]]:
 
 
 def _flows(scene: Scene) -> Iterator[tuple[Path, Vector]]:
-    """What moves the water."""
+    """Directions of current and waves."""
     current = scene.water.current if scene.water else None
     for n, (_, ux, uy) in enumerate(current.profile if current else ()):
         yield ("water", "current", "profile", n), (ux, uy, 0.0)

@@ -94,7 +94,7 @@ def _dynamic(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
 
 
 def _midpoint(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
-    """What the midpoint rule can't do: it has no forces or rotations at the end of a step alone."""
+    """Limits of the midpoint rule, which has no forces or rotations at the end of a step only."""
     if not isinstance(stage.scheme, MidpointScheme):
         return
     path, remedy = ("stages", n, "scheme"), "choose another scheme"
