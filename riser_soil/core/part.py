@@ -45,7 +45,7 @@ class State:
 
 @dataclass(frozen=True)
 class Weights:
-    """How the time scheme combines the groups, and how rates follow increments (dv/du [1/s], da/du [1/s2])."""
+    """Weights of the groups in the time scheme, and how rates follow increments (dv/du [1/s], da/du [1/s2])."""
 
     inertia: float
     force: float
@@ -119,7 +119,7 @@ class Work:
 
 @dataclass(frozen=True)
 class Traits:
-    """What a part is; declared here, never guessed from its name, its blocks or its methods.
+    """Properties of a part, declared here, never guessed from its name, its blocks or its methods.
 
     groups: letters of those that its forces are in. In E they may jump from step to step, as where the riser lands.
     symmetric: its tangent.
@@ -203,7 +203,7 @@ class Field(Protocol):
         ...
 
     def describe(self, entry: int) -> str:
-        """Where a local entry sits, for messages."""
+        """Description of a local entry's place, for messages."""
         ...
 
 
@@ -244,7 +244,7 @@ class LineField(Field, Protocol):
 
 @dataclass(eq=False)
 class Model:
-    """What a stage solves: the lines, the parts that act on them, and the other owners of dofs, such as the soil."""
+    """The model of a stage: the lines, the parts that act on them, and the other owners of dofs, such as the soil."""
 
     lines: Sequence[LineField]
     parts: Sequence[Part] = ()
