@@ -1,8 +1,8 @@
 """Signal handling: Ctrl-C and SIGTERM end a run between two steps, never within a record.
 
-Python calls a signal's handler between two of its own instructions, so an exception out of it can come anywhere. Alone,
-a process lets it come at once, unless it is accepting or recording a step. Several ranks would wait for one another for
-ever if each left its own loop: they agree on the step after which all leave. A second signal is obeyed at once.
+Python calls a signal's handler between two of its own instructions, so its exception can be raised anywhere. A single
+process raises it at once, unless it is accepting or recording a step. Several ranks would deadlock if each left its
+own loop: they agree on the step after which all leave. A second signal takes effect at once.
 """
 
 from __future__ import annotations

@@ -55,8 +55,8 @@ class SuctionLaw:
         return np.full((*shape, 1), np.inf)
 
     def active(self, penetration: Array, history: Array) -> BoolArray:
-        stuck = (-penetration < self.reach) & (history[..., 0] < self.reach)
-        return self.penalty.active(penetration, history) | stuck
+        in_tension = (-penetration < self.reach) & (history[..., 0] < self.reach)
+        return self.penalty.active(penetration, history) | in_tension
 
     def update(self, penetration: Array, history: Array) -> SeabedResponse:
         pushed, w = self.penalty.update(penetration, history[..., :0]), self._opening(penetration)

@@ -1,7 +1,7 @@
 """Optional roles of parts in the time stepping: adaptive sparsity pattern, predictor, momentum correction.
 
-A role that is declared without its methods, such as one that is misspelt, is an error at the stage's start, and so is
-one that is there and not declared. Parts that keep something from step to step are `Stateful`, see `saved_state`.
+A role that is declared without its methods, such as a misspelt one, is an error at the stage's start, and so are the
+methods of a role that is not declared. Parts that keep something from step to step are `Stateful`, see `saved_state`.
 """
 
 from __future__ import annotations
