@@ -9,9 +9,9 @@ from typing import Protocol
 from riser_soil.assembly import Assembly
 from riser_soil.assembly.stage import scheme_of, times_to_hit
 from riser_soil.core.part import Model, State
-from riser_soil.core.roles import Adaptive, with_role
-from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all, within
-from riser_soil.core.system import System, Timer
+from riser_soil.core.roles import Adaptive, owners, with_role
+from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back, within
+from riser_soil.core.system import Clock, System
 from riser_soil.errors import SolveError
 from riser_soil.interruption import check, uninterrupted
 from riser_soil.scene.stages import Stage, StaticStage
@@ -127,15 +127,9 @@ def _take(
 
 
 def _restore(system: System, saved: Saved) -> None:
-    restore_all(_owners(system.model), saved)
+    give_back(owners(system.model), saved)
     if with_role(system.model.parts, Adaptive):
         system.renew_pattern()
-
-
-def _owners(model: Model) -> dict[str, Stateful]:
-    """Fields and parts that keep something from step to step."""
-    fields: dict[str, Stateful] = {f"fields/{field.name}": field for field in model.fields}
-    return fields | {f"parts/{part.name}": part for part in with_role(model.parts, Stateful)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,7 +145,7 @@ class StageRun:
     def state(self) -> Saved:
         """All that the stage is resumed from, see `saved_state`."""
         own: dict[str, Stateful] = {"assembly": self.assembly, "stepper": self.stepper}
-        return gathered(_owners(self.stepper.system.model) | own | self.listeners)
+        return gathered(owners(self.stepper.system.model) | own | self.told)
 
     @property
     def listeners(self) -> dict[str, Stateful]:

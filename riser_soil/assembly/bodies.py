@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,56 +22,58 @@ if TYPE_CHECKING:
     from riser_soil.sea.wetting import WaterSurface, Wetting
 
 
-class Body(Protocol):
-    """A body with hydrodynamic loads, at stations (ne, ng); forces and masses per length, for single modules as they
-    are.
-    """
-
-    @property
-    def pipe(self) -> Pipe:
-        """Its stations."""
-        ...
-
-    @property
-    def drags(self) -> bool:
-        """Whether it has drag."""
-        ...
-
-    @property
-    def adds_mass(self) -> bool:
-        """Whether it has added mass."""
-        ...
-
-    @property
-    def still(self) -> Resistance:
-        """What still water does to it."""
-        ...
-
-    @property
-    def mass(self) -> Array:
-        """Added mass (ne, 2), normal and tangential."""
-        ...
-
-    @property
-    def displaced(self) -> Array:
-        """Mass of the water in its place (ne,)."""
-        ...
-
-    def wetting(self, surface: WaterSurface) -> Wetting:
-        """How wet its stations are."""
-        ...
-
-    def dry(self, surface: WaterSurface, gravity: float) -> LostBuoyancy:
-        """What of it is dry."""
-        ...
-
-
 @dataclass(frozen=True)
-class PipeInWater:
-    """The pipe, in water of density rho."""
+class Body(ABC):
+    """Something on the line in water of density rho [kg/m3], at stations (ne, ng); forces and masses are per length,
+    those of single modules as they are.
+    """
 
     rho: float
     line: Line
+
+    @property
+    @abstractmethod
+    def pipe(self) -> Pipe:
+        """Its stations."""
+
+    @property
+    @abstractmethod
+    def drags(self) -> bool:
+        """Whether it has drag."""
+
+    @property
+    @abstractmethod
+    def adds_mass(self) -> bool:
+        """Whether it has added mass."""
+
+    @property
+    @abstractmethod
+    def still(self) -> Resistance:
+        """What still water does to it."""
+
+    @property
+    @abstractmethod
+    def mass(self) -> Array:
+        """Added mass (ne, 2), normal and tangential."""
+
+    @property
+    @abstractmethod
+    def displaced(self) -> Array:
+        """Mass of the water in its place (ne,)."""
+
+    @abstractmethod
+    def wetting(self, surface: WaterSurface) -> Wetting:
+        """How wet its stations are."""
+
+    @abstractmethod
+    def dry(self, surface: WaterSurface, gravity: float) -> Dry:
+        """What of it is dry."""
+
+
+@dataclass(frozen=True)
+class PipeInWater(Body):
+    """The pipe."""
+
     elements: Elements
 
     @cached_property
@@ -117,12 +120,10 @@ class PipeInWater:
 
 
 @dataclass(frozen=True)
-class ModulesInWater:
-    """Modules on the line, each with a volume or a drag area, in water of density rho."""
+class ModulesInWater(Body):
+    """Modules, each with a volume or a drag area."""
 
-    rho: float
-    line: Line
-    modules: Sequence[PointAttachment]
+    modules: Sequence[Attachment]
 
     @cached_property
     def pipe(self) -> Pipe:

@@ -78,7 +78,6 @@ def soil_contact_of(
         Penalty(stiffness, smoothing(settings, scales, "soil", stiffness)),
         footprint=FOOTPRINT * outer_radius,  # also where the axis touches: a single point finds no balance on a kink
         along=line.direction[:2],
-        active=line.active,
     )
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
@@ -14,35 +13,9 @@ from riser_soil.contact.law import Penalty
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
+from riser_soil.riser.line import Line
 
 SOIL = "contact.soil"
-
-
-class RiserNodes(Protocol):
-    """The riser's nodes for contact detection; nn nodes in d = 2 or 3 dimensions.
-
-    arc (nn,) [m]. basis (3, d): the riser's axes in global ones. translation_dofs (nn, d): local numbers.
-    """
-
-    @property
-    def offset(self) -> int: ...
-
-    @property
-    def size(self) -> int: ...
-
-    @property
-    def arc(self) -> Array: ...
-
-    @property
-    def basis(self) -> Array: ...
-
-    @property
-    def translation_dofs(self) -> IntArray: ...
-
-    @property
-    def tributary_length(self) -> Array: ...
-
-    def positions3(self, state: State) -> Array: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +65,6 @@ class ContactState:
     entry for each ground.
     """
 
-    state: State
     points: ContactPoints
     facet: IntArray
     gap: Array
@@ -108,29 +80,29 @@ class ContactDetection:
     """
 
     def __init__(
-        self, riser: RiserNodes, radius: Array, points: ContactPoints, law: Penalty, soil: DeformedSurface, near: float
+        self, line: Line, radius: Array, points: ContactPoints, law: Penalty, soil: DeformedSurface, near: float
     ) -> None:
-        self._riser, self._radius, self._points = riser, radius, points
+        self._line, self._radius, self._points = line, radius, points
         self._law, self._soil, self._near = law, soil, near
 
     def detect(self, state: State) -> ContactState:
         """Gaps at a state, and forces where the riser touches."""
-        x, surface = self._riser.positions3(state), self._soil.deformed(state)
+        x, surface = self._line.positions3(state), self._soil.deformed(state)
         points = self._points.of_chosen(x[:, 2] - self._radius < surface[:, 2].max() + self._near)
         facet, xi = self._soil.locate(x[points.node, :2] + points.offset, surface)
         ground = heights(facet, xi, self._soil.facets, surface)
         gap = x[points.node, 2] - self._radius[points.node] - ground
         at = np.flatnonzero(gap < self._law.smoothing)
-        return ContactState(state, points, facet, gap, surface, self._touch(points, facet, gap, surface, at, xi[at]))
+        return ContactState(points, facet, gap, surface, self._touch(points, facet, gap, surface, at, xi[at]))
 
     def _touch(
         self, points: ContactPoints, facet: IntArray, gap: Array, surface: Array, at: IntArray, xi: Array
     ) -> ActiveContacts:
         node, below = points.node[at], facet[at]
         forms, H = gap_forms(below, xi, self._soil.facets, surface)
-        forms = np.concatenate((forms[:, :, :3] @ self._riser.basis, forms[:, :, 3:]), axis=2)
-        rows = np.hstack((self._riser.translation_dofs[node], self._soil.facet_dofs(below)))
-        return ActiveContacts(self._law, node, below, points.length[at], -gap[at], rows, forms, H)
+        forms = np.concatenate((forms[:, :, :3] @ self._line.basis, forms[:, :, 3:]), axis=2)
+        rows = np.hstack((self._line.translation_dofs[node], self._soil.facet_dofs(below)))
+        return Touching(self._law, node, below, points.length[at], -gap[at], rows, forms, H)
 
 
 @njit

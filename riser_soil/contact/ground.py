@@ -3,40 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from riser_soil.contact.pairing import FacetSearch
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import State
+from riser_soil.soil.surface import SoilTop
 
 ASPECT = (
     1.618  # the golden ratio: sides of facets, also diagonals of simple grids, miss all four points of a node
 )
-
-
-class SoilSurface(Protocol):
-    """The top of the soil.
-
-    points (np, 3): undeformed [m]. facets (nf, 4 or 6): indexes into points, ordered as in `facets`.
-    committed (np, 3): displacement accepted so far [m]. offset: where its dofs, x, y, z of each point, begin.
-    """
-
-    @property
-    def offset(self) -> int: ...
-
-    @property
-    def size(self) -> int: ...
-
-    @property
-    def points(self) -> Array: ...
-
-    @property
-    def facets(self) -> IntArray: ...
-
-    @property
-    def committed(self) -> Array: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +46,7 @@ class ContactPoints:
 class DeformedSurface:
     """The deformed surface: its facets, and the dofs of their nodes."""
 
-    def __init__(self, surface: SoilSurface) -> None:
+    def __init__(self, surface: SoilTop) -> None:
         self._surface = surface
         self._pairing = FacetSearch(surface.points, surface.facets)
         self.facets = np.ascontiguousarray(surface.facets, dtype=np.int64)

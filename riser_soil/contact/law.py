@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -31,8 +32,8 @@ class Penalty:
 
     stiffness: float
     smoothing: float = 0.0
-    columns: tuple[str, ...] = ()
-    capacity: float = math.inf
+    columns: ClassVar[tuple[str, ...]] = ()
+    capacity: ClassVar[float] = math.inf
 
     def force(self, penetration: Array) -> Array:
         """f [N/m], same shape as the penetration [m]."""

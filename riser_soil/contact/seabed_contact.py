@@ -7,16 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.landing import landing_predictor
+from riser_soil.contact.lying import Lying, LyingContact
 from riser_soil.contact.station_forces import StationForces
-from riser_soil.contact.touchdown import ContactInterval, contact_intervals, touchdown
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
 from riser_soil.core.roles import Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.trial import Trial
 from riser_soil.seabed.grounds import Distance, Ground
@@ -56,7 +54,7 @@ class StationContact(NamedTuple):
     touching: ContactElements
 
 
-class SeabedContact(LinePart):
+class SeabedContact(LyingContact):
     """Part "seabed": force per length of riser by its penetration into the ground, in group E.
 
     line: the riser's field. radius (ne,): distance [m] from the axis to the line that touches, 0 for the axis itself.
@@ -77,9 +75,8 @@ class SeabedContact(LinePart):
         rule: stations.QuadratureRule = stations.THREE_POINTS,
         covered: CoveredBySoil | None = None,
     ) -> None:
-        super().__init__(line)
-        self.ground, self.law = ground, law
-        self._radius, self._covered = radius, covered
+        super().__init__(line, law)
+        self.ground, self._radius, self._covered = ground, radius, covered
         self.at = stations.stations(line.length, rule)
         self._forces = StationForces(line, self.at)
         self.share = line.length[:, None] * rule.weights
@@ -171,6 +168,8 @@ class SeabedContact(LinePart):
 
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m]: the stations' forces, shared linearly by two nodes."""
+        if not self.active:
+            return np.zeros(self.line.nodes)
         touching = self.evaluate(self.line.trial(state)).touching
         return self.at_nodes(self._at_stations(touching.elements, touching.force))
 
@@ -180,55 +179,32 @@ class SeabedContact(LinePart):
         total = np.append(shares[:, 0], 0.0) + np.append(0.0, shares[:, 1])
         return np.asarray(total / self.line.tributary_length)
 
-    def penetration(self, state: State) -> Array:
-        """Penetration (nn,) [m] of the underside at the nodes, 0 above the ground."""
-        if not self.line.active:
-            return np.zeros(self.line.nodes)
-        return np.maximum(0.0, -self._clearance(self.line.trial(state)) - self.law.start)
-
     def depth(self, state: State) -> Array:
         """The same: this ground is where it lay at first."""
         return self.penetration(state)
 
     def max_penetration(self, state: State) -> float:
         """Deepest penetration of a station [m], >= 0: an error where the ground is rigid."""
-        return max(0.0, float(self.evaluate(self.line.trial(state)).penetration.max())) if self.line.active else 0.0
+        return max(0.0, float(self.evaluate(self.line.trial(state)).penetration.max())) if self.active else 0.0
 
     def force_on_riser(self, state: State) -> Array:
         """Sum of the contact forces on the riser (3,) [N], global axes."""
-        if not self.line.active:
+        if not self.active:
             return np.zeros(3)
         touching = self.evaluate(self.line.trial(state)).touching
         per_station = self.share[touching.elements][..., None] * touching.resistance
         return np.asarray(-self.line.basis @ per_station.sum(axis=(0, 1)))
 
-    def touchdown_arc(self, state: State) -> float:
-        """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""
-        if not self.line.active:
-            return float("nan")
-        return touchdown(*self._contact_along_line(state))
-
-    def contact_intervals(self, state: State) -> list[ContactInterval]:
-        """Where the riser lies on the seabed, from its start on."""
-        return contact_intervals(*self._contact_along_line(state)) if self.line.active else []
-
-    def _contact_along_line(self, state: State) -> tuple[Array, Array, Array, Array]:
-        """Arc, share of the length, clearance and force per length of the stations, all (ne ng,)."""
+    def lying(self, state: State) -> Lying:
+        """At the stations, ne ng points."""
         found = self.evaluate(self.line.trial(state))
         force = self._at_stations(found.touching.elements, found.touching.force)
-        return self._arc.ravel(), self.share.ravel(), -found.penetration.ravel() - self.law.start, force.ravel()
+        clearance = -found.penetration.ravel() - self.law.start
+        return Lying(self._arc.ravel(), self.share.ravel(), clearance, force.ravel())
 
-    def predict(self, guess: State) -> Array:
-        """Increments of a first guess that lands, see `landing`."""
-        if not self.line.active:
-            return guess.u
-        here, there = self.line.trial(State.at_rest(guess.t, guess.u.size)), self.line.trial(guess)
-        heights = self.line.translation_dofs[:, -1]
-        return landing_predictor(guess, heights, self._clearance(here), self._clearance(there), self.law.start)
-
-    def _clearance(self, trial: Trial) -> Array:
+    def clearance(self, state: State) -> Array:
         """Gap (nn,) of the nodes less that at which the force begins [m]."""
-        value = self._distance(self.line.to_global(trial.x)).value
+        value = self._distance(self.line.to_global(self.line.trial(state).x)).value
         return value - larger_beside(self._radius) - self.law.start
 
     def state(self) -> Saved:

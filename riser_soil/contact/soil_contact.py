@@ -12,19 +12,22 @@ from riser_soil.contact.detection import (
     ActiveContacts,
     ContactDetection,
     ContactState,
-    RiserNodes,
+    Touching,
     add_blocks,
     add_shares,
 )
 from riser_soil.contact.gap import heights
-from riser_soil.contact.ground import ASPECT, ContactPoints, DeformedSurface, SoilSurface
-from riser_soil.contact.landing import landing_predictor
+from riser_soil.contact.ground import ASPECT, ContactPoints, DeformedSurface
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.touchdown import ContactInterval, contact_intervals, touchdown
+from riser_soil.contact.lying import Lying, LyingContact
+from riser_soil.contact.patch import Patch, around
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
+from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.remembered import Remembered
 from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
+from riser_soil.riser.line import Line
+from riser_soil.soil.surface import SoilTop
 
 FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
 
@@ -37,7 +40,7 @@ class CandidateRange:
     around: float = 0.0
 
 
-class SoilContact:
+class SoilContact(LyingContact):
     """Part "contact": frictionless penalty contact between riser nodes and the soil below them, in group E.
 
     Node i carries f(δ_i) times its tributary length. All forces derive from the potential Σ ψ(δ_i)·length_i: the
@@ -49,11 +52,11 @@ class SoilContact:
     default is an eighth of the outer diameter, half the chord by which a pipe touches once it has sunk in by 3 % of its
     radius.
 
+    line: the riser's field; the rank where it is active evaluates contact, and holds the surface.
     radius (nn,): distance [m] from the axis to the line that touches, 0 for the axis itself. along (2,): horizontal
     unit vector of the riser on the ground; by default its first axis. reach: by default 1 % of the riser's length above
-    the ground and half a facet around a node. active: whether this rank, which then holds the surface, evaluates
-    contact. outgrown: a point has touched that had no place in the tangent's pattern and was left out there, not in
-    the residual.
+    the ground and half a facet around a node. outgrown: a point has touched that had no place in the tangent's pattern
+    and was left out there, not in the residual.
     """
 
     name = "contact"
@@ -61,41 +64,38 @@ class SoilContact:
 
     def __init__(
         self,
-        riser: RiserNodes,
+        line: Line,
         radius: Array,
-        surface: SoilSurface,
+        surface: SoilTop,
         law: Penalty,
         *,
         footprint: float | None = None,
         along: Array | None = None,
-        reach: CandidateRange | None = None,
-        active: bool = True,
+        reach: Reach | None = None,
     ) -> None:
-        self.active, self.outgrown = active, False
-        self._riser, self._radius, self._rounding = riser, radius, law.smoothing
-        if not active:
+        super().__init__(line, law)
+        self.outgrown, self._radius = False, radius
+        self._detected = Remembered[State, ContactState]()
+        if not self.active:
             return
         self._soil = DeformedSurface(surface)
-        self._reach = reach or _default_reach(riser, self._soil)
+        self._reach = reach or _default_reach(line, self._soil)
         self._footprint = FOOTPRINT * float(radius.mean()) if footprint is None else footprint
-        axis = riser.basis[:2, 0] if along is None else along
-        points = ContactPoints.of_nodes(riser.tributary_length, self._footprint, axis)
-        self._detection = ContactDetection(riser, radius, points, law, self._soil, self._reach.above)
-        self._patch: CandidatePairs | None = None
-        self._missed = CandidatePairs.none(len(self._soil.facets))
-        self._detected: ContactState | None = None
+        axis = line.basis[:2, 0] if along is None else along
+        points = ContactPoints.of_nodes(line.tributary_length, self._footprint, axis)
+        self._detection = ContactDetection(line, radius, points, law, self._soil, self._reach.above)
+        self._patch: Patch | None = None
+        self._missed = Patch.none(len(self._soil.facets))
 
     def detect(self, state: State) -> ContactState:
         """Riser and ground at a state; kept for the state asked last, whose arrays must not change then."""
-        if self._detected is None or self._detected.state is not state:
-            self._detected = self._detection.detect(state)
-        return self._detected
+        return self._detected.made_of(state, self._detection.detect)
 
     def blocks(self) -> dict[str, MatrixBlock]:
         """Translations of a node and dofs of a facet, candidate pair by pair."""
         patch = self._present_patch()
-        rows = np.hstack([self._riser.translation_dofs[patch.nodes], self._soil.facet_dofs(patch.facet)])
-        return {SOIL: MatrixBlock(rows, rows)}
+        rows = np.hstack([self.line.translation_dofs[patch.nodes], self._soil.facet_dofs(patch.facet)])
+        return {SOIL: Block(rows, rows)}
 
     def rebuild(self, state: State) -> None:
         """Choose the candidates anew: around a state, and what was missed since the last time."""
@@ -132,27 +132,21 @@ class SoilContact:
 
     def commit(self, state: State) -> None:
         """Nothing is kept but the pattern."""
-        self._detected = None
+        self._detected.forget()
 
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m], ≥ 0."""
-        total = np.zeros(len(self._riser.arc))
+        total = np.zeros(self.line.nodes)
         if self.active:
             touching = self.detect(state).touching
             add_shares(total, touching.node[:, None], touching.force[:, None])
-        return np.asarray(total / self._riser.tributary_length)
-
-    def penetration(self, state: State) -> Array:
-        """Penetration (nn,) [m] of the nodes' undersides into the soil as it is now, 0 above it: an error."""
-        if not self.active:
-            return np.zeros(len(self._riser.arc))
-        return np.maximum(0.0, -self._clearance(state) - self._rounding)
+        return np.asarray(total / self.line.tributary_length)
 
     def depth(self, state: State) -> Array:
         """Depth (nn,) [m] of the nodes' undersides below the soil's surface before the riser came, 0 above it."""
-        deepest = np.zeros(len(self._riser.arc))
+        deepest = np.zeros(self.line.nodes)
         if self.active:
-            points, x, surface = self.detect(state).points, self._riser.positions3(state), self._soil.at_first
+            points, x, surface = self.detect(state).points, self.line.positions3(state), self._soil.at_first
             facet, xi = self._soil.locate(x[points.node, :2] + points.offset, surface)
             underside = (x[:, 2] - self._radius)[points.node]
             np.maximum.at(deepest, points.node, heights(facet, xi, self._soil.facets, surface) - underside)
@@ -166,14 +160,20 @@ class SoilContact:
         """Sum of the contact forces on the riser (3,) [N], global axes."""
         if not self.active:
             return np.zeros(3)
-        d = self._riser.basis.shape[1]
-        return np.asarray(-self._riser.basis @ self.detect(state).touching.gradient[:, :d].sum(axis=0))
+        d = self.line.basis.shape[1]
+        return np.asarray(-self.line.basis @ self.detect(state).touching.gradient[:, :d].sum(axis=0))
+
+    def nodal_forces(self, state: State) -> Array:
+        """Residual (nn, ndof) at the riser's nodes."""
+        forces = Forces.zeros(state.u.size)
+        self.residual(state, forces)
+        return self.line.nodal(forces.end)
 
     def force_on_soil(self, state: State) -> Array:
         """Sum of the contact forces on the soil (3,) [N], global axes."""
         if not self.active:
             return np.zeros(3)
-        d = self._riser.basis.shape[1]
+        d = self.line.basis.shape[1]
         return np.asarray(-self.detect(state).touching.gradient[:, d:].reshape(-1, 3).sum(axis=0))
 
     def covers(self, xy: Array) -> BoolArray:
@@ -181,34 +181,15 @@ class SoilContact:
         facet, _ = self._soil.locate(xy, self._soil.settled)
         return np.asarray(facet >= 0)
 
-    def touchdown_arc(self, state: State) -> float:
-        """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""
-        if not self.active:
-            return float("nan")
-        return touchdown(*self._contact_along_line(state))
+    def lying(self, state: State) -> Lying:
+        """At the nodes."""
+        return Lying(self.line.arc, self.line.tributary_length, self.clearance(state), self.force_per_length(state))
 
-    def contact_intervals(self, state: State) -> list[ContactInterval]:
-        """Where the riser lies on the soil, from its start on."""
-        return contact_intervals(*self._contact_along_line(state)) if self.active else []
-
-    def _contact_along_line(self, state: State) -> tuple[Array, Array, Array, Array]:
-        """Arc, share of the length, clearance and force per length of the nodes, all (nn,)."""
-        arc, share = self._riser.arc, self._riser.tributary_length
-        return arc, share, self._clearance(state), self.force_per_length(state)
-
-    def predict(self, guess: State) -> Array:
-        """Increments of a first guess that lands, see `landing`."""
-        if not self.active:
-            return guess.u
-        present = self._clearance(State.at_rest(guess.t, guess.u.size))
-        heights = self._riser.translation_dofs[:, -1]
-        return landing_predictor(guess, heights, present, self._clearance(guess), self._rounding)
-
-    def _clearance(self, state: State) -> Array:
+    def clearance(self, state: State) -> Array:
         """Gap (nn,) less that at which the force begins [m], the least of a node's points; inf far away."""
         detected = self.detect(state)
-        least = np.full(len(self._riser.arc), np.inf)
-        np.minimum.at(least, detected.points.node, detected.gap - self._rounding)
+        least = np.full(self.line.nodes, np.inf)
+        np.minimum.at(least, detected.points.node, detected.gap - self.law.start)
         return least
 
     def _note_missed(self, touching: ActiveContacts, missed: BoolArray) -> None:
@@ -219,14 +200,14 @@ class SoilContact:
 
     def _present_patch(self) -> CandidatePairs:
         if self._patch is None:
-            ends = self._riser.offset + self._riser.size, self._soil.end
+            ends = self.line.offset + self.line.size, self._soil.end
             self._patch = self._patch_around(State.at_rest(0.0, max(ends)))
         return self._patch
 
     def _patch_around(self, state: State) -> CandidatePairs:
         detected = self.detect(state)
         nodes = np.unique(detected.points.node[detected.gap < self._reach.above])
-        xy = self._riser.positions3(state)[nodes, :2]
+        xy = self.line.positions3(state)[nodes, :2]
         distance = ASPECT * self._footprint + self._reach.around
         return pairs_around(nodes, xy, detected.surface, self._soil.facets, distance).joined(self._missed)
 
@@ -238,11 +219,11 @@ class SoilContact:
 
     def restore(self, saved: Saved) -> None:
         if self.active:
-            self._detected, self.outgrown = None, bool(saved["outgrown"])
-            facets = len(self._soil.facets)
-            self._patch, self._missed = (CandidatePairs(facets, saved[name]) for name in ("patch", "missed"))
+            self._detected.forget()
+            self.outgrown = bool(saved["outgrown"])
+            self._patch, self._missed = (Patch(len(self._soil.facets), saved[name]) for name in ("patch", "missed"))
 
 
-def _default_reach(riser: RiserNodes, soil: DeformedSurface) -> CandidateRange:
-    length = float(riser.arc[-1] - riser.arc[0])
-    return CandidateRange(0.01 * length, 0.5 * soil.facet_size)
+def _default_reach(line: Line, soil: DeformedSurface) -> Reach:
+    length = float(line.arc[-1] - line.arc[0])
+    return Reach(0.01 * length, 0.5 * soil.facet_size)

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -36,8 +37,8 @@ class SuctionLaw:
     penalty: Penalty
     cap: float
     reach: float
-    columns: tuple[str, ...] = ("widest_opening",)
-    capacity: float = math.inf
+    columns: ClassVar[tuple[str, ...]] = ("widest_opening",)
+    capacity: ClassVar[float] = math.inf
 
     def __post_init__(self) -> None:
         if self.reach <= self._peak:

@@ -11,7 +11,7 @@ from inspect import get_annotations
 from typing import Any, Protocol, runtime_checkable
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Part, State
+from riser_soil.core.part import Model, Part, State
 from riser_soil.core.saved_state import Stateful
 
 
@@ -50,9 +50,24 @@ def with_role(parts: Iterable[Part], role: type) -> list[Any]:
     return [part for part in parts if role in part.traits.roles]
 
 
-def require_roles(parts: Iterable[Part]) -> None:
-    """TypeError where a part's methods are not those of the roles that it declares."""
-    for part in parts:
+def owners(model: Model) -> dict[str, Stateful]:
+    """Fields and parts that keep something from step to step, by the names under which it is saved.
+
+    ValueError where two would have one name, and the one's state be taken for the other's.
+    """
+    named: list[tuple[str, Stateful]] = [(f"fields/{field.name}", field) for field in model.fields]
+    named += [(f"parts/{part.name}", part) for part in with_role(model.parts, Stateful)]
+    found = dict(named)
+    if len(found) < len(named):
+        names = [name for name, _ in named]
+        raise ValueError(f'more than one keeps its state as "{max(names, key=names.count)}"')
+    return found
+
+
+def require_roles(model: Model) -> None:
+    """TypeError where a part's methods are not those of the roles that it declares; ValueError as of `owners`."""
+    owners(model)
+    for part in model.parts:
         for role in ROLES:
             declared = role in part.traits.roles
             if declared != isinstance(part, role):

@@ -55,7 +55,7 @@ class System:
 
     def __init__(self, comm: MPI.Intracomm, model: Model, clock: Timer) -> None:
         self.comm, self.model, self.clock = comm, model, clock
-        require_roles(model.parts)
+        require_roles(model)
         self._active = [part for part in model.parts if part.active]
         self.numbering = Numbering(comm, model.fields)
         self.prescribed: BoolArray = self._gather_prescribed()

@@ -5,9 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
-from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from mpi4py import MPI
@@ -17,10 +15,10 @@ from riser_soil.assembly import Assembly
 from riser_soil.checks.inventory import built, dissipating, left_out, unknowns, working
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Energy, Forces, Model, State
-from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
-from riser_soil.core.snapshot import ContactSnapshot, RiserSnapshot, RunFacts, SoilSnapshot, StepStatistics
-from riser_soil.core.system import Timer
+from riser_soil.core.part import Energy, State
+from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back
+from riser_soil.core.snapshot import RiserSnapshot, RunFacts, SoilSnapshot, StepHealth, Touch
+from riser_soil.core.system import Clock
 from riser_soil.errors import Interruption, RiserSoilError, SolveError
 from riser_soil.interruption import uninterrupted
 from riser_soil.results.energy_ledger import EnergyLedger
@@ -30,13 +28,12 @@ from riser_soil.results.record import Recorder
 from riser_soil.results.schedule import Schedule
 from riser_soil.results.screen import print_summary
 from riser_soil.results.touchdown_zone import TouchdownZone
+from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import (
-    HasElementForces,
-    HasNodalForces,
-    HasViscousForces,
     at_most,
     element_residual,
     end_reactions,
+    nodal_residual,
     section_forces,
     viscous_residual,
 )
@@ -205,31 +202,13 @@ def _known_fields(assembly: Assembly) -> tuple[str, ...]:
     return outputs.known(assembly.scene.output.fields, [need for need, there in has.items() if there])
 
 
-class ForceParts(NamedTuple):
-    """Parts of a model whose forces are kept apart."""
-
-    within: list[HasElementForces]
-    viscous: list[HasViscousForces]
-    on_nodes: list[HasNodalForces]
-
-
-@lru_cache(maxsize=1)
-def _acting(model: Model) -> ForceParts:
-    """Looked for once a stage, as the question takes longer than the answer's use."""
-    return ForceParts(
-        [p for p in model.parts if isinstance(p, HasElementForces)],
-        [p for p in model.parts if isinstance(p, HasElementForces) and isinstance(p, HasViscousForces)],
-        [p for p in model.parts if isinstance(p, HasNodalForces)],
-    )
-
-
 def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
     """The riser at the accepted state; on the rank that holds it."""
     line, state = assembly.line, stepper.now
-    parts = _acting(stepper.system.model)
-    residual = element_residual(line, parts.within, state)
-    inside = section_forces(line, assembly.elements, state, residual, viscous_residual(line, parts.viscous, state))
-    start, end = end_reactions(line, state, residual, _on_nodes(assembly, stepper))
+    parts = acting_on(line, stepper.system.model.parts)
+    residual = element_residual(line, parts, state)
+    inside = section_forces(line, assembly.elements, state, residual, viscous_residual(line, parts, state))
+    start, end = end_reactions(line, state, residual, nodal_residual(line, parts, state))
     tangent, position = line.trial(state).turn.tangent @ line.basis.T, line.positions3(state)
     return RiserSnapshot(
         position=position,
@@ -250,11 +229,10 @@ def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
 
 
 def elastic_residual(assembly: Assembly, stepper: TimeStepper) -> Array:
-    """Residual of the elements (ne, 2 ndof) without viscous forces."""
-    parts = _acting(stepper.system.model)
-    residual = element_residual(assembly.line, parts.within, stepper.now)
-    viscous = viscous_residual(assembly.line, parts.viscous, stepper.now)
-    return residual if viscous is None else residual - viscous
+    """Of the elements (ne, 2 ndof), less what follows from strain rates."""
+    line, state = assembly.line, stepper.now
+    parts = acting_on(line, stepper.system.model.parts)
+    return element_residual(line, parts, state) - viscous_residual(line, parts, state)
 
 
 def _bend_utilisation(assembly: Assembly, curvature: Array) -> Array:
@@ -267,15 +245,6 @@ def _wall_tension(assembly: Assembly, effective: Array, z: Array) -> Array:
     if assembly.pressures is None:
         return np.full(assembly.line.nodes, np.nan)
     return assembly.pressures.wall_tension(effective, z)
-
-
-def _on_nodes(assembly: Assembly, stepper: TimeStepper) -> Array:
-    """Residual (nn, ndof) of what acts on nodes but isn't a support: contact with soil, and loads at nodes."""
-    forces = Forces.zeros(stepper.now.u.size)
-    if assembly.soil_contact is not None:
-        assembly.soil_contact.residual(stepper.now, forces)
-    loads = [p.nodal_forces(stepper.now) for p in _acting(stepper.system.model).on_nodes]
-    return np.asarray(sum(loads, assembly.line.nodal(forces.end)))
 
 
 def _contact_force(assembly: Assembly, state: State) -> Array:

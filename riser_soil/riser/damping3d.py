@@ -26,13 +26,12 @@ from riser_soil.riser.beam3d import (
     stiffness,
     strain_of,
 )
-from riser_soil.riser.corotation import SpatialNodalForces
-from riser_soil.riser.rotations import right_tangent_derivative
+from riser_soil.riser.corotation import NodalForces
+from riser_soil.riser.increments import rows_to_increments
 from riser_soil.riser.strain3d import Stiffness, strain_change_variation, total
 from riser_soil.riser.stress3d import linear_stress
 from riser_soil.riser.swing_twist import rate, rate_variation
 from riser_soil.riser.vectors import (
-    Mat,
     Vec,
     add,
     cross,
@@ -169,17 +168,6 @@ def _shift_columns(
 
 
 @njit
-def _to_increments(K: Array, at: int, moment: Vec, H: Mat, Rn: Mat, Theta: Vec) -> None:
-    """Turn the moments' rows at..at+2 of K (12, 12) into those conjugate to the rotation vector."""
-    for j in range(12):
-        K[at, j], K[at + 1, j], K[at + 2, j] = vecmat((K[at, j], K[at + 1, j], K[at + 2, j]), H)
-    geometric = right_tangent_derivative(Theta, vecmat(moment, Rn))
-    for i in range(3):
-        for j in range(3):
-            K[at + i, at + j] += geometric[i][j]
-
-
-@njit
 def tangent(
     chord: Array,
     frame1: Array,
@@ -209,5 +197,6 @@ def tangent(
         for end in range(2):
             n, moment = e + end, response.forces.moment2 if end else response.forces.moment1
             spatial = vecmat(moment, at.frame.axes)
-            _to_increments(K[e], 3 + 6 * end, spatial, matrix(nodes.H[n]), matrix(nodes.Rn[n]), vector(nodes.Theta[n]))
+            H, Rn, Theta = matrix(nodes.H[n]), matrix(nodes.Rn[n]), vector(nodes.Theta[n])
+            rows_to_increments(K[e], 3 + 6 * end, spatial, H, Rn, Theta)
     return K

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from types import ModuleType
+from typing import Any, ClassVar
+
 import numpy as np
 
 from riser_soil.core.arrays import Array
@@ -13,13 +17,46 @@ from riser_soil.riser.sections import Elements
 from riser_soil.riser.trial import Trial
 
 
-class PlanarElements:
+class ElasticElements(ABC):
+    """What elements in the plane and in space have in common.
+
+    kernels: the module of their formulas. ends (ne, 2, ...): unstressed orientation of element ends, as it takes them.
+    """
+
+    kernels: ClassVar[ModuleType]
+
+    def __init__(self, line: Line, ends: Array, *stiffnesses: Array) -> None:
+        first, second = (np.ascontiguousarray(ends[:, i]) for i in (0, 1))
+        self.reference: Any = self.kernels.reference(line.chord0, first, second, line.length)
+        self.section: Any = self.kernels.Section(*stiffnesses)
+
+    @abstractmethod
+    def configuration(self, trial: Trial) -> tuple[Array, Array, Array]:
+        """Chords (ne, d) and orientation of both ends, as the kernels take it."""
+
+    def at(self, trial: Trial) -> tuple:
+        """Arguments of the kernels."""
+        return *self.configuration(trial), self.reference, self.section
+
+    def energy(self, trial: Trial) -> float:
+        return float(np.sum(self.kernels.strain_energy(*self.at(trial))))
+
+    @abstractmethod
+    def forces(self, trial: Trial) -> Array:
+        """(ne, 2 ndof), conjugate to the dofs."""
+
+    @abstractmethod
+    def add_tangent(self, out: Array, weight: float, trial: Trial) -> None:
+        """Add weight times the tangents to out (ne, 2 ndof, 2 ndof)."""
+
+
+class PlanarElements(ElasticElements):
     """Elements of a planar line; EI is EI_y, as the second section axis is normal to the plane."""
 
+    kernels: ClassVar[ModuleType] = beam2d
+
     def __init__(self, line: Line, frames: PlanarFrames, elements: Elements) -> None:
-        first, second = (np.ascontiguousarray(frames.alpha0[:, i]) for i in (0, 1))
-        self.reference = beam2d.reference(line.chord0, first, second, line.length)
-        self.section = beam2d.PlanarSection(elements.EA, elements.EI_y)
+        super().__init__(line, frames.alpha0, elements.EA, elements.EI_y)
 
     def configuration(self, trial: Trial) -> tuple[Array, Array, Array]:
         """Chords (ne, 2) and directions of the tangents at both ends (ne,)."""
@@ -27,43 +64,40 @@ class PlanarElements:
         angle = trial.turn.end_angle
         return trial.chord, angle[:, 0], angle[:, 1]
 
-    def energy(self, trial: Trial) -> float:
-        return float(np.sum(beam2d.strain_energy(*self.configuration(trial), self.reference, self.section)))
-
     def forces(self, trial: Trial) -> Array:
-        """(ne, 6)."""
-        return np.asarray(beam2d.forces(*self.configuration(trial), self.reference, self.section))
+        return np.asarray(beam2d.forces(*self.at(trial)))
 
     def add_tangent(self, out: Array, weight: float, trial: Trial) -> None:
-        """Add weight times the tangents to out (ne, 6, 6)."""
-        _add_planar_tangent(out, weight, *self.configuration(trial), self.reference, self.section)
+        _add_planar_tangent(out, weight, *self.at(trial))
 
 
-class SpatialElements:
+class SpatialElements(ElasticElements):
     """Elements of a line in space."""
 
+    kernels: ClassVar[ModuleType] = beam3d
+
     def __init__(self, line: Line, frames: SpatialFrames, elements: Elements) -> None:
-        first, second = (np.ascontiguousarray(frames.T0[:, i]) for i in (0, 1))
-        self.reference = beam3d.reference(line.chord0, first, second, line.length)
-        self.section = beam3d.SpatialSection(elements.EA, elements.EI_y, elements.EI_z, elements.GJ)
+        super().__init__(line, frames.T0, elements.EA, elements.EI_y, elements.EI_z, elements.GJ)
 
     def configuration(self, trial: Trial) -> tuple[Array, Array, Array]:
         """Chords (ne, 3) and section frames at both ends (ne, 3, 3)."""
-        turn = _spatial(trial)
+        turn = spatial(trial)
         return trial.chord, turn.frame1, turn.frame2
 
-    def energy(self, trial: Trial) -> float:
-        return float(np.sum(beam3d.strain_energy(*self.configuration(trial), self.reference, self.section)))
-
     def forces(self, trial: Trial) -> Array:
-        """(ne, 12), conjugate to displacements and rotation increments."""
-        at = self.configuration(trial)
-        return np.asarray(_spatial_forces(*at, self.reference, self.section, _spatial(trial).H))
+        return np.asarray(_spatial_forces(*self.at(trial), spatial(trial).H))
 
     def add_tangent(self, out: Array, weight: float, trial: Trial) -> None:
-        """Add weight times the tangents to out (ne, 12, 12)."""
-        turn, at = _spatial(trial), self.configuration(trial)
-        _add_spatial_tangent(out, weight, *at, self.reference, self.section, turn.H, turn.Rn, turn.Theta)
+        turn = spatial(trial)
+        _add_spatial_tangent(out, weight, *self.at(trial), (turn.H, turn.Rn, turn.Theta))
+
+
+@njit
+def _add(out: Array, weight: float, K: Array) -> None:
+    """Add weight K to out (n, n)."""
+    for i in range(K.shape[0]):
+        for j in range(K.shape[1]):
+            out[i, j] += weight * K[i, j]
 
 
 @njit
@@ -79,9 +113,7 @@ def _add_planar_tangent(
     f, K = np.empty(6), np.empty((6, 6))
     for e in range(len(chord)):
         beam2d.put_element(e, chord, direction1, direction2, reference, section, f, K)
-        for i in range(6):
-            for j in range(6):
-                out[e, i, j] += weight * K[i, j]
+        _add(out[e], weight, K)
 
 
 @njit
@@ -105,19 +137,16 @@ def _add_spatial_tangent(
     chord: Array,
     frame1: Array,
     frame2: Array,
-    reference: beam3d.SpatialReference,
-    section: beam3d.SpatialSection,
-    H: Array,
-    Rn: Array,
-    Theta: Array,
+    reference: beam3d.Reference,
+    section: beam3d.Section,
+    nodes: tuple[Array, Array, Array],
 ) -> None:
+    """nodes: H, Rn and Theta, see `increments`."""
     f, K = np.empty(12), np.empty((12, 12))
     for e in range(len(chord)):
         beam3d.put_element(e, chord, frame1, frame2, reference, section, f, K)
-        increments.tangent_to_increments(e, f, K, H, Rn, Theta)
-        for i in range(12):
-            for j in range(12):
-                out[e, i, j] += weight * K[i, j]
+        increments.tangent_to_increments(e, f, K, nodes[0], nodes[1], nodes[2])
+        _add(out[e], weight, K)
 
 
 def elastic_elements(line: Line, elements: Elements) -> PlanarElements | SpatialElements:
@@ -127,6 +156,7 @@ def elastic_elements(line: Line, elements: Elements) -> PlanarElements | Spatial
     return SpatialElements(line, line.frames, elements)
 
 
-def _spatial(trial: Trial) -> SpatialOrientation:
-    assert isinstance(trial.turn, SpatialOrientation)
+def spatial(trial: Trial) -> SpatialTurn:
+    """The orientation of a line in space."""
+    assert isinstance(trial.turn, SpatialTurn)
     return trial.turn

@@ -44,6 +44,12 @@ def _moment_tangent(Rn: Mat, Theta: Vec, moment: Vec) -> Mat:
 def _end_to_increments(K: Array, at: int, moment: Vec, H: Mat, Rn: Mat, Theta: Vec) -> None:
     """Transform the rows and columns at..at+2 of K (12, 12), and add the change of H at fixed moment."""
     _rotate_columns(K[:, at : at + 3], H)
+    rows_to_increments(K, at, moment, H, Rn, Theta)
+
+
+@njit
+def rows_to_increments(K: Array, at: int, moment: Vec, H: Mat, Rn: Mat, Theta: Vec) -> None:
+    """Turn the rows at..at+2 of K (12, 12), those of a spatial moment, into those conjugate to the rotation vector."""
     _rotate_columns(K[at : at + 3].T, H)
     geometric = _moment_tangent(Rn, Theta, moment)
     for i in range(3):

@@ -6,7 +6,6 @@ an angle, p along the horizontal unit vector d, the angle positive from d toward
 
 from __future__ import annotations
 
-from collections import deque
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,7 +13,8 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import MatrixBlock, State
+from riser_soil.core.part import Block, State
+from riser_soil.core.remembered import Remembered
 from riser_soil.core.saved_state import Saved, under, values_of, within
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
@@ -84,9 +84,8 @@ class Line:
         unturned = self.frames.turn(np.zeros((self.arc.size, self.frames.dofs)))
         self._supports = self._bases = {node: unturned.at(node).copy() for node in (0, self.arc.size - 1)}
         self.offset = 0
-        self._first: Trial | None = None
         self._left: Trial | None = None
-        self._trials: deque[Trial] = deque(maxlen=2)
+        self._trials = Remembered[State, Trial](first=1, latest=2)
         self._number()
         self.prescribe_spin(prescribe_spin)
 
@@ -184,15 +183,7 @@ class Line:
 
         Kept for the first state since the last commit, where the step begins, and for the last two.
         """
-        for known in (*self._trials, self._first):
-            if known is not None and known.state is state:
-                return known
-        trial = self._make_trial(state)
-        if self._first is None:
-            self._first = trial
-        else:
-            self._trials.appendleft(trial)
-        return trial
+        return self._trials.made_of(state, self._make_trial)
 
     def left_at(self, before: State) -> Trial:
         """The line where a step begins, for all but the rotation dofs: the trial at which the last step ended, so that
@@ -208,8 +199,8 @@ class Line:
 
     def forget(self) -> None:
         """Drop the trials that are kept."""
-        self._first = self._left = None
-        self._trials.clear()
+        self._left = None
+        self._trials.forget()
 
     def _make_trial(self, state: State) -> Trial:
         u = self.nodal(state.u)

@@ -1,8 +1,13 @@
-"""Base class of the parts that act on a line: sparsity pattern, and defaults without energy or history."""
+"""What parts that act on a line have in common: its pattern; by default nothing is stored, turned over or kept, and
+nothing told of where the forces act.
+"""
 
 from __future__ import annotations
 
-from riser_soil.core.part import Energy, MatrixBlock, State, Work
+from collections.abc import Iterable
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Block, Energy, Part, State, Work
 from riser_soil.riser.line import Line
 
 
@@ -28,3 +33,20 @@ class LinePart:
 
     def commit(self, state: State) -> None:
         """Nothing is kept."""
+
+    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
+        """Element residuals (inertia, force), each (ne, 2 ndof), of what acts within the elements; None for nothing."""
+        return None, None
+
+    def viscous_forces(self, state: State) -> Array | None:
+        """The share of `element_forces` (ne, 2 ndof) that follows from strain rates; None for nothing."""
+        return None
+
+    def nodal_forces(self, state: State) -> Array | None:
+        """Residual (nn, ndof) of what acts on nodes without holding them; None for nothing."""
+        return None
+
+
+def acting_on(line: Line, parts: Iterable[Part]) -> list[LinePart]:
+    """Those of the parts that act on this line and say where."""
+    return [part for part in parts if isinstance(part, LinePart) and part.line is line]

@@ -54,24 +54,19 @@ class PlanarDirectors:
     def __init__(self, frames: PlanarFrames, column: int) -> None:
         self._frames, self._ahead = frames, 0.5 * math.pi * column
 
-    def _at(self, increment: Array) -> Array:
-        """Directors (ne, 2, 2) at rotation increments (nn, 1)."""
-        angle = self._frames.turn(increment).end_angle + self._ahead
-        return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-
     def secant(self, middle: Array) -> Secant:
         """For the rotation increments to the middle (nn, 1)."""
-        halfway, angle = self._at(middle), np.stack([middle[:-1], middle[1:]], axis=1)
-        mean, change = np.cos(angle) * halfway, 2.0 * np.sin(angle) * _turned(halfway)
-        return Secant(mean, change, _turned(mean)[..., None], 2.0 * _turned(mean + 0.5 * change)[..., None])
+        return Secant(*_planar_secant(self._frames.turn(middle).end_angle + self._ahead, middle))
 
     def rates(self, v: Array) -> Array:
         """(ne, 2, 2) at the accepted configuration, from angular velocities (nn, 1)."""
-        return np.asarray(np.stack([v[:-1], v[1:]], axis=1) * _turned(self._at(np.zeros_like(v))))
+        angle = self._frames.turn(np.zeros_like(v)).end_angle + self._ahead
+        turned = np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
+        return np.asarray(np.stack([v[:-1], v[1:]], axis=1) * turned)
 
     def geometric(self, secant: Secant, middle: Array, F: Array) -> Array:
         """(ne, 2, 1, 1): derivative of P^T F at fixed F (ne, 2, 2)."""
-        return np.asarray(0.5 * np.sum(_turned(secant.by_end[..., 0]) * F, axis=2)[..., None, None])
+        return np.asarray(_planar_geometric(secant.by_end, F))
 
 
 class SpatialDirectors:
@@ -157,9 +152,33 @@ class DirectorMotion:
         return self._moving.geometric(secant, middle, F)
 
 
-def _turned(vectors: Array) -> Array:
-    """By a right angle, from p to z."""
-    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
+@njit
+def _planar_secant(angle: Array, middle: Array) -> tuple[Array, Array, Array, Array]:
+    """angle (ne, 2): of the directors at the rotation increments to the middle (nn, 1)."""
+    ne = angle.shape[0]
+    mean, change = np.empty((ne, 2, 2)), np.empty((ne, 2, 2))
+    P, by_end = np.empty((ne, 2, 2, 1)), np.empty((ne, 2, 2, 1))
+    for e in range(ne):
+        for side in range(2):
+            cosine, sine = math.cos(angle[e, side]), math.sin(angle[e, side])
+            near, far = math.cos(middle[e + side, 0]), 2.0 * math.sin(middle[e + side, 0])
+            p, z = near * cosine, near * sine
+            way_p, way_z = -far * sine, far * cosine
+            mean[e, side, 0], mean[e, side, 1] = p, z
+            change[e, side, 0], change[e, side, 1] = way_p, way_z
+            P[e, side, 0, 0], P[e, side, 1, 0] = -z, p
+            by_end[e, side, 0, 0], by_end[e, side, 1, 0] = -2.0 * (z + 0.5 * way_z), 2.0 * (p + 0.5 * way_p)
+    return mean, change, P, by_end
+
+
+@njit
+def _planar_geometric(by_end: Array, F: Array) -> Array:
+    """The directors' ends turn on by a right angle from `by_end`."""
+    G = np.empty((F.shape[0], 2, 1, 1))
+    for e in range(F.shape[0]):
+        for side in range(2):
+            G[e, side, 0, 0] = 0.5 * (by_end[e, side, 0, 0] * F[e, side, 1] - by_end[e, side, 1, 0] * F[e, side, 0])
+    return G
 
 
 @njit

@@ -7,9 +7,8 @@ meshes.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -17,35 +16,9 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
 from riser_soil.riser.directors import SpatialOrientation
 from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.trial import Trial
-
-
-@runtime_checkable
-class HasElementForces(Protocol):
-    """A part that acts within the line's elements."""
-
-    def element_forces(self, state: State) -> tuple[Array | None, Array | None]:
-        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
-        ...
-
-
-@runtime_checkable
-class HasViscousForces(Protocol):
-    """A part whose forces within the line's elements follow from strain rates."""
-
-    def viscous_forces(self, state: State) -> Array:
-        """Element residuals (ne, 2 ndof)."""
-        ...
-
-
-@runtime_checkable
-class HasNodalForces(Protocol):
-    """A part with forces on the line's nodes that are not support reactions."""
-
-    def nodal_forces(self, state: State) -> Array:
-        """Residual (nn, ndof) of what acts on nodes."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,21 +46,28 @@ class Reaction:
     moment: Array
 
 
-def element_residual(line: Line, parts: Sequence[HasElementForces], state: State) -> Array:
+def element_residual(line: Line, parts: Iterable[LinePart], state: State) -> Array:
     """Sum over parts and groups (ne, 2 ndof)."""
-    total = np.zeros((line.length.size, 2 * line.ndof))
-    for part in parts:
-        for group in part.element_forces(state):
-            if group is not None:
-                total += group
+    groups = (group for part in parts for group in part.element_forces(state))
+    return _total(groups, (line.length.size, 2 * line.ndof))
+
+
+def viscous_residual(line: Line, parts: Iterable[LinePart], state: State) -> Array:
+    """The share of `element_residual` (ne, 2 ndof) that follows from strain rates."""
+    return _total((part.viscous_forces(state) for part in parts), (line.length.size, 2 * line.ndof))
+
+
+def nodal_residual(line: Line, parts: Iterable[LinePart], state: State) -> Array:
+    """Sum (nn, ndof) of what acts on nodes but isn't a support: contact with soil, point loads and masses."""
+    return _total((part.nodal_forces(state) for part in parts), (line.nodes, line.ndof))
+
+
+def _total(told: Iterable[Array | None], shape: tuple[int, int]) -> Array:
+    total = np.zeros(shape)
+    for values in told:
+        if values is not None:
+            total += values
     return total
-
-
-def viscous_residual(line: Line, parts: Sequence[HasViscousForces], state: State) -> Array | None:
-    """The share of `element_residual` (ne, 2 ndof) that follows from strain rates; None without such parts."""
-    if not parts:
-        return None
-    return sum((part.viscous_forces(state) for part in parts), np.zeros((line.length.size, 2 * line.ndof)))
 
 
 def section_forces(
@@ -130,8 +110,8 @@ def end_reactions(
 ) -> tuple[Reaction, Reaction]:
     """Reactions at start and end.
 
-    residual: from `element_residual`. nodal: residual (nn, ndof) of what acts on nodes other than the
-    supports: point loads, contact. A spring is a support, so its moment belongs to the reaction.
+    residual: from `element_residual`; nodal: from `nodal_residual`. A spring is a support, so its moment belongs to the
+    reaction.
     """
     force, moment = end_forces(line, line.trial(state), residual)
     at_nodes = np.zeros((line.nodes, line.ndof)) if nodal is None else nodal

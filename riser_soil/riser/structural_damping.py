@@ -2,64 +2,73 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+
 import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Traits, Weights, Work
-from riser_soil.riser import beam2d, beam3d, damping2d, damping3d, increments
-from riser_soil.riser.directors import SpatialOrientation
-from riser_soil.riser.elastic import PlanarElements, SpatialElements, elastic_elements
+from riser_soil.riser import damping2d, damping3d, increments
+from riser_soil.riser.elastic import ElasticElements, PlanarElements, elastic_elements, spatial
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.trial import Trial
 
 
-class PlanarDamping:
-    """Viscous elements of a planar line; beta [s] of each element."""
+class ViscousElements(ABC):
+    """Viscous elements beside elastic ones; beta [s] of each element."""
 
-    def __init__(self, elements: PlanarElements, beta: Array) -> None:
+    def __init__(self, elements: ElasticElements, beta: Array) -> None:
         self._elements = elements
-        self._viscosity = beam2d.PlanarSection(*(beta * stiffness for stiffness in elements.section))
+        self._viscosity = type(elements.section)(*(beta * stiffness for stiffness in elements.section))
+
+    @abstractmethod
+    def _rates(self, trial: Trial, v: Array) -> tuple[Array, Array]:
+        """Rates of the chords (ne, d) and of the nodes' orientation, as the kernels take them."""
+
+    def _at(self, trial: Trial, v: Array) -> tuple:
+        """Arguments of the kernels."""
+        elements = self._elements
+        return *elements.configuration(trial), elements.reference, self._viscosity, *self._rates(trial, v)
+
+    @abstractmethod
+    def forces(self, trial: Trial, v: Array) -> Array:
+        """(ne, 2 ndof), conjugate to the dofs, from their rates (nn, ndof)."""
+
+    @abstractmethod
+    def tangent(self, trial: Trial, v: Array, shift_v: float) -> Array:
+        """(ne, 2 ndof, 2 ndof)."""
+
+
+class PlanarDamping(ViscousElements):
+    """Viscous elements of a planar line."""
+
+    def _rates(self, trial: Trial, v: Array) -> tuple[Array, Array]:
+        return np.diff(v[:, :2], axis=0), np.ascontiguousarray(v[:, 2])
 
     def forces(self, trial: Trial, v: Array) -> Array:
-        """(ne, 6) from the rates of the dofs (nn, 3)."""
         return np.asarray(damping2d.forces(*self._at(trial, v)))
 
     def tangent(self, trial: Trial, v: Array, shift_v: float) -> Array:
-        """(ne, 6, 6)."""
         return np.asarray(damping2d.tangent(*self._at(trial, v), shift_v))
 
-    def _at(self, trial: Trial, v: Array) -> tuple:
-        elements = self._elements
-        rates = np.diff(v[:, :2], axis=0), np.ascontiguousarray(v[:, 2])
-        return *elements.configuration(trial), elements.reference, self._viscosity, *rates
 
+class SpatialDamping(ViscousElements):
+    """Viscous elements of a line in space."""
 
-class SpatialDamping:
-    """Viscous elements of a line in space; beta [s] of each element."""
-
-    def __init__(self, elements: SpatialElements, beta: Array) -> None:
-        self._elements = elements
-        self._viscosity = beam3d.SpatialSection(*(beta * stiffness for stiffness in elements.section))
+    def _rates(self, trial: Trial, v: Array) -> tuple[Array, Array]:
+        return np.diff(v[:, :3], axis=0), np.einsum("nij,nj->ni", spatial(trial).R, v[:, 3:])
 
     def forces(self, trial: Trial, v: Array) -> Array:
-        """(ne, 12), conjugate to displacements and rotation increments, from the rates of the dofs (nn, 6)."""
         f = damping3d.forces(*self._at(trial, v))
-        increments.forces_to_increments(f, _spatial(trial).H)
+        increments.forces_to_increments(f, spatial(trial).H)
         return np.asarray(f)
 
     def tangent(self, trial: Trial, v: Array, shift_v: float) -> Array:
-        """(ne, 12, 12)."""
-        turn = _spatial(trial)
-        nodes = damping3d.NodeRotations(turn.R, turn.H, turn.Rn, turn.Theta)
+        turn = spatial(trial)
+        nodes = damping3d.Nodes(turn.R, turn.H, turn.Rn, turn.Theta)
         return np.asarray(damping3d.tangent(*self._at(trial, v), nodes, shift_v))
-
-    def _at(self, trial: Trial, v: Array) -> tuple:
-        elements, turn = self._elements, _spatial(trial)
-        spin = np.einsum("nij,nj->ni", turn.R, v[:, 3:])
-        rates = np.diff(v[:, :3], axis=0), spin
-        return *elements.configuration(trial), elements.reference, self._viscosity, *rates
 
 
 class StructuralDamping(LinePart):
@@ -103,12 +112,5 @@ class StructuralDamping(LinePart):
         return Work(dissipated=0.5 * float(forces.force[part] @ (after.u - before.u)[part]))
 
 
-def _damping(elements: PlanarElements | SpatialElements, beta: Array) -> PlanarDamping | SpatialDamping:
-    if isinstance(elements, PlanarElements):
-        return PlanarDamping(elements, beta)
-    return SpatialDamping(elements, beta)
-
-
-def _spatial(trial: Trial) -> SpatialOrientation:
-    assert isinstance(trial.turn, SpatialOrientation)
-    return trial.turn
+def _damping(elements: ElasticElements, beta: Array) -> ViscousElements:
+    return PlanarDamping(elements, beta) if isinstance(elements, PlanarElements) else SpatialDamping(elements, beta)

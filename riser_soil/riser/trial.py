@@ -24,7 +24,7 @@ class IncrementDerivatives(NamedTuple):
     shift: float
 
 
-_Columns = tuple[IncrementDerivatives, IncrementDerivatives, IncrementDerivatives]
+Columns = tuple[ByIncrements, ByIncrements, ByIncrements]
 
 
 class Trial:
@@ -33,7 +33,6 @@ class Trial:
     def __init__(self, state: State, x: Array, chord: Array, turn: Orientation, rates: tuple[Array, Array]) -> None:
         self.state, self.x, self.chord, self.turn = state, x, chord, turn
         self._v, self._a = rates
-        self._columns: dict[tuple[float, float], _Columns] = {}
         self._kept: dict[Hashable, Any] = {}
 
     def once(self, key: Hashable, make: Callable[[Trial], Any]) -> Any:
@@ -65,15 +64,17 @@ class Trial:
         """Element residual in the dofs (ne, 2 ndof) of F (ne, 4, d) conjugate to q."""
         return np.asarray(hermite.pull_back(F, self.turn.P))
 
-    def columns(self, weights: Weights) -> _Columns:
+    def columns(self, weights: Weights) -> Columns:
         """Derivatives of q, q' and q'' by the dofs, rates following by the shifts."""
         shifts = float(weights.shift_v), float(weights.shift_a)
-        if shifts not in self._columns:
-            d = self.x.shape[1]
-            maps = self.turn.maps(self._v[:, d:], self._a[:, d:], *shifts)
-            q, rate, acceleration = map(IncrementDerivatives, maps, (1.0, *shifts))
-            self._columns[shifts] = q, rate, acceleration
-        return self._columns[shifts]
+        found: Columns = self.once(("columns", *shifts), lambda trial: trial._columns_at(*shifts))
+        return found
+
+    def _columns_at(self, shift_v: float, shift_a: float) -> Columns:
+        d = self.x.shape[1]
+        maps = self.turn.maps(self._v[:, d:], self._a[:, d:], shift_v, shift_a)
+        q, rate, acceleration = map(ByIncrements, maps, (1.0, shift_v, shift_a))
+        return q, rate, acceleration
 
     def add_turning(self, out: Array, weight: float, F: Array) -> None:
         """Add to out (ne, n, n) weight times the derivative of `pull_back` at fixed F (ne, 4, d)."""

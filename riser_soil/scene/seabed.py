@@ -54,44 +54,41 @@ Profile = Annotated[
 ]
 
 
-class RigidSeabed(BaseModel):
+KIND = Field(description="rigid, spring or hysteretic")
+
+
+class SeabedScene(BaseModel):
+    """What all seabeds have, whatever lies there: its shape, and what touches it."""
+
+    model_config = FROZEN
+
+    kind: Annotated[str, KIND]
+    level: Level = 0.0
+    slope_deg: Slope = 0.0
+    profile: Profile = None
+    contact_at: Toucher = "outer"
+
+
+class RigidSeabed(SeabedScene):
     """A rigid ground; its penalty stiffness is `contact.stiffness`."""
 
-    model_config = FROZEN
-
-    kind: Literal["rigid"] = Field(description="rigid, spring or hysteretic")
-    level: Level = 0.0
-    slope_deg: Slope = 0.0
-    profile: Profile = None
-    contact_at: Toucher = "outer"
+    kind: Annotated[Literal["rigid"], KIND]
 
 
-class SpringSeabed(BaseModel):
+class SpringSeabed(SeabedScene):
     """A bed of linear springs that push, never pull."""
 
-    model_config = FROZEN
-
-    kind: Literal["spring"] = Field(description="rigid, spring or hysteretic")
-    level: Level = 0.0
-    slope_deg: Slope = 0.0
-    profile: Profile = None
-    contact_at: Toucher = "outer"
+    kind: Annotated[Literal["spring"], KIND]
     stiffness: BedStiffness = Field(description="force per length of pipe and penetration [N/m2]")
 
 
 LAW = OneOf(LAWS)
 
 
-class HystereticSeabed(BaseModel):
+class HystereticSeabed(SeabedScene):
     """A bed of hysteretic clay: it resists penetration, holds the pipe by suction, and softens."""
 
-    model_config = FROZEN
-
-    kind: Literal["hysteretic"] = Field(description="rigid, spring or hysteretic")
-    level: Level = 0.0
-    slope_deg: Slope = 0.0
-    profile: Profile = None
-    contact_at: Toucher = "outer"
+    kind: Annotated[Literal["hysteretic"], KIND]
     law: Annotated[SeabedLaw, LAW] = Field(description=LAW.examples)
 
 

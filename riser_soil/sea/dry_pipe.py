@@ -60,7 +60,7 @@ class DryPipe:
         return float(self._displaced @ waterline.dry_potentials(*self._sections(trial)))
 
     def _sections(self, trial: Trial) -> _Sections:
-        h, _ = self._surface.immersion(trial)
+        h, _ = self._surface(trial)
         z, stations = (np.ascontiguousarray(x[..., -1]) for x in (trial.q, self._pipe.position(trial)))
         return _Sections(*self._points, z, h, stations, self._length, self._width)
 
@@ -70,7 +70,7 @@ class DryPipe:
         by_q = np.zeros((*by_height.shape, self._pipe.line.dimension))
         by_q[..., -1] = by_height
         at = np.flatnonzero(by_surface.any(axis=(1, 2)))  # where the pipe comes out
-        slope = self._surface.immersion(trial)[1][at]
+        slope = self._surface(trial)[1][at]
         slope[..., -1] += 1.0
         by_q[at] += np.einsum("eag,egc,egj->eacj", by_surface[at], self._pipe.at.N[at], slope)
         return by_q

@@ -22,7 +22,8 @@ from riser_soil.riser.attachments import PointAttachment, places
 from riser_soil.riser.line import Line
 from riser_soil.riser.stations import Derivatives
 from riser_soil.riser.trial import Trial
-from riser_soil.sea.pipe import Pipe, PointsOnLine, StationFlow
+from riser_soil.sea.pipe import Pipe, Points, StationFlow
+from riser_soil.sea.still_water import Resistance
 
 
 def pipe_at(line: Line, modules: Sequence[PointAttachment]) -> Pipe:
@@ -37,30 +38,20 @@ def diameters(modules: Sequence[PointAttachment]) -> Array:
     return np.asarray(np.maximum(np.cbrt(6.0 * volume / np.pi), np.sqrt(4.0 * area / np.pi)))
 
 
-class StillWaterOnModules:
+class StillWaterOnModules(Resistance):
     """Drag (group F) and added mass (group I). drag: rho Cd A/2 [kg/m], mass: Ca rho V [kg], each (m,)."""
 
-    dissipative = True
-
     def __init__(self, pipe: Pipe, drag: Array, mass: Array) -> None:
-        self.pipe = pipe
+        super().__init__(pipe)
         self._drag, self._mass = drag[:, None, None], mass[:, None, None]
-
-    def forces(self, trial: Trial) -> tuple[Array, Array]:
-        return self.resist(self.pipe.flow(trial))
-
-    def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
-        return self.linearise(self.pipe.flow(trial), weights)
 
     def momentum(self, trial: Trial, v: Array) -> Array:
         return np.asarray(self._mass * v)
 
     def resist(self, flow: StationFlow) -> tuple[Array, Array]:
-        """Resistance to a motion through the water."""
         return self._mass * flow.a, self._drag * np.linalg.norm(flow.v, axis=-1, keepdims=True) * flow.v
 
     def linearise(self, flow: StationFlow, weights: Weights) -> Derivatives:
-        """Derivatives of `resist` by the motion through the water, weighed and summed."""
         speed, one = np.linalg.norm(flow.v, axis=-1)[..., None, None], np.eye(flow.v.shape[-1])
         dyad = flow.v[..., :, None] * flow.v[..., None, :] / np.where(speed > 0.0, speed, 1.0)
         by_v = weights.force * self._drag[..., None] * (speed * one + dyad)

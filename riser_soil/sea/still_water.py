@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Protocol
 
 import numpy as np
@@ -36,31 +37,13 @@ class StationLoads(Protocol):
         ...
 
 
-class Resistance(StationLoads, Protocol):
-    """Loads of still water, by which any motion through the water is resisted."""
-
-    pipe: Pipe
-
-    def resist(self, flow: StationFlow) -> tuple[Array, Array]:
-        """Groups I and F, each (ne, ng, d), of a motion through the water."""
-        ...
-
-    def linearise(self, flow: StationFlow, weights: Weights) -> Derivatives:
-        """Derivatives of `resist` by that motion, weighed and summed."""
-        ...
-
-
-class StillWater:
-    """Drag (group F) and added mass (group I).
-
-    drag, mass: coefficients (ne, 2), normal and tangential, of `morison_law.drag_coefficients` [kg/m2] and
-    `morison_law.added_masses` [kg/m].
-    """
+class Resistance(ABC):
+    """Loads of still water, by which any motion through the water is resisted. A `StationLoads`."""
 
     dissipative = True
 
-    def __init__(self, pipe: Pipe, drag: Array, mass: Array) -> None:
-        self.pipe, self._drag, self.mass = pipe, drag, mass
+    def __init__(self, pipe: Pipe) -> None:
+        self.pipe = pipe
 
     def forces(self, trial: Trial) -> tuple[Array, Array]:
         return self.resist(self.pipe.flow(trial))
@@ -68,15 +51,37 @@ class StillWater:
     def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
         return self.linearise(self.pipe.flow(trial), weights)
 
+    @abstractmethod
+    def momentum(self, trial: Trial, v: Array) -> Array:
+        """As of all `StationLoads`."""
+
+    @abstractmethod
+    def resist(self, flow: StationFlow) -> tuple[Array, Array]:
+        """Groups I and F, each (ne, ng, d), of a motion through the water."""
+
+    @abstractmethod
+    def linearise(self, flow: StationFlow, weights: Weights) -> Derivatives:
+        """Derivatives of `resist` by that motion, weighed and summed."""
+
+
+class StillWater(Resistance):
+    """Drag (group F) and added mass (group I).
+
+    drag, mass: coefficients (ne, 2), normal and tangential, of `morison_law.drag_coefficients` [kg/m2] and
+    `morison_law.added_masses` [kg/m].
+    """
+
+    def __init__(self, pipe: Pipe, drag: Array, mass: Array) -> None:
+        super().__init__(pipe)
+        self._drag, self.mass = drag, mass
+
     def momentum(self, trial: Trial, v: Array) -> Array:
         return law.added(v, self.pipe.flow(trial).tau, self.mass)
 
     def resist(self, flow: StationFlow) -> tuple[Array, Array]:
-        """Resistance to a motion through the water."""
         return law.resistance(flow.v, flow.a, flow.tau, self._drag, self.mass)
 
     def linearise(self, flow: StationFlow, weights: Weights) -> Derivatives:
-        """Derivatives of `resist` by the motion through the water, weighed and summed."""
         drag, mass = weights.force * self._drag, weights.inertia * self.mass
         by_v, by_a, by_tau = law.resistance_derivatives(flow.v, flow.a, flow.tau, drag, mass)
         by_slope = stations.follow_slope(by_tau, flow.tau, flow.stretch)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,26 +15,20 @@ from riser_soil.sea import wet_section
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.still_water import StationLoads
 
-
-class WaterSurface(Protocol):
-    """The water's surface above the stations."""
-
-    def immersion(self, trial: Trial) -> tuple[Array, Array]:
-        """Height of the surface above the stations (ne, ng) [m] and its gradient (ne, ng, d)."""
-        ...
+WaterSurface = Callable[[Trial], tuple[Array, Array]]
+"""The line's trial -> height of the water's surface above its stations (ne, ng) [m], and its gradient (ne, ng, d)."""
 
 
-class FlatSurface:
-    """A surface at the height `level` [m]."""
+def flat_surface(pipe: Pipe, level: float) -> WaterSurface:
+    """Calm water at the height `level` [m]."""
 
-    def __init__(self, pipe: Pipe, level: float) -> None:
-        self._pipe, self._level = pipe, level
-
-    def immersion(self, trial: Trial) -> tuple[Array, Array]:
-        x = self._pipe.position(trial)
+    def immersion(trial: Trial) -> tuple[Array, Array]:
+        x = pipe.position(trial)
         gradient = np.zeros_like(x)
         gradient[..., -1] = -1.0
-        return self._level - x[..., -1], gradient
+        return level - x[..., -1], gradient
+
+    return immersion
 
 
 class WetShare(NamedTuple):
@@ -59,14 +54,14 @@ class Wetting:
         wet: WetShare = trial.once((self, "wet"), self._evaluate)
         return wet
 
-    def _evaluate(self, trial: Trial) -> WetShare:
-        h, gradient = self._surface.immersion(trial)
+    def _evaluate(self, trial: Trial) -> Wet:
+        h, gradient = self._surface(trial)
         share, slope = wet_section.wet_shares(h, self._span)
         return WetShare(share, slope[..., None] * gradient)
 
     def dry_height(self, trial: Trial) -> Array:
         """`wet_section.dry_height` of the stations (ne, ng) [m]."""
-        heights: Array = wet_section.dry_heights(self._surface.immersion(trial)[0], self._span)
+        heights: Array = wet_section.dry_heights(self._surface(trial)[0], self._span)
         return heights
 
 

@@ -27,7 +27,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 from pydantic import Field
 
@@ -98,7 +98,7 @@ class AubenyBiscontinFormula:
 
     diameter: float
     given: AubenyBiscontin
-    columns: tuple[str, ...] = AubenyBiscontinHistory._fields
+    columns: ClassVar[tuple[str, ...]] = Past._fields
 
     @cached_property
     def _strength(self) -> Strength:

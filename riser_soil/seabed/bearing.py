@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from riser_soil.core.lazy import LazyModule
 
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from riser_soil.core.arrays import Array
 else:
     np = LazyModule("numpy")
+
+Number = TypeVar("Number", float, "Array")
 
 SHALLOW = 0.1  # z/D below which Randolph & Quiggin's bearing factor follows the square root
 
@@ -28,7 +30,7 @@ class Strength:
     su: float
     gradient: float = 0.0
 
-    def at(self, z: Array) -> Array:
+    def at(self, z: Number) -> Number:
         return self.su + self.gradient * z
 
 

@@ -30,7 +30,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 from pydantic import Field
 
@@ -93,7 +93,7 @@ class RandolphQuigginFormula:
 
     diameter: float
     given: RandolphQuiggin
-    columns: tuple[str, ...] = RandolphQuigginHistory._fields
+    columns: ClassVar[tuple[str, ...]] = Past._fields
 
     @cached_property
     def _ultimate(self) -> PowerLaw:

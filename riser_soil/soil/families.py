@@ -28,7 +28,6 @@ class Family:
     vertices: int
     quadrature_degree: int
     mean_dilatation: bool
-    facet_kind: str
     corners: int
     faces: tuple[tuple[int, ...], ...]
     flip: tuple[int, ...]
@@ -72,7 +71,6 @@ HEX8 = Family(
     vertices=8,
     quadrature_degree=3,
     mean_dilatation=True,
-    facet_kind="quad4",
     corners=4,
     faces=((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)),
     flip=(0, 3, 2, 1),
@@ -85,7 +83,6 @@ TET10 = Family(
     vertices=4,
     quadrature_degree=2,
     mean_dilatation=False,
-    facet_kind="tri6",
     corners=3,
     faces=((0, 1, 2, 9, 6, 8), (0, 1, 3, 9, 5, 7), (0, 2, 3, 8, 4, 7), (1, 2, 3, 6, 4, 5)),
     flip=(0, 2, 1, 5, 4, 3),

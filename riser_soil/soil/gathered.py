@@ -9,7 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.soil.grid import DistributedMesh
+from riser_soil.soil.field import components
+from riser_soil.soil.grid import Grid
+from riser_soil.soil.surface import SoilTop
 
 T = TypeVar("T", bound=np.generic)
 
@@ -35,7 +37,15 @@ def gather_rows(grid: DistributedMesh, rows: npt.NDArray[T]) -> npt.NDArray[T]:
     return rows[:0] if pieces is None else np.concatenate(pieces)
 
 
-def top_facets(grid: DistributedMesh, mesh: GatheredMesh) -> IntArray:
+def top_of(grid: Grid, mesh: Gathered) -> SoilTop:
+    """The surface that looks upwards; without points where the mesh is not gathered."""
+    facets = top_facets(grid, mesh)
+    used = np.unique(facets)
+    points = mesh.points[used]
+    return SoilTop(points, np.searchsorted(used, facets), components(used), grid.supported(points).ravel())
+
+
+def top_facets(grid: Grid, mesh: Gathered) -> IntArray:
     """Boundary facets that look upwards (nf, nv): counter-clockwise from above, ordered as `Family.faces`."""
     family = grid.family
     faces: IntArray = mesh.cells[:, np.array(family.faces)].reshape(-1, len(family.flip))

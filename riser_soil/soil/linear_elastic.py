@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import Field
 
@@ -44,8 +44,8 @@ class Elastic:
     bulk: Array
     shear: Array
     initial: Array
-    columns: tuple[str, ...] = STRESS
-    symmetric: bool = True
+    columns: ClassVar[tuple[str, ...]] = STRESS
+    symmetric: ClassVar[bool] = True
 
     def start(self) -> Array:
         return self.initial

@@ -8,17 +8,17 @@ from typing import Literal
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
+from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.remembered import Remembered
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
 from riser_soil.soil.element import cell_gradients
 from riser_soil.soil.field import SoilField, components
-from riser_soil.soil.gathered import GatheredMesh, gather, gather_rows
-from riser_soil.soil.grid import DistributedMesh, on_all_ranks
-from riser_soil.soil.law import PLASTIC_STRAIN, Formula, StressUpdate
-from riser_soil.soil.surface import SoilTop
+from riser_soil.soil.gathered import Gathered, gather, gather_rows, top_of
+from riser_soil.soil.grid import Grid, on_all_ranks
+from riser_soil.soil.law import PLASTIC_STRAIN, Formula, Response
 
 
 class Soil:
@@ -47,8 +47,8 @@ class Soil:
         _check_level(grid, level)
         self.grid = grid
         self.field = SoilField(grid)
-        self.mesh: GatheredMesh = gather(grid)
-        self.surface = SoilTop(grid, self.mesh)
+        self.mesh: Gathered = gather(grid)
+        self.surface = top_of(grid, self.mesh)
         self._cells = np.ascontiguousarray(grid.nodes.cells)
         self._gradients = on_all_ranks(
             grid.nodes.comm, lambda: cell_gradients(grid.family, grid.nodes.points, self._cells)
@@ -60,7 +60,7 @@ class Soil:
         self.traits = Traits("E", self.law.symmetric, roles=(Stateful,))
         self._check_start(initial, depth, K0)
         self._initial, self._found = initial, _at_rest(self.law, initial)
-        self._asked: tuple[State, Array, StressUpdate] | None = None
+        self._answers = Remembered[State, tuple[Array, Response]]()
         self._load = self._internal(initial) if start == "geostatic" else self._weight(unit_weight)
 
     def blocks(self) -> dict[str, MatrixBlock]:
@@ -103,7 +103,8 @@ class Soil:
 
     def commit(self, state: State) -> None:
         _, found = self._answer(state)
-        self._found, self._asked = found._replace(tangent=np.empty(0)), None
+        self._found = found._replace(tangent=np.empty(0))
+        self._answers.forget()
 
     def output_mesh(self) -> SoilMesh:
         """The whole mesh for output on rank 0; empty elsewhere."""
@@ -122,10 +123,11 @@ class Soil:
         """Strain increment (n, 6) of a trial state and the law's answer; kept for the last state, whose arrays
         must not change then.
         """
-        if self._asked is None or self._asked[0] is not state:
-            strain = self._strain(state)
-            self._asked = state, strain, self.law.update(strain, self._found.history)
-        return self._asked[1:]
+        return self._answers.made_of(state, self._new_answer)
+
+    def _new_answer(self, state: State) -> tuple[Array, Response]:
+        strain = self._strain(state)
+        return strain, self.law.update(strain, self._found.history)
 
     def _plastic_strain(self) -> Array:
         """Equivalent plastic strain (n,), 0 for a law without plasticity."""
@@ -178,7 +180,8 @@ class Soil:
         return {"stress": found.stress, "history": found.history, "stored": found.stored, "elastic": found.elastic}
 
     def restore(self, saved: Saved) -> None:
-        self._found, self._asked = self._found._replace(**saved), None
+        self._found = self._found._replace(**saved)
+        self._answers.forget()
 
 
 def _at_rest(law: Formula, initial: Array) -> StressUpdate:

@@ -8,14 +8,14 @@ Computational Inelasticity (1998), box 3.2, without hardening.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import Field
 
 from riser_soil.core.lazy import LazyModule
 from riser_soil.core.quantities import PoissonRatio, Ratio, StrengthGradient, Stress
-from riser_soil.seabed.bearing import Strength, strip_capacity
-from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Bearing, SoilLaw, StressUpdate
+from riser_soil.seabed.bearing import Number, Strength, strip_capacity
+from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Bearing, Response, SoilLaw
 
 if TYPE_CHECKING:
     import numpy as np
@@ -37,21 +37,29 @@ class VonMises(SoilLaw):
 
     @property
     def surface_modulus(self) -> float:
-        return self.E_over_su * self.su
+        return self._modulus(self._strength.at(0.0))
+
+    @property
+    def _strength(self) -> Strength:
+        return Strength(self.su, self.su_gradient)
+
+    def _modulus(self, strength: Number) -> Number:
+        """Young's modulus of clay of that strength [Pa]."""
+        return self.E_over_su * strength
 
     def at_points(self, depth: Array, initial: Array) -> PerfectlyPlastic:
-        strength = self.su + self.su_gradient * depth
-        E = self.E_over_su * strength
+        strength = self._strength.at(depth)
+        E = self._modulus(strength)
         moduli = mandel.bulk_modulus(E, self.nu), mandel.shear_modulus(E, self.nu)
         return PerfectlyPlastic(*moduli, np.sqrt(3.0) * strength, initial)
 
     def wrong_within(self, depth: float) -> tuple[str, str] | None:
-        if self.su + self.su_gradient * depth > 0.0:
+        if self._strength.at(depth) > 0.0:
             return None
         return "su must stay positive down to the block's bottom", "raise su_gradient or take a shallower block"
 
     def bearing(self, width: float) -> Bearing:
-        capacity = strip_capacity(Strength(self.su, self.su_gradient), width)
+        capacity = strip_capacity(self._strength, width)
         return Bearing(capacity, f"(2 + pi) su D + su_gradient D^2/4 with D = {width:.4g} m")
 
 
@@ -66,8 +74,8 @@ class PerfectlyPlastic:
     shear: Array
     limit: Array
     initial: Array
-    columns: tuple[str, ...] = (*STRESS, PLASTIC_STRAIN)
-    symmetric: bool = True
+    columns: ClassVar[tuple[str, ...]] = (*STRESS, PLASTIC_STRAIN)
+    symmetric: ClassVar[bool] = True
 
     def start(self) -> Array:
         return np.column_stack((self.initial, np.zeros(len(self.limit))))

@@ -17,7 +17,7 @@ from riser_soil.sea.moving_water import AcceleratedWater, FlowAtStations, Relati
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.still_water import StationLoads, StillWater
 from riser_soil.sea.water import WaterMotion
-from riser_soil.sea.wetting import FlatSurface, PartlyWet, Wetting
+from riser_soil.sea.wetting import PartlyWet, Wetting, flat_surface
 from tests.support.sample_line import DIRECTION, RHO, UP, Sample
 
 LEVEL = 5.2
@@ -81,13 +81,13 @@ def waves(at: Sample) -> Morison:
 def half_out(at: Sample) -> Morison:
     """The riser crosses the level of still water."""
     loads = still(at)
-    return Morison(loads.pipe, PartlyWet(loads, Wetting(loads.pipe, FlatSurface(loads.pipe, LEVEL))))
+    return Morison(loads.pipe, PartlyWet(loads, Wetting(loads.pipe, flat_surface(loads.pipe, LEVEL))))
 
 
 def half_out_in_waves(at: Sample) -> Morison:
     loads = still(at)
-    stream = FlowAtStations(loads.pipe, water)
-    return Morison(loads.pipe, PartlyWet(driven(loads, stream, at), Wetting(loads.pipe, stream)))
+    stream = Stream(loads.pipe, water)
+    return Morison(loads.pipe, PartlyWet(driven(loads, stream, at), Wetting(loads.pipe, stream.immersion)))
 
 
 MODULES = [
@@ -114,12 +114,12 @@ def modules_half_out_in_waves(at: Sample) -> Morison:
     stream, added = FlowAtStations(loads.pipe, water), np.array([m.added_mass for m in MODULES])
     mass = (added * displaced)[:, None] * np.ones(2)
     driven = AcceleratedWater(RelativeDrag(loads, stream), stream, mass, displaced)
-    return Morison(loads.pipe, PartlyWet(driven, Wetting(loads.pipe, stream, diameters(MODULES)[:, None])))
+    return Morison(loads.pipe, PartlyWet(driven, Wetting(loads.pipe, stream.immersion, diameters(MODULES)[:, None])))
 
 
 def modules_floating(at: Sample) -> Buoyancy:
     pipe = pipe_at(at.line, MODULES)
-    surface = FlatSurface(pipe, at.line.x[2, -1])
+    surface = flat_surface(pipe, at.line.x[2, -1])
     displaced = 9.81 * RHO * np.array([m.volume for m in MODULES])
     wetting = Wetting(pipe, surface, diameters(MODULES)[:, None])
     return Buoyancy(pipe, DryStations(pipe, wetting, displaced), flat=True)
@@ -127,9 +127,9 @@ def modules_floating(at: Sample) -> Buoyancy:
 
 def floating(at: Sample) -> Buoyancy:
     pipe = Pipe(at.line)
-    return Buoyancy(pipe, DryPipe(pipe, FlatSurface(pipe, LEVEL), 9.81 * displaced(at)), flat=True)
+    return Buoyancy(pipe, DryPipe(pipe, flat_surface(pipe, LEVEL), 9.81 * displaced(at)), flat=True)
 
 
 def floating_in_waves(at: Sample) -> Buoyancy:
     pipe = Pipe(at.line)
-    return Buoyancy(pipe, DryPipe(pipe, FlowAtStations(pipe, water), 9.81 * displaced(at)), flat=False)
+    return Buoyancy(pipe, DryPipe(pipe, Stream(pipe, water).immersion, 9.81 * displaced(at)), flat=False)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Literal, TypeVar
+from typing import ClassVar, Literal, TypeVar
 
 import numpy as np
 from pydantic import BaseModel, Field
@@ -86,8 +86,8 @@ class HardeningPoints:
     limit: float
     H: float
     initial: Array
-    columns: tuple[str, ...] = (*STRESS, PLASTIC_STRAIN)
-    symmetric: bool = True
+    columns: ClassVar[tuple[str, ...]] = (*STRESS, PLASTIC_STRAIN)
+    symmetric: ClassVar[bool] = True
 
     def start(self) -> Array:
         return np.column_stack((self.initial, np.zeros(len(self.shear))))
@@ -127,9 +127,9 @@ class PlasticBed:
     """History (..., 1): plastic penetration [m]."""
 
     given: PlasticSpring
-    columns: tuple[str, ...] = ("plastic",)
-    capacity: float = math.inf
-    start: float = 0.0
+    columns: ClassVar[tuple[str, ...]] = ("plastic",)
+    capacity: ClassVar[float] = math.inf
+    start: ClassVar[float] = 0.0
 
     def initial_history(self, shape: tuple[int, ...]) -> Array:
         return np.zeros((*shape, 1))

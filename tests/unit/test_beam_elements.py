@@ -304,7 +304,7 @@ def test_geometric_term_of_rotation_vectors_matters(monkeypatch: pytest.MonkeyPa
     f, K = elements.call(beam3d.forces_and_tangent)
     f_incomplete, incomplete = f.copy(), K.copy()
     increments.to_increments(f, K, nodes.H, nodes.Rn, nodes.Theta)
-    for name in ("tangent_to_increments", "_end_to_increments"):
+    for name in ("tangent_to_increments", "_end_to_increments", "rows_to_increments"):
         monkeypatch.setattr(increments, name, getattr(increments, name).py_func)
     monkeypatch.setattr(increments, "_moment_tangent", lambda *_: isotropic(0.0))
     increments.to_increments.py_func(f_incomplete, incomplete, nodes.H, nodes.Rn, nodes.Theta)

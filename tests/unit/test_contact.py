@@ -1,4 +1,4 @@
-"""The contact part on stand-ins for riser and soil surface: derivatives, balance, pattern, readings."""
+"""The contact part without soil below its surface: derivatives, balance, pattern, readings."""
 
 from __future__ import annotations
 
@@ -9,10 +9,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from riser_soil.contact.contact import Contact
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.soil_contact import CandidateRange, SoilContact
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.contact.seabed_contact import SeabedContact
+from riser_soil.contact.soil_contact import Reach, SoilContact
+from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Weights
+from riser_soil.riser import shapes
+from riser_soil.riser.line import End, Line
+from riser_soil.riser.shapes import Curve
+from riser_soil.riser.stations import ENDS
+from riser_soil.seabed.grounds import Plane
+from riser_soil.soil.surface import SoilTop
 
 LAW = Penalty(stiffness=2.0e5, smoothing=1e-3)
 WEIGHTS = Weights(inertia=0.0, force=0.0, shift_v=0.0, shift_a=0.0)
@@ -20,57 +28,19 @@ RADIUS = 0.15
 FOOTPRINT = 0.04
 
 
-@dataclass
-class Nodes:
-    """Riser nodes without elements: translations and one angle a node in a plane, three in space."""
+def riser_at(position: Array, plane: float | None = None, active: bool = True) -> Line:
+    """A riser with its nodes at positions (nn, 3), its arc the horizontal distance along them.
 
-    position: Array
-    basis: Array
-    offset: int = 0
-
-    @property
-    def arc(self) -> Array:
-        """Horizontal distance along the row."""
-        steps = np.linalg.norm(np.diff(self.position[:, :2], axis=0), axis=1)
-        return np.concatenate(([0.0], np.cumsum(steps)))
-
-    @property
-    def dofs(self) -> int:
-        return 3 if self.basis.shape[1] == 2 else 6
-
-    @property
-    def size(self) -> int:
-        return self.dofs * len(self.position)
-
-    @property
-    def translation_dofs(self) -> IntArray:
-        first = self.offset + self.dofs * np.arange(len(self.position))
-        return np.asarray(first[:, None] + np.arange(self.basis.shape[1]))
-
-    @property
-    def tributary_length(self) -> Array:
-        half = 0.5 * np.diff(self.arc)
-        return np.append(half, 0.0) + np.append(0.0, half)
-
-    def positions3(self, state: State) -> Array:
-        return np.asarray(self.position + state.u[self.translation_dofs] @ self.basis.T)
+    plane: of a planar riser, the angle [rad] of its vertical plane to the x axis; None: in space.
+    """
+    arc = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(position[:, :2], axis=0), axis=1)))
+    direction = np.array([np.cos(plane or 0.0), np.sin(plane or 0.0), 0.0])
+    unstressed = shapes.straight(arc, position[0], direction)
+    layout = shapes.layout(arc, np.full(len(arc) - 1, 2.0 * RADIUS), unstressed, Curve(position, unstressed.tangent))
+    return Line(3 if plane is None else 2, layout, End(True), End(False), direction, active=active)
 
 
-@dataclass
-class Top:
-    """Soil surface of points and facets; `committed` deforms it."""
-
-    points: Array
-    facets: IntArray
-    committed: Array
-    offset: int = 0
-
-    @property
-    def size(self) -> int:
-        return self.points.size
-
-
-def top(kind: str, nx: int = 6, ny: int = 4, size: float = 0.5) -> Top:
+def top(kind: str, nx: int = 6, ny: int = 4, size: float = 0.5) -> SoilTop:
     """Level surface over [0, nx·size] × [−ny·size/2, ny·size/2], of squares or pairs of triangles."""
     n = 1 if kind == "quad4" else 2
     x = np.linspace(0.0, nx * size, n * nx + 1)
@@ -82,32 +52,28 @@ def top(kind: str, nx: int = 6, ny: int = 4, size: float = 0.5) -> Top:
     lower = [[c[0, 0], c[-1, 0], c[-1, -1], c[n // 2, 0], c[-1, n // 2], c[n // 2, n // 2]] for c in cells]
     upper = [[c[0, 0], c[-1, -1], c[0, -1], c[n // 2, n // 2], c[n // 2, -1], c[0, n // 2]] for c in cells]
     facets = np.array(quads if kind == "quad4" else lower + upper)
-    return Top(points, facets, np.zeros_like(points))
-
-
-def in_plane(angle: float = 0.0) -> Array:
-    return np.array([[np.cos(angle), 0.0], [np.sin(angle), 0.0], [0.0, 1.0]])
+    return SoilTop(points, facets, np.arange(points.size), np.zeros(points.size, dtype=bool))
 
 
 @dataclass
 class Case:
     """A riser over a surface; dofs of another field lie between them."""
 
-    riser: Nodes
-    surface: Top
+    riser: Line
+    surface: SoilTop
     contact: SoilContact
 
     @classmethod
     def build(
         cls,
-        riser: Nodes,
-        surface: Top,
+        riser: Line,
+        surface: SoilTop,
         footprint: float = FOOTPRINT,
         along: Array | None = None,
     ) -> Case:
         riser.offset = 2
         surface.offset = 2 + riser.size + 3
-        radius = np.full(len(riser.position), RADIUS)
+        radius = np.full(riser.nodes, RADIUS)
         contact = SoilContact(
             riser, radius, surface, LAW, footprint=footprint, along=along, reach=CandidateRange(0.5, 0.3)
         )
@@ -148,9 +114,8 @@ def deformed_case(kind: str, dimension: int, footprint: float = FOOTPRINT) -> Ca
     surface.points[:, :2] += 0.05 * rng.uniform(-1.0, 1.0, (len(surface.points), 2))
     surface.committed = 0.03 * rng.uniform(-1.0, 1.0, surface.points.shape)
     x = np.linspace(-0.77, 3.61, 12)
-    basis = in_plane(0.1) if dimension == 2 else np.eye(3)
-    position = np.column_stack([x, 0.1 * x - 0.03, np.full(12, RADIUS - 0.02)])
-    return Case.build(Nodes(position, basis), surface, footprint)
+    position = np.column_stack([x, np.tan(0.1) * x - 0.03, np.full(12, RADIUS - 0.02)])
+    return Case.build(riser_at(position, 0.1 if dimension == 2 else None), surface, footprint)
 
 
 def small(case: Case, size: float = 2e-3, seed: int = 1) -> Array:
@@ -224,15 +189,15 @@ def test_forces_balance_to_round_off(kind: str, dimension: int) -> None:
 
 
 def test_the_footprint_follows_the_riser_in_space_as_in_a_plane() -> None:
-    def forces(basis: Array, along: Array | None) -> Array:
+    def forces(plane: float | None, along: Array | None) -> Array:
         y = np.linspace(-0.8, 0.8, 6)
         position = np.column_stack([np.full(6, 1.3), y, np.full(6, RADIUS - 0.02)])
-        case = Case.build(Nodes(position, basis), deformed_case("quad4", 3).surface, along=along)
+        case = Case.build(riser_at(position, plane), deformed_case("quad4", 3).surface, along=along)
         return case.contact.force_per_length(case.state())
 
-    planar = forces(in_plane(0.5 * np.pi), None)
-    np.testing.assert_allclose(forces(np.eye(3), np.array([0.0, 1.0])), planar, rtol=1e-9)
-    assert np.abs(forces(np.eye(3), None) - planar).max() > 1e-3 * planar.max()
+    planar = forces(0.5 * np.pi, None)
+    np.testing.assert_allclose(forces(None, np.array([0.0, 1.0])), planar, rtol=1e-9)
+    assert np.abs(forces(None, None) - planar).max() > 1e-3 * planar.max()
 
 
 def test_force_on_riser_is_minus_its_residual() -> None:
@@ -244,18 +209,18 @@ def test_force_on_riser_is_minus_its_residual() -> None:
     )
 
 
-def level_case(depth: Array, surface: Top, basis: Array | None = None) -> Case:
+def level_case(depth: Array, surface: SoilTop, plane: float | None = None) -> Case:
     """A level row of nodes over x = 0.25, 0.75, …, each sunk in by its depth [m]."""
     n = len(depth)
     position = np.column_stack([0.25 + 0.5 * np.arange(n), np.zeros(n), RADIUS - depth])
-    return Case.build(Nodes(position, np.eye(3) if basis is None else basis), surface)
+    return Case.build(riser_at(position, plane), surface)
 
 
 @KINDS
-@pytest.mark.parametrize("basis", [np.eye(3), in_plane()])
-def test_flat_soil_gives_the_law_itself(kind: str, basis: Array) -> None:
+@pytest.mark.parametrize("plane", [None, 0.0])
+def test_flat_soil_gives_the_law_itself(kind: str, plane: float | None) -> None:
     depth = np.array([0.01, 0.002, 0.0, -0.01])
-    case = level_case(depth, top(kind), basis)
+    case = level_case(depth, top(kind), plane)
     state = case.state()
     np.testing.assert_allclose(case.contact.force_per_length(state), LAW.force(depth), rtol=1e-10)
     total = float(case.riser.tributary_length @ LAW.force(depth))
@@ -272,7 +237,7 @@ def test_nothing_bears_nodes_beside_the_block() -> None:
     expected = np.where(np.arange(8) < 4, LAW.force(np.array(0.002)), 0.0)
     np.testing.assert_allclose(force, expected, rtol=1e-9)
     assert case.contact.force_on_soil(case.state())[2] == pytest.approx(-0.5 * 3.5 * LAW.force(np.array(0.002)))
-    xy = case.riser.position[:, :2]
+    xy = case.riser.x[:, :2]
     np.testing.assert_array_equal(case.contact.covers(xy), np.arange(8) < 4)
 
 
@@ -283,7 +248,7 @@ def test_node_over_a_valley_of_the_mesh_feels_no_side_force() -> None:
     side = {}
     for footprint in (0.0, FOOTPRINT):
         position = np.array([[1.0, 0.0, RADIUS - 0.01], [1.5, 0.0, RADIUS - 0.01]])
-        case = Case.build(Nodes(position, np.eye(3)), surface, footprint)
+        case = Case.build(riser_at(position), surface, footprint)
         side[footprint] = abs(case.contact.force_on_riser(case.state())[1])
     assert side[0.0] > 10.0
     assert side[FOOTPRINT] < 1e-10
@@ -296,10 +261,38 @@ def test_weightless_groups_and_inactive_ranks() -> None:
     assert abs(forces.end).max() > 0.0
     assert not forces.inertia.any()
     assert not forces.force.any()
-    idle = SoilContact(case.riser, np.full(4, RADIUS), case.surface, LAW, active=False)
+    idle = SoilContact(riser_at(case.riser.x, active=False), np.full(4, RADIUS), case.surface, LAW)
     idle.rebuild(case.state())
     assert not idle.active  # so that the system asks it for no pattern, force, energy or work
-    assert not idle.force_per_length(case.state()).any()
+    assert_touches_nothing(idle)
+
+
+def assert_touches_nothing(contact: Contact) -> None:
+    state = State.at_rest(0.0, 4 * 6)
+    along = contact.force_per_length, contact.penetration, contact.depth
+    assert all(np.array_equal(told(state), np.zeros(4)) for told in along)
+    np.testing.assert_array_equal(contact.force_on_riser(state), np.zeros(3))
+    assert contact.max_penetration(state) == 0.0
+    assert np.isnan(contact.touchdown_arc(state))
+    assert contact.stretches(state) == []
+    assert contact.predict(state) is state.u
+
+
+def test_contacts_of_all_grounds_tell_the_same() -> None:
+    """Nodes that lie, soil and seabed a level plane: one law, two players of one role."""
+    depth = np.array([0.01, 0.01, 0.002, 0.01])
+    case = level_case(depth, top("quad4"))
+    seabed = SeabedContact(case.riser, np.full(3, RADIUS), Plane.level(0.0), LAW, ENDS)
+    players: tuple[Contact, ...] = (case.contact, seabed)
+    for player in players:
+        assert isinstance(player, Contact)
+    alike = "force_per_length", "penetration", "depth", "max_penetration", "force_on_riser", "touchdown_arc", "predict"
+    for name in alike:
+        on_soil, on_seabed = (np.asarray(getattr(player, name)(case.state())) for player in players)
+        np.testing.assert_allclose(on_soil, on_seabed, rtol=1e-9, atol=1e-9, err_msg=name)
+    assert [[s[:2] for s in player.stretches(case.state())] for player in players] == 2 * [[(0.0, 1.5)]]
+    elsewhere = riser_at(case.riser.x, active=False)
+    assert_touches_nothing(SeabedContact(elsewhere, np.full(3, RADIUS), Plane.level(0.0), LAW))
 
 
 depths = st.lists(st.floats(-0.01, 0.02), min_size=4, max_size=4)
@@ -371,7 +364,7 @@ def test_committed_settlement_counts_and_memory_is_dropped() -> None:
     np.testing.assert_allclose(case.contact.force_per_length(state), force - 0.005 * LAW.stiffness, rtol=1e-9)
 
 
-def soil_springs(surface: Top, stiffness: float) -> Array:
+def soil_springs(surface: SoilTop, stiffness: float) -> Array:
     """Matrix of a soft bed: springs to the ground, and between all nodes of a facet, in each direction."""
     n = len(surface.points)
     K = np.zeros((n, n))
@@ -384,8 +377,8 @@ def soil_springs(surface: Top, stiffness: float) -> Array:
 def balance(kind: str, dimension: int, footprint: float) -> tuple[list[float], Array]:
     """Newton's residual norms [N] and the force on the riser; weights press nodes into points of the mesh."""
     position = np.column_stack([0.5 * np.arange(1, 6), np.zeros(5), np.full(5, RADIUS)])
-    basis = np.eye(3) if dimension == 3 else in_plane()
-    case = Case.build(Nodes(position, basis), top(kind), footprint)
+    riser = riser_at(position, None if dimension == 3 else 0.0)
+    case = Case.build(riser, top(kind), footprint)
     rows, soil = case.riser.translation_dofs, slice(case.surface.offset, case.size)
     K, weight = np.zeros((case.size, case.size)), np.zeros(case.size)
     K[soil, soil] = soil_springs(case.surface, 1.2e6)

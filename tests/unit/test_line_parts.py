@@ -12,9 +12,10 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, Part, State, Traits, Weights
 from riser_soil.riser import hermite, loads, rotary_moments, springs, stations
-from riser_soil.riser.directors import PlanarOrientation, SpatialOrientation
+from riser_soil.riser.directors import PlanarTurn, SpatialTurn
+from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.rotary_inertia import RotaryInertia
-from riser_soil.riser.section_forces import HasElementForces, HasNodalForces, element_residual
+from riser_soil.riser.section_forces import element_residual, nodal_residual
 from riser_soil.riser.structural_damping import StructuralDamping
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import waterline, wet_section
@@ -331,12 +332,14 @@ def test_element_forces_add_up_to_the_residual(name: str, dimension: int) -> Non
     at = sample(dimension)
     part, state = MAKERS[name](at), at.state(6)
     total = np.zeros(at.line.size)
-    assert isinstance(part, HasElementForces)
-    at.line.scatter(element_residual(at.line, [part], state), total)
-    nodal = part.nodal_forces(state).ravel() if isinstance(part, HasNodalForces) else 0.0
+    acting = acting_on(at.line, [part])
+    at.line.scatter(element_residual(at.line, acting, state), total)
+    nodal = nodal_residual(at.line, acting, state).ravel()
+    assert total.any()
     assert total + nodal == pytest.approx(
         residual([part], state, Weights(1.0, 1.0, 0.0, 0.0)), rel=1e-13, abs=1e-12
     )
+    assert acting_on(sample(dimension).line, [part]) == []
 
 
 @both_dimensions

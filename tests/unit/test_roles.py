@@ -10,9 +10,9 @@ from mpi4py import MPI
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Model, State, Traits
-from riser_soil.core.roles import Adaptive, MomentumCorrecting, Predictor, with_role
-from riser_soil.core.saved_state import Stateful
-from riser_soil.core.system import System, Timer, total
+from riser_soil.core.roles import Adaptive, MomentumCorrecting, Predictor, owners, with_role
+from riser_soil.core.saved_state import Saved, Stateful
+from riser_soil.core.system import Clock, System, total
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Floor
 
@@ -51,6 +51,18 @@ class Asleep(Floor):
     blocks = residual = tangent = energy = work = commit = FAIL
 
 
+class Keeping(Floor):
+    """A floor that remembers."""
+
+    traits = Traits("E", symmetric=True, roles=(Stateful,))
+
+    def state(self) -> Saved:
+        return {}
+
+    def restore(self, saved: Saved) -> None:
+        pass
+
+
 def start(kind: type[Floor]) -> System:
     chain = Chain(np.array([1.0, 2.0]))
     return System(MPI.COMM_SELF, Model([chain], [kind(chain, 1e3)]), Timer.new())
@@ -73,6 +85,17 @@ def test_a_declared_role_is_played() -> None:
 def test_a_misspelt_or_undeclared_role_is_an_error_at_the_start(kind: type[Floor], says: str) -> None:
     with pytest.raises(TypeError, match=says):
         start(kind)
+
+
+def test_what_keeps_a_state_has_a_name_of_its_own() -> None:
+    """Two of one name would be saved as one, and the other's state lost."""
+    chain = Chain(np.array([1.0, 2.0]))
+    one, other, forgetful = Keeping(chain, 1e3), Keeping(chain, 1e3), Floor(chain, 1e3)
+    assert owners(Model([chain], [one, forgetful])) == {"fields/chain": chain, "parts/contact": one}
+    with pytest.raises(ValueError, match='more than one keeps its state as "parts/contact"'):
+        System(MPI.COMM_SELF, Model([chain], [one, forgetful, other]), Clock.new())
+    with pytest.raises(ValueError, match='more than one keeps its state as "fields/chain"'):
+        System(MPI.COMM_SELF, Model([chain, Chain(np.zeros(1))]), Clock.new())
 
 
 def test_a_part_that_is_not_active_is_asked_for_nothing() -> None:

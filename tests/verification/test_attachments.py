@@ -19,8 +19,9 @@ from riser_soil.riser.ends import End, Kinematics
 from riser_soil.riser.hermite import consistent_mass
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
-from riser_soil.riser.section_forces import HasElementForces, SectionForces, element_residual, section_forces
-from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
+from riser_soil.riser.line_part import acting_on
+from riser_soil.riser.section_forces import SectionForces, element_residual, section_forces
+from riser_soil.riser.sections import LineType, Segment, Surroundings, elements
 from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import solve, tangent
 from tests.support.driven_stage import built, take
@@ -41,7 +42,7 @@ def inside(assembly: Assembly) -> SectionForces:
     """Section forces at the end of the scene's only, static stage."""
     (stage,) = assembly.scene.stages
     state = take(assembly, stage)
-    parts = [p for p in assembly.begin(stage).parts if isinstance(p, HasElementForces)]
+    parts = acting_on(assembly.line, assembly.begin(stage).parts)
     at = State.at_rest(1.0, state.u.size)
     return section_forces(assembly.line, assembly.elements, at, element_residual(assembly.line, parts, at))
 

@@ -1,0 +1,147 @@
+"""A riser in a plane against the same one in space: the classes of which there are two, and Newton iterations.
+
+Both lines move alike, and everything is measured in turn, so that a machine whose speed drifts changes all figures
+alike. `python -m benchmarks.twins` prints the table alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from statistics import median
+
+import numpy as np
+
+from benchmarks.riser_only import Bench, surging, timed
+from benchmarks.stage import TimedStage
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State, Weights
+from riser_soil.riser.elastic import elastic_elements
+from riser_soil.riser.line import Line
+from riser_soil.riser.midpoint_directors import directors
+from riser_soil.riser.rotary_inertia import RotaryInertia
+from riser_soil.riser.structural_damping import StructuralDamping
+
+ELEMENTS, REPEATS = 100, 300
+STEPS = 100  # whole steps, and Newton iterations with a new tangent
+WEIGHTS = Weights(inertia=1.0, force=1.0, shift_v=20.0, shift_a=400.0)
+
+Action = Callable[[], object]
+
+
+def report() -> None:
+    print(f"in a plane and in space, {ELEMENTS} elements:")
+    for name, (plane, space) in measure().items():
+        print(f"  {name}: {plane:.0f} us and {space:.0f} us, space / plane {space / plane:.1f}")
+
+
+def measure() -> dict[str, tuple[float, float]]:
+    """Medians in us, of the plane and of space."""
+    stages = [surging(dimension, ELEMENTS) for dimension in (2, 3)]
+    kernels = [actions(stage) for stage in stages]
+    found = {name: in_turn([each[name] for each in kernels], REPEATS) for name in kernels[0]}
+    benches = [Bench(stage) for stage in stages]
+    iterations = [[timed_iteration(bench) for bench in benches] for _ in range(STEPS)]
+    found["Newton iteration"] = medians(iterations)
+    found["step"] = in_turn([lambda stage=stage: stage.walk(1) for stage in stages], STEPS)
+    for thing in (*benches, *stages):
+        thing.destroy()
+    return found
+
+
+def in_turn(pair: list[Action], repeats: int) -> tuple[float, float]:
+    for action in pair:
+        action()
+    return medians([[timed(action) for action in pair] for _ in range(repeats)])
+
+
+def medians(seconds: list[list[float]]) -> tuple[float, float]:
+    plane, space = (1e6 * median(column) for column in zip(*seconds, strict=True))
+    return plane, space
+
+
+def timed_iteration(bench: Bench) -> float:
+    """Seconds of an iteration with a new tangent, in the next step."""
+    step = bench.stage.stepper.next_step(bench.stage.control)
+    return timed(lambda: bench._solve_fully(step)) / bench.full_iterations
+
+
+def actions(stage: TimedStage) -> dict[str, Action]:
+    """What a Newton iteration asks of each of the classes."""
+    line = stage.assembly.line
+    state = stirred(line, stage.stepper.before)
+    return {
+        "frames (trial, rates and their derivatives)": lambda: turn(line, state),
+        "elastic elements (forces and tangent)": elastic(stage, state),
+        "structural damping (forces and tangent)": damped(stage, state),
+        "rotary inertia (moments and tangent)": rotary(stage, state),
+        "midpoint rule's directors (secant and geometric)": midpoint(line, state),
+    }
+
+
+def stirred(line: Line, before: State) -> State:
+    """An accepted state with small increments of the translations and of the turns in the plane."""
+    u = before.u.copy()
+    along = np.linspace(0.0, 1.0, line.nodes)
+    moved = line.nodal(u)
+    moved[:, 0] += 1e-3 * along
+    moved[:, line.dimension - 1] += 1e-3 * along**2
+    moved[:, -1] += 1e-3 * along
+    return replace(before, u=u)
+
+
+def turn(line: Line, state: State) -> None:
+    trial = line._make_trial(state)
+    force = np.ones_like(trial.q)
+    assert trial.q_rate.shape == trial.q_acceleration.shape
+    trial.columns(WEIGHTS)
+    trial.add_turning(matrices(line), 1.0, force)
+
+
+def matrices(line: Line) -> Array:
+    return np.zeros((line.length.size, 2 * line.ndof, 2 * line.ndof))
+
+
+def elastic(stage: TimedStage, state: State) -> Action:
+    line = stage.assembly.line
+    elements, trial, K = elastic_elements(line, stage.assembly.elements), line.trial(state), matrices(line)
+
+    def act() -> None:
+        elements.forces(trial)
+        elements.add_tangent(K, 1.0, trial)
+
+    return act
+
+
+def damped(stage: TimedStage, state: State) -> Action:
+    line = stage.assembly.line
+    beta = np.full(line.length.size, 0.1)
+    part = StructuralDamping(line, replace(stage.assembly.elements, damping=beta))
+    trial, v = line.trial(state), line.nodal(state.v)
+
+    def act() -> None:
+        part._damping.forces(trial, v)
+        part._damping.tangent(trial, v, WEIGHTS.shift_v)
+
+    return act
+
+
+def rotary(stage: TimedStage, state: State) -> Action:
+    line = stage.assembly.line
+    part, K = RotaryInertia(line, np.ones(line.length.size)), matrices(line)
+
+    def act() -> None:
+        part.element_forces(state)
+        part.tangent(state, WEIGHTS, {line.name: K})
+
+    return act
+
+
+def midpoint(line: Line, state: State) -> Action:
+    moving, middle = directors(line.frames, 0), np.ascontiguousarray(line.nodal(state.u)[:, line.dimension :])
+    force = np.ones((line.length.size, 2, line.dimension))
+    return lambda: moving.geometric(moving.secant(middle), middle, force)
+
+
+if __name__ == "__main__":
+    report()

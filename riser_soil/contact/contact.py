@@ -1,0 +1,49 @@
+"""Contact of the riser with a ground, whatever that is: what steps, checks and results ask of it."""
+
+from __future__ import annotations
+
+from typing import Protocol, runtime_checkable
+
+from riser_soil.contact.touchdown import Stretch
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Part, State
+
+
+@runtime_checkable
+class Contact(Part, Protocol):
+    """Normal contact of the riser, nn nodes, with a ground; friction is a part of its own.
+
+    A rank that is not active tells of a riser that touches nothing: zeros, nan for the touchdown point, no stretches.
+    """
+
+    def force_per_length(self, state: State) -> Array:
+        """Contact force per length at the nodes (nn,) [N/m], > 0 where it pushes the riser away, < 0 where it sucks."""
+        ...
+
+    def penetration(self, state: State) -> Array:
+        """Penetration (nn,) [m] of the nodes' undersides into the ground as it is now, 0 above it."""
+        ...
+
+    def depth(self, state: State) -> Array:
+        """Depth (nn,) [m] of the nodes' undersides below the ground before the riser came, 0 above it."""
+        ...
+
+    def max_penetration(self, state: State) -> float:
+        """Deepest penetration [m] of what the contact looks at, nodes or stations between them; >= 0."""
+        ...
+
+    def force_on_riser(self, state: State) -> Array:
+        """Sum of the contact forces on the riser (3,) [N], global axes."""
+        ...
+
+    def touchdown_arc(self, state: State) -> float:
+        """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""
+        ...
+
+    def stretches(self, state: State) -> list[Stretch]:
+        """Where the riser lies on the ground, from its start on."""
+        ...
+
+    def predict(self, guess: State) -> Array:
+        """Increments (all local dofs) of a first guess of a step in which the riser lands, see `landing`."""
+        ...
