@@ -10,8 +10,8 @@ from riser_soil.assembly import Assembly
 from riser_soil.assembly.stage import scheme_of, times_to_hit
 from riser_soil.core.part import Model, State
 from riser_soil.core.roles import Adaptive, owners, with_role
-from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back, within
-from riser_soil.core.system import Clock, System
+from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all, within
+from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
 from riser_soil.interruption import check, uninterrupted
 from riser_soil.scene.stages import Stage, StaticStage
@@ -127,7 +127,7 @@ def _take(
 
 
 def _restore(system: System, saved: Saved) -> None:
-    give_back(owners(system.model), saved)
+    restore_all(owners(system.model), saved)
     if with_role(system.model.parts, Adaptive):
         system.renew_pattern()
 
@@ -145,7 +145,7 @@ class StageRun:
     def state(self) -> Saved:
         """All that the stage is resumed from, see `saved_state`."""
         own: dict[str, Stateful] = {"assembly": self.assembly, "stepper": self.stepper}
-        return gathered(owners(self.stepper.system.model) | own | self.told)
+        return gathered(owners(self.stepper.system.model) | own | self.listeners)
 
     @property
     def listeners(self) -> dict[str, Stateful]:

@@ -28,8 +28,8 @@ from riser_soil.scene.stages import DynamicStage, MovedEnds, Stage, StaticStage
 
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels
-    from riser_soil.contact.contact import Contact
-    from riser_soil.contact.friction import Friction
+    from riser_soil.contact.contact import RiserContact
+    from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.riser.attachments import PointAttachment
@@ -78,9 +78,9 @@ class Assembly:
         return [self.line, *self.ground_fields]
 
     @property
-    def contacts(self) -> list[Contact]:
+    def contacts(self) -> list[RiserContact]:
         """What the riser may touch."""
-        both: tuple[Contact | None, Contact | None] = (self.soil_contact, self.seabed)
+        both: tuple[RiserContact | None, RiserContact | None] = (self.soil_contact, self.seabed)
         return [contact for contact in both if contact is not None]
 
     @property

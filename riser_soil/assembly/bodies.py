@@ -66,7 +66,7 @@ class Body(ABC):
         """How wet its stations are."""
 
     @abstractmethod
-    def dry(self, surface: WaterSurface, gravity: float) -> Dry:
+    def dry(self, surface: WaterSurface, gravity: float) -> LostBuoyancy:
         """What of it is dry."""
 
 
@@ -123,7 +123,7 @@ class PipeInWater(Body):
 class ModulesInWater(Body):
     """Modules, each with a volume or a drag area."""
 
-    modules: Sequence[Attachment]
+    modules: Sequence[PointAttachment]
 
     @cached_property
     def pipe(self) -> Pipe:

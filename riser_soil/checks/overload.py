@@ -13,7 +13,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 
 if TYPE_CHECKING:
-    from riser_soil.contact.contact import Contact
+    from riser_soil.contact.contact import RiserContact
 
 
 class Overload(NamedTuple):
@@ -61,7 +61,7 @@ def _overloads(assembly: Assembly) -> Iterator[Overload]:
             yield Overload(load[node], capacity, depth[node], *place, meaning)
 
 
-def _limits(assembly: Assembly) -> Iterator[tuple[Contact, float, str]]:
+def _limits(assembly: Assembly) -> Iterator[tuple[RiserContact, float, str]]:
     """Grounds that bear so much only [N/m], and what that is."""
     soil, D = assembly.scene.soil, assembly.scales.diameter
     bearing = soil.law.bearing(D) if soil is not None else None

@@ -102,7 +102,7 @@ class ContactDetection:
         forms, H = gap_forms(below, xi, self._soil.facets, surface)
         forms = np.concatenate((forms[:, :, :3] @ self._line.basis, forms[:, :, 3:]), axis=2)
         rows = np.hstack((self._line.translation_dofs[node], self._soil.facet_dofs(below)))
-        return Touching(self._law, node, below, points.length[at], -gap[at], rows, forms, H)
+        return ActiveContacts(self._law, node, below, points.length[at], -gap[at], rows, forms, H)
 
 
 @njit

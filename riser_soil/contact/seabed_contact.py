@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.lying import Lying, LyingContact
+from riser_soil.contact.line_contact import ContactAlongLine, LineContact
 from riser_soil.contact.station_forces import StationForces
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
@@ -54,7 +54,7 @@ class StationContact(NamedTuple):
     touching: ContactElements
 
 
-class SeabedContact(LyingContact):
+class SeabedContact(LineContact):
     """Part "seabed": force per length of riser by its penetration into the ground, in group E.
 
     line: the riser's field. radius (ne,): distance [m] from the axis to the line that touches, 0 for the axis itself.
@@ -195,12 +195,12 @@ class SeabedContact(LyingContact):
         per_station = self.share[touching.elements][..., None] * touching.resistance
         return np.asarray(-self.line.basis @ per_station.sum(axis=(0, 1)))
 
-    def lying(self, state: State) -> Lying:
+    def contact_along_line(self, state: State) -> ContactAlongLine:
         """At the stations, ne ng points."""
         found = self.evaluate(self.line.trial(state))
         force = self._at_stations(found.touching.elements, found.touching.force)
         clearance = -found.penetration.ravel() - self.law.start
-        return Lying(self._arc.ravel(), self.share.ravel(), clearance, force.ravel())
+        return ContactAlongLine(self._arc.ravel(), self.share.ravel(), clearance, force.ravel())
 
     def clearance(self, state: State) -> Array:
         """Gap (nn,) of the nodes less that at which the force begins [m]."""

@@ -12,18 +12,16 @@ from riser_soil.contact.detection import (
     ActiveContacts,
     ContactDetection,
     ContactState,
-    Touching,
     add_blocks,
     add_shares,
 )
 from riser_soil.contact.gap import heights
 from riser_soil.contact.ground import ASPECT, ContactPoints, DeformedSurface
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.lying import Lying, LyingContact
-from riser_soil.contact.patch import Patch, around
+from riser_soil.contact.line_contact import ContactAlongLine, LineContact
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
-from riser_soil.core.remembered import Remembered
+from riser_soil.core.identity_cache import IdentityCache
+from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line import Line
@@ -40,7 +38,7 @@ class CandidateRange:
     around: float = 0.0
 
 
-class SoilContact(LyingContact):
+class SoilContact(LineContact):
     """Part "contact": frictionless penalty contact between riser nodes and the soil below them, in group E.
 
     Node i carries f(δ_i) times its tributary length. All forces derive from the potential Σ ψ(δ_i)·length_i: the
@@ -71,11 +69,11 @@ class SoilContact(LyingContact):
         *,
         footprint: float | None = None,
         along: Array | None = None,
-        reach: Reach | None = None,
+        reach: CandidateRange | None = None,
     ) -> None:
         super().__init__(line, law)
         self.outgrown, self._radius = False, radius
-        self._detected = Remembered[State, ContactState]()
+        self._detected = IdentityCache[State, ContactState]()
         if not self.active:
             return
         self._soil = DeformedSurface(surface)
@@ -84,8 +82,8 @@ class SoilContact(LyingContact):
         axis = line.basis[:2, 0] if along is None else along
         points = ContactPoints.of_nodes(line.tributary_length, self._footprint, axis)
         self._detection = ContactDetection(line, radius, points, law, self._soil, self._reach.above)
-        self._patch: Patch | None = None
-        self._missed = Patch.none(len(self._soil.facets))
+        self._patch: CandidatePairs | None = None
+        self._missed = CandidatePairs.none(len(self._soil.facets))
 
     def detect(self, state: State) -> ContactState:
         """Riser and ground at a state; kept for the state asked last, whose arrays must not change then."""
@@ -95,7 +93,7 @@ class SoilContact(LyingContact):
         """Translations of a node and dofs of a facet, candidate pair by pair."""
         patch = self._present_patch()
         rows = np.hstack([self.line.translation_dofs[patch.nodes], self._soil.facet_dofs(patch.facet)])
-        return {SOIL: Block(rows, rows)}
+        return {SOIL: MatrixBlock(rows, rows)}
 
     def rebuild(self, state: State) -> None:
         """Choose the candidates anew: around a state, and what was missed since the last time."""
@@ -181,9 +179,10 @@ class SoilContact(LyingContact):
         facet, _ = self._soil.locate(xy, self._soil.settled)
         return np.asarray(facet >= 0)
 
-    def lying(self, state: State) -> Lying:
+    def contact_along_line(self, state: State) -> ContactAlongLine:
         """At the nodes."""
-        return Lying(self.line.arc, self.line.tributary_length, self.clearance(state), self.force_per_length(state))
+        share, force = self.line.tributary_length, self.force_per_length(state)
+        return ContactAlongLine(self.line.arc, share, self.clearance(state), force)
 
     def clearance(self, state: State) -> Array:
         """Gap (nn,) less that at which the force begins [m], the least of a node's points; inf far away."""
@@ -221,9 +220,10 @@ class SoilContact(LyingContact):
         if self.active:
             self._detected.forget()
             self.outgrown = bool(saved["outgrown"])
-            self._patch, self._missed = (Patch(len(self._soil.facets), saved[name]) for name in ("patch", "missed"))
+            facets = len(self._soil.facets)
+            self._patch, self._missed = (CandidatePairs(facets, saved[name]) for name in ("patch", "missed"))
 
 
-def _default_reach(line: Line, soil: DeformedSurface) -> Reach:
+def _default_reach(line: Line, soil: DeformedSurface) -> CandidateRange:
     length = float(line.arc[-1] - line.arc[0])
-    return Reach(0.01 * length, 0.5 * soil.facet_size)
+    return CandidateRange(0.01 * length, 0.5 * soil.facet_size)

@@ -16,9 +16,9 @@ from riser_soil.checks.inventory import built, dissipating, left_out, unknowns, 
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, State
-from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back
-from riser_soil.core.snapshot import RiserSnapshot, RunFacts, SoilSnapshot, StepHealth, Touch
-from riser_soil.core.system import Clock
+from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
+from riser_soil.core.snapshot import ContactSnapshot, RiserSnapshot, RunFacts, SoilSnapshot, StepStatistics
+from riser_soil.core.system import Timer
 from riser_soil.errors import Interruption, RiserSoilError, SolveError
 from riser_soil.interruption import uninterrupted
 from riser_soil.results.energy_ledger import EnergyLedger

@@ -26,7 +26,7 @@ from riser_soil.riser.beam3d import (
     stiffness,
     strain_of,
 )
-from riser_soil.riser.corotation import NodalForces
+from riser_soil.riser.corotation import SpatialNodalForces
 from riser_soil.riser.increments import rows_to_increments
 from riser_soil.riser.strain3d import Stiffness, strain_change_variation, total
 from riser_soil.riser.stress3d import linear_stress

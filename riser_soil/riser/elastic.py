@@ -137,8 +137,8 @@ def _add_spatial_tangent(
     chord: Array,
     frame1: Array,
     frame2: Array,
-    reference: beam3d.Reference,
-    section: beam3d.Section,
+    reference: beam3d.SpatialReference,
+    section: beam3d.SpatialSection,
     nodes: tuple[Array, Array, Array],
 ) -> None:
     """nodes: H, Rn and Theta, see `increments`."""
@@ -156,7 +156,7 @@ def elastic_elements(line: Line, elements: Elements) -> PlanarElements | Spatial
     return SpatialElements(line, line.frames, elements)
 
 
-def spatial(trial: Trial) -> SpatialTurn:
+def spatial(trial: Trial) -> SpatialOrientation:
     """The orientation of a line in space."""
-    assert isinstance(trial.turn, SpatialTurn)
+    assert isinstance(trial.turn, SpatialOrientation)
     return trial.turn

@@ -13,8 +13,8 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import Block, State
-from riser_soil.core.remembered import Remembered
+from riser_soil.core.identity_cache import IdentityCache
+from riser_soil.core.part import MatrixBlock, State
 from riser_soil.core.saved_state import Saved, under, values_of, within
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
@@ -85,7 +85,7 @@ class Line:
         self._supports = self._bases = {node: unturned.at(node).copy() for node in (0, self.arc.size - 1)}
         self.offset = 0
         self._left: Trial | None = None
-        self._trials = Remembered[State, Trial](first=1, latest=2)
+        self._trials = IdentityCache[State, Trial](first=1, latest=2)
         self._number()
         self.prescribe_spin(prescribe_spin)
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Block, Energy, Part, State, Work
+from riser_soil.core.part import Energy, MatrixBlock, Part, State, Work
 from riser_soil.riser.line import Line
 
 

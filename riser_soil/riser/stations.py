@@ -230,7 +230,7 @@ def _add_block(out: Array, room: _Room, weighted: Array, P: Array, D: Size, R: S
     add_rows(out, P, room.S, D, R)
 
 
-def add_tangent(out: Array, at: Stations, by: Derivatives, columns: ByDofs) -> None:
+def add_tangent(out: Array, at: Stations, by: Derivatives, columns: DofDerivatives) -> None:
     """Add to out (ne, n, n) the derivative by the dofs of the residual of a force per length, P = dt/dTheta held."""
     D, R = fixed(by.slope.shape[2]), fixed(columns.q.shape[3])
     _add_tangent(out, tuple(at), tuple(by), tuple(columns), D, R)
@@ -239,7 +239,7 @@ def add_tangent(out: Array, at: Stations, by: Derivatives, columns: ByDofs) -> N
 @njit
 def _add_tangent(out: Array, at: tuple, by: tuple, columns: tuple, D: Size, R: Size) -> None:
     """Takes plain tuples: numba reads named ones half a microsecond slower."""
-    at, by, columns = Stations(*at), Derivatives(*by), ByDofs(*columns)
+    at, by, columns = Stations(*at), Derivatives(*by), DofDerivatives(*columns)
     room = _room(by.slope.shape[1], out.shape[1], D)
     for e in range(by.slope.shape[0]):
         for g in range(by.slope.shape[1]):
@@ -249,7 +249,9 @@ def _add_tangent(out: Array, at: tuple, by: tuple, columns: tuple, D: Size, R: S
 
 
 @njit
-def _put_change(change: Array, place: Place, at: Stations, by: Derivatives, columns: ByDofs, D: Size, R: Size) -> None:
+def _put_change(
+    change: Array, place: Place, at: Stations, by: Derivatives, columns: DofDerivatives, D: Size, R: Size
+) -> None:
     """Write how the force at a station of an element follows the dofs of one of its ends to change (d, n)."""
     e, g, side = place
     d, first = len(D), side * (len(D) + len(R))

@@ -24,7 +24,7 @@ class IncrementDerivatives(NamedTuple):
     shift: float
 
 
-Columns = tuple[ByIncrements, ByIncrements, ByIncrements]
+Columns = tuple[IncrementDerivatives, IncrementDerivatives, IncrementDerivatives]
 
 
 class Trial:
@@ -73,7 +73,7 @@ class Trial:
     def _columns_at(self, shift_v: float, shift_a: float) -> Columns:
         d = self.x.shape[1]
         maps = self.turn.maps(self._v[:, d:], self._a[:, d:], shift_v, shift_a)
-        q, rate, acceleration = map(ByIncrements, maps, (1.0, shift_v, shift_a))
+        q, rate, acceleration = map(IncrementDerivatives, maps, (1.0, shift_v, shift_a))
         return q, rate, acceleration
 
     def add_turning(self, out: Array, weight: float, F: Array) -> None:

@@ -22,7 +22,7 @@ from riser_soil.riser.attachments import PointAttachment, places
 from riser_soil.riser.line import Line
 from riser_soil.riser.stations import Derivatives
 from riser_soil.riser.trial import Trial
-from riser_soil.sea.pipe import Pipe, Points, StationFlow
+from riser_soil.sea.pipe import Pipe, PointsOnLine, StationFlow
 from riser_soil.sea.still_water import Resistance
 
 

@@ -54,7 +54,7 @@ class Wetting:
         wet: WetShare = trial.once((self, "wet"), self._evaluate)
         return wet
 
-    def _evaluate(self, trial: Trial) -> Wet:
+    def _evaluate(self, trial: Trial) -> WetShare:
         h, gradient = self._surface(trial)
         share, slope = wet_section.wet_shares(h, self._span)
         return WetShare(share, slope[..., None] * gradient)

@@ -98,7 +98,7 @@ class AubenyBiscontinFormula:
 
     diameter: float
     given: AubenyBiscontin
-    columns: ClassVar[tuple[str, ...]] = Past._fields
+    columns: ClassVar[tuple[str, ...]] = AubenyBiscontinHistory._fields
 
     @cached_property
     def _strength(self) -> Strength:

@@ -93,7 +93,7 @@ class RandolphQuigginFormula:
 
     diameter: float
     given: RandolphQuiggin
-    columns: ClassVar[tuple[str, ...]] = Past._fields
+    columns: ClassVar[tuple[str, ...]] = RandolphQuigginHistory._fields
 
     @cached_property
     def _ultimate(self) -> PowerLaw:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.soil.field import components
-from riser_soil.soil.grid import Grid
+from riser_soil.soil.grid import DistributedMesh
 from riser_soil.soil.surface import SoilTop
 
 T = TypeVar("T", bound=np.generic)
@@ -37,7 +37,7 @@ def gather_rows(grid: DistributedMesh, rows: npt.NDArray[T]) -> npt.NDArray[T]:
     return rows[:0] if pieces is None else np.concatenate(pieces)
 
 
-def top_of(grid: Grid, mesh: Gathered) -> SoilTop:
+def top_of(grid: DistributedMesh, mesh: GatheredMesh) -> SoilTop:
     """The surface that looks upwards; without points where the mesh is not gathered."""
     facets = top_facets(grid, mesh)
     used = np.unique(facets)
@@ -45,7 +45,7 @@ def top_of(grid: Grid, mesh: Gathered) -> SoilTop:
     return SoilTop(points, np.searchsorted(used, facets), components(used), grid.supported(points).ravel())
 
 
-def top_facets(grid: Grid, mesh: Gathered) -> IntArray:
+def top_facets(grid: DistributedMesh, mesh: GatheredMesh) -> IntArray:
     """Boundary facets that look upwards (nf, nv): counter-clockwise from above, ordered as `Family.faces`."""
     family = grid.family
     faces: IntArray = mesh.cells[:, np.array(family.faces)].reshape(-1, len(family.flip))

@@ -8,17 +8,17 @@ from typing import Literal
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
-from riser_soil.core.remembered import Remembered
+from riser_soil.core.identity_cache import IdentityCache
+from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
 from riser_soil.soil.element import cell_gradients
 from riser_soil.soil.field import SoilField, components
-from riser_soil.soil.gathered import Gathered, gather, gather_rows, top_of
-from riser_soil.soil.grid import Grid, on_all_ranks
-from riser_soil.soil.law import PLASTIC_STRAIN, Formula, Response
+from riser_soil.soil.gathered import GatheredMesh, gather, gather_rows, top_of
+from riser_soil.soil.grid import DistributedMesh, on_all_ranks
+from riser_soil.soil.law import PLASTIC_STRAIN, Formula, StressUpdate
 
 
 class Soil:
@@ -47,7 +47,7 @@ class Soil:
         _check_level(grid, level)
         self.grid = grid
         self.field = SoilField(grid)
-        self.mesh: Gathered = gather(grid)
+        self.mesh: GatheredMesh = gather(grid)
         self.surface = top_of(grid, self.mesh)
         self._cells = np.ascontiguousarray(grid.nodes.cells)
         self._gradients = on_all_ranks(
@@ -60,7 +60,7 @@ class Soil:
         self.traits = Traits("E", self.law.symmetric, roles=(Stateful,))
         self._check_start(initial, depth, K0)
         self._initial, self._found = initial, _at_rest(self.law, initial)
-        self._answers = Remembered[State, tuple[Array, Response]]()
+        self._answers = IdentityCache[State, tuple[Array, StressUpdate]]()
         self._load = self._internal(initial) if start == "geostatic" else self._weight(unit_weight)
 
     def blocks(self) -> dict[str, MatrixBlock]:
@@ -125,7 +125,7 @@ class Soil:
         """
         return self._answers.made_of(state, self._new_answer)
 
-    def _new_answer(self, state: State) -> tuple[Array, Response]:
+    def _new_answer(self, state: State) -> tuple[Array, StressUpdate]:
         strain = self._strain(state)
         return strain, self.law.update(strain, self._found.history)
 

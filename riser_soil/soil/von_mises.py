@@ -15,7 +15,7 @@ from pydantic import Field
 from riser_soil.core.lazy import LazyModule
 from riser_soil.core.quantities import PoissonRatio, Ratio, StrengthGradient, Stress
 from riser_soil.seabed.bearing import Number, Strength, strip_capacity
-from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Bearing, Response, SoilLaw
+from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Bearing, SoilLaw, StressUpdate
 
 if TYPE_CHECKING:
     import numpy as np

@@ -86,7 +86,7 @@ def half_out(at: Sample) -> Morison:
 
 def half_out_in_waves(at: Sample) -> Morison:
     loads = still(at)
-    stream = Stream(loads.pipe, water)
+    stream = FlowAtStations(loads.pipe, water)
     return Morison(loads.pipe, PartlyWet(driven(loads, stream, at), Wetting(loads.pipe, stream.immersion)))
 
 
@@ -132,4 +132,4 @@ def floating(at: Sample) -> Buoyancy:
 
 def floating_in_waves(at: Sample) -> Buoyancy:
     pipe = Pipe(at.line)
-    return Buoyancy(pipe, DryPipe(pipe, Stream(pipe, water).immersion, 9.81 * displaced(at)), flat=False)
+    return Buoyancy(pipe, DryPipe(pipe, FlowAtStations(pipe, water).immersion, 9.81 * displaced(at)), flat=False)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from riser_soil.contact.contact import Contact
+from riser_soil.contact.contact import RiserContact
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import System
@@ -62,7 +62,7 @@ def _facts(system: System, step: AcceptedStep) -> StepFacts:
     after = step.solution.state
     before = State.at_rest(0.0, after.u.size)
     turned = {p.name: p.work(before, after) for p in system.model.parts if p.name in ("contact", "seabed", "soil")}
-    contact = [p for p in system.model.parts if isinstance(p, Contact)]
+    contact = [p for p in system.model.parts if isinstance(p, RiserContact)]
     return StepFacts(
         static=not after.a.any(),
         t=step.t,

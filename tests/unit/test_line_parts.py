@@ -12,7 +12,7 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, Part, State, Traits, Weights
 from riser_soil.riser import hermite, loads, rotary_moments, springs, stations
-from riser_soil.riser.directors import PlanarTurn, SpatialTurn
+from riser_soil.riser.directors import PlanarOrientation, SpatialOrientation
 from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.section_forces import element_residual, nodal_residual

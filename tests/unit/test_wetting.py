@@ -87,7 +87,7 @@ def rippled(t: float, x: Array) -> WaterMotion:
 
 def test_a_wavy_surface_is_followed_between_the_stations() -> None:
     at = pipe(np.array([0.0, 0.0, LEVEL + 0.1]), np.array([1.0, 0.0, 0.0]), 5, 2)
-    dry = DryPipe(at, Stream(at, rippled).immersion, np.ones(5))
+    dry = DryPipe(at, FlowAtStations(at, rippled).immersion, np.ones(5))
     found = dry.residual(at.line.trial(State.at_rest(0.0, at.line.size)))[:, [0, 2], 1].sum()
     k = 2.0 * np.pi / 12.0
     expected = quad(lambda x: 1.0 - wet_share(0.2 * np.cos(k * x) - 0.1, D), 0.0, L, epsabs=1e-10, limit=200)[0]

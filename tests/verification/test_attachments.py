@@ -21,7 +21,7 @@ from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import SectionForces, element_residual, section_forces
-from riser_soil.riser.sections import LineType, Segment, Surroundings, elements
+from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import solve, tangent
 from tests.support.driven_stage import built, take
