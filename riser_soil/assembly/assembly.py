@@ -79,7 +79,7 @@ class Assembly:
 
     @property
     def contacts(self) -> list[RiserContact]:
-        """What the riser may touch."""
+        """Contact parts of the riser."""
         both: tuple[RiserContact | None, RiserContact | None] = (self.soil_contact, self.seabed)
         return [contact for contact in both if contact is not None]
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Body(ABC):
-    """Something on the line in water of density rho [kg/m3], at stations (ne, ng); forces and masses are per length,
+    """A body on the line in water of density rho [kg/m3], at stations (ne, ng); forces and masses are per length,
     those of single modules as they are.
     """
 
@@ -49,7 +49,7 @@ class Body(ABC):
     @property
     @abstractmethod
     def still(self) -> Resistance:
-        """What still water does to it."""
+        """Its loads in still water."""
 
     @property
     @abstractmethod
@@ -67,7 +67,7 @@ class Body(ABC):
 
     @abstractmethod
     def dry(self, surface: WaterSurface, gravity: float) -> LostBuoyancy:
-        """What of it is dry."""
+        """Its lost buoyancy where it is dry."""
 
 
 @dataclass(frozen=True)

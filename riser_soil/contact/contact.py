@@ -42,7 +42,7 @@ class RiserContact(Part, Protocol):
         ...
 
     def contact_intervals(self, state: State) -> list[ContactInterval]:
-        """Where the riser lies on the ground, from its start on."""
+        """Intervals of contact along the riser, from its start on."""
         ...
 
     def predict(self, guess: State) -> Array:

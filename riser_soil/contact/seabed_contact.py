@@ -135,12 +135,12 @@ class SeabedContact(LineContact):
         return pushed if t.bend is None else pushed - t.force[..., None, None] * t.bend
 
     def energy(self, state: State) -> Energy:
-        """What the law gives back."""
+        """Energy stored by the law, which it can return."""
         touching = self.evaluate(self.line.trial(state)).touching
         return Energy(potential=float(np.sum(self.share * self._at_stations(touching.elements, touching.stored))))
 
     def work(self, before: State, after: State) -> Work:
-        """What the force at the end of the step took out beyond the change of what it stores.
+        """Energy dissipated: the work of the force at the end of the step less the change of the energy stored.
 
         Never negative on a plane, where the stored energy is convex in the penetration.
         """

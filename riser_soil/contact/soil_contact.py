@@ -119,7 +119,7 @@ class SoilContact(LineContact):
         return Energy(potential=self.detect(state).touching.potential)
 
     def work(self, before: State, after: State) -> Work:
-        """What the force at the end of the step took out beyond the change of its potential.
+        """Energy dissipated: the work of the force at the end of the step less the change of its potential.
 
         ψ is convex in the gap, so this is ≥ 0 where the gap is linear in the step, as where soil and riser move
         vertically. Sliding along a sloping ground adds terms of second order in the sliding distance, of either sign.

@@ -18,17 +18,19 @@ from riser_soil.riser.trial import Trial
 
 
 class ElasticElements(ABC):
-    """What elements in the plane and in space have in common.
+    """Base class of the elements in the plane and in space.
 
-    kernels: the module of their formulas. ends (ne, 2, ...): unstressed orientation of element ends, as it takes them.
+    kernels: the module of their formulas; section_type: its section stiffnesses. ends (ne, 2, ...): unstressed
+    orientation of element ends, as it takes them.
     """
 
     kernels: ClassVar[ModuleType]
+    section_type: ClassVar[type[Any]]
 
     def __init__(self, line: Line, ends: Array, *stiffnesses: Array) -> None:
         first, second = (np.ascontiguousarray(ends[:, i]) for i in (0, 1))
         self.reference: Any = self.kernels.reference(line.chord0, first, second, line.length)
-        self.section: Any = self.kernels.Section(*stiffnesses)
+        self.section: Any = self.section_type(*stiffnesses)
 
     @abstractmethod
     def configuration(self, trial: Trial) -> tuple[Array, Array, Array]:
@@ -54,6 +56,7 @@ class PlanarElements(ElasticElements):
     """Elements of a planar line; EI is EI_y, as the second section axis is normal to the plane."""
 
     kernels: ClassVar[ModuleType] = beam2d
+    section_type: ClassVar[type[Any]] = beam2d.PlanarSection
 
     def __init__(self, line: Line, frames: PlanarFrames, elements: Elements) -> None:
         super().__init__(line, frames.alpha0, elements.EA, elements.EI_y)
@@ -75,6 +78,7 @@ class SpatialElements(ElasticElements):
     """Elements of a line in space."""
 
     kernels: ClassVar[ModuleType] = beam3d
+    section_type: ClassVar[type[Any]] = beam3d.SpatialSection
 
     def __init__(self, line: Line, frames: SpatialFrames, elements: Elements) -> None:
         super().__init__(line, frames.T0, elements.EA, elements.EI_y, elements.EI_z, elements.GJ)

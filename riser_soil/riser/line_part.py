@@ -1,6 +1,4 @@
-"""What parts that act on a line have in common: its pattern; by default nothing is stored, turned over or kept, and
-nothing told of where the forces act.
-"""
+"""Base class of the parts that act on a line: sparsity pattern, and defaults without energy, history or forces."""
 
 from __future__ import annotations
 
