@@ -53,8 +53,8 @@ class Surface(NamedTuple):
 
 
 class NearPoints(NamedTuple):
-    """Integration points near the pipe (n,): element and facet, place xi (n,) on the element's axis, (xi, eta) (n, 2) on
-    the facet, area [m2], and gap [m].
+    """Integration points near the pipe (n,): element and facet; place on the element's axis, 0 to 1; (xi, eta) (n, 2)
+    on the facet; area [m2] and gap [m].
     """
 
     element: IntArray
@@ -237,7 +237,10 @@ def _fill(vectors: Array, basis: Array, N: Four, dN: Four, forms: Array) -> None
 
 @njit
 def _frame(q: Array, L: float, radius: float, xi: float, p: tuple[float, float, float], C: Array) -> Array:
-    """Vectors (4, 2, 3) of the forms δg, b·(…), ε and δs: by δp - N δq and by N'δq; writes C (4, 4), see `gap_forms`."""
+    """Vectors (4, 2, 3) of the forms δg, b·(…), ε and δs, by δp - N δq and by N'δq; writes C (4, 4), see `gap_forms`.
+
+    At an end of the element the third form is along the other direction square to n.
+    """
     c, c1, c2 = _combined(q, axis_shape(xi, L)), _combined(q, slope(xi, L)), _combined(q, bend(xi, L))
     rho = _signed(c, p, radius)
     vectors = np.zeros((FORMS, 2, 3))

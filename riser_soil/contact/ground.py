@@ -1,4 +1,4 @@
-"""The soil's surface as a ground, and the points by which the riser stands on it."""
+"""The deformed soil surface as a contact surface, and the contact points of the riser's nodes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.contact.pairing import Pairing
+from riser_soil.contact.pairing import FacetSearch
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import State
 from riser_soil.soil.surface import SoilTop
@@ -44,11 +44,11 @@ class ContactPoints:
 
 
 class DeformedSurface:
-    """The deformed surface: what lies where, and the dofs behind it."""
+    """The deformed surface: its facets, and the dofs of their nodes."""
 
     def __init__(self, surface: SoilTop) -> None:
         self._surface = surface
-        self._pairing = Pairing(surface.points, surface.facets)
+        self._pairing = FacetSearch(surface.points, surface.facets)
         self.facets = np.ascontiguousarray(surface.facets, dtype=np.int64)
 
     @property
@@ -78,6 +78,11 @@ class DeformedSurface:
         """Points (np, 3) of the surface as accepted so far [m]."""
         return np.asarray(self._surface.points + self._surface.committed)
 
+    def stretch(self, deformed: Array, facets: IntArray) -> float:
+        """Largest area in plan of some facets of a deformed surface (np, 3), over that at first; 1 of none."""
+        now, before = (_plan_area(points[self.facets[facets]]) for points in (deformed, self.at_first))
+        return float(np.max(now / before, initial=1.0))
+
     def locate(self, xy: Array, points: Array) -> tuple[IntArray, Array]:
         """Facet (n,), −1 outside, and place on it (n, 2) below positions xy (n, 2), at deformed points."""
         return self._pairing.locate(xy, points)
@@ -86,3 +91,10 @@ class DeformedSurface:
         """Local dof numbers (n, 3·nv) of facets, node by node."""
         dofs = self._surface.offset + 3 * self.facets[facet][:, :, None] + np.arange(3)
         return dofs.reshape(len(facet), 3 * self.facets.shape[1])
+
+
+def _plan_area(at: Array) -> Array:
+    """Area in plan (n,) [m2] between the corners of facets (n, nv, 3)."""
+    corners = at[:, : 4 if at.shape[1] == 4 else 3, :2]
+    ahead = np.roll(corners, -1, axis=1)
+    return np.asarray(0.5 * np.sum(corners[..., 0] * ahead[..., 1] - corners[..., 1] * ahead[..., 0], axis=1))

@@ -25,8 +25,8 @@ def divisions(points: Array, facets: IntArray, along: Array, spacing: tuple[floa
     """
     at = points[facets][:, :, :2]
     if facets.shape[1] == len(QUAD):
-        sides = 0.5 * np.stack([at[:, 1] + at[:, 2] - at[:, 0] - at[:, 3], at[:, 2] + at[:, 3] - at[:, 0] - at[:, 1]], 1)
-        counted = _parts(sides, along, spacing)
+        a, b, c, d = at[:, 0], at[:, 1], at[:, 2], at[:, 3]
+        counted = _parts(0.5 * np.stack([b + c - a - d, c + d - a - b], axis=1), along, spacing)
     else:
         sides = np.stack([at[:, 1] - at[:, 0], at[:, 2] - at[:, 1], at[:, 0] - at[:, 2]], axis=1)
         counted = np.repeat(_parts(sides, along, spacing).max(axis=1)[:, None], 2, axis=1)

@@ -1,213 +1,132 @@
-"""The contact part: couples the riser's nodes to the soil that lies under them."""
+"""Contact of the riser with the soil's surface: the part "contact", whatever points of either look at the other."""
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.contact.detection import (
-    SOIL,
-    ContactDetection,
-    ContactState,
-    Touching,
-    add_blocks,
-    add_shares,
-)
-from riser_soil.contact.gap import heights
-from riser_soil.contact.ground import ASPECT, ContactPoints, DeformedSurface
+from riser_soil.contact.candidates import CandidatePairs
+from riser_soil.contact.ground import DeformedSurface
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.lying import Lying, LyingContact
-from riser_soil.contact.patch import Patch, around
-from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
-from riser_soil.core.remembered import Remembered
+from riser_soil.contact.line_contact import ContactAlongLine, LineContact
+from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.part import Forces, MatrixBlock, State, Traits, Weights
 from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line import Line
 from riser_soil.soil.surface import SoilTop
 
-FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
+SOIL = "contact.soil"
 
 
 @dataclass(frozen=True)
-class Reach:
-    """Candidates: nodes up to `above` [m] over the ground, facets up to `around` [m] beside a node."""
+class CandidateRange:
+    """Candidates: nodes or elements up to `above` [m] over the ground, facets up to `around` [m] beside them."""
 
     above: float
     around: float = 0.0
 
 
-class SoilContact(LyingContact):
-    """Part "contact": frictionless penalty contact between riser nodes and the soil below them, in group E.
+class SoilContact(LineContact):
+    """Base of the frictionless penalty contacts between riser and soil, in group E.
 
-    Node i carries f(δ_i) times its tributary length. All forces derive from the potential Σ ψ(δ_i)·length_i: the
-    tangent is symmetric, and the forces on riser and soil sum to zero in all directions.
-
-    Each node stands on four points around it, ±footprint [m] across the riser and a golden ratio more along it; on one
-    where footprint = 0. A node presses a kink into the surface where facets meet below it; there the slope, and with it
-    the horizontal force, jumps from side to side, and Newton finds no balance. Four points straddle the kink. The
-    default is an eighth of the outer diameter, half the chord by which a pipe touches once it has sunk in by 3 % of its
-    radius.
+    Their tangent has a block for each pair of a node or element of the riser and a facet of the soil's surface. Its
+    pattern holds the pairs that may come to touch. outgrown: a pair has touched that had no place in the pattern and
+    was left out there, not in the residual.
 
     line: the riser's field; the rank where it is active evaluates contact, and holds the surface.
-    radius (nn,): distance [m] from the axis to the line that touches, 0 for the axis itself. along (2,): horizontal
-    unit vector of the riser on the ground; by default its first axis. reach: by default 1 % of the riser's length above
-    the ground and half a facet around a node. outgrown: a point has touched that had no place in the tangent's pattern
-    and was left out there, not in the residual.
     """
 
     name = "contact"
     traits = Traits("E", symmetric=True, roles=(Adaptive, Predictor, Stateful))
 
-    def __init__(
-        self,
-        line: Line,
-        radius: Array,
-        surface: SoilTop,
-        law: Penalty,
-        *,
-        footprint: float | None = None,
-        along: Array | None = None,
-        reach: Reach | None = None,
-    ) -> None:
+    def __init__(self, line: Line, law: Penalty, surface: SoilTop) -> None:
         super().__init__(line, law)
-        self.outgrown, self._radius = False, radius
-        self._detected = Remembered[State, ContactState]()
+        self.outgrown = False
         if not self.active:
             return
         self._soil = DeformedSurface(surface)
-        self._reach = reach or _default_reach(line, self._soil)
-        self._footprint = FOOTPRINT * float(radius.mean()) if footprint is None else footprint
-        axis = line.basis[:2, 0] if along is None else along
-        points = ContactPoints.of_nodes(line.tributary_length, self._footprint, axis)
-        self._detection = ContactDetection(line, radius, points, law, self._soil, self._reach.above)
-        self._patch: Patch | None = None
-        self._missed = Patch.none(len(self._soil.facets))
+        self._patch: CandidatePairs | None = None
+        self._missed = CandidatePairs.none(len(self._soil.facets))
 
-    def detect(self, state: State) -> ContactState:
-        """Riser and ground at a state; kept for the state asked last, whose arrays must not change then."""
-        return self._detected.made_of(state, self._detection.detect)
+    @abstractmethod
+    def candidates(self, state: State) -> CandidatePairs:
+        """Pairs near each other at a state."""
 
-    def blocks(self) -> dict[str, Block]:
-        """Translations of a node and dofs of a facet, candidate pair by pair."""
+    @abstractmethod
+    def pair_dofs(self, on_line: IntArray, facet: IntArray) -> IntArray:
+        """Local dofs (m, nr) of pairs of a node or element and a facet, (m,) each."""
+
+    @abstractmethod
+    def residual(self, state: State, forces: Forces) -> None: ...
+
+    @abstractmethod
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None: ...
+
+    @abstractmethod
+    def force_per_length(self, state: State) -> Array:
+        """Contact force per length at the nodes (nn,) [N/m], >= 0."""
+
+    @abstractmethod
+    def depth(self, state: State) -> Array:
+        """Depth (nn,) [m] of the nodes' undersides below the soil's surface before the riser came, 0 above it."""
+
+    @abstractmethod
+    def max_penetration(self, state: State) -> float:
+        """Deepest penetration [m], >= 0: an error."""
+
+    @abstractmethod
+    def force_on_riser(self, state: State) -> Array:
+        """Sum of the contact forces on the riser (3,) [N], global axes."""
+
+    @abstractmethod
+    def force_on_soil(self, state: State) -> Array:
+        """Sum of the contact forces on the soil (3,) [N], global axes."""
+
+    @abstractmethod
+    def stretch(self, state: State) -> float:
+        """Largest area in plan of a facet that presses, over its area before the riser came; 1 where none does."""
+
+    def blocks(self) -> dict[str, MatrixBlock]:
+        """Dofs of a node or element and of a facet, candidate pair by pair."""
         patch = self._present_patch()
-        rows = np.hstack([self.line.translation_dofs[patch.nodes], self._soil.facet_dofs(patch.facet)])
-        return {SOIL: Block(rows, rows)}
+        rows = self.pair_dofs(patch.nodes, patch.facet)
+        return {SOIL: MatrixBlock(rows, rows)}
 
     def rebuild(self, state: State) -> None:
         """Choose the candidates anew: around a state, and what was missed since the last time."""
         if self.active:
-            self._patch = self._patch_around(state)
-            self._missed = Patch.none(len(self._soil.facets))
+            self._patch = self.candidates(state).joined(self._missed)
+            self._missed = CandidatePairs.none(len(self._soil.facets))
         self.outgrown = False
 
-    def residual(self, state: State, forces: Forces) -> None:
-        """Add dψ/du: minus the force on the riser, minus the force on the soil."""
-        touching = self.detect(state).touching
-        add_shares(forces.end, touching.rows, touching.gradient)
+    def places(self, on_line: IntArray, facet: IntArray) -> IntArray:
+        """Where the pattern has pairs (m,); -1, which is noted, where it has not."""
+        places = self._present_patch().places(on_line, facet)
+        missed = places < 0
+        if missed.any():
+            self.outgrown = True
+            found = CandidatePairs.of(len(self._soil.facets), on_line[missed], facet[missed])
+            self._missed = self._missed.joined(found)
+        return places
 
-    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        """Add d²ψ/du², unweighted: contact stands at the end of the step."""
-        touching = self.detect(state).touching
-        places = self._present_patch().places(touching.node, touching.facet)
-        add_blocks(values[SOIL], places, touching.hessian)
-        self._note_missed(touching, places < 0)
-
-    def energy(self, state: State) -> Energy:
-        """Potential of the penalty."""
-        return Energy(potential=self.detect(state).touching.potential)
-
-    def work(self, before: State, after: State) -> Work:
-        """What the force at the end of the step took out beyond the change of its potential.
-
-        ψ is convex in the gap, so this is ≥ 0 where the gap is linear in the step, as where soil and riser move
-        vertically. Sliding along a sloping ground adds terms of second order in the sliding distance, of either sign.
-        """
-        touching = self.detect(after).touching
-        taken = float(np.sum(touching.gradient * (after.u - before.u)[touching.rows]))
-        return Work(dissipated=taken - self.energy(after).potential + self.energy(before).potential)
-
-    def commit(self, state: State) -> None:
-        """Nothing is kept but the pattern."""
-        self._detected.forget()
-
-    def force_per_length(self, state: State) -> Array:
-        """Contact force per length at the nodes (nn,) [N/m], ≥ 0."""
-        total = np.zeros(self.line.nodes)
-        if self.active:
-            touching = self.detect(state).touching
-            add_shares(total, touching.node[:, None], touching.force[:, None])
-        return np.asarray(total / self.line.tributary_length)
-
-    def depth(self, state: State) -> Array:
-        """Depth (nn,) [m] of the nodes' undersides below the soil's surface before the riser came, 0 above it."""
-        deepest = np.zeros(self.line.nodes)
-        if self.active:
-            points, x, surface = self.detect(state).points, self.line.positions3(state), self._soil.at_first
-            facet, xi = self._soil.locate(x[points.node, :2] + points.offset, surface)
-            underside = (x[:, 2] - self._radius)[points.node]
-            np.maximum.at(deepest, points.node, heights(facet, xi, self._soil.facets, surface) - underside)
-        return deepest
-
-    def max_penetration(self, state: State) -> float:
-        """Largest penetration [m], ≥ 0: an error."""
-        return max(0.0, -float(self.detect(state).gap.min(initial=np.inf))) if self.active else 0.0
-
-    def force_on_riser(self, state: State) -> Array:
-        """Sum of the contact forces on the riser (3,) [N], global axes."""
-        if not self.active:
-            return np.zeros(3)
-        d = self.line.basis.shape[1]
-        return np.asarray(-self.line.basis @ self.detect(state).touching.gradient[:, :d].sum(axis=0))
-
-    def nodal_forces(self, state: State) -> Array:
-        """Residual (nn, ndof) at the riser's nodes."""
-        forces = Forces.zeros(state.u.size)
-        self.residual(state, forces)
-        return self.line.nodal(forces.end)
-
-    def force_on_soil(self, state: State) -> Array:
-        """Sum of the contact forces on the soil (3,) [N], global axes."""
-        if not self.active:
-            return np.zeros(3)
-        d = self.line.basis.shape[1]
-        return np.asarray(-self.detect(state).touching.gradient[:, d:].reshape(-1, 3).sum(axis=0))
+    def _present_patch(self) -> CandidatePairs:
+        if self._patch is None:
+            ends = self.line.offset + self.line.size, self._soil.end
+            self._patch = self.candidates(State.at_rest(0.0, max(ends)))
+        return self._patch
 
     def covers(self, xy: Array) -> BoolArray:
         """Which horizontal positions (n, 2) [m] lie over the soil as it is now."""
         facet, _ = self._soil.locate(xy, self._soil.settled)
         return np.asarray(facet >= 0)
 
-    def lying(self, state: State) -> Lying:
+    def contact_along_line(self, state: State) -> ContactAlongLine:
         """At the nodes."""
-        return Lying(self.line.arc, self.line.tributary_length, self.clearance(state), self.force_per_length(state))
-
-    def clearance(self, state: State) -> Array:
-        """Gap (nn,) less that at which the force begins [m], the least of a node's points; inf far away."""
-        detected = self.detect(state)
-        least = np.full(self.line.nodes, np.inf)
-        np.minimum.at(least, detected.points.node, detected.gap - self.law.start)
-        return least
-
-    def _note_missed(self, touching: Touching, missed: BoolArray) -> None:
-        if missed.any():
-            self.outgrown = True
-            node, facet = touching.node[missed], touching.facet[missed]
-            self._missed = self._missed.joined(Patch.of(self._present_patch().facets, node, facet))
-
-    def _present_patch(self) -> Patch:
-        if self._patch is None:
-            ends = self.line.offset + self.line.size, self._soil.end
-            self._patch = self._patch_around(State.at_rest(0.0, max(ends)))
-        return self._patch
-
-    def _patch_around(self, state: State) -> Patch:
-        detected = self.detect(state)
-        nodes = np.unique(detected.points.node[detected.gap < self._reach.above])
-        xy = self.line.positions3(state)[nodes, :2]
-        distance = ASPECT * self._footprint + self._reach.around
-        return around(nodes, xy, detected.surface, self._soil.facets, distance).joined(self._missed)
+        share, force = self.line.tributary_length, self.force_per_length(state)
+        return ContactAlongLine(self.line.arc, share, self.clearance(state), force)
 
     def state(self) -> Saved:
         """The pattern: another one, as wide as need be, gives the same forces but to round-off."""
@@ -217,11 +136,6 @@ class SoilContact(LyingContact):
 
     def restore(self, saved: Saved) -> None:
         if self.active:
-            self._detected.forget()
             self.outgrown = bool(saved["outgrown"])
-            self._patch, self._missed = (Patch(len(self._soil.facets), saved[name]) for name in ("patch", "missed"))
-
-
-def _default_reach(line: Line, soil: DeformedSurface) -> Reach:
-    length = float(line.arc[-1] - line.arc[0])
-    return Reach(0.01 * length, 0.5 * soil.facet_size)
+            facets = len(self._soil.facets)
+            self._patch, self._missed = (CandidatePairs(facets, saved[name]) for name in ("patch", "missed"))

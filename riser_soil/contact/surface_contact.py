@@ -7,20 +7,16 @@ from functools import cached_property
 
 import numpy as np
 
+from riser_soil.contact.candidates import CandidatePairs, touching_boxes
 from riser_soil.contact.cylinder_gap import Axis, NearPoints, Surface, gap_forms, near_points
-from riser_soil.contact.detection import SOIL, add_blocks, add_shares
+from riser_soil.contact.detection import add_blocks, add_shares
 from riser_soil.contact.gap import heights
-from riser_soil.contact.ground import DeformedSurface
 from riser_soil.contact.integration_points import divisions
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.lying import Lying, LyingContact
-from riser_soil.contact.patch import Patch, touching_boxes
-from riser_soil.contact.soil_contact import Reach
-from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
-from riser_soil.core.roles import Adaptive, Predictor
-from riser_soil.core.saved_state import Saved, Stateful
+from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Weights, Work
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.trial import Trial
@@ -79,8 +75,8 @@ class SurfaceState:
     pressed: Pressed
 
 
-class SurfaceContact(LyingContact):
-    """Part "contact": frictionless penalty contact between the pipe's cylinder and the soil's surface, in group E.
+class SurfaceContact(SoilContact):
+    """Part "contact": between the pipe's cylinder and the soil's surface, see `SoilContact`.
 
     A point of the soil's surface bears the pressure p(−gap) times its undeformed area, along the normal from the pipe's
     curved axis, and the element under whose axis it lies bears the opposite through its shape functions: neither the
@@ -89,13 +85,8 @@ class SurfaceContact(LyingContact):
 
     radius (ne,): of the pipe [m]. pressure: its law of the penetration, [N/m2] where other contacts have [N/m].
     spacing: of the integration points along and across the riser [m]. along (2,): horizontal unit vector of the riser
-    on the ground; by default its first axis. reach: how far a pattern of the tangent looks ahead; by default half a
-    facet to all sides. outgrown: a point has touched that had no place in the tangent's pattern and was left out
-    there, not in the residual.
+    on the ground; by default its first axis. reach: by default half a facet to all sides of the pipe.
     """
-
-    name = "contact"
-    traits = Traits("E", symmetric=True, roles=(Adaptive, Predictor, Stateful))
 
     def __init__(
         self,
@@ -106,18 +97,15 @@ class SurfaceContact(LyingContact):
         spacing: tuple[float, float],
         *,
         along: Array | None = None,
-        reach: Reach | None = None,
+        reach: CandidateRange | None = None,
     ) -> None:
-        super().__init__(line, pressure)
-        self.outgrown, self._radius = False, radius
+        super().__init__(line, pressure, surface)
+        self._radius = radius
         if not self.active:
             return
-        self._soil = DeformedSurface(surface)
-        self._reach = reach or Reach(0.5 * self._soil.facet_size, 0.5 * self._soil.facet_size)
+        self._reach = reach or CandidateRange(0.5 * self._soil.facet_size, 0.5 * self._soil.facet_size)
         axis = line.basis[:2, 0] if along is None else along
         self._parts = divisions(surface.points, self._soil.facets, axis, spacing)
-        self._patch: Patch | None = None
-        self._missed = Patch.none(len(self._soil.facets))
 
     def evaluate(self, state: State) -> SurfaceState:
         """Riser and soil at a state."""
@@ -128,7 +116,7 @@ class SurfaceContact(LyingContact):
         deformed = self._soil.deformed(trial.state)
         axis = self._axis(trial)
         surface = Surface(self._soil.facets, self._parts, self._soil.at_first, deformed)
-        elements, facets = self._pairs(axis, deformed, Reach(self.law.start, self.law.start))
+        elements, facets = self._pairs(axis, deformed, CandidateRange(self.law.start, self.law.start))
         near = near_points(axis, surface, elements, facets, self.law.start)
         forms, C = gap_forms(axis, surface, near, self.line.basis)
         pairs, pair = np.unique(near.element * len(self._soil.facets) + near.facet, return_inverse=True)
@@ -143,40 +131,25 @@ class SurfaceContact(LyingContact):
         q[:, ::2] += self.line.origin
         return Axis(q, self.line.length, self._radius)
 
-    def _pairs(self, axis: Axis, deformed: Array, reach: Reach) -> tuple[IntArray, IntArray]:
+    def _pairs(self, axis: Axis, deformed: Array, reach: CandidateRange) -> tuple[IntArray, IntArray]:
         """Elements and facets (n,) whose boxes touch, those of the pipe wider by the reach."""
         handles = axis.q[:, 1::2] * axis.length[:, None, None] / 3.0
         corners = np.stack([axis.q[:, 0], axis.q[:, 0] + handles[:, 0], axis.q[:, 2] - handles[:, 1], axis.q[:, 2]], 1)
         wide = axis.radius[:, None] + np.array([reach.around, reach.around, reach.above])
         return touching_boxes(corners.min(axis=1) - wide, corners.max(axis=1) + wide, deformed, self._soil.facets)
 
-    def blocks(self) -> dict[str, Block]:
-        """Dofs of an element and of a facet, candidate pair by pair; all dofs of each element."""
-        patch = self._present_patch()
-        rows = self._rows(patch.nodes, patch.facet)
-        return {SOIL: Block(rows, rows), self.line.name: self.line.element_block()}
+    def blocks(self) -> dict[str, MatrixBlock]:
+        """Those of the pairs; all dofs of each element, whose directors turn."""
+        return super().blocks() | {self.line.name: self.line.element_block()}
 
-    def _rows(self, element: IntArray, facet: IntArray) -> IntArray:
-        """Local dofs (m, nr) of pairs."""
-        return np.hstack([self.line.element_block().rows[element], self._soil.facet_dofs(facet)])
+    def pair_dofs(self, on_line: IntArray, facet: IntArray) -> IntArray:
+        """Dofs of an element and of a facet."""
+        return np.hstack([self.line.element_block().rows[on_line], self._soil.facet_dofs(facet)])
 
-    def rebuild(self, state: State) -> None:
-        """Choose the candidates anew: around a state, and what was missed since the last time."""
-        if self.active:
-            self._patch = self._patch_around(state)
-            self._missed = Patch.none(len(self._soil.facets))
-        self.outgrown = False
-
-    def _present_patch(self) -> Patch:
-        if self._patch is None:
-            ends = self.line.offset + self.line.size, self._soil.end
-            self._patch = self._patch_around(State.at_rest(0.0, max(ends)))
-        return self._patch
-
-    def _patch_around(self, state: State) -> Patch:
+    def candidates(self, state: State) -> CandidatePairs:
         axis = self._axis(self.line.trial(state))
-        elements, facets = self._pairs(axis, self._soil.deformed(state), self._reach)
-        return Patch.of(len(self._soil.facets), elements, facets).joined(self._missed)
+        pairs = self._pairs(axis, self._soil.deformed(state), self._reach)
+        return CandidatePairs.of(len(self._soil.facets), *pairs)
 
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
@@ -204,14 +177,10 @@ class SurfaceContact(LyingContact):
         """Add d²ψ/du², unweighted: contact stands at the end of the step."""
         found = self.evaluate(state)
         pressed = found.pressed
-        places = self._present_patch().places(pressed.element, pressed.facet)
         by_dofs = self._by_dofs(found.trial, pressed)
+        places = self.places(pressed.element, pressed.facet)
         add_blocks(values[SOIL], places, np.swapaxes(by_dofs, 1, 2) @ pressed.hessian() @ by_dofs)
         found.trial.add_turning(values[self.line.name], 1.0, self._on_line(found))
-        if np.any(places < 0):
-            self.outgrown = True
-            missed = Patch.of(len(self._soil.facets), pressed.element[places < 0], pressed.facet[places < 0])
-            self._missed = self._missed.joined(missed)
 
     def _by_dofs(self, trial: Trial, pressed: Pressed) -> Array:
         """Derivative (m, nz, nr) of the pairs' q and facet nodes by their dofs."""
@@ -243,8 +212,8 @@ class SurfaceContact(LyingContact):
         """Nothing is kept but the pattern."""
 
     def force_per_length(self, state: State) -> Array:
-        """Contact force per length at the nodes (nn,) [N/m], >= 0: size of the sum of the points' forces, which two nodes
-        share linearly.
+        """Contact force per length at the nodes (nn,) [N/m], >= 0: the size of the sum of the points' forces, shared
+        linearly by two nodes.
         """
         total = np.zeros((self.line.nodes, self.line.dimension))
         if self.active:
@@ -276,14 +245,11 @@ class SurfaceContact(LyingContact):
             return np.zeros(3)
         return np.asarray(-self._on_facets(self.evaluate(state).pressed).reshape(-1, 3).sum(axis=0))
 
-    def covers(self, xy: Array) -> BoolArray:
-        """Which horizontal positions (n, 2) [m] lie over the soil as it is now."""
-        facet, _ = self._soil.locate(xy, self._soil.settled)
-        return np.asarray(facet >= 0)
-
-    def lying(self, state: State) -> Lying:
-        """The nodes."""
-        return Lying(self.line.arc, self.line.tributary_length, self.clearance(state), self.force_per_length(state))
+    def stretch(self, state: State) -> float:
+        if not self.active:
+            return 1.0
+        found = self.evaluate(state)
+        return self._soil.stretch(found.deformed, found.pressed.facet)
 
     def clearance(self, state: State) -> Array:
         """Gap (nn,) under the nodes less that at which the force begins [m]; inf beside the soil."""
@@ -294,17 +260,6 @@ class SurfaceContact(LyingContact):
         x = self.line.to_global(trial.x)
         facet, xi = self._soil.locate(x[:, :2], surface)
         return np.asarray(x[:, 2] - larger_beside(self._radius) - heights(facet, xi, self._soil.facets, surface))
-
-    def state(self) -> Saved:
-        """The pattern: another one, as wide as need be, gives the same forces but to round-off."""
-        if not self.active:
-            return {}
-        return {"patch": self._present_patch().pairs, "missed": self._missed.pairs, "outgrown": np.array(self.outgrown)}
-
-    def restore(self, saved: Saved) -> None:
-        if self.active:
-            self.outgrown = bool(saved["outgrown"])
-            self._patch, self._missed = (Patch(len(self._soil.facets), saved[name]) for name in ("patch", "missed"))
 
 
 @njit

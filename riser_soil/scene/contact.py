@@ -1,4 +1,4 @@
-"""Contact between the riser and the seabed or the soil."""
+"""Scene language: contact of the riser with seabed and soil, friction and suction."""
 
 from typing import Literal
 
@@ -47,9 +47,9 @@ class Contact(BaseModel):
 
     method: Literal["line", "node", "surface"] = Field(
         default="line",
-        description="where contact is evaluated. With a seabed: node (at the riser's nodes) or else along the elements, "
-        "at five Gauss points each. With soil: surface (all over the soil's surface, with the pipe's cylinder) or else "
-        "at the riser's nodes",
+        description="where contact is evaluated. With a seabed: node (at the riser's nodes) or else along the "
+        "elements, at five Gauss points each. With soil: surface (all over the soil's surface, with the pipe's "
+        "cylinder) or else at the riser's nodes",
     )
     stiffness: AutoOrBedStiffness = Field(
         default="auto",
@@ -61,7 +61,8 @@ class Contact(BaseModel):
     smoothing: AutoOrLengthOrNone = Field(
         default="auto",
         description="contact sets in smoothly between this gap and this penetration [m], or auto: 1/300 of the outer "
-        "diameter on soil, 0 there with method: surface; on a seabed what the riser sinks in by its weight, within 1/3000 and 1/300 of the diameter",
+        "diameter on soil, 0 there with method: surface; on a seabed what the riser sinks in by its weight, within "
+        "1/3000 and 1/300 of the diameter",
     )
     friction: Friction | None = Field(default=None, description="friction on the seabed; none by default")
     suction: Suction | None = Field(

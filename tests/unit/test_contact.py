@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from riser_soil.contact.contact import Contact
+from riser_soil.contact.contact import RiserContact
 from riser_soil.contact.law import Penalty
+from riser_soil.contact.node_contact import NodeContact
 from riser_soil.contact.seabed_contact import SeabedContact
-from riser_soil.contact.soil_contact import Reach, SoilContact
+from riser_soil.contact.soil_contact import CandidateRange
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Weights
 from riser_soil.riser import shapes
@@ -47,7 +48,7 @@ class Case:
 
     riser: Line
     surface: SoilTop
-    contact: SoilContact
+    contact: NodeContact
 
     @classmethod
     def build(
@@ -60,8 +61,8 @@ class Case:
         riser.offset = 2
         surface.offset = 2 + riser.size + 3
         radius = np.full(riser.nodes, RADIUS)
-        contact = SoilContact(
-            riser, radius, surface, LAW, footprint=footprint, along=along, reach=Reach(0.5, 0.3)
+        contact = NodeContact(
+            riser, radius, surface, LAW, footprint=footprint, along=along, reach=CandidateRange(0.5, 0.3)
         )
         return cls(riser, surface, contact)
 
@@ -164,7 +165,7 @@ def test_residual_is_the_potentials_gradient(kind: str, dimension: int) -> None:
 @DIMENSIONS
 def test_forces_balance_to_round_off(kind: str, dimension: int) -> None:
     case = deformed_case(kind, dimension)
-    case.contact = SoilContact(case.riser, np.full(12, RADIUS), case.surface, LAW, footprint=FOOTPRINT)
+    case.contact = NodeContact(case.riser, np.full(12, RADIUS), case.surface, LAW, footprint=FOOTPRINT)
     state = case.state(small(case))
     on_riser, on_soil = case.contact.force_on_riser(state), case.contact.force_on_soil(state)
     assert on_riser[2] > 100.0
@@ -247,20 +248,20 @@ def test_weightless_groups_and_inactive_ranks() -> None:
     assert abs(forces.end).max() > 0.0
     assert not forces.inertia.any()
     assert not forces.force.any()
-    idle = SoilContact(riser_at(case.riser.x, active=False), np.full(4, RADIUS), case.surface, LAW)
+    idle = NodeContact(riser_at(case.riser.x, active=False), np.full(4, RADIUS), case.surface, LAW)
     idle.rebuild(case.state())
     assert not idle.active  # so that the system asks it for no pattern, force, energy or work
     assert_touches_nothing(idle)
 
 
-def assert_touches_nothing(contact: Contact) -> None:
+def assert_touches_nothing(contact: RiserContact) -> None:
     state = State.at_rest(0.0, 4 * 6)
     along = contact.force_per_length, contact.penetration, contact.depth
     assert all(np.array_equal(told(state), np.zeros(4)) for told in along)
     np.testing.assert_array_equal(contact.force_on_riser(state), np.zeros(3))
     assert contact.max_penetration(state) == 0.0
     assert np.isnan(contact.touchdown_arc(state))
-    assert contact.stretches(state) == []
+    assert contact.contact_intervals(state) == []
     assert contact.predict(state) is state.u
 
 
@@ -269,14 +270,14 @@ def test_contacts_of_all_grounds_tell_the_same() -> None:
     depth = np.array([0.01, 0.01, 0.002, 0.01])
     case = level_case(depth, top("quad4"))
     seabed = SeabedContact(case.riser, np.full(3, RADIUS), Plane.level(0.0), LAW, ENDS)
-    players: tuple[Contact, ...] = (case.contact, seabed)
+    players: tuple[RiserContact, ...] = (case.contact, seabed)
     for player in players:
-        assert isinstance(player, Contact)
+        assert isinstance(player, RiserContact)
     alike = "force_per_length", "penetration", "depth", "max_penetration", "force_on_riser", "touchdown_arc", "predict"
     for name in alike:
         on_soil, on_seabed = (np.asarray(getattr(player, name)(case.state())) for player in players)
         np.testing.assert_allclose(on_soil, on_seabed, rtol=1e-9, atol=1e-9, err_msg=name)
-    assert [[s[:2] for s in player.stretches(case.state())] for player in players] == 2 * [[(0.0, 1.5)]]
+    assert [[s[:2] for s in player.contact_intervals(case.state())] for player in players] == 2 * [[(0.0, 1.5)]]
     elsewhere = riser_at(case.riser.x, active=False)
     assert_touches_nothing(SeabedContact(elsewhere, np.full(3, RADIUS), Plane.level(0.0), LAW))
 
@@ -396,7 +397,7 @@ def test_one_point_on_a_kink_has_no_balance(kind: str) -> None:
 
 def test_default_footprint_is_an_eighth_of_the_diameter() -> None:
     case = deformed_case("quad4", 3)
-    contact = SoilContact(case.riser, np.full(12, RADIUS), case.surface, LAW)
+    contact = NodeContact(case.riser, np.full(12, RADIUS), case.surface, LAW)
     np.testing.assert_allclose(
         contact.detect(case.state()).points.offset[:4, 1], RADIUS / 4 * np.array([-1, 1, -1, 1])
     )

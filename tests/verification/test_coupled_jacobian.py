@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from riser_soil.contact.node_contact import NodeContact
 from riser_soil.core.arrays import Array, IntArray
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import FirstStep, built
@@ -46,7 +47,7 @@ class Case:
     @property
     def active(self) -> dict[str, IntArray]:
         """Rows of the riser's and of the soil's dofs on which contact acts at x."""
-        assert self.assembly.soil_contact is not None
+        assert isinstance(self.assembly.soil_contact, NodeContact)
         rows = self.step.rows(self.assembly.soil_contact.detect(self.step.state(self.x)).touching.rows.ravel())
         return {
             "touched riser": np.intersect1d(rows, self.riser),
