@@ -239,7 +239,7 @@ def add_tangent(out: Array, at: Stations, by: Derivatives, columns: ByDofs) -> N
 
 @njit
 def _add_tangent(out: Array, at: tuple, by: tuple, columns: tuple, D: Size, R: Size) -> None:
-    """Takes plain tuples: numba reads named ones half a microsecond slower."""
+    """Takes plain tuples, each of which numba reads half a microsecond faster than a named one."""
     at, by, columns = Stations(*at), Derivatives(*by), ByDofs(*columns)
     room = _room(by.slope.shape[1], out.shape[1], D)
     for e in range(by.slope.shape[0]):
