@@ -11,14 +11,14 @@ from mpi4py import MPI
 from riser_soil.assembly import Assembly, build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.results.observer import riser_snapshot
 from riser_soil.results.touchdown_zone import TouchdownZone
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
-from riser_soil.solve.dynamic_relaxation import Relaxed
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from riser_soil.stages import Onlooker, run_stage
+from riser_soil.solve.dynamic_relaxation import RelaxationResult
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
+from riser_soil.stages import StatelessObserver, run_stage
 
 SCENE = Path(__file__).parent.parent / "tests" / "scenes" / "tank.yaml"
 DURATION = 30.0  # s
@@ -28,8 +28,8 @@ TOLERANCES = (3e-2, 1e-2, 3e-3, 1e-3)  # m
 
 
 @dataclass
-class Course(Onlooker):
-    """What the accepted steps of a stage tell of the riser."""
+class StepHistory(StatelessObserver):
+    """Tension and touchdown of the riser at the accepted steps of a stage."""
 
     assembly: Assembly
     t: list[float] = field(default_factory=list)
@@ -42,10 +42,10 @@ class Course(Onlooker):
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         self._zone = TouchdownZone(self.assembly)
 
-    def relaxed(self, relaxed: Relaxed) -> None:
+    def relaxed(self, relaxed: RelaxationResult) -> None:
         pass
 
-    def record(self, stepper: TimeStepper, step: Accepted, last: bool) -> None:
+    def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         self.t.append(step.t)
         self.dt.append(step.dt)
         self.tension.append(float(riser_snapshot(self.assembly, stepper).effective_tension[-1]))
@@ -54,33 +54,33 @@ class Course(Onlooker):
         self.iterations = stepper.newton.iterations
 
 
-def course(*overrides: str, scene_file: Path = SCENE) -> Course:
+def step_history(*overrides: str, scene_file: Path = SCENE) -> StepHistory:
     """The last stage of a scene, without output times."""
     scene = read_scene(scene_file, ["output={}", *overrides])
     assembly = build(scene, MPI.COMM_SELF)
     before = State.at_rest(0.0, assembly.size)
     for stage in scene.stages:
-        seen = Course(assembly)
-        before = run_stage(assembly, stage, before, seen, Clock.new())
+        seen = StepHistory(assembly)
+        before = run_stage(assembly, stage, before, seen, Timer.new())
     return seen
 
 
-def swing(time_step: float | str, *overrides: str) -> Course:
+def swing(time_step: float | str, *overrides: str) -> StepHistory:
     """The hose's swing by steps of one size, or `auto`."""
-    return course(f"stages.1.duration={DURATION}", f"stages.1.time_step={time_step}", *overrides)
+    return step_history(f"stages.1.duration={DURATION}", f"stages.1.time_step={time_step}", *overrides)
 
 
-def automatic(tolerance: float, *overrides: str) -> Course:
+def automatic(tolerance: float, *overrides: str) -> StepHistory:
     """The hose's swing by automatic steps."""
     return swing("auto", f"stages.1.tolerance={tolerance}", *overrides)
 
 
-def errors(seen: Course, reference: Course) -> tuple[float, float]:
+def errors(seen: StepHistory, reference: StepHistory) -> tuple[float, float]:
     """Root mean square in time of the errors in top tension [N] and touchdown arc [m]."""
     return _rms(seen, reference, "tension"), _rms(seen, reference, "touchdown")
 
 
-def _rms(seen: Course, reference: Course, name: str) -> float:
+def _rms(seen: StepHistory, reference: StepHistory, name: str) -> float:
     exact: Array = np.interp(seen.t, reference.t, getattr(reference, name))
     return float(np.sqrt(np.average((np.array(getattr(seen, name)) - exact) ** 2, weights=seen.dt)))
 
@@ -94,7 +94,7 @@ def report() -> None:
         _print(f"auto, tolerance {tolerance:g} m", automatic(tolerance), reference)
 
 
-def _print(name: str, seen: Course, reference: Course) -> None:
+def _print(name: str, seen: StepHistory, reference: StepHistory) -> None:
     tension, touchdown = errors(seen, reference)
     steps = f"{len(seen.t)} steps of {min(seen.dt):.3g} to {max(seen.dt):.3g} s, {seen.cuts} tried again"
     print(f"  {name:24s} {tension:6.3f} N {1e3 * touchdown:6.2f} mm {seen.iterations:6d} Newton iterations; {steps}")

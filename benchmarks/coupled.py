@@ -7,13 +7,13 @@ from pathlib import Path
 from petsc4py import PETSc
 
 from benchmarks.stage import last_stage, typical_seconds
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 
 SCENE = Path(__file__).parent.parent / "demos" / "touchdown_clay" / "scene.yaml"
 
 
 def report() -> None:
-    clock = Clock.new()
+    clock = Timer.new()
     stage = last_stage(SCENE, (), clock)
     stage.walk()
     seconds = stage.seconds

@@ -19,7 +19,7 @@ from riser_soil.assembly.scales import contact_radius
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.part import Model, Part, State
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
 from riser_soil.riser.stations import gauss
 from riser_soil.scene.reader import scene_from_mapping
@@ -92,7 +92,7 @@ def _take(method: Method, scene: Mapping, energies: Energies) -> None:
     stage = assembly.scene.stages[0]
     assert isinstance(stage, DynamicStage)
     assert isinstance(stage.time_step, float)
-    system = System(assembly.comm, _model(assembly, stage, method[1]), Clock.new())
+    system = System(assembly.comm, _model(assembly, stage, method[1]), Timer.new())
     solver = assembly.scene.solver
     newton = Newton(system, NewtonSettings(solver.tolerance, solver.max_iterations, assembly.scales.force_floor))
     try:

@@ -13,9 +13,9 @@ import numpy as np
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Predictor
-from riser_soil.seabed.law import Answer
+from riser_soil.seabed.law import SeabedResponse
 
 NEAR = 1e-8  # m: below it a difference quotient of the potential is round-off
 
@@ -29,7 +29,7 @@ class Averaged:
     def __init__(self, contact: SeabedContact) -> None:
         self._contact, self.name = contact, contact.name
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         return self._contact.blocks()
 
     def residual(self, state: State, forces: Forces) -> None:
@@ -77,7 +77,7 @@ class DiscreteGradient:
     def active(self, penetration: Array, history: Array) -> BoolArray:
         return np.maximum(penetration, history[..., 0]) > -self.penalty.smoothing
 
-    def update(self, penetration: Array, history: Array) -> Answer:
+    def update(self, penetration: Array, history: Array) -> SeabedResponse:
         before = history[..., 0]
         way = penetration - before
         near = np.abs(way) < NEAR
@@ -86,7 +86,7 @@ class DiscreteGradient:
         half = 0.5 * (penetration + before)
         force = np.where(near, self.penalty.force(half), quotient)
         slope = (self.penalty.force(penetration) - quotient) / safe
-        return Answer(
+        return SeabedResponse(
             force,
             np.where(near, 0.5 * self.penalty.slope(half), slope),
             np.asarray(penetration[..., None]),

@@ -18,7 +18,7 @@ from petsc4py import PETSc
 
 from benchmarks.stage import TimedStage, last_stage, random_right_hand_side
 from riser_soil.core.part import Forces, State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.results.observer import Observer
 from riser_soil.solve.linear_solver import factorise_directly
 from riser_soil.solve.newton import Newton, Step
@@ -50,7 +50,7 @@ def measure(dimension: int, elements: int) -> dict[str, float]:
     stage = surging(dimension, elements)
     bench = Bench(stage)
     taken = defaultdict[str, list[float]](list)
-    opened = functools.partial(Observer.open, stage.assembly, Clock.new(), force=True)
+    opened = functools.partial(Observer.open, stage.assembly, Timer.new(), force=True)
     with tempfile.TemporaryDirectory() as folder, opened(Path(folder)) as seen:
         seen.begin_stage(stage.stage, stage.stepper)
         for _ in range(STEPS):
@@ -69,7 +69,7 @@ def measure(dimension: int, elements: int) -> dict[str, float]:
 def surging(dimension: int, elements: int) -> TimedStage:
     """The surge of the published catenary, grown to its full amplitude."""
     segment = f"riser.segments.0.elements={elements}"
-    stage = last_stage(SCENE, (f"dimension={dimension}", segment, "line_types.flexible.GJ=2.0e4"), Clock.new())
+    stage = last_stage(SCENE, (f"dimension={dimension}", segment, "line_types.flexible.GJ=2.0e4"), Timer.new())
     stage.walk(RAMP)
     return stage
 

@@ -14,7 +14,7 @@ from mpi4py import MPI
 from riser_soil.assembly import Assembly, build
 from riser_soil.assembly.stage import scheme_of
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from riser_soil.results.observer import Observer
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
@@ -26,7 +26,7 @@ from riser_soil.stages import steps_of
 class TimedStage:
     """One stage's system and time stepper; `iterations` and `seconds` of all its Newton solves."""
 
-    def __init__(self, assembly: Assembly, stage: Stage, before: State, clock: Clock) -> None:
+    def __init__(self, assembly: Assembly, stage: Stage, before: State, clock: Timer) -> None:
         self.assembly, self.stage = assembly, stage
         solver = assembly.scene.solver
         self.system = System(assembly.comm, assembly.begin(stage), clock)
@@ -57,13 +57,13 @@ class TimedStage:
         self.system.destroy()
 
 
-def last_stage(scene_file: Path, overrides: tuple[str, ...], clock: Clock) -> TimedStage:
+def last_stage(scene_file: Path, overrides: tuple[str, ...], clock: Timer) -> TimedStage:
     """The last stage of a scene, all before it computed."""
     scene = read_scene(scene_file, overrides)
     assembly = build(scene, MPI.COMM_SELF)
     before = State.at_rest(0.0, assembly.size)
     for stage in scene.stages[:-1]:
-        timed = TimedStage(assembly, stage, before, Clock.new())
+        timed = TimedStage(assembly, stage, before, Timer.new())
         before = timed.walk()
         timed.destroy()
     return TimedStage(assembly, scene.stages[-1], before, clock)

@@ -1,4 +1,4 @@
-"""The command line: riser-soil run | check | schema.
+"""Command line interface: riser-soil run | check | schema.
 
 Exit status 0 done, 2 bad input, 3 the solve failed, 4 the disk or standard output took no more, 128 + n for signal n.
 """
@@ -17,8 +17,8 @@ import typer
 
 from riser_soil import __version__
 from riser_soil.errors import Interruption, MeshError, RiserSoilError, SceneError, WriteError, is_full
-from riser_soil.interruption import deaf, latest, listening
-from riser_soil.standard_output import outlasting
+from riser_soil.interruption import default_signal_handlers, handling_signals, latest
+from riser_soil.standard_output import failsafe_output
 
 if TYPE_CHECKING:
     from riser_soil.scene.scene import Scene
@@ -177,7 +177,7 @@ def _from_environment(*names: str) -> int | None:
 def _tell_once(message: str) -> None:
     """Print an error. As a rule all ranks meet it: the first tells it and ends the job, the others wait."""
     if _rank() > 0:
-        deaf()
+        default_signal_handlers()
         time.sleep(_PATIENCE)
     typer.echo(message, err=True)
 
@@ -216,10 +216,10 @@ def _options(
 def main() -> None:
     """Entry point of the console script."""
     os.environ["PETSC_OPTIONS"] = f"-no_signal_handler {os.environ.get('PETSC_OPTIONS', '')}"
-    with outlasting() as told:
+    with failsafe_output() as told:
         status = _status()
     if told.failure is not None:
-        with outlasting():
+        with failsafe_output():
             print(f"standard output: cannot be written: {told.failure.strerror}", file=sys.stderr)
         status = status or WriteError.exit_status
     sys.exit(status)
@@ -228,7 +228,7 @@ def main() -> None:
 def _status() -> int:
     status = 0
     try:
-        with listening():
+        with handling_signals():
             _replace_missing_tmpdir()
             app()
     except Interruption:

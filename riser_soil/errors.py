@@ -1,4 +1,4 @@
-"""The errors that a user can meet; each carries the exit status that the command line returns for it."""
+"""Errors that a user can meet, each with the exit status of the command line."""
 
 import errno
 import signal
@@ -55,7 +55,7 @@ class Interruption(KeyboardInterrupt):
 
     @property
     def exit_status(self) -> int:
-        """As shells have it."""
+        """Exit status by the convention of shells."""
         return 128 + self.number
 
     def __str__(self) -> str:

@@ -1,8 +1,8 @@
-"""Ctrl-C and SIGTERM end a run where it keeps all that it has accepted: between two steps, never within a record.
+"""Signal handling: Ctrl-C and SIGTERM end a run between two steps, never within a record.
 
-Python calls a signal's handler between two of its own instructions, so an exception out of it can come anywhere. Alone,
-a process lets it come at once, unless it is accepting or recording a step. Several ranks would wait for one another for
-ever if each left its own loop: they agree on the step after which all leave. A second signal is obeyed at once.
+Python calls a signal's handler between two of its own instructions, so its exception can be raised anywhere. A single
+process raises it at once, unless it is accepting or recording a step. Several ranks would deadlock if each left its
+own loop: they agree on the step after which all leave. A second signal takes effect at once.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ OURS = (signal.SIGINT, signal.SIGTERM)
 
 
 class _Pending:
-    """What this process has been told by signals."""
+    """Signals that this process has received and not yet handled."""
 
     def __init__(self) -> None:
         self.number = 0  # of the signal not yet obeyed; 0 for none
@@ -47,8 +47,8 @@ _pending = _Pending()
 
 
 @contextmanager
-def listening() -> Iterator[None]:
-    """Signals that would end the process raise Interruption in the block; those that somebody else listens to don't.
+def handling_signals() -> Iterator[None]:
+    """Signals that would end the process raise Interruption in the block; those that other code handles don't.
 
     A pipe that is closed is an error of its writer again, and no signal, which PETSc makes of it.
     """
@@ -66,8 +66,8 @@ def listening() -> Iterator[None]:
 
 
 @contextmanager
-def undisturbed() -> Iterator[None]:
-    """A block whose libraries keep no hold on Ctrl-C: gmsh takes it when it is imported, or a session of it begins."""
+def restoring_signal_handlers() -> Iterator[None]:
+    """Restores the handler of Ctrl-C after the block: gmsh replaces it when it is imported, or a session begins."""
     usual = signal.getsignal(signal.SIGINT)
     try:
         yield
@@ -76,21 +76,21 @@ def undisturbed() -> Iterator[None]:
             signal.signal(signal.SIGINT, usual)
 
 
-def deaf() -> None:
-    """From now on signals end this process at once and without a word."""
+def default_signal_handlers() -> None:
+    """From now on signals end this process at once and without a message."""
     for number in OURS:
         signal.signal(number, signal.SIG_DFL)
 
 
 def _is_free(number: int) -> bool:
-    """Only a process's first thread may listen."""
+    """Only a process's main thread may handle signals."""
     usual = signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler)
     return usual and threading.current_thread() is threading.main_thread()
 
 
 @contextmanager
-def undivided() -> Iterator[None]:
-    """A block that no signal divides: Interruption comes at its end."""
+def uninterrupted() -> Iterator[None]:
+    """A block that no signal interrupts: Interruption is raised at its end."""
     _pending.busy += 1
     try:
         yield
@@ -111,7 +111,8 @@ def agreeing(comm: Any) -> Iterator[None]:
 
 
 def check(comm: Any) -> None:
-    """Raises Interruption on all ranks if one has been told; collective in an `agreeing` block, nothing alone."""
+    """Raises Interruption on all ranks if one has received a signal; collective in an `agreeing` block, nothing alone.
+    """
     if _pending.agreeing:
         number = max(comm.allgather(_pending.number))
         if number:

@@ -1,4 +1,4 @@
-"""The story of a run: scene, parts, stages, recorder."""
+"""Run of a scene: assembly, stages in turn, recorder."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from mpi4py import MPI
 from riser_soil.assembly import Assembly, build
 from riser_soil.checks.limits import size_that_fits, tell, too_long
 from riser_soil.checks.plausibility import physical_warnings
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.errors import Interruption, SolveError
-from riser_soil.interruption import agreeing, listening, undivided
+from riser_soil.interruption import agreeing, handling_signals, uninterrupted
 from riser_soil.results.observer import Observer
 from riser_soil.results.ownership import refuse_together
 from riser_soil.scene.scene import Scene
@@ -27,8 +27,8 @@ def run(scene: Scene, folder: Path | str, force: bool = False) -> None:
     went in; it is marked unfinished.
     """
     folder = Path(folder)
-    with listening():
-        comm, clock, since = MPI.COMM_WORLD, Clock.new(), time.perf_counter()
+    with handling_signals():
+        comm, clock, since = MPI.COMM_WORLD, Timer.new(), time.perf_counter()
         refuse_together(folder, force, comm)
         size = size_that_fits(scene, folder, comm)
         tell(size, comm)
@@ -41,14 +41,14 @@ def run(scene: Scene, folder: Path | str, force: bool = False) -> None:
             _take_all(assembly, observer, clock)
 
 
-def _take_all(assembly: Assembly, observer: Observer, clock: Clock) -> None:
+def _take_all(assembly: Assembly, observer: Observer, clock: Timer) -> None:
     try:
         before, laid = lay(assembly, clock)
         if laid is not None:
             observer.laid(assembly.slack, laid.steps, laid.relaxations)
         for stage in assembly.scene.stages:
             before = run_stage(assembly, stage, before, observer, clock)
-        with undivided():
+        with uninterrupted():
             observer.finish()
     except (SolveError, Interruption) as end:
         observer.record_last(end)

@@ -1,4 +1,4 @@
-"""A stage from its beginning to its end: its system, its steps, and dynamic relaxation where statics need it."""
+"""Analysis of one stage, from its assembled system to its end, with dynamic relaxation where statics need it."""
 
 from __future__ import annotations
 
@@ -10,37 +10,37 @@ from riser_soil.assembly import Assembly
 from riser_soil.assembly.stage import scheme_of, times_to_hit
 from riser_soil.core.part import Model, State
 from riser_soil.core.roles import Adaptive, owners, with_role
-from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back, within
-from riser_soil.core.system import Clock, System
+from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all, within
+from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
-from riser_soil.interruption import check, undivided
+from riser_soil.interruption import check, uninterrupted
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.solve.automatic_steps import AutoSteps
-from riser_soil.solve.dynamic_relaxation import Relaxed, relax
+from riser_soil.solve.dynamic_relaxation import RelaxationResult, relax
 from riser_soil.solve.local_error import first_step
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import Control, StepControl
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
 MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
 
 
-Keep = Callable[[Callable[[], Saved]], None]
-"""Told between steps: with what it is given it may have the state as it is then, to resume the stage from."""
+Checkpoint = Callable[[Callable[[], Saved]], None]
+"""Called between steps with a function that gives the saved state, from which the stage can be resumed."""
 
 
-class Follower(Stateful, Protocol):
-    """Who is told how a stage goes on."""
+class StageObserver(Stateful, Protocol):
+    """Observer of a stage: is notified of its beginning, of accepted steps and of dynamic relaxation."""
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None: ...
 
-    def record(self, stepper: TimeStepper, step: Accepted, last: bool) -> None: ...
+    def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None: ...
 
-    def relaxed(self, relaxed: Relaxed) -> None: ...
+    def relaxed(self, relaxed: RelaxationResult) -> None: ...
 
 
-class Onlooker:
-    """A follower that has nothing to go on with in a stage that is resumed."""
+class StatelessObserver:
+    """A counter that has nothing to go on with in a stage that is resumed."""
 
     def state(self) -> Saved:
         return {}
@@ -50,8 +50,8 @@ class Onlooker:
 
 
 @dataclass
-class Laying(Onlooker):
-    """Counts the load steps and relaxations of a stage that the scene does not have."""
+class LayingCounter(StatelessObserver):
+    """Counts the load steps and relaxations while a slack riser is laid, before the scene's stages."""
 
     steps: int = 0
     relaxations: int = 0
@@ -59,34 +59,39 @@ class Laying(Onlooker):
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         pass
 
-    def record(self, stepper: TimeStepper, step: Accepted, last: bool) -> None:
+    def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         self.steps += 1
 
-    def relaxed(self, relaxed: Relaxed) -> None:
+    def relaxed(self, relaxed: RelaxationResult) -> None:
         self.relaxations += 1
 
 
-def lay(assembly: Assembly, clock: Clock) -> tuple[State, Laying | None]:
-    """Before all stages: where a slack riser's first shape ends beyond its place, bring its end there."""
+def lay(assembly: Assembly, clock: Timer) -> tuple[State, LayingCounter | None]:
+    """Laying before all stages: move the end of a slack riser's initial shape to its prescribed position."""
     rest, stage = State.at_rest(0.0, assembly.size), assembly.laying
     if stage is None:
         return rest, None
-    follower = Laying()
+    counter = LayingCounter()
     try:
-        return _take(assembly, assembly.begin_laying(stage), stage, rest, follower, clock), follower
+        return _take(assembly, assembly.begin_laying(stage), stage, rest, counter, clock), counter
     except SolveError as err:
         raise SolveError(f"{assembly.too_slack}: {err}") from err
 
 
 def run_stage(
-    assembly: Assembly, stage: Stage, before: State, observer: Follower, clock: Clock, keep: Keep | None = None
+    assembly: Assembly,
+    stage: Stage,
+    before: State,
+    observer: StageObserver,
+    clock: Timer,
+    checkpoint: Checkpoint | None = None,
 ) -> State:
     """Take one stage to its end; the state that it leaves, increments zero."""
-    return _take(assembly, assembly.begin(stage), stage, before, observer, clock, keep)
+    return _take(assembly, assembly.begin(stage), stage, before, observer, clock, checkpoint)
 
 
 def resume_stage(
-    assembly: Assembly, saved: Saved, observer: Follower, clock: Clock, keep: Keep | None = None
+    assembly: Assembly, saved: Saved, observer: StageObserver, clock: Timer, checkpoint: Checkpoint | None = None
 ) -> tuple[Stage, State]:
     """Take the stage that was saved on its way to its end; the stage, and the state that it leaves.
 
@@ -94,7 +99,7 @@ def resume_stage(
     """
     assembly.restore(within(saved, "assembly"))
     stage, model = assembly.resume()
-    return stage, _take(assembly, model, stage, saved, observer, clock, keep)
+    return stage, _take(assembly, model, stage, saved, observer, clock, checkpoint)
 
 
 def _take(
@@ -102,9 +107,9 @@ def _take(
     model: Model,
     stage: Stage,
     begin: State | Saved,
-    observer: Follower,
-    clock: Clock,
-    keep: Keep | None = None,
+    observer: StageObserver,
+    clock: Timer,
+    checkpoint: Checkpoint | None = None,
 ) -> State:
     """From the state that the stage begins with, or from where it was saved."""
     system = System(assembly.comm, model, clock)
@@ -112,8 +117,8 @@ def _take(
         _restore(system, begin)
     newton = Newton(system, _settings(assembly))
     try:
-        course = _course(assembly, stage, system, newton, begin, observer)
-        return _walk(course, keep)
+        run = _begin_run(assembly, stage, system, newton, begin, observer)
+        return _walk(run, checkpoint)
     except SolveError as err:
         raise SolveError(f"{err}{_overload(assembly)}") from err
     finally:
@@ -122,48 +127,48 @@ def _take(
 
 
 def _restore(system: System, saved: Saved) -> None:
-    give_back(owners(system.model), saved)
+    restore_all(owners(system.model), saved)
     if with_role(system.model.parts, Adaptive):
         system.renew_pattern()
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
-    """A stage on its way: who takes it, and who is told."""
+class StageRun:
+    """A stage in progress: its time stepper, step control and observer."""
 
     assembly: Assembly
     stage: Stage
     stepper: TimeStepper
     control: StepControl | AutoSteps
-    observer: Follower
+    observer: StageObserver
 
     def state(self) -> Saved:
-        """All that the stage goes on from, see `saved_state`."""
+        """All that the stage is resumed from, see `saved_state`."""
         own: dict[str, Stateful] = {"assembly": self.assembly, "stepper": self.stepper}
-        return gathered(owners(self.stepper.system.model) | own | self.told)
+        return gathered(owners(self.stepper.system.model) | own | self.listeners)
 
     @property
-    def told(self) -> dict[str, Stateful]:
-        """Who is told of each step."""
+    def listeners(self) -> dict[str, Stateful]:
+        """Owners of state that follow each step."""
         return {"control": self.control, "observer": self.observer, "clock": self.stepper.system.clock}
 
 
-def _course(
-    assembly: Assembly, stage: Stage, system: System, newton: Newton, begin: State | Saved, observer: Follower
-) -> Course:
+def _begin_run(
+    assembly: Assembly, stage: Stage, system: System, newton: Newton, begin: State | Saved, observer: StageObserver
+) -> StageRun:
     if isinstance(begin, State):
         stepper = TimeStepper(system, newton, scheme_of(stage), replace(begin, t=0.0))
-        with undivided():
+        with uninterrupted():
             observer.begin_stage(stage, stepper)
-        return Course(assembly, stage, stepper, steps_of(assembly, stage, stepper), observer)
+        return StageRun(assembly, stage, stepper, steps_of(assembly, stage, stepper), observer)
     stepper = TimeStepper(system, newton, scheme_of(stage), within(begin, "stepper"))
-    course = Course(assembly, stage, stepper, steps_of(assembly, stage, stepper), observer)
-    give_back(course.told, begin)
-    return course
+    run = StageRun(assembly, stage, stepper, steps_of(assembly, stage, stepper), observer)
+    restore_all(run.listeners, begin)
+    return run
 
 
 def _overload(assembly: Assembly) -> str:
-    """What the ground has to do with a failure."""
+    """The bearing capacity check of a failed solve."""
     if not assembly.contacts:
         return ""
     from riser_soil.checks.overload import overload
@@ -171,21 +176,21 @@ def _overload(assembly: Assembly) -> str:
     return overload(assembly)
 
 
-def _walk(course: Course, keep: Keep | None) -> State:
-    stepper, control = course.stepper, course.control
+def _walk(run: StageRun, checkpoint: Checkpoint | None) -> State:
+    stepper, control = run.stepper, run.control
     while not control.finished:
-        static = isinstance(course.stage, StaticStage)
-        step = _static_step(course.assembly, stepper, control, course.observer) if static else stepper.advance(control)
-        with undivided():
+        static = isinstance(run.stage, StaticStage)
+        step = _static_step(run.assembly, stepper, control, run.observer) if static else stepper.advance(control)
+        with uninterrupted():
             stepper.commit(step, control)
-            course.observer.record(stepper, step, last=control.finished)
-        if keep is not None:
-            keep(course.state)
-        check(course.assembly.comm)
+            run.observer.record(stepper, step, last=control.finished)
+        if checkpoint is not None:
+            checkpoint(run.state)
+        check(run.assembly.comm)
     return stepper.before
 
 
-def _static_step(assembly: Assembly, stepper: TimeStepper, control: Control, observer: Follower) -> Accepted:
+def _static_step(assembly: Assembly, stepper: TimeStepper, control: Control, observer: StageObserver) -> AcceptedStep:
     """By Newton's method, in load steps that are halved a few times, else by dynamic relaxation.
 
     Where relaxation does not get to the load factor that was missed, it all begins again with half the step.
@@ -198,7 +203,7 @@ def _static_step(assembly: Assembly, stepper: TimeStepper, control: Control, obs
                 return stepper.advance(control, 0)
 
 
-def _relaxed(assembly: Assembly, stepper: TimeStepper, control: Control, observer: Follower) -> bool:
+def _relaxed(assembly: Assembly, stepper: TimeStepper, control: Control, observer: StageObserver) -> bool:
     """Whether an equilibrium was found at the load factor that Newton's method missed; else the step is halved."""
     system, settings, weight = stepper.system, _settings(assembly), assembly.scales.weight
     try:

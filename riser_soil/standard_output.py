@@ -1,4 +1,4 @@
-"""Standard output that may be closed or full, as by `| head`: a run goes on for its files, and tells at its end."""
+"""Standard output that may be closed or full, as by `| head`; the run itself goes on."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any, TextIO
 
 
 class _Outlet(io.RawIOBase):
-    """A file descriptor; after the first failure what is written to it is lost."""
+    """A file descriptor that drops all output after the first failure."""
 
     def __init__(self, descriptor: int) -> None:
         super().__init__()
@@ -37,8 +37,8 @@ class _Outlet(io.RawIOBase):
         return len(content)
 
 
-class Told:
-    """What became of what was written: failure is None as long as all went out."""
+class OutputStatus:
+    """Status of standard output: failure is None as long as all was written."""
 
     def __init__(self, output: _Outlet | None) -> None:
         self._output = output
@@ -49,13 +49,13 @@ class Told:
 
 
 @contextmanager
-def outlasting() -> Iterator[Told]:
-    """In the block, nobody who writes to standard output or standard error meets an error; the former's is told."""
+def failsafe_output() -> Iterator[OutputStatus]:
+    """In the block, writing to standard output or error never raises; a failure of the former is kept in the status."""
     former = sys.stdout, sys.stderr
     outlets = [_outlet(stream) for stream in former]
     sys.stdout, sys.stderr = (_text(outlet, stream) for outlet, stream in zip(outlets, former, strict=True))
     try:
-        yield Told(outlets[0])
+        yield OutputStatus(outlets[0])
     finally:
         for stream in (sys.stdout, sys.stderr):
             if stream is not None:

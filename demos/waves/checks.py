@@ -47,8 +47,8 @@ def at_rest(run: Run) -> Iterator[Check]:
     cable = force[0] + w * (SURFACE - bottom) + dry * (z[-1] - SURFACE)
     yield "tension at the turret, H + weight × height as of a cable", "kN", tension[-1] / 1e3, cable / 1e3
     whole = w * (wet - BUOYANT_LENGTH) + weight(BUOYANT, True) * BUOYANT_LENGTH + dry * (arc[-1] - wet)
-    held = run["start_force"][0] + force + run["contact_force_sum"][0]
-    yield "vertical forces of supports and seabed, weight of the whole riser", "kN", held[2] / 1e3, whole / 1e3
+    supported = run["start_force"][0] + force + run["contact_force_sum"][0]
+    yield "vertical forces of supports and seabed, weight of the whole riser", "kN", supported[2] / 1e3, whole / 1e3
 
 
 def in_waves(run: Run, since: float) -> Iterator[Check]:

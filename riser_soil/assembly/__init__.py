@@ -1,4 +1,4 @@
-"""From the scene to its parts: the only place that asks whether a scene has a thing, and that imports what it has."""
+"""Assembly: builds the parts of the model from a checked scene; nothing that the scene lacks is imported."""
 
 from riser_soil.assembly.assembly import Assembly, build
 

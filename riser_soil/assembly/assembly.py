@@ -1,4 +1,4 @@
-"""The parts of a scene that live through all its stages."""
+"""The assembled model: the fields and parts of a scene that last through all its stages."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from riser_soil.assembly.riser import attached_weight, attachments_of, elements_
 from riser_soil.assembly.scales import Scales, scales_of
 from riser_soil.assembly.sea_loads import sea_loads
 from riser_soil.assembly.shape import least_bend
-from riser_soil.assembly.stage import dynamic_parts, hold_spin, loads_of
+from riser_soil.assembly.stage import dynamic_parts, loads_of, prescribe_spin
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Field, Model, Part
 from riser_soil.core.saved_state import Saved
@@ -28,11 +28,11 @@ from riser_soil.scene.stages import DynamicStage, MovedEnds, Stage, StaticStage
 
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels
-    from riser_soil.contact.contact import Contact
-    from riser_soil.contact.friction import Friction
+    from riser_soil.contact.contact import RiserContact
+    from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
-    from riser_soil.riser.attachments import Attachment
+    from riser_soil.riser.attachments import PointAttachment
     from riser_soil.riser.catenary import Catenary
     from riser_soil.riser.wall_tension import Pressures
     from riser_soil.soil.soil import Soil
@@ -47,7 +47,7 @@ class Assembly:
 
     catenary: the first shape, None for other ones.
     attachments: point masses and buoyancy modules on the line; their weight less buoyancy is among `riser_parts`.
-    pressures: inside and outside the pipe; None where the tension in its wall is not told.
+    pressures: inside and outside the pipe; None where the wall tension is not known.
     contact_stiffness [N/m2]: force per length and penetration, by ground (soil, seabed).
     vessels: those that carry ends, None where there are none.
     begun: by the names of the stages begun so far, where the ends were then (2, 3) [m]: their motions follow from it.
@@ -59,12 +59,12 @@ class Assembly:
     elements: Elements
     riser_parts: list[Part]
     catenary: Catenary | None
-    attachments: tuple[Attachment, ...] = ()
+    attachments: tuple[PointAttachment, ...] = ()
     pressures: Pressures | None = None
     soil: Soil | None = None
     soil_contact: SoilContact | None = None
     seabed: SeabedContact | None = None
-    friction: Friction | None = None
+    friction: CoulombFriction | None = None
     contact_stiffness: dict[str, float] = field(default_factory=dict)
     vessels: Vessels | None = None
     begun: dict[str, Array] = field(default_factory=dict)
@@ -78,9 +78,9 @@ class Assembly:
         return [self.line, *self.ground_fields]
 
     @property
-    def contacts(self) -> list[Contact]:
-        """What the riser may touch."""
-        both: tuple[Contact | None, Contact | None] = (self.soil_contact, self.seabed)
+    def contacts(self) -> list[RiserContact]:
+        """Contact parts of the riser."""
+        both: tuple[RiserContact | None, RiserContact | None] = (self.soil_contact, self.seabed)
         return [contact for contact in both if contact is not None]
 
     @property
@@ -105,13 +105,13 @@ class Assembly:
 
     @property
     def slack(self) -> float:
-        """How far the end of the first shape lies beyond its place [m]."""
+        """Distance of the end of the initial shape from its prescribed position [m]."""
         return self.catenary.slack if self.catenary is not None else 0.0
 
     @property
     def hanging(self) -> str:
-        """How the riser hangs whose first shape ends beyond its place: in a loop, or stretched and so steep that its
-        horizontal tension is less than a bend takes.
+        """Configuration of a riser whose initial shape ends beyond its prescribed position: in a loop, or stretched and
+        so steep that its horizontal tension is less than a bend takes.
         """
         ends = self.scene.riser.start, self.scene.riser.end
         points = [end.position for end in ends if isinstance(end, Support)]
@@ -120,7 +120,7 @@ class Assembly:
 
     @property
     def too_slack(self) -> str:
-        """What to tell where a riser whose first shape ends beyond its place finds no equilibrium."""
+        """Error message where a riser too slack for its elements finds no equilibrium."""
         bend = least_bend(self.elements)
         return (
             f"{self.hanging}: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
@@ -130,7 +130,7 @@ class Assembly:
 
     @property
     def laying(self) -> StaticStage | None:
-        """What brings the end of a slack riser to its place before the scene's stages."""
+        """The stage that lays a slack riser: it moves the end to its prescribed position before the scene's stages."""
         end = self.scene.riser.end
         if self.slack == 0.0 or not isinstance(end, Support):
             return None
@@ -154,7 +154,7 @@ class Assembly:
         return stage, self._enter(stage, self.begun[stage.name])
 
     def state(self) -> Saved:
-        """What the motions follow from; fields and parts have states of their own."""
+        """The state of the prescribed motions; fields and parts have states of their own."""
         return dict(self.begun)
 
     def restore(self, saved: Saved) -> None:
@@ -162,7 +162,7 @@ class Assembly:
 
     def _enter(self, stage: Stage, origins: Array) -> Model:
         set_motions(self.line, stage, self.vessels, origins)
-        hold_spin(self.scene, self.line, stage)
+        prescribe_spin(self.scene, self.line, stage)
         parts = [*self.riser_parts, *loads_of(self.line, stage)]
         if isinstance(stage, DynamicStage):
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)

@@ -1,4 +1,4 @@
-"""What the water of a scene acts on: the pipe, and the modules on it."""
+"""Bodies that carry hydrodynamic loads: the pipe, and the buoyancy modules and clump weights on it."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 
 if TYPE_CHECKING:
-    from riser_soil.riser.attachments import Attachment
-    from riser_soil.sea.buoyancy import Dry
+    from riser_soil.riser.attachments import PointAttachment
+    from riser_soil.sea.buoyancy import LostBuoyancy
     from riser_soil.sea.pipe import Pipe
     from riser_soil.sea.still_water import Resistance
     from riser_soil.sea.wetting import WaterSurface, Wetting
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Body(ABC):
-    """Something on the line in water of density rho [kg/m3], at stations (ne, ng); forces and masses are per length,
+    """A body on the line in water of density rho [kg/m3], at stations (ne, ng); forces and masses are per length,
     those of single modules as they are.
     """
 
@@ -49,7 +49,7 @@ class Body(ABC):
     @property
     @abstractmethod
     def still(self) -> Resistance:
-        """What still water does to it."""
+        """Its loads in still water."""
 
     @property
     @abstractmethod
@@ -66,8 +66,8 @@ class Body(ABC):
         """How wet its stations are."""
 
     @abstractmethod
-    def dry(self, surface: WaterSurface, gravity: float) -> Dry:
-        """What of it is dry."""
+    def dry(self, surface: WaterSurface, gravity: float) -> LostBuoyancy:
+        """Its lost buoyancy where it is dry."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class PipeInWater(Body):
 
         return Wetting(self.pipe, surface)
 
-    def dry(self, surface: WaterSurface, gravity: float) -> Dry:
+    def dry(self, surface: WaterSurface, gravity: float) -> LostBuoyancy:
         from riser_soil.sea.dry_pipe import DryPipe
 
         return DryPipe(self.pipe, surface, gravity * self.displaced)
@@ -123,7 +123,7 @@ class PipeInWater(Body):
 class ModulesInWater(Body):
     """Modules, each with a volume or a drag area."""
 
-    modules: Sequence[Attachment]
+    modules: Sequence[PointAttachment]
 
     @cached_property
     def pipe(self) -> Pipe:
@@ -159,7 +159,7 @@ class ModulesInWater(Body):
 
         return Wetting(self.pipe, surface, diameters(self.modules)[:, None])
 
-    def dry(self, surface: WaterSurface, gravity: float) -> Dry:
+    def dry(self, surface: WaterSurface, gravity: float) -> LostBuoyancy:
         from riser_soil.sea.buoyancy import DryStations
 
         return DryStations(self.pipe, self.wetting(surface), gravity * self.displaced)

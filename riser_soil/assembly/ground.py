@@ -1,4 +1,4 @@
-"""What the riser lies on: soil, seabed, and contact with them."""
+"""Assembly of soil, seabed and contact."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from mpi4py import MPI
 
 from riser_soil.assembly.scales import Scales, contact_radius, scales_of
 from riser_soil.errors import SceneError
-from riser_soil.interruption import undisturbed
+from riser_soil.interruption import restoring_signal_handlers
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements, larger_beside
 from riser_soil.scene.contact import Contact as ContactScene
@@ -19,12 +19,12 @@ from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed, Seabed, Sprin
 from riser_soil.scene.soil import GeneratedMesh, MeshFile, SoilScene
 
 if TYPE_CHECKING:
-    from riser_soil.contact.friction import Friction
+    from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.seabed.grounds import Ground
     from riser_soil.seabed.law import NormalLaw
-    from riser_soil.soil.grid import Grid
+    from riser_soil.soil.grid import DistributedMesh
     from riser_soil.soil.soil import Soil
     from riser_soil.soil.surface import SoilTop
 
@@ -35,7 +35,7 @@ NARROWEST_CORNER, WIDEST_CORNER, MOBILISATION = 1.0 / 3000.0, 1.0 / 300.0, 1.0 /
 
 def soil_of(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Soil:
     """The continuum; meshed finely under the straight line between the riser's ends. Collective."""
-    with undisturbed():  # imports gmsh
+    with restoring_signal_handlers():  # imports gmsh
         from riser_soil.soil.soil import Soil
 
     return Soil(
@@ -47,7 +47,7 @@ def soil_of(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> 
     )
 
 
-def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Grid:
+def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> DistributedMesh:
     from riser_soil.assembly.soil_block import block_of
     from riser_soil.soil.grid import block_grid, file_grid
 
@@ -99,16 +99,16 @@ def seabed_contact_of(
     )
 
 
-def friction_of(settings: ContactScene, seabed: SeabedContact, elements: Elements) -> Friction | None:
+def friction_of(settings: ContactScene, seabed: SeabedContact, elements: Elements) -> CoulombFriction | None:
     """Friction on the seabed, where the scene asks for it."""
     given = settings.friction
     if given is None:
         return None
-    from riser_soil.contact.friction import Friction, mobilised_within
+    from riser_soil.contact.friction import CoulombFriction, mobilised_within
 
     mu = given.axial, given.axial if given.lateral is None else given.lateral
     slide = MOBILISATION * scales_of(elements).diameter if given.mobilisation == "auto" else float(given.mobilisation)
-    return Friction(seabed, *mu, mobilised_within(slide, *mu, np.abs(elements.weight)))
+    return CoulombFriction(seabed, *mu, mobilised_within(slide, *mu, np.abs(elements.weight)))
 
 
 def seabed_law(seabed: Seabed, settings: ContactScene, elements: Elements, stiffness: dict[str, float]) -> NormalLaw:
@@ -128,7 +128,7 @@ def _penalty(settings: ContactScene, scales: Scales, stiffness: float) -> Normal
     penalty = Penalty(stiffness, smoothing(settings, scales, "seabed", stiffness))
     if settings.suction is None:
         return penalty
-    from riser_soil.contact.suction import Sticking
+    from riser_soil.contact.suction import SuctionLaw
 
     cap, reach, peak = settings.suction.cap, settings.suction.reach, settings.suction.cap / penalty.stiffness
     if reach <= peak:
@@ -136,7 +136,7 @@ def _penalty(settings: ContactScene, scales: Scales, stiffness: float) -> Normal
             f"contact.suction.reach = {reach:g} m: suction has its cap of {cap:g} N/m at {peak:g} m on a seabed of "
             f"{penalty.stiffness:g} N/m2, and must reach farther; raise reach or lower cap"
         )
-    return Sticking(penalty, cap, reach)
+    return SuctionLaw(penalty, cap, reach)
 
 
 def _ground(scene: Scene, seabed: Seabed) -> Ground:

@@ -1,4 +1,4 @@
-"""From the scene's motions of the ends to functions of time."""
+"""Assembly of the prescribed end motions of a stage as functions of time."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.quantities import Vector
-from riser_soil.riser.ends import End, Motion, Turning
+from riser_soil.riser.ends import End, Motion, SupportRotation
 from riser_soil.riser.line import Line
-from riser_soil.scene.motions import ArcMotion, Harmonic, Rotation, Table, Vessel, Way
+from riser_soil.scene.motions import ArcMotion, Harmonic, MotionKind, Rotation, Table, Vessel
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 
@@ -32,7 +32,7 @@ def vessels_of(scene: Scene) -> Vessels | None:
 
 
 def set_motions(line: Line, stage: Stage, vessels: Vessels | None, origins: Array) -> None:
-    """Give the held ends their motions in this stage, from where they are as it begins; without one they stay there.
+    """Give the prescribed ends their motions in a stage, from their places at its start; without one they stay there.
 
     origins (2, 3): positions of start and end, see `end_positions`.
     """
@@ -42,12 +42,12 @@ def set_motions(line: Line, stage: Stage, vessels: Vessels | None, origins: Arra
 
 
 def end_positions(line: Line) -> Array:
-    """Of start and end now, (2, 3) [m], global axes."""
+    """Present positions of start and end, (2, 3) [m], global axes."""
     return np.stack([line.to_global(line.x[node]) for node in (0, -1)])
 
 
 def set_motion(end: End, name: str, origin: Array, stage: Stage, vessels: Vessels | None) -> None:
-    """Give an end that is at origin (3,) its motion in a stage; vessels want the stages in their order."""
+    """Give an end that is at origin (3,) its motion in a stage; with vessels, the stages come in their order."""
     end.motion = end.turning = None
     if isinstance(stage, StaticStage):
         target = getattr(stage.move, name, None)
@@ -66,7 +66,7 @@ def _move(end: End, origin: Array, target: Vector | None) -> None:
         end.motion = SmoothMove(origin, np.asarray(target))
 
 
-def _set(end: End, name: str, origin: Array, stage: Stage, way: Way, vessels: Vessels | None) -> None:
+def _set(end: End, name: str, origin: Array, stage: Stage, way: MotionKind, vessels: Vessels | None) -> None:
     """One way of moving an end, or of turning it."""
     match way:
         case Harmonic():
@@ -86,9 +86,9 @@ def _set(end: End, name: str, origin: Array, stage: Stage, way: Way, vessels: Ve
 
 
 def _harmonic(origin: Array, given: Harmonic) -> Motion:
-    from riser_soil.motion.harmonic import Harmonic
+    from riser_soil.motion.harmonic import HarmonicMotion
 
-    return Harmonic(origin, np.array(given.amplitude), given.period, given.ramp, np.array(given.phases))
+    return HarmonicMotion(origin, np.array(given.amplitude), given.period, given.ramp, np.array(given.phases))
 
 
 def _arc(origin: Array, given: ArcMotion) -> Motion:
@@ -98,22 +98,22 @@ def _arc(origin: Array, given: ArcMotion) -> Motion:
     return SwingingEnd(origin, np.array(given.hub), np.array(given.axis), swing)
 
 
-def _rocking(given: Rotation) -> Callable[[float], Turning]:
-    from riser_soil.motion.swing import AngleOscillation, Rocking
+def _rocking(given: Rotation) -> Callable[[float], SupportRotation]:
+    from riser_soil.motion.swing import AngleOscillation, RockingSupport
 
     swing = AngleOscillation(np.radians(given.amplitude_deg), given.period, given.ramp, np.radians(given.phase_deg))
-    return Rocking(np.array(given.axis) / np.linalg.norm(given.axis), swing)
+    return RockingSupport(np.array(given.axis) / np.linalg.norm(given.axis), swing)
 
 
 def _table(given: Table) -> SixDegreeMotion:
-    from riser_soil.motion.table import Table
+    from riser_soil.motion.table import TabulatedMotion
 
     values = np.hstack([given.displacements, given.rotations])
-    return Table(np.array(given.columns.values["t"]), values, given.ramp)
+    return TabulatedMotion(np.array(given.columns.values["t"]), values, given.ramp)
 
 
 def _carry(end: End, origin: Array, six: SixDegreeMotion) -> None:
-    from riser_soil.motion.carried import Displaced, Turned
+    from riser_soil.motion.carried import CarriedEnd, CarriedSupport
 
     once = lru_cache(maxsize=2)(six)  # a step asks again and again for its beginning and its end
-    end.motion, end.turning = Displaced(origin, once), Turned(once)
+    end.motion, end.turning = CarriedEnd(origin, once), CarriedSupport(once)

@@ -1,4 +1,4 @@
-"""The pressures inside and outside the pipe."""
+"""Assembly of the internal and external pressure of the pipe."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from riser_soil.riser.sections import Elements
 from riser_soil.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from riser_soil.riser.wall_tension import Head, Pressures
+    from riser_soil.riser.wall_tension import HydrostaticPressure, Pressures
 
 
 def no_wall_tension(scene: Scene) -> str:
-    """Why the tension in the pipe's wall is not told; empty where it is."""
+    """Why there is no wall tension; empty where there is one."""
     if scene.water is None:
         return "" if scene.riser.contents else "without water and contents it is the effective tension"
     if scene.water.surface_level is None:
@@ -24,7 +24,7 @@ def no_wall_tension(scene: Scene) -> str:
 
 
 def pressures_of(scene: Scene, line: Line, elements: Elements) -> Pressures | None:
-    """Both pressures; None where the wall's tension is not told."""
+    """Both pressures; None where the wall tension is not known."""
     if no_wall_tension(scene):
         return None
     from riser_soil.riser.wall_tension import Pressures
@@ -32,20 +32,20 @@ def pressures_of(scene: Scene, line: Line, elements: Elements) -> Pressures | No
     return Pressures(_inside(scene, line), _outside(scene), elements.inner_diameter, elements.outer_diameter)
 
 
-def _inside(scene: Scene, line: Line) -> Head | None:
+def _inside(scene: Scene, line: Line) -> HydrostaticPressure | None:
     given = scene.riser.contents
     if given is None:
         return None
-    from riser_soil.riser.wall_tension import Head
+    from riser_soil.riser.wall_tension import HydrostaticPressure
 
     ends = line.to_global(line.x[[0, -1]])[:, 2]
     level = float(ends.max()) if given.pressure_level is None else given.pressure_level
-    return Head(level, scene.gravity * given.density, given.pressure)
+    return HydrostaticPressure(level, scene.gravity * given.density, given.pressure)
 
 
-def _outside(scene: Scene) -> Head | None:
+def _outside(scene: Scene) -> HydrostaticPressure | None:
     if scene.water is None or scene.water.surface_level is None:
         return None
-    from riser_soil.riser.wall_tension import Head
+    from riser_soil.riser.wall_tension import HydrostaticPressure
 
-    return Head(scene.water.surface_level, scene.gravity * scene.water.density)
+    return HydrostaticPressure(scene.water.surface_level, scene.gravity * scene.water.density)

@@ -1,4 +1,4 @@
-"""The riser's line, elements and end springs."""
+"""Assembly of the riser: its line, beam elements and rotational end springs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from riser_soil.scene.riser import Riser, RotationSpring, Support
 from riser_soil.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from riser_soil.riser.attachments import Attachment
+    from riser_soil.riser.attachments import PointAttachment
     from riser_soil.riser.catenary import Catenary
 
 
@@ -32,11 +32,11 @@ def elements_of(scene: Scene) -> sections.Elements:
         water=scene.water.density if scene.water else 0.0,
     )
     types = {name: _line_type(t) for name, t in scene.used_line_types.items()}
-    segments = [sections.Segment(types[s.line_type], s.element_lengths) for s in scene.riser.segments]
+    segments = [sections.MeshedSegment(types[s.line_type], s.element_lengths) for s in scene.riser.segments]
     return sections.elements(segments, around)
 
 
-def _line_type(given: LineType) -> sections.LineType:
+def _line_type(given: LineType) -> sections.SectionProperties:
     """As the elements take it: properties of the same name as they are given, or the elements' own default."""
     EI_y, EI_z = given.bending_stiffness
     formed: dict[str, Any] = {
@@ -47,19 +47,20 @@ def _line_type(given: LineType) -> sections.LineType:
         "rotary_inertia": None if given.rotary_inertia is True else float(given.rotary_inertia),
         "damping": given.damping.time if given.damping else 0.0,
     }
-    same = {each.name: getattr(given, each.name) for each in fields(sections.LineType) if each.name not in formed}
-    return sections.LineType(**formed, **{name: value for name, value in same.items() if value is not None})
+    names = [each.name for each in fields(sections.SectionProperties) if each.name not in formed]
+    same = {name: getattr(given, name) for name in names}
+    return sections.SectionProperties(**formed, **{name: value for name, value in same.items() if value is not None})
 
 
-def attachments_of(scene: Scene) -> tuple[Attachment, ...]:
+def attachments_of(scene: Scene) -> tuple[PointAttachment, ...]:
     """Everything attached to the riser, one by one."""
     if not scene.riser.attachments:
         return ()
-    from riser_soil.riser.attachments import Attachment
+    from riser_soil.riser.attachments import PointAttachment
 
     water = scene.water.density if scene.water else 0.0
     return tuple(
-        Attachment(
+        PointAttachment(
             arc,
             mass=given.mass,
             net_weight=scene.gravity * (given.mass - water * given.volume),
@@ -72,7 +73,7 @@ def attachments_of(scene: Scene) -> tuple[Attachment, ...]:
     )
 
 
-def attached_weight(line: Line, attachments: Sequence[Attachment]) -> list[Part]:
+def attached_weight(line: Line, attachments: Sequence[PointAttachment]) -> list[Part]:
     """The part of the attachments' weight less buoyancy, if there are any."""
     if not attachments:
         return []
@@ -82,7 +83,7 @@ def attached_weight(line: Line, attachments: Sequence[Attachment]) -> list[Part]
 
 
 def line_of(
-    scene: Scene, elements: sections.Elements, attachments: Sequence[Attachment], active: bool
+    scene: Scene, elements: sections.Elements, attachments: Sequence[PointAttachment], active: bool
 ) -> tuple[Line, Catenary | None]:
     """The line in its initial shape, and the catenary where it is one."""
     unstressed = unstressed_shape(scene.riser, elements.arc)
@@ -101,7 +102,9 @@ def line_of(
 
 
 def _end(given: str | Support) -> End:
-    return End(held=isinstance(given, Support), rotation_fixed=isinstance(given, Support) and given.rotation == "fixed")
+    if not isinstance(given, Support):
+        return End(prescribed=False)
+    return End(prescribed=True, rotation_fixed=given.rotation == "fixed")
 
 
 def spins_freely(riser: Riser) -> bool:

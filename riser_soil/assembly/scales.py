@@ -1,4 +1,4 @@
-"""Typical sizes of a riser, from which defaults follow: its weight per length, its diameter, the force of round-off."""
+"""Characteristic scales of a riser, from which defaults follow: weight per length, diameter, round-off force."""
 
 from __future__ import annotations
 

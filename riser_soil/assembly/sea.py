@@ -1,4 +1,4 @@
-"""What the water of a scene does: the only place that asks what moves it."""
+"""Assembly of the sea: water surface, current and waves."""
 
 from __future__ import annotations
 
@@ -63,8 +63,8 @@ def wave_clock(scene: Scene, stage: Stage) -> float:
 
 
 def wave_age(scene: Scene, stage: Stage) -> float:
-    """How long the waves have acted without a break when a stage begins [s]: static stages know no waves, so the first
-    dynamic stage after one finds the riser at rest, and the waves grow anew.
+    """How long the waves have acted without a break when a stage begins [s]: static stages have no waves, so in the
+    first dynamic stage after one the riser is at rest, and the waves are ramped anew.
     """
     age = 0.0
     for before in takewhile(lambda other: other.name != stage.name, scene.stages):

@@ -1,4 +1,4 @@
-"""Loads of the water on the riser, as far as the scene has them."""
+"""Assembly of the hydrodynamic loads: Morison loads and buoyancy at the surface, as far as the scene has them."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.scene.water import Water
 
 if TYPE_CHECKING:
-    from riser_soil.riser.attachments import Attachment
+    from riser_soil.riser.attachments import PointAttachment
     from riser_soil.sea.buoyancy import Buoyancy
     from riser_soil.sea.morison import Morison
-    from riser_soil.sea.moving_water import Stream
+    from riser_soil.sea.moving_water import FlowAtStations
     from riser_soil.sea.still_water import StationLoads
     from riser_soil.sea.wetting import WaterSurface
 
 
 def sea_loads(
-    scene: Scene, line: Line, elements: Elements, stage: Stage, attachments: Sequence[Attachment] = ()
+    scene: Scene, line: Line, elements: Elements, stage: Stage, attachments: Sequence[PointAttachment] = ()
 ) -> list[Part]:
     """The parts "morison" and "buoyancy" of a stage, of the pipe and of the modules on it."""
     if scene.water is None:
@@ -35,12 +35,12 @@ def sea_loads(
     modules = [attachment for attachment in attachments if attachment.volume or attachment.drag_area]
     if modules:
         bodies.append(ModulesInWater(scene.water.density, line, modules))
-    return [part for body in bodies for part in _Loads(scene, scene.water, body, stage).parts()]
+    return [part for body in bodies for part in _BodyLoads(scene, scene.water, body, stage).parts()]
 
 
 @dataclass(frozen=True)
-class _Loads:
-    """What the water of a scene does to a body in a stage."""
+class _BodyLoads:
+    """Hydrodynamic loads on a body in a stage."""
 
     scene: Scene
     water: Water
@@ -65,15 +65,15 @@ class _Loads:
         return self.water.waves is not None and isinstance(self.stage, DynamicStage)
 
     @cached_property
-    def stream(self) -> Stream | None:
+    def stream(self) -> FlowAtStations | None:
         """Water that moves."""
         if self.water.current is None and not self.waves:
             return None
-        from riser_soil.sea.moving_water import Stream
+        from riser_soil.sea.moving_water import FlowAtStations
 
         water = water_of(self.scene, self.stage)
         assert water is not None
-        return Stream(self.body.pipe, water)
+        return FlowAtStations(self.body.pipe, water)
 
     @cached_property
     def surface(self) -> WaterSurface | None:
@@ -101,7 +101,7 @@ class _Loads:
 
         return PartlyWet(loads, self.body.wetting(self.surface))
 
-    def _in_motion(self, stream: Stream) -> StationLoads:
+    def _in_motion(self, stream: FlowAtStations) -> StationLoads:
         from riser_soil.sea.moving_water import AcceleratedWater, RelativeDrag
 
         drag = RelativeDrag(self.body.still, stream)

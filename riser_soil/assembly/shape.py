@@ -1,4 +1,4 @@
-"""The riser's unstressed shape and the one that it starts from."""
+"""Assembly of the riser's unstressed shape and initial configuration."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.shapes import ArcShape, PointsShape
 
 if TYPE_CHECKING:
-    from riser_soil.riser.attachments import Attachment
+    from riser_soil.riser.attachments import PointAttachment
     from riser_soil.riser.catenary import Catenary
 
 # The least radius H/w of a first shape's bends, over the elements' length, and over the length (EI/w)^(1/3) that a line
@@ -50,7 +50,7 @@ def _straight(riser: Riser, arc: Array) -> shapes.Curve:
 
 
 def initial_shape(
-    scene: Scene, elements: sections.Elements, attachments: Sequence[Attachment], unstressed: shapes.Curve
+    scene: Scene, elements: sections.Elements, attachments: Sequence[PointAttachment], unstressed: shapes.Curve
 ) -> tuple[Catenary | None, shapes.Curve]:
     """The first shape, and the catenary where it is one."""
     given = scene.riser.initial
@@ -76,11 +76,11 @@ def _laid_straight(riser: Riser, arc: Array) -> shapes.Curve:
     return shapes.straight(arc, np.zeros(3) if start is None else start)
 
 
-def _catenary(scene: Scene, elements: sections.Elements, attachments: Sequence[Attachment]) -> Catenary:
+def _catenary(scene: Scene, elements: sections.Elements, attachments: Sequence[PointAttachment]) -> Catenary:
     from riser_soil.riser.catenary import catenary
 
     start, end = _ends(scene.riser)
-    assert start is not None, "the scene's checks let no catenary start without two held ends"
+    assert start is not None, "the scene's checks let no catenary start without two prescribed ends"
     assert end is not None
     return catenary(
         elements.arc,

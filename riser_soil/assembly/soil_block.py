@@ -1,4 +1,4 @@
-"""The block of soil that a scene asks for."""
+"""Assembly of the soil block: its extent and the sizes of its cells."""
 
 from __future__ import annotations
 

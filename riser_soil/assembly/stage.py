@@ -1,4 +1,4 @@
-"""What a stage adds: loads, inertia, and its time scheme."""
+"""Assembly of a stage: its loads, inertia, damping, step control and time scheme."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from riser_soil.scene.stages import Load as LoadScene
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
 
 if TYPE_CHECKING:
-    from riser_soil.riser.attachments import Attachment, Masses
-    from riser_soil.riser.loads import Load
+    from riser_soil.riser.attachments import Masses, PointAttachment
+    from riser_soil.riser.loads import AppliedLoad
 
 
 def scheme_of(stage: Stage) -> Scheme:
-    """How the stage goes from one step to the next."""
+    """The time scheme of a stage."""
     if isinstance(stage, StaticStage):
         return Static()
     match stage.scheme:
@@ -56,9 +56,9 @@ def _multiples(interval: float, end: float) -> list[float]:
     return [n * interval for n in range(1, int(end / interval) + 1)]
 
 
-def hold_spin(scene: Scene, line: Line, stage: Stage) -> None:
-    """Hold the start's spin about the pipe's axis in stages where neither an end nor inertia resists it."""
-    line.hold_spin(spins_freely(scene.riser) and isinstance(stage, StaticStage))
+def prescribe_spin(scene: Scene, line: Line, stage: Stage) -> None:
+    """Prescribe the start's spin about the pipe's axis in stages where neither an end nor inertia resists it."""
+    line.prescribe_spin(spins_freely(scene.riser) and isinstance(stage, StaticStage))
 
 
 def loads_of(line: Line, stage: Stage) -> list[Part]:
@@ -70,12 +70,12 @@ def loads_of(line: Line, stage: Stage) -> list[Part]:
     return [PointLoads(line, [_load(line, load, stage.kind == "static") for load in stage.loads])]
 
 
-def _load(line: Line, given: LoadScene, static: bool) -> Load:
-    from riser_soil.riser.loads import Load
+def _load(line: Line, given: LoadScene, static: bool) -> AppliedLoad:
+    from riser_soil.riser.loads import AppliedLoad
 
     places = {"start": 0.0, "end": float(line.arc[-1]), None: 0.0}
     vectors = {k: getattr(given, k) for k in ("force", "moment", "distributed")}
-    return Load(
+    return AppliedLoad(
         _factor(given, static),
         places[given.at] if isinstance(given.at, str | None) else given.at,
         **{k: np.asarray(v) for k, v in vectors.items() if v is not None},
@@ -90,9 +90,9 @@ def _factor(given: LoadScene, static: bool) -> Callable[[float], float]:
 
 
 def dynamic_parts(
-    stage: DynamicStage, line: Line, elements: Elements, attachments: Sequence[Attachment] = ()
+    stage: DynamicStage, line: Line, elements: Elements, attachments: Sequence[PointAttachment] = ()
 ) -> list[Part]:
-    """What a riser has only in motion."""
+    """Parts of dynamic stages: inertia and damping."""
     parts = _inertia(line, elements, attachments)
     if isinstance(stage.scheme, MidpointScheme):
         from riser_soil.riser.midpoint_inertia import over_steps
@@ -105,7 +105,7 @@ def dynamic_parts(
     return parts
 
 
-def _inertia(line: Line, elements: Elements, attachments: Sequence[Attachment]) -> list[Part]:
+def _inertia(line: Line, elements: Elements, attachments: Sequence[PointAttachment]) -> list[Part]:
     from riser_soil.riser.inertia import Inertia
 
     parts: list[Part] = [Inertia(line, elements.mass, _attached_mass(line, attachments))]
@@ -116,7 +116,7 @@ def _inertia(line: Line, elements: Elements, attachments: Sequence[Attachment]) 
     return parts
 
 
-def _attached_mass(line: Line, attachments: Sequence[Attachment]) -> Masses | None:
+def _attached_mass(line: Line, attachments: Sequence[PointAttachment]) -> Masses | None:
     if not attachments:
         return None
     from riser_soil.riser.attachments import masses

@@ -1,4 +1,4 @@
-"""Vessels that carry ends: their responses to the scene's waves, and where each stage finds them."""
+"""Assembly of vessels: RAOs applied to the scene's waves, and the ends that each vessel carries."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.quantities import Vector
 from riser_soil.errors import SceneError
 from riser_soil.motion.rao import RaoTable
-from riser_soil.motion.vessel import Response, Vessel, VesselAttachment
+from riser_soil.motion.vessel import VesselAttachment, VesselMotion, VesselResponse
 from riser_soil.scene.motions import Vessel as VesselScene
 from riser_soil.scene.rao import MODES
 from riser_soil.scene.scene import Scene
@@ -28,7 +28,7 @@ MOST_BEYOND, TOLD_BEYOND = 0.01, 1e-3
 _Key = tuple[Path, Vector, float]
 
 
-class Beyond(NamedTuple):
+class EnergyOutsideTable(NamedTuple):
     """Waves beyond a table's frequencies: share of the waves' energy below and above, the table's range [rad/s]."""
 
     below: float
@@ -49,17 +49,17 @@ class Vessels:
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
-        self._responses: dict[_Key, Response] = {}
-        self._last: dict[str, tuple[Vessel, float]] = {}  # by the end: what moved it last, and for how long [s]
-        self.beyond: dict[str, Beyond] = {}
+        self._responses: dict[_Key, VesselResponse] = {}
+        self._last: dict[str, tuple[VesselMotion, float]] = {}  # by the end: what moved it last, and for how long [s]
+        self.beyond: dict[str, EnergyOutsideTable] = {}
         waves = components_of(scene)
         assert waves is not None  # the scene's checks have seen to it
         for path, vessel in _vessels(scene):
             if _key(vessel) not in self._responses:
                 self._responses[_key(vessel)] = self._response(path, vessel, waves)
 
-    def motion(self, stage: Stage, end: str, origin: Array) -> Vessel:
-        """The motion of an end that is at origin (3,) as a stage begins; to be asked for in the order of the stages."""
+    def motion(self, stage: Stage, end: str, origin: Array) -> VesselMotion:
+        """The motion of an end that is at origin (3,) as a stage begins; to be called in the order of the stages."""
         given = _vessel(stage, end)
         assert given is not None
         since, first = _beginning(self._scene, stage, end, given)
@@ -68,7 +68,7 @@ class Vessels:
             attachment, ramp = self._attachment(first, end, origin), self._ramp(first, again=before is not None)
         else:
             attachment, ramp = before[0].attachment, before[0].ramp
-        vessel = Vessel(self._responses[_key(given)], attachment, ramp, wave_clock(self._scene, stage), since)
+        vessel = VesselMotion(self._responses[_key(given)], attachment, ramp, wave_clock(self._scene, stage), since)
         self._last[end] = vessel, stage.duration if isinstance(stage, DynamicStage) else 0.0
         return vessel
 
@@ -96,18 +96,18 @@ class Vessels:
         ramp = waves.ramp if vessel.ramp is None else vessel.ramp
         return max(ramp, waves.period) if again else ramp
 
-    def _response(self, path: str, vessel: VesselScene, waves: Components) -> Response:
+    def _response(self, path: str, vessel: VesselScene, waves: Components) -> VesselResponse:
         table = _table(vessel)
         responses = table.at(waves.frequency, waves.direction - np.radians(vessel.heading_deg))
         below, above = table.beyond(waves.frequency)
         if beyond := _beyond(path, vessel, waves, responses, (below, above)):
             self.beyond[path] = beyond
         responses[above] = 0.0
-        return Response(waves.frequency, (responses * _crests(waves, vessel)[:, None]) @ _to_global(vessel))
+        return VesselResponse(waves.frequency, (responses * _crests(waves, vessel)[:, None]) @ _to_global(vessel))
 
 
 def _key(vessel: VesselScene) -> _Key:
-    """What makes a vessel another one."""
+    """Key that identifies a vessel."""
     return vessel.rao, vessel.reference, vessel.heading_deg
 
 
@@ -159,8 +159,8 @@ def _to_global(vessel: VesselScene) -> Array:
 
 def _beyond(
     path: str, vessel: VesselScene, waves: Components, responses: Array, beyond: tuple[BoolArray, BoolArray]
-) -> Beyond | None:
-    """What lies beyond the table where the vessel may feel it; SceneError where it would for sure."""
+) -> EnergyOutsideTable | None:
+    """Wave energy outside the table where the vessel may respond to it; SceneError where it would for sure."""
     energy = 0.5 * waves.amplitude**2
     below, above = (float(energy[part].sum() / energy.sum()) for part in beyond)
     first, last = vessel.table.frequency[0], vessel.table.frequency[-1]
@@ -174,4 +174,4 @@ def _beyond(
             f"{100.0 * share[worst]:.3g} % of the energy of {MODES[worst]}; add rows that cover "
             f"{waves.frequency.min():.4g} to {waves.frequency.max():.4g} rad/s"
         )
-    return Beyond(below, above, first, last) if share.max() > TOLD_BEYOND else None
+    return EnergyOutsideTable(below, above, first, last) if share.max() > TOLD_BEYOND else None

@@ -1,1 +1,1 @@
-"""What is told of a scene before it is solved: `check`, plausibility warnings, the size and whether it fits."""
+"""Checks before a scene is solved: plausibility warnings, problem size, memory, disk and run time."""

@@ -1,4 +1,4 @@
-"""Plausibility of the elements: too long for the bending, or of very different lengths where waves meet them."""
+"""Plausibility of the element lengths: too long for the bending, or of very different lengths where waves pass."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ UNEVEN, WAVE_IN_ELEMENTS = 4.0, 6.0
 
 
 def bending_warnings(assembly: Assembly) -> Iterator[str]:
-    """What an engineer would question about the elements' lengths, each with its numbers."""
+    """Warnings about the elements' lengths, each with its numbers."""
     yield from _long_in_boundary_layers(assembly)
     yield from _long_in_the_bend(assembly)
     yield from _uneven_neighbours(assembly)
 
 
-def lying(assembly: Assembly) -> IntArray:
+def nodes_on_ground(assembly: Assembly) -> IntArray:
     """Nodes that lie on the ground in the first shape."""
     heights = assembly.line.to_global(assembly.line.x)[:, 2]
     lowest = heights.min() + 1e-6 * assembly.line.arc[-1]
@@ -33,7 +33,7 @@ def lying(assembly: Assembly) -> IntArray:
 
 
 def _long_in_boundary_layers(assembly: Assembly) -> Iterator[str]:
-    """Elements beside a touchdown point or a held rotation against the boundary layer there."""
+    """Elements beside a touchdown point or a prescribed rotation against the boundary layer there."""
     if assembly.catenary is None:
         return
     H, line = assembly.catenary.H, assembly.line
@@ -47,13 +47,13 @@ def _long_in_boundary_layers(assembly: Assembly) -> Iterator[str]:
 
 
 def _boundary_layers(assembly: Assembly) -> Iterator[tuple[str, int]]:
-    """Where bending has boundary layers in the first shape, each with an element of the line."""
+    """Places of bending boundary layers in the initial shape, each with an element of the line."""
     line = assembly.line
     if line.start.rotation_fixed:
         yield "at the start", 0
     if line.end.rotation_fixed:
         yield "at the end", line.length.size - 1
-    on_ground = lying(assembly)
+    on_ground = nodes_on_ground(assembly)
     if on_ground.size > 1:
         e = min(int(on_ground[-1]), line.length.size - 1)
         yield f"at the touchdown point (arc {line.arc[on_ground[-1]]:.4g} m)", e
@@ -87,7 +87,7 @@ def _long_in_the_bend(assembly: Assembly) -> Iterator[str]:
 def _hanging(assembly: Assembly) -> Array:
     """Whether elements hang free in the first shape (ne,)."""
     on_ground = np.zeros(assembly.line.nodes, dtype=bool)
-    on_ground[lying(assembly)] = lying(assembly).size > 1
+    on_ground[nodes_on_ground(assembly)] = nodes_on_ground(assembly).size > 1
     return np.asarray(~(on_ground[1:] & on_ground[:-1]))
 
 

@@ -1,4 +1,4 @@
-"""What a scene will be built of: parts, unknowns, memory, and physical warnings."""
+"""Report of `riser-soil check`: parts, unknowns, memory, disk, run time and plausibility warnings."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 from riser_soil.assembly import Assembly, build
-from riser_soil.checks.estimate import Size, riser_memory, soil_memory
+from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_memory
 from riser_soil.checks.inventory import built, left_out, unknowns
 from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tell, too_long
 from riser_soil.checks.plausibility import physical_warnings
@@ -60,7 +60,7 @@ def _memory_line(assembly: Assembly) -> str:
     return f"estimated memory: {memory(assembly) / 1e6:.0f} MB on {_counted(assembly.comm.size, 'rank')}"
 
 
-def _results(size: Size) -> Iterator[str]:
+def _results(size: ProblemSize) -> Iterator[str]:
     yield f"estimated results: {_counted(round(size.records), 'record')}, {in_bytes(size.disk)}"
     yield f"estimated time: {in_words(size.seconds)} on one core, {size.told_steps}"
 

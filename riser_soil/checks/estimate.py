@@ -1,4 +1,4 @@
-"""How large a scene is, told from its numbers alone, before anything is built: unknowns, steps, memory, disk, time.
+"""Estimate of a scene's size before anything is built: unknowns, steps, memory, disk space, run time.
 
 Memory and disk are those of `check`'s report within some tens of per cent, the time within a factor of three or so.
 """
@@ -37,8 +37,8 @@ TETRAHEDRA, NODES_OF_TETRAHEDRA = 6.0, 1.8  # in a cube of the size asked for; q
 
 
 @dataclass(frozen=True)
-class Size:
-    """What a scene makes: elements and cells, unknowns, steps of all stages, records in results.nc, pictures.
+class ProblemSize:
+    """Size of a scene: elements and cells, unknowns, steps of all stages, records in results.nc, pictures.
 
     components: of the waves. entries: of a cell's matrix. auto: whether there are more steps, as some are automatic.
     stops: times that they have to hit. seconds: on one core.
@@ -95,7 +95,7 @@ def soil_memory(ranks: int, cells: float, entries: int, unknowns: float) -> floa
     return ranks * SOIL_PROCESS + 8.0 * FACTOR * unknowns ** (4.0 / 3.0) + PER_CELL_ENTRY * entries * cells
 
 
-def size_of(scene: Scene) -> Size:
+def size_of(scene: Scene) -> ProblemSize:
     """The size of a scene."""
     elements = scene.riser.element_count
     cells, unknowns, entries = _soil(scene, scene.soil) if scene.soil is not None else (0.0, 0.0, 0)
@@ -107,7 +107,7 @@ def size_of(scene: Scene) -> Size:
     seconds = BUILD * elements + steps * (of_riser + cells * CELL + FACTORED * unknowns**2)
     dofs = 3 if resolved_dimension(scene) == 2 else 6
     auto = any(isinstance(stage, DynamicStage) and stage.time_step == "auto" for stage in scene.stages)
-    return Size(
+    return ProblemSize(
         elements=elements,
         components=components,
         riser_unknowns=dofs * (elements + 1),
@@ -136,7 +136,7 @@ def _stage(scene: Scene, stage: Stage) -> tuple[float, float, float, float]:
 
 
 def _due(duration: float, interval: float | None, steps: float) -> float:
-    """How often output is due: every step without an interval."""
+    """Number of outputs: every step without an interval."""
     return steps if interval is None else min(steps, duration / interval + 1.0)
 
 

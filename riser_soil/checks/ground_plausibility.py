@@ -1,4 +1,4 @@
-"""Plausibility of the ground: penalties, friction where there is none, soil out of reach or off the seabed."""
+"""Plausibility of seabed and soil: penalty stiffness, friction without effect, soil out of reach or off the seabed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from riser_soil.assembly import Assembly
 from riser_soil.assembly.ground import smoothing
 from riser_soil.assembly.scales import contact_radius
-from riser_soil.checks.bending_plausibility import lying
+from riser_soil.checks.bending_plausibility import nodes_on_ground
 from riser_soil.checks.motion_plausibility import farthest_move
 from riser_soil.core.arrays import Array
 
@@ -25,7 +25,7 @@ POINTS, OFF_LEVEL = 20, 1e-3
 
 
 def ground_warnings(assembly: Assembly) -> Iterator[str]:
-    """What an engineer would question about the ground and contact with it, each with its numbers."""
+    """Warnings about seabed, soil and contact, each with its numbers."""
     yield from _penalty_against_soil(assembly)
     yield from _corner_against_weight(assembly)
     if assembly.soil is not None:
@@ -38,7 +38,7 @@ def ground_warnings(assembly: Assembly) -> Iterator[str]:
 def _nothing_below(assembly: Assembly) -> Iterator[str]:
     """Nodes that lie beyond the soil where there is no seabed beside it."""
     assert assembly.soil is not None
-    grid, nodes = assembly.soil.grid, lying(assembly)
+    grid, nodes = assembly.soil.grid, nodes_on_ground(assembly)
     xy = assembly.line.to_global(assembly.line.x)[nodes, :2]
     beyond = assembly.line.arc[nodes[np.any((xy < grid.low[:2]) | (xy > grid.high[:2]), axis=1)]]
     if assembly.scene.seabed is None and nodes.size > 1 and beyond.size:

@@ -1,4 +1,4 @@
-"""What a scene is built of, and what is left out and why."""
+"""Inventory of a scene: which parts it is built of, and which are left out and why."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def built(scene: Scene) -> tuple[str, ...]:
 
 
 def left_out(scene: Scene) -> dict[str, str]:
-    """What is never built, imported or solved for, or not told of, each with its reason."""
+    """Parts and results that the scene leaves out, each with its reason."""
     told = {**_reasons(scene), "wall tension": no_wall_tension(scene)}
     return {name: reason for name, reason in told.items() if reason}
 

@@ -1,4 +1,4 @@
-"""What a scene may ask of the machine: told before anything is built, from the scene's numbers alone."""
+"""Memory and disk limits: a scene that exceeds them is refused before anything is built."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from riser_soil.checks.estimate import Size, riser_memory, size_of
+from riser_soil.checks.estimate import ProblemSize, riser_memory, size_of
 from riser_soil.checks.machine import available_memory, free_disk
 from riser_soil.errors import SceneError
 from riser_soil.scene.scene import Scene
@@ -22,7 +22,7 @@ _REMEDIES = {
 _UNITS = ((365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "h"), (60.0, "min"), (0.0, "s"))
 
 
-def size_that_fits(scene: Scene, folder: Path, comm: MPI.Intracomm) -> Size:
+def size_that_fits(scene: Scene, folder: Path, comm: MPI.Intracomm) -> ProblemSize:
     """The size of a scene whose results go to a folder; SceneError, with the numbers, where it exceeds the memory that
     is available or the disk that is free. Collective: all ranks come to the same answer.
     """
@@ -36,7 +36,7 @@ def size_that_fits(scene: Scene, folder: Path, comm: MPI.Intracomm) -> Size:
     return size
 
 
-def too_long(size: Size) -> Iterator[str]:
+def too_long(size: ProblemSize) -> Iterator[str]:
     """A warning of a long run."""
     if size.seconds > LONG:
         yield (
@@ -45,7 +45,7 @@ def too_long(size: Size) -> Iterator[str]:
         )
 
 
-def tell(size: Size, comm: MPI.Intracomm) -> None:
+def tell(size: ProblemSize, comm: MPI.Intracomm) -> None:
     """Tell of a run that lasts a while, before it begins."""
     if size.seconds > NOTED and comm.rank == 0:
         print(f"this takes about {in_words(size.seconds)}, {size.told_steps} of {_parts(size)}", flush=True)
@@ -69,12 +69,12 @@ def _nodes(comm: MPI.Intracomm) -> float:
     return share
 
 
-def _parts(size: Size) -> str:
+def _parts(size: ProblemSize) -> str:
     soil = f" and {size.cells:.4g} cells of soil" if size.cells else ""
     return f"{size.elements} elements{soil}"
 
 
-def _too_much_memory(size: Size, ranks: int, most: float) -> str:
+def _too_much_memory(size: ProblemSize, ranks: int, most: float) -> str:
     path = _largest(size)
     need = f"{_parts(size)} need about {in_bytes(size.memory(ranks))} of memory"
     if path == "output.interval":
@@ -82,7 +82,7 @@ def _too_much_memory(size: Size, ranks: int, most: float) -> str:
     return f"{path}: {need}, and {in_bytes(most)} are available; {_REMEDIES[path]}"
 
 
-def _largest(size: Size) -> str:
+def _largest(size: ProblemSize) -> str:
     """Path of what takes most of the memory."""
     parts = {
         "riser.segments": riser_memory(1, size.riser_unknowns),
@@ -93,7 +93,7 @@ def _largest(size: Size) -> str:
     return max(parts, key=lambda path: parts[path])
 
 
-def _too_much_disk(size: Size, free: float) -> str:
+def _too_much_disk(size: ProblemSize, free: float) -> str:
     what = f"{size.records:.4g} records and {size.pictures:.4g} pictures of {_parts(size)}, {size.told_steps}"
     remedy = "take longer intervals of output, a shorter duration or a longer time_step"
     return f"output.interval: {what}: about {in_bytes(size.disk)} on disk, and {in_bytes(free)} are free; {remedy}"

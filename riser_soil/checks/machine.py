@@ -1,4 +1,4 @@
-"""What the machine has left for a run: memory and disk."""
+"""Available memory and free disk space of the machine."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ _GROUPS = (
 
 
 def available_memory() -> float:
-    """Bytes that this process can still have: of the machine, of its control group, of its own limit; inf if no one
-    tells.
+    """Bytes that this process can still have: of the machine, of its control group, of its own limit; inf if it is not
+    known.
     """
     return max(0.0, min([*_of_the_machine(), *_of_the_group(), *_of_the_process()], default=math.inf))
 
@@ -34,7 +34,7 @@ def _of_the_machine() -> Iterator[float]:
 
 
 def _of_the_group() -> Iterator[float]:
-    """In a container; files that are only kept in case they are read again give way."""
+    """In a container; the file cache counts as available."""
     for folder, limit, used in _GROUPS:
         for most, now in zip(_number(folder / limit), _number(folder / used), strict=False):
             yield most - now + sum(_fields(folder / "memory.stat", "inactive_file"))

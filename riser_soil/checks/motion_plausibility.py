@@ -1,4 +1,4 @@
-"""Plausibility of motions in time: ends that start or stop with a shock or go too far apart, too long steps."""
+"""Plausibility of prescribed motions: velocity jumps, ends too far apart, time steps too long for the periods."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ STRETCHED = 0.01
 PER_PERIOD, MOST_LOOKS = 24, 20000
 
 
-class Course(NamedTuple):
+class EndVelocities(NamedTuple):
     """Velocities of an end as a stage begins and as it ends (3,), and its top speed: [m/s], or [deg/s] of turning."""
 
     moves: bool
@@ -37,13 +37,13 @@ class Course(NamedTuple):
     top: float
 
 
-STILL = Course(False, np.zeros(3), np.zeros(3), 0.0)
-Courses = dict[str, Course]
+STILL = EndVelocities(False, np.zeros(3), np.zeros(3), 0.0)
+VelocitiesByEnd = dict[str, EndVelocities]
 """By the unit, m/s and deg/s."""
 
 
 def motion_warnings(scene: Scene) -> Iterator[str]:
-    """What an engineer would question about motions and time steps, each with its numbers."""
+    """Warnings about prescribed motions and time steps, each with its numbers."""
     for name, support in (("start", scene.riser.start), ("end", scene.riser.end)):
         if isinstance(support, Support):
             yield from _shocks(scene, name, support)
@@ -81,10 +81,10 @@ def _stretched(scene: Scene) -> Iterator[str]:
 
 
 def _places(scene: Scene) -> Iterator[dict[str, Array]]:
-    """Where the held ends are (nt, 3) [m] at the times of each stage."""
+    """Positions of the prescribed ends (nt, 3) [m] at the times of each stage."""
     ends = {name: getattr(scene.riser, name) for name in ("start", "end")}
     last = {name: np.array(given.position) for name, given in ends.items() if isinstance(given, Support)}
-    end, vessels = End(held=True), vessels_of(scene)
+    end, vessels = End(prescribed=True), vessels_of(scene)
     for stage in scene.stages:
         place = {}
         for name, origin in last.items():
@@ -111,7 +111,7 @@ def _times(scene: Scene, stage: Stage) -> Array:
 def _shocks(scene: Scene, name: str, support: Support) -> Iterator[str]:
     """Jumps of an end's velocity between stages; a static stage leaves no velocities to go on from."""
     courses = list(_courses(scene, name, support))
-    rest: Courses = {"m/s": STILL, "deg/s": STILL}
+    rest: VelocitiesByEnd = {"m/s": STILL, "deg/s": STILL}
     for n, (before, after) in enumerate(pairwise([rest, *courses])):
         if not isinstance(scene.stages[n], DynamicStage):
             continue
@@ -119,7 +119,7 @@ def _shocks(scene: Scene, name: str, support: Support) -> Iterator[str]:
             yield from _shock(f"stages.{n}", name, unit, before[unit], after[unit])
 
 
-def _shock(path: str, name: str, unit: str, before: Course, after: Course) -> Iterator[str]:
+def _shock(path: str, name: str, unit: str, before: EndVelocities, after: EndVelocities) -> Iterator[str]:
     jump, top = float(np.linalg.norm(after.first - before.last)), max(before.top, after.top)
     if jump <= JUMP * top:
         return
@@ -137,9 +137,9 @@ def _shock(path: str, name: str, unit: str, before: Course, after: Course) -> It
         )
 
 
-def _courses(scene: Scene, name: str, support: Support) -> Iterator[Courses]:
-    """What each stage does with an end."""
-    end, position, vessels = End(held=True), np.array(support.position), vessels_of(scene)
+def _courses(scene: Scene, name: str, support: Support) -> Iterator[VelocitiesByEnd]:
+    """Velocities of an end in each stage."""
+    end, position, vessels = End(prescribed=True), np.array(support.position), vessels_of(scene)
     for stage in scene.stages:
         set_motion(end, name, position, stage, vessels)
         duration = stage.duration if isinstance(stage, DynamicStage) else 1.0
@@ -147,7 +147,7 @@ def _courses(scene: Scene, name: str, support: Support) -> Iterator[Courses]:
         position = position if end.motion is None else end.motion(duration)[0]
 
 
-def _course(end: End, times: Array, turns: bool) -> Courses:
+def _course(end: End, times: Array, turns: bool) -> VelocitiesByEnd:
     velocities = None if end.motion is None else np.array([end.motion(t)[1] for t in times])
     spins = None
     if end.turning is not None and turns:
@@ -155,10 +155,10 @@ def _course(end: End, times: Array, turns: bool) -> Courses:
     return {"m/s": _told(velocities), "deg/s": _told(spins)}
 
 
-def _told(velocities: Array | None) -> Course:
+def _told(velocities: Array | None) -> EndVelocities:
     if velocities is None:
         return STILL
-    return Course(True, velocities[0], velocities[-1], float(np.linalg.norm(velocities, axis=1).max()))
+    return EndVelocities(True, velocities[0], velocities[-1], float(np.linalg.norm(velocities, axis=1).max()))
 
 
 def _long_steps(scene: Scene, path: str, stage: DynamicStage) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Where the riser puts more on the ground than that bears: what to tell beside a solve that failed."""
+"""Bearing capacity check after a failed solve: where the riser's load exceeds what the ground bears."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 
 if TYPE_CHECKING:
-    from riser_soil.contact.contact import Contact
+    from riser_soil.contact.contact import RiserContact
 
 
 class Overload(NamedTuple):
-    """Of the node that is deepest in a ground which it loads beyond its capacity: load and capacity [N/m], depth [m],
+    """The deepest of the nodes that load the ground beyond its capacity: load and capacity [N/m], depth [m],
     arc length [m] and position (3,) [m]; what the capacity is.
     """
 
@@ -30,7 +30,7 @@ class Overload(NamedTuple):
 
 
 def overload(assembly: Assembly) -> str:
-    """Where a ground is loaded most, beyond what it bears, as the end of a message; empty where none is. Collective.
+    """The largest overload of the ground, as the end of a message; empty where there is none. Collective.
 
     A riser that sinks may yet be caught, as by firmer ground beside: this explains a failure and foretells none.
     """
@@ -61,7 +61,7 @@ def _overloads(assembly: Assembly) -> Iterator[Overload]:
             yield Overload(load[node], capacity, depth[node], *place, meaning)
 
 
-def _limits(assembly: Assembly) -> Iterator[tuple[Contact, float, str]]:
+def _limits(assembly: Assembly) -> Iterator[tuple[RiserContact, float, str]]:
     """Grounds that bear so much only [N/m], and what that is."""
     soil, D = assembly.scene.soil, assembly.scales.diameter
     bearing = soil.law.bearing(D) if soil is not None else None
@@ -72,6 +72,6 @@ def _limits(assembly: Assembly) -> Iterator[tuple[Contact, float, str]]:
 
 
 def _weight(assembly: Assembly) -> Array:
-    """Of the riser at the nodes (nn,) [N/m], downwards."""
+    """Weight of the riser at the nodes (nn,) [N/m], downwards."""
     weight = assembly.elements.weight
     return np.maximum(np.append(weight, weight[-1:]), np.append(weight[:1], weight))

@@ -1,4 +1,4 @@
-"""Plausibility warnings of a scene as it is built, each with its numbers and a remedy."""
+"""Plausibility warnings of an assembled scene, each with its numbers and a remedy."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from riser_soil.scene.stages import DynamicStage, Load, StaticStage
 
 
 def physical_warnings(assembly: Assembly) -> Iterator[str]:
-    """What a riser engineer would question, each with its numbers; collective."""
+    """All plausibility warnings, each with its numbers; collective."""
     yield from _light_pipes(assembly)
     yield from bending_warnings(assembly)
     if assembly.contacts:

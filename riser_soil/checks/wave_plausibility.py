@@ -1,4 +1,4 @@
-"""Plausibility of a scene's waves: too steep for linear theory, or in water of another depth than the scene's."""
+"""Plausibility of waves: too steep for linear theory, or in a water depth that is not the scene's."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ OTHER_DEPTH = 0.05
 
 
 def wave_warnings(scene: Scene) -> Iterator[str]:
-    """What an engineer would question about the waves, each with its numbers."""
+    """Warnings about the waves, each with its numbers."""
     assert scene.water is not None
     assert scene.water.waves is not None
     waves, h = scene.water.waves, scene.water_depth

@@ -1,3 +1,1 @@
-"""Contact between the riser and what lies under it: pairing, the penalty law, and the part that couples the
-two.
-"""
+"""Contact of the riser with seabed and soil: detection, penalty law, friction, suction, touchdown point."""

@@ -1,19 +1,20 @@
-"""Contact of the riser with a ground, whatever that is: what steps, checks and results ask of it."""
+"""Interface of the riser's contact with any ground, for steps, checks and results."""
 
 from __future__ import annotations
 
 from typing import Protocol, runtime_checkable
 
-from riser_soil.contact.touchdown import Stretch
+from riser_soil.contact.touchdown import ContactInterval
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part, State
 
 
 @runtime_checkable
-class Contact(Part, Protocol):
+class RiserContact(Part, Protocol):
     """Normal contact of the riser, nn nodes, with a ground; friction is a part of its own.
 
-    A rank that is not active tells of a riser that touches nothing: zeros, nan for the touchdown point, no stretches.
+    A rank that is not active tells of a riser that touches nothing: zeros, nan for the touchdown point, no contact
+    intervals.
     """
 
     def force_per_length(self, state: State) -> Array:
@@ -40,8 +41,8 @@ class Contact(Part, Protocol):
         """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""
         ...
 
-    def stretches(self, state: State) -> list[Stretch]:
-        """Where the riser lies on the ground, from its start on."""
+    def contact_intervals(self, state: State) -> list[ContactInterval]:
+        """Intervals of contact along the riser, from its start on."""
         ...
 
     def predict(self, guess: State) -> Array:

@@ -1,13 +1,14 @@
-"""Coulomb friction with a finite mobilisation length, point by point.
+"""Return mapping of Coulomb friction with an elastic mobilisation length, point by point.
 
-Traction t (..., r) per length in r directions along the ground [N/m], what the riser feels; ds (..., r) its movement in
+Traction t (..., r) on the riser per length in r directions along the ground [N/m]; ds (..., r) its movement in
 the step. With the normal force N >= 0 at the end of the step and coefficients mu (r,):
 
     t* = t_n - k ds;   m = sqrt(sum (t*_i/mu_i)^2);   t = t* where m <= N,  else N t*/m.
 
-Stored are t.t/(2 k). A step takes -t.ds out of the riser; beyond the change of what is stored, that is
+Stored are t.t/(2 k). A step extracts -t.ds from the riser; less the change of the energy stored, that is
 |t - t_n|^2/(2 k) + (m/N - 1) t.t/k >= 0, whatever t_n, ds and N are: friction dissipates in every step, and no closed
-path gains work. The stiffness k is one for all directions, so that turning them with the riser changes nothing stored.
+path gains work. The stiffness k is the same in all directions, so that their rotation with the riser does not change
+the energy stored.
 """
 
 from __future__ import annotations

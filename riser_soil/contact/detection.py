@@ -1,4 +1,4 @@
-"""Riser and ground at one state: gaps, and the forces and stiffness where they touch."""
+"""Contact detection at a trial state: gaps of candidate pairs, contact forces and contact stiffness."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SOIL = "contact.soil"
 
 
 @dataclass(frozen=True, eq=False)
-class Touching:
+class ActiveContacts:
     """Contact points that carry force; n points, nr dofs each, the riser's d translations first.
 
     node, facet (n,). length (n,): of riser [m]. penetration (n,) [m]. rows (n, nr): local dofs. forms (n, 5, nr),
@@ -69,11 +69,11 @@ class ContactState:
     facet: IntArray
     gap: Array
     surface: Array
-    touching: Touching
+    touching: ActiveContacts
 
 
 class ContactDetection:
-    """Riser and soil, and the law by which they push: `detect` brings them together at a state.
+    """Contact detection between riser and soil: `detect` gives gaps and contact forces at a state.
 
     radius (nn,): [m] from the axis to the line that touches. near: height [m] over the soil's highest point up to which
     nodes are looked at.
@@ -97,12 +97,12 @@ class ContactDetection:
 
     def _touch(
         self, points: ContactPoints, facet: IntArray, gap: Array, surface: Array, at: IntArray, xi: Array
-    ) -> Touching:
+    ) -> ActiveContacts:
         node, below = points.node[at], facet[at]
         forms, H = gap_forms(below, xi, self._soil.facets, surface)
         forms = np.concatenate((forms[:, :, :3] @ self._line.basis, forms[:, :, 3:]), axis=2)
         rows = np.hstack((self._line.translation_dofs[node], self._soil.facet_dofs(below)))
-        return Touching(self._law, node, below, points.length[at], -gap[at], rows, forms, H)
+        return ActiveContacts(self._law, node, below, points.length[at], -gap[at], rows, forms, H)
 
 
 @njit

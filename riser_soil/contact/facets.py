@@ -1,4 +1,4 @@
-"""Shape functions of surface facets and their first two derivatives, compiled.
+"""Shape functions of surface facets and their first and second derivatives.
 
 quad4: ξ, η in [−1, 1]; corners counter-clockwise from (−1, −1).
 tri6: ξ, η ≥ 0, ξ + η ≤ 1; corners (0, 0), (1, 0), (0, 1), then the middles of the sides 12, 23, 31.

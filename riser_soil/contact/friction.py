@@ -1,4 +1,4 @@
-"""Friction of the riser on a seabed that has no dofs: a load along its elements, where the seabed presses on it."""
+"""Coulomb friction of the riser on the seabed, integrated along its elements: the part "friction"."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from riser_soil.riser.trial import Trial
 UPRIGHT = 1e-6  # sine of the angle to the ground's normal below which a riser has no axial direction along the ground
 
 
-class Sliding(NamedTuple):
+class FrictionTraction(NamedTuple):
     """Elements that touch (m,); minus the traction on the riser (m, ng, d) [N/m], its derivative by the position
     (m, ng, d, d).
     """
@@ -30,8 +30,8 @@ class Sliding(NamedTuple):
 
 
 class FrictionState(NamedTuple):
-    """Where a step begins: positions (ne, ng, d), directions along the ground (ne, ng, d, r), axial and, in space,
-    lateral; traction (ne, ng, d) on the riser.
+    """State at the start of a step: positions (ne, ng, d), directions along the ground (ne, ng, d, r), axial and, in
+    space, lateral; traction (ne, ng, d) on the riser.
     """
 
     position: Array
@@ -39,7 +39,7 @@ class FrictionState(NamedTuple):
     traction: Array
 
 
-class Friction(LinePart):
+class CoulombFriction(LinePart):
     """Part "friction": Coulomb friction at the stations of a `SeabedContact`, whose normal forces it reads; group E.
 
     axial, lateral: coefficients, > 0. stiffness (ne,): of the ground along itself, per length [N/m2]; with the weight w
@@ -59,12 +59,12 @@ class Friction(LinePart):
         self._forces = StationForces(self.line, contact.at)
         self._slid: Array = np.zeros(contact.share.shape)
 
-    def evaluate(self, trial: Trial) -> Sliding:
+    def evaluate(self, trial: Trial) -> FrictionTraction:
         """Tractions of the elements that touch."""
-        found: Sliding = trial.once((self, "sliding"), self._evaluate)
+        found: FrictionTraction = trial.once((self, "sliding"), self._evaluate)
         return found
 
-    def _evaluate(self, trial: Trial) -> Sliding:
+    def _evaluate(self, trial: Trial) -> FrictionTraction:
         found = self.contact.evaluate(trial)
         touching, at = found.touching, found.touching.elements
         position, along, t_n = (values[at] for values in self._friction_state(trial))
@@ -74,7 +74,7 @@ class Friction(LinePart):
         N_slope = np.where(touching.force > 0.0, touching.slope, 0.0)
         stuck = k[..., None] * along @ by_elastic @ np.swapaxes(along, -1, -2)
         pressed = N_slope[..., None, None] * (along @ by_N[..., None]) * touching.normal[..., None, :]
-        return Sliding(at, -(along @ t[..., None])[..., 0], stuck + pressed)
+        return FrictionTraction(at, -(along @ t[..., None])[..., 0], stuck + pressed)
 
     def _friction_state(self, trial: Trial) -> FrictionState:
         if self._begun is None:
@@ -111,7 +111,7 @@ class Friction(LinePart):
         return float(np.sum(self.contact.share[elements] * per_length))
 
     def work(self, before: State, after: State) -> Work:
-        """What friction took out beyond the change of what it stores: never negative."""
+        """Energy dissipated by friction: its work less the change of the energy stored; never negative."""
         trial = self.line.trial(after)
         sliding, begun, at = self.evaluate(trial), self._friction_state(trial), self.evaluate(trial).elements
         moved = self.contact.evaluate(trial).position[at] - begun.position[at]
@@ -129,8 +129,8 @@ class Friction(LinePart):
         slid[sliding.elements] = self._slide(trial, sliding)
         self._begun, self._slid = self._friction_state_at(trial, traction), self._slid + slid
 
-    def _slide(self, trial: Trial, sliding: Sliding) -> Array:
-        """What each station (m, ng) slides in the step beyond what the ground gives elastically [m]."""
+    def _slide(self, trial: Trial, sliding: FrictionTraction) -> Array:
+        """Plastic slip of each station (m, ng) in the step, beyond the elastic mobilisation [m]."""
         at = sliding.elements
         position, along, t_n = (values[at] for values in self._friction_state(trial))
         moved = self.contact.evaluate(trial).position[at] - position
@@ -140,7 +140,7 @@ class Friction(LinePart):
         return np.where(pressed, slid, 0.0)
 
     def slip(self) -> Array:
-        """How far the riser has slid over the ground so far, at its nodes (nn,) [m]: the length of its way, >= 0."""
+        """Accumulated slip of the riser over the ground at its nodes (nn,) [m], >= 0."""
         return self.contact.at_nodes(self._slid)
 
     def force_on_riser(self, state: State) -> Array:
@@ -152,7 +152,7 @@ class Friction(LinePart):
         return np.asarray(-self.line.basis @ per_station.sum(axis=(0, 1)))
 
     def state(self) -> Saved:
-        """Where the next step begins, unless no step has been asked for yet, and how far the stations have slid."""
+        """The state at the start of the next step, if there was one, and the slip of the stations."""
         return {"slid": self._slid} | (self._begun._asdict() if self._begun is not None else {})
 
     def restore(self, saved: Saved) -> None:

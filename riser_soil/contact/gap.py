@@ -1,4 +1,4 @@
-"""Vertical distance between a point and a deformed facet below it, with exact first and second derivatives.
+"""Normal gap between a point and the deformed facet below it, with exact first and second derivatives.
 
 The facet point below the point x solves Σ N_a(ξ) p_a = x in the two horizontal directions; the ground there
 has the height Z = Σ N_a(ξ) z_a and the slopes s = J⁻ᵀ ∂Z/∂ξ, J_iα = Σ p_ai ∂N_a/∂ξ_α. With δ for a variation

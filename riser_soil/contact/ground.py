@@ -1,4 +1,4 @@
-"""The soil's surface as a ground, and the points by which the riser stands on it."""
+"""The deformed soil surface as a contact surface, and the contact points of the riser's nodes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.contact.pairing import Pairing
+from riser_soil.contact.pairing import FacetSearch
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import State
 from riser_soil.soil.surface import SoilTop
@@ -44,11 +44,11 @@ class ContactPoints:
 
 
 class DeformedSurface:
-    """The deformed surface: what lies where, and the dofs behind it."""
+    """The deformed surface: its facets, and the dofs of their nodes."""
 
     def __init__(self, surface: SoilTop) -> None:
         self._surface = surface
-        self._pairing = Pairing(surface.points, surface.facets)
+        self._pairing = FacetSearch(surface.points, surface.facets)
         self.facets = np.ascontiguousarray(surface.facets, dtype=np.int64)
 
     @property

@@ -1,4 +1,4 @@
-"""First guess of a step in which the riser lands: the predictor of contacts."""
+"""Contact predictor: first guess of a step in which the riser touches down."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
 
 
-def lifted(guess: State, heights: IntArray, present: Array, guessed: Array, start: float) -> Array:
-    """The guess's increments, lifted where a node would sink below its present depth.
+def landing_predictor(guess: State, heights: IntArray, present: Array, guessed: Array, start: float) -> Array:
+    """The guess's increments, raised where a node would sink below its present depth.
 
     The motion of the last step carries landing nodes deep into the ground, where the law is far stiffer than at the
     depth at which they come to rest. They start instead from half the law's rounded corner.

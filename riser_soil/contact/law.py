@@ -1,4 +1,4 @@
-"""The penalty of normal contact: its force per length of riser by penetration, and the choice of its stiffness.
+"""Penalty law of normal contact: force per length by penetration, and the default penalty stiffness.
 
 Penetration δ = −gap [m]; force f [N/m] pushes the two sides apart; f = dψ/dδ with the potential ψ [N].
 """
@@ -12,7 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.seabed.law import Answer
+from riser_soil.seabed.law import SeabedResponse
 
 #: Penetration of a riser at rest under its own weight, in outer diameters: small beside what a pipe's size
 #: can show.
@@ -63,8 +63,8 @@ class Penalty:
     def active(self, penetration: Array, history: Array) -> BoolArray:
         return penetration > -self.smoothing
 
-    def update(self, penetration: Array, history: Array) -> Answer:
-        return Answer(self.force(penetration), self.slope(penetration), history, self.potential(penetration))
+    def update(self, penetration: Array, history: Array) -> SeabedResponse:
+        return SeabedResponse(self.force(penetration), self.slope(penetration), history, self.potential(penetration))
 
     def _rounded(self, penetration: Array) -> BoolArray:
         return np.abs(penetration) < self.smoothing

@@ -1,4 +1,4 @@
-"""Which facet of a surface lies under a point, and where on it."""
+"""Contact search: the surface facet below a point, and the local coordinates on it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ DIVERGED = 100.0  # (ξ, η) of a point that is nowhere near
 CONVERGED = 1e-10  # step in (ξ, η) after which one more Newton step would be below round-off
 
 
-class Pairing:
+class FacetSearch:
     """Finds facets below points by a tree over the facets' centres and Newton's method on the facets' map.
 
     The tree holds the reference geometry and only proposes; the answer depends on the deformed geometry
@@ -98,7 +98,7 @@ def _lowest_holding(
 def invert(xy: Array, points: Array, nodes: IntArray, work: Array) -> tuple[bool, float, float]:
     """Solve Σ N_a(ξ, η) p_a = xy for (ξ, η) by Newton's method from the facet's middle.
 
-    nodes (nv,): the facet. work (nv, 3): scratch. The first value tells success.
+    nodes (nv,): the facet. work (nv, 3): scratch. The first value is whether it has converged.
     """
     N, dN = work[:, 0], work[:, 1:]
     s, t = centre(len(nodes))

@@ -1,4 +1,4 @@
-"""Contact of the riser with a seabed that has no dofs: a load along its elements, by a law at their stations."""
+"""Contact of the riser with a rigid, spring or hysteretic seabed, integrated along its elements."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.lying import Lying, LyingContact
+from riser_soil.contact.line_contact import ContactAlongLine, LineContact
 from riser_soil.contact.station_forces import StationForces
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
@@ -20,12 +20,12 @@ from riser_soil.riser.trial import Trial
 from riser_soil.seabed.grounds import Distance, Ground
 from riser_soil.seabed.law import NormalLaw
 
-Covered = Callable[[Array], BoolArray]
+CoveredBySoil = Callable[[Array], BoolArray]
 """Horizontal positions (n, 2) [m] -> whether something other than the seabed lies there, such as a block of soil."""
 
 
-class Touching(NamedTuple):
-    """What touches at a trial, element by element: m elements, ng stations each, d dimensions.
+class ContactElements(NamedTuple):
+    """Elements in contact at a trial state: m elements, ng stations each, d dimensions.
 
     elements (m,). force, slope (m, ng): force per length [N/m] and its derivative by the penetration [N/m2].
     normal (m, ng, d): gradient of the distance from the ground; bend (m, ng, d, d) its derivative, None where zero.
@@ -44,17 +44,17 @@ class Touching(NamedTuple):
 
 
 class StationContact(NamedTuple):
-    """The line over the ground at a trial: position (ne, ng, d) and penetration (ne, ng) of the stations [m];
-    normal (ne, ng, d): gradient of their distance from the ground.
+    """Contact kinematics of the line at a trial state: position (ne, ng, d) and penetration (ne, ng) of the stations
+    [m]; normal (ne, ng, d): gradient of their distance from the ground.
     """
 
     position: Array
     penetration: Array
     normal: Array
-    touching: Touching
+    touching: ContactElements
 
 
-class SeabedContact(LyingContact):
+class SeabedContact(LineContact):
     """Part "seabed": force per length of riser by its penetration into the ground, in group E.
 
     line: the riser's field. radius (ne,): distance [m] from the axis to the line that touches, 0 for the axis itself.
@@ -72,8 +72,8 @@ class SeabedContact(LyingContact):
         radius: Array,
         ground: Ground,
         law: NormalLaw,
-        rule: stations.Rule = stations.THREE_POINTS,
-        covered: Covered | None = None,
+        rule: stations.QuadratureRule = stations.THREE_POINTS,
+        covered: CoveredBySoil | None = None,
     ) -> None:
         super().__init__(line, law)
         self.ground, self._radius, self._covered = ground, radius, covered
@@ -102,7 +102,7 @@ class SeabedContact(LyingContact):
             local = self.line.basis.T @ hessian @ self.line.basis
             bend = local.reshape(*x.shape, x.shape[2])[at]
         resistance = -answer.force[..., None] * normal[at]
-        touching = Touching(
+        touching = ContactElements(
             at, answer.force, answer.slope, normal[at], bend, resistance, answer.history, answer.stored
         )
         return StationContact(x, penetration, normal, touching)
@@ -129,18 +129,18 @@ class SeabedContact(LyingContact):
         t = self.evaluate(trial).touching
         self._forces.add_tangent(values[self.line.name], trial, t.elements, t.resistance, self._by_position(t))
 
-    def _by_position(self, t: Touching) -> Array:
+    def _by_position(self, t: ContactElements) -> Array:
         """Derivative (m, ng, d, d) of the resistance by the position."""
         pushed = t.slope[..., None, None] * t.normal[..., :, None] * t.normal[..., None, :]
         return pushed if t.bend is None else pushed - t.force[..., None, None] * t.bend
 
     def energy(self, state: State) -> Energy:
-        """What the law gives back."""
+        """Energy stored by the law, which it can return."""
         touching = self.evaluate(self.line.trial(state)).touching
         return Energy(potential=float(np.sum(self.share * self._at_stations(touching.elements, touching.stored))))
 
     def work(self, before: State, after: State) -> Work:
-        """What the force at the end of the step took out beyond the change of what it stores.
+        """Energy dissipated: the work of the force at the end of the step less the change of the energy stored.
 
         Never negative on a plane, where the stored energy is convex in the penetration.
         """
@@ -195,12 +195,12 @@ class SeabedContact(LyingContact):
         per_station = self.share[touching.elements][..., None] * touching.resistance
         return np.asarray(-self.line.basis @ per_station.sum(axis=(0, 1)))
 
-    def lying(self, state: State) -> Lying:
+    def contact_along_line(self, state: State) -> ContactAlongLine:
         """At the stations, ne ng points."""
         found = self.evaluate(self.line.trial(state))
         force = self._at_stations(found.touching.elements, found.touching.force)
         clearance = -found.penetration.ravel() - self.law.start
-        return Lying(self._arc.ravel(), self.share.ravel(), clearance, force.ravel())
+        return ContactAlongLine(self._arc.ravel(), self.share.ravel(), clearance, force.ravel())
 
     def clearance(self, state: State) -> Array:
         """Gap (nn,) of the nodes less that at which the force begins [m]."""

@@ -1,4 +1,4 @@
-"""The contact part: couples the riser's nodes to the soil that lies under them."""
+"""Penalty contact between the riser's nodes and the deformable soil below them: the part "contact"."""
 
 from __future__ import annotations
 
@@ -6,22 +6,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from riser_soil.contact.candidates import CandidatePairs, pairs_around
 from riser_soil.contact.detection import (
     SOIL,
+    ActiveContacts,
     ContactDetection,
     ContactState,
-    Touching,
     add_blocks,
     add_shares,
 )
 from riser_soil.contact.gap import heights
 from riser_soil.contact.ground import ASPECT, ContactPoints, DeformedSurface
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.lying import Lying, LyingContact
-from riser_soil.contact.patch import Patch, around
+from riser_soil.contact.line_contact import ContactAlongLine, LineContact
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
-from riser_soil.core.remembered import Remembered
+from riser_soil.core.identity_cache import IdentityCache
+from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line import Line
@@ -31,14 +31,14 @@ FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
 
 
 @dataclass(frozen=True)
-class Reach:
+class CandidateRange:
     """Candidates: nodes up to `above` [m] over the ground, facets up to `around` [m] beside a node."""
 
     above: float
     around: float = 0.0
 
 
-class SoilContact(LyingContact):
+class SoilContact(LineContact):
     """Part "contact": frictionless penalty contact between riser nodes and the soil below them, in group E.
 
     Node i carries f(δ_i) times its tributary length. All forces derive from the potential Σ ψ(δ_i)·length_i: the
@@ -69,11 +69,11 @@ class SoilContact(LyingContact):
         *,
         footprint: float | None = None,
         along: Array | None = None,
-        reach: Reach | None = None,
+        reach: CandidateRange | None = None,
     ) -> None:
         super().__init__(line, law)
         self.outgrown, self._radius = False, radius
-        self._detected = Remembered[State, ContactState]()
+        self._detected = IdentityCache[State, ContactState]()
         if not self.active:
             return
         self._soil = DeformedSurface(surface)
@@ -82,24 +82,24 @@ class SoilContact(LyingContact):
         axis = line.basis[:2, 0] if along is None else along
         points = ContactPoints.of_nodes(line.tributary_length, self._footprint, axis)
         self._detection = ContactDetection(line, radius, points, law, self._soil, self._reach.above)
-        self._patch: Patch | None = None
-        self._missed = Patch.none(len(self._soil.facets))
+        self._patch: CandidatePairs | None = None
+        self._missed = CandidatePairs.none(len(self._soil.facets))
 
     def detect(self, state: State) -> ContactState:
         """Riser and ground at a state; kept for the state asked last, whose arrays must not change then."""
         return self._detected.made_of(state, self._detection.detect)
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         """Translations of a node and dofs of a facet, candidate pair by pair."""
         patch = self._present_patch()
         rows = np.hstack([self.line.translation_dofs[patch.nodes], self._soil.facet_dofs(patch.facet)])
-        return {SOIL: Block(rows, rows)}
+        return {SOIL: MatrixBlock(rows, rows)}
 
     def rebuild(self, state: State) -> None:
         """Choose the candidates anew: around a state, and what was missed since the last time."""
         if self.active:
             self._patch = self._patch_around(state)
-            self._missed = Patch.none(len(self._soil.facets))
+            self._missed = CandidatePairs.none(len(self._soil.facets))
         self.outgrown = False
 
     def residual(self, state: State, forces: Forces) -> None:
@@ -119,7 +119,7 @@ class SoilContact(LyingContact):
         return Energy(potential=self.detect(state).touching.potential)
 
     def work(self, before: State, after: State) -> Work:
-        """What the force at the end of the step took out beyond the change of its potential.
+        """Energy dissipated: the work of the force at the end of the step less the change of its potential.
 
         ψ is convex in the gap, so this is ≥ 0 where the gap is linear in the step, as where soil and riser move
         vertically. Sliding along a sloping ground adds terms of second order in the sliding distance, of either sign.
@@ -179,9 +179,10 @@ class SoilContact(LyingContact):
         facet, _ = self._soil.locate(xy, self._soil.settled)
         return np.asarray(facet >= 0)
 
-    def lying(self, state: State) -> Lying:
+    def contact_along_line(self, state: State) -> ContactAlongLine:
         """At the nodes."""
-        return Lying(self.line.arc, self.line.tributary_length, self.clearance(state), self.force_per_length(state))
+        share, force = self.line.tributary_length, self.force_per_length(state)
+        return ContactAlongLine(self.line.arc, share, self.clearance(state), force)
 
     def clearance(self, state: State) -> Array:
         """Gap (nn,) less that at which the force begins [m], the least of a node's points; inf far away."""
@@ -190,24 +191,24 @@ class SoilContact(LyingContact):
         np.minimum.at(least, detected.points.node, detected.gap - self.law.start)
         return least
 
-    def _note_missed(self, touching: Touching, missed: BoolArray) -> None:
+    def _note_missed(self, touching: ActiveContacts, missed: BoolArray) -> None:
         if missed.any():
             self.outgrown = True
             node, facet = touching.node[missed], touching.facet[missed]
-            self._missed = self._missed.joined(Patch.of(self._present_patch().facets, node, facet))
+            self._missed = self._missed.joined(CandidatePairs.of(self._present_patch().facets, node, facet))
 
-    def _present_patch(self) -> Patch:
+    def _present_patch(self) -> CandidatePairs:
         if self._patch is None:
             ends = self.line.offset + self.line.size, self._soil.end
             self._patch = self._patch_around(State.at_rest(0.0, max(ends)))
         return self._patch
 
-    def _patch_around(self, state: State) -> Patch:
+    def _patch_around(self, state: State) -> CandidatePairs:
         detected = self.detect(state)
         nodes = np.unique(detected.points.node[detected.gap < self._reach.above])
         xy = self.line.positions3(state)[nodes, :2]
         distance = ASPECT * self._footprint + self._reach.around
-        return around(nodes, xy, detected.surface, self._soil.facets, distance).joined(self._missed)
+        return pairs_around(nodes, xy, detected.surface, self._soil.facets, distance).joined(self._missed)
 
     def state(self) -> Saved:
         """The pattern: another one, as wide as need be, gives the same forces but to round-off."""
@@ -219,9 +220,10 @@ class SoilContact(LyingContact):
         if self.active:
             self._detected.forget()
             self.outgrown = bool(saved["outgrown"])
-            self._patch, self._missed = (Patch(len(self._soil.facets), saved[name]) for name in ("patch", "missed"))
+            facets = len(self._soil.facets)
+            self._patch, self._missed = (CandidatePairs(facets, saved[name]) for name in ("patch", "missed"))
 
 
-def _default_reach(line: Line, soil: DeformedSurface) -> Reach:
+def _default_reach(line: Line, soil: DeformedSurface) -> CandidateRange:
     length = float(line.arc[-1] - line.arc[0])
-    return Reach(0.01 * length, 0.5 * soil.facet_size)
+    return CandidateRange(0.01 * length, 0.5 * soil.facet_size)

@@ -1,4 +1,4 @@
-"""Forces per length at the stations of the elements that touch, brought to the line's dofs."""
+"""Contact forces per length at quadrature stations, assembled to the line's dofs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from riser_soil.riser.trial import Trial
 
 
 class StationForces:
-    """Of a part with a resistance (m, ng, d) [N/m] at the stations `at` of some elements (m,); kept by trial."""
+    """Forces of a part with a resistance (m, ng, d) [N/m] at the stations `at` of some elements (m,); kept by trial."""
 
     def __init__(self, line: Line, at: stations.Stations) -> None:
         self._line, self._at = line, at

@@ -1,4 +1,4 @@
-"""Penalty contact that sticks: tension up to a cap when the riser lifts, which breaks away and returns at a touch.
+"""Penalty contact with suction: tension up to a cap on uplift, then softening and breakaway (cohesive law).
 
 With the opening w = -penetration > 0, the stiffness k of the penalty, the cap p and the reach r, the tension is
 
@@ -6,10 +6,10 @@ With the opening w = -penetration > 0, the stiffness k of the penalty, the cap p
 
 The fall beyond the cap is spread over the reach instead of being sudden, so that the force is continuous within a
 step. Between the largest opening wm since the last touch and the surface it follows the straight line from 0 to the
-tension at wm: what has been broken stays broken until the riser touches again. Breaking away takes p r/2 of energy per
-length, all of it dissipated; the line gives back what it took, hence no path gains work.
+tension at wm: the loss of stiffness is permanent until the riser touches again. Breakaway takes p r/2 of energy per
+length, all of it dissipated; unloading returns what reloading takes, so that no closed path gains work.
 Bilinear cohesive law with secant unloading, as for delamination: M. Ortiz & A. Pandolfi, International Journal for
-Numerical Methods in Engineering 44 (1999), here healed by a touch.
+Numerical Methods in Engineering 44 (1999), here reset at the next contact.
 """
 
 from __future__ import annotations
@@ -22,12 +22,14 @@ import numpy as np
 
 from riser_soil.contact.law import Penalty
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.seabed.law import Answer
+from riser_soil.seabed.law import SeabedResponse
 
 
 @dataclass(frozen=True)
-class Sticking:
-    """penalty: the law in compression. cap [N/m], reach [m] > cap/stiffness: ValueError else.
+class SuctionLaw:
+    """Penalty law with suction: tension up to a cap on uplift, zero from an opening of `reach` on.
+
+    penalty: the law in compression. cap [N/m], reach [m] > cap/stiffness: ValueError else.
 
     History (..., 1): largest opening [m] since the last touch, inf before the first.
     """
@@ -54,14 +56,14 @@ class Sticking:
         return np.full((*shape, 1), np.inf)
 
     def active(self, penetration: Array, history: Array) -> BoolArray:
-        stuck = (-penetration < self.reach) & (history[..., 0] < self.reach)
-        return self.penalty.active(penetration, history) | stuck
+        in_tension = (-penetration < self.reach) & (history[..., 0] < self.reach)
+        return self.penalty.active(penetration, history) | in_tension
 
-    def update(self, penetration: Array, history: Array) -> Answer:
+    def update(self, penetration: Array, history: Array) -> SeabedResponse:
         pushed, w = self.penalty.update(penetration, history[..., :0]), self._opening(penetration)
         tension, stiffness = self._tension(w, history[..., 0])
         opened = np.maximum(-penetration[..., None], history)
-        return Answer(
+        return SeabedResponse(
             pushed.force - tension,
             pushed.slope + stiffness,
             np.where(penetration[..., None] >= 0.0, 0.0, opened),

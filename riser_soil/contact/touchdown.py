@@ -1,29 +1,30 @@
-"""Where the riser comes down.
+"""Touchdown points from the contact forces along the riser.
 
 Where the contact force ends depends on how soft the ground is: on a bed of stiffness k the force near the touchdown
 point is spread over some layer length l = (4 EI/k)^(1/4), and ends about l beyond the place where the riser would leave
-a rigid floor. There, the force per length would be f0, with which the riser rests, up to the touchdown point, and a
-concentrated force R at that point (a straight pipe bears no moment, so the shear force jumps). The touchdown point is
-taken as the end d of that rigid contact which has the resultant and the moment of the forces found: with tau = S - d,
-S the line's end,
+a rigid floor. There, the force per length is f0, that of the riser at rest, up to the touchdown point, plus a
+concentrated force R at that point (a straight pipe has no moment, so the shear force jumps). The touchdown point is
+defined as the end d of that rigid contact which has the resultant and the moment of the computed forces: with tau = S -
+d, S the line's end,
 
     E0 = int (f - f0) ds = R - f0 tau,    E1 = int (f - f0)(S - s) ds = R tau - f0 tau²/2,
     R² = E0² + 2 f0 E1,                   tau = (R - E0)/f0.
 
-By statics neither d nor R knows how the force is spread. On a bed of springs under the tension H and small slopes, d
-lies sqrt(EI/H - H/k) before the place where the catenary of the hanging part touches down, sqrt(EI/H) on a rigid floor:
-an error of the order of 1/k, whereas the contact's end moves with the power -1/4 of k. On beds softer than H²/EI there
-is no such R, and d is that place itself. Quadrature along the line makes the sums as exact as the balance of forces.
+By statics neither d nor R depends on how the force is spread. On a bed of springs under the tension H and small slopes,
+d lies sqrt(EI/H - H/k) before the place where the catenary of the hanging part touches down, sqrt(EI/H) on a rigid
+floor: an error of the order of 1/k, whereas the contact's end moves with the power -1/4 of k. On beds softer than H²/EI
+there is no such R, and d is that place itself. With quadrature along the line the sums are as exact as the balance of
+forces.
 
-How far back the layer goes is told by the forces too, from the free side on: with m(x) the largest of them up to x,
+The extent of the layer follows from the forces too, counted from the free side: with m(x) the largest force up to x,
 and x from the end of the contact,
 
     B(x) = int m/m(x) dx,   A(x) = 4 int m/m(x) (1 - m/m(x)) dx,   depth = B/(DEEP A).
 
 A is the length in which the force rises to its peak, 0.45 l on stiff springs, B the length since the force began. Up to
-a depth of 3/4 all counts in E0 and E1, beyond 1 nothing does; f0 is a mean of what is deep. The depth is at least 3/4
-where half of the stretch's force acts on the free side: of two touchdown points, each has its half of what lies. All
-weights and means are continuous in the forces, and so is d: where a station begins to touch, it does so with none.
+a depth of 3/4 the force counts fully in E0 and E1, beyond 1 not at all; f0 is a mean over the deep part. The depth is
+at least 3/4 where half of the stretch's force acts on the free side: of two touchdown points, each has its half of the
+contact. All weights and means are continuous in the forces, and so is d: a station begins to touch with zero force.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ LEAST = 60.0  # stations within a depth of 1 in a layer that the mesh doesn't re
 FADING = 8  # power of the depth with which stations count in f0: 1e-8 at the peak
 
 
-class Stretch(NamedTuple):
+class ContactInterval(NamedTuple):
     """Contact from one touchdown point to the next: their arc lengths [m], that of the line's end where it touches, and
     the first and last of the points that touch.
     """
@@ -53,18 +54,18 @@ class Stretch(NamedTuple):
 def touchdown(arc: Array, share: Array, clearance: Array, force: Array) -> float:
     """Arc length [m] of the touchdown point towards the riser's end; nan where nothing touches.
 
-    Where the riser's end itself touches, but not all of the riser, it is where it comes down from the start. Arguments
-    as in `stretches`.
+    Where the riser's end itself touches, but not all of the riser, it is the touchdown point next to the start.
+    Arguments as in `contact_intervals`.
     """
-    found = stretches(arc, share, clearance, force)
+    found = contact_intervals(arc, share, clearance, force)
     if not found:
         return float("nan")
     last, n = found[-1], len(arc)
     return last.start if last.last == n - 1 and last.first > 0 else last.end
 
 
-def stretches(arc: Array, share: Array, clearance: Array, force: Array) -> list[Stretch]:
-    """Where the riser lies, from its start on.
+def contact_intervals(arc: Array, share: Array, clearance: Array, force: Array) -> list[ContactInterval]:
+    """Intervals of contact along the riser, from its start on.
 
     arc (n,): of points along the riser from its start, growing [m]. share (n,): of its length [m] by quadrature.
     clearance (n,): gap less that at which the force begins [m]. force (n,): per length [N/m], > 0 where it pushes.
@@ -77,7 +78,7 @@ def stretches(arc: Array, share: Array, clearance: Array, force: Array) -> list[
         f = np.where((np.arange(n) >= first) & (np.arange(n) <= last), force, 0.0)
         start = float(np.sum(share)) - _leaving(*turned, f[::-1], n - 1 - first) if first > 0 else 0.0
         end = _leaving(arc, share, clearance, f, last) if last < n - 1 else float(np.sum(share))
-        found.append(Stretch(start, end, first, last))
+        found.append(ContactInterval(start, end, first, last))
     return found
 
 
@@ -107,7 +108,7 @@ def _leaving(arc: Array, share: Array, clearance: Array, force: Array, last: int
 
 
 def _edge(arc: Array, clearance: Array, last: int) -> float:
-    """Where the clearance vanishes beyond the last point that touches."""
+    """Arc length at which the clearance vanishes beyond the last point in contact."""
     if last == len(arc) - 1 or clearance[last] >= 0.0 or not np.isfinite(clearance[last + 1]):
         return float(arc[last])
     here, there = clearance[last], clearance[last + 1]
@@ -115,7 +116,7 @@ def _edge(arc: Array, clearance: Array, last: int) -> float:
 
 
 def _depth(share: Array, force: Array) -> Array:
-    """Of points (n,) from the free side on: how far behind the touchdown layer; see the module's text."""
+    """Depth of points (n,) behind the touchdown layer, counted from the free side; see the module's text."""
     pressing = np.maximum(force, 0.0)
     largest = np.maximum.accumulate(pressing)
     m = np.where(largest > 0.0, largest, 1.0)
@@ -134,7 +135,7 @@ def _rise(x: Array) -> Array:
 
 
 def _resting(weight: Array, force: Array) -> float:
-    """Mean of the middle half of forces, by weight: what rests on a clump or bridges a dip does not tell."""
+    """Mean of the middle half of forces, by weight: stations loaded by a clump or bridging a dip do not count."""
     order = np.argsort(force)
     total = float(weight.sum())
     upto = np.clip(np.cumsum(weight[order]), 0.25 * total, 0.75 * total)

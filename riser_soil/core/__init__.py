@@ -1,1 +1,1 @@
-"""What everything else is written against: arrays, compiled kernels, the contract of parts, the system they make up."""
+"""Core: array types, compiled kernels, the interface of parts, numbering, and the system that they make up."""

@@ -1,7 +1,7 @@
-"""Names for the array types that signatures use.
+"""Array types for signatures.
 
-Arrays are of double precision and of 64-bit integers. Their types leave the width open: numpy 2 tells of many of its
-functions only that they return a floating or an integer type, and one annotation has to hold for numpy 1 and 2.
+Arrays are of double precision and of 64-bit integers. Their types leave the width open: numpy 2 declares for many of
+its functions only that they return a floating or an integer type, and one annotation has to hold for numpy 1 and 2.
 """
 
 from typing import Any

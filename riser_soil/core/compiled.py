@@ -1,8 +1,8 @@
-"""Compiled kernels: `njit` for functions on arrays and tuples of numbers, kept on disk between runs.
+"""Compiled kernels: numba's `njit`, with a cache on disk between runs.
 
 numba's own cache doesn't notice an edit in another file whose functions it has inlined, and runs stale code. So each
 version of the kernels has a cache folder of its own, under NUMBA_CACHE_DIR, XDG_CACHE_HOME or ~/.cache, or a private
-temporary folder where that can't be written or is full, which is told. Division by zero gives inf or nan, as in numpy.
+temporary folder where that can't be written or is full, with a message. Division by zero gives inf or nan, as in numpy.
 Multiply-adds may be fused and divisions by constants become products, which changes the last digit only. Kernels are
 inlined where others call them: tuples then stay in registers, which halves the time of the elements in space.
 """
@@ -50,7 +50,9 @@ def fixed(n: int) -> tuple[int, ...]:
 
 
 def fingerprint(package: Path) -> str:
-    """Of all that compiled code depends on: sources of modules with kernels and of what they import, and versions."""
+    """Fingerprint of all that compiled code depends on: sources of modules with kernels and of what they import, and
+    versions.
+    """
     digest = hashlib.sha256(f"{numba.__version__} {platform.python_version()}".encode())
     for path, text in sorted(_sources(package).items()):
         digest.update(f"{path.relative_to(package)}\n{text}".encode())

@@ -1,4 +1,4 @@
-"""Alternatives of a key of the scene language, told apart by the word at their key `kind`."""
+"""Tagged unions of the scene language: alternatives told apart by the word at the key `kind`."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

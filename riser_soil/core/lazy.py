@@ -1,4 +1,4 @@
-"""Modules that are imported when they are first used, for files that a scene's reader imports: it needs no numerics."""
+"""Lazy imports: modules that are loaded at first use, so that a scene is read without numerics."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import importlib
 from typing import Any
 
 
-class Lazy:
-    """A module by its full name; its names are looked up when they are asked for, each once."""
+class LazyModule:
+    """A module by its full name; its names are looked up at first use."""
 
     def __init__(self, module: str) -> None:
         self._module = module

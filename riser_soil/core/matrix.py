@@ -1,4 +1,4 @@
-"""The system's matrix: its pattern from the parts' blocks, and its assembly from their values.
+"""The system matrix: sparsity pattern from the parts' blocks, and assembly of their values.
 
 On one rank the blocks' values are added straight into the CSR array that PETSc works on; on several ranks PETSc sends
 entries to their owners.
@@ -15,13 +15,13 @@ from petsc4py import PETSc
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.core.numbering import Numbering
-from riser_soil.core.part import Block
+from riser_soil.core.part import MatrixBlock
 
 
 class Matrix:
     """PETSc matrix over the numbering's rows, with one value array of shape (m, nr, nc) for each block."""
 
-    def __init__(self, numbering: Numbering, blocks: Mapping[str, Block], symmetric: bool) -> None:
+    def __init__(self, numbering: Numbering, blocks: Mapping[str, MatrixBlock], symmetric: bool) -> None:
         self.values = {key: block.zeros() for key, block in blocks.items()}
         self._rows = {key: _in_system(numbering, block.rows) for key, block in blocks.items()}
         self._cols = {key: _in_system(numbering, block.cols) for key, block in blocks.items()}

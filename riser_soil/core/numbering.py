@@ -1,4 +1,4 @@
-"""One numbering for the free dofs of all fields, and the exchange between global vectors and local arrays.
+"""Global numbering of the free dofs of all fields, and exchange between global vectors and local arrays.
 
 Every rank holds local arrays over its fields' entries: owned ones, copies of other ranks' (ghosts), and second views of
 the same dof (the soil's surface). Prescribed entries have no number: the system holds no row that it doesn't solve for.

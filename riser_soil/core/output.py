@@ -1,4 +1,4 @@
-"""What an output is: a quantity, what it is called, where it is evaluated, and how it follows from what is told."""
+"""Definition of an output: a quantity with its name, unit, place and evaluation from the snapshots."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ class Figure:
 
 
 @dataclass(frozen=True)
-class Output(Generic[Seen]):
-    """A quantity that a run tells.
+class OutputQuantity(Generic[Seen]):
+    """A quantity of the results.
 
     units, text and sign (what its sign means, where it has one) go into results.nc, with units as UDUNITS writes them.
     get: the value by what is seen, `Instant`, `SoilSnapshot` or `StepRecord`; (nn,) at nodes, (nv,) at points of the
     soil, (nc,) in its cells, one number in the rest; by three where it is a vector, in global axes.
-    needs: what must be known for it. always: recorded along the riser even where the scene does not ask for it.
+    needs: what must be known for it. always: recorded along the riser even where the scene does not request it.
     """
 
     name: str
@@ -73,7 +73,7 @@ class Output(Generic[Seen]):
 
     @property
     def numbers(self) -> int:
-        """How many of each node, cell or instant."""
+        """Number of components per node, cell or instant."""
         return 3 if self.vector else 1
 
 

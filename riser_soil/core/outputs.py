@@ -1,7 +1,7 @@
-"""The table of outputs: all that a run tells of an instant. From it come the scene's choices, the variables of
-results.nc, the fields of the XDMF files, the summary and the screen.
+"""Table of outputs at an instant: effective tension, bending moment, contact force, touchdown, soil stress and more.
 
-Each part of the table is in the order of results.nc, and of the list of fields in the scene.
+The scene's choices, the variables of results.nc, the fields of the XDMF files, the summary and the screen follow
+from it. Each part of the table is in the order of results.nc, and of the list of fields in the scene.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from riser_soil.core.output import Figure, Output, Row, angle_deg, bend_radius, greatest, least
+from riser_soil.core.output import Figure, OutputQuantity, Row, angle_deg, bend_radius, greatest, least
 
 if TYPE_CHECKING:
     from riser_soil.core.snapshot import Instant, SoilSnapshot
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 _ON_RISER = "exerted by the support on the riser; global axes, z up"
 _RIGHT_HAND = "right-hand rule; " + _ON_RISER
 
-ALONG_RISER: tuple[Output[Instant], ...] = (
-    Output(
+ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
+    OutputQuantity(
         "position", "x", "m", "position of the riser's axis", "nodes",
         lambda i: i.riser.position, "global axes, z up", vector=True, always=True,
         figures=(Figure("start.position", lambda x: x[0], 3), Figure("end.position", lambda x: x[-1], 3)),
     ),
-    Output(
+    OutputQuantity(
         "effective_tension", "T", "N", "effective tension", "nodes",
         lambda i: i.riser.effective_tension, "positive in tension",
         figures=(
@@ -32,17 +32,17 @@ ALONG_RISER: tuple[Output[Instant], ...] = (
             least("min_effective_tension", Row("least effective tension", "kN", 1e-3)),
         ),
     ),
-    Output(
+    OutputQuantity(
         "wall_tension", "T_w", "N", "tension in the pipe's wall, T + p_i A_i - p_o A_o", "nodes",
         lambda i: i.riser.wall_tension, "positive in tension", needs="pressures",
         figures=(least("min_wall_tension"), greatest("max_wall_tension", Row("greatest wall tension", "kN", 1e-3))),
     ),
-    Output(
+    OutputQuantity(
         "bending_moment", "M", "N m", "magnitude of the bending moment", "nodes",
         lambda i: i.riser.bending_moment,
         figures=(greatest("max_bending_moment", Row("largest bending moment", "kN.m", 1e-3)),),
     ),
-    Output(
+    OutputQuantity(
         "curvature", "κ", "m-1", "magnitude of the curvature", "nodes",
         lambda i: i.riser.curvature,
         figures=(
@@ -55,139 +55,139 @@ ALONG_RISER: tuple[Output[Instant], ...] = (
             ),
         ),
     ),
-    Output(
+    OutputQuantity(
         "bend_utilisation", "", "1", "curvature times the smallest bend radius allowed", "nodes",
         lambda i: i.riser.bend_utilisation, "above 1 the pipe is bent too much", needs="min_bend_radius",
         figures=(greatest("max_bend_utilisation", Row("allowed over actual bend radius")),),
     ),
-    Output(
+    OutputQuantity(
         "contact_force", "f", "N m-1", "contact force per length of riser", "nodes",
         lambda i: i.riser.contact_force, "positive where the ground pushes",
     ),
-    Output(
+    OutputQuantity(
         "penetration", "", "m", "penetration of the riser's underside into the ground as it is at the time", "nodes",
         lambda i: i.touch.penetration, ">= 0", needs="ground",
     ),
-    Output(
+    OutputQuantity(
         "embedment", "", "m",
         "greatest depth yet of the riser's underside below the ground as it lay before the riser came", "nodes",
         lambda i: i.touch.embedment, ">= 0", needs="ground",
         figures=(greatest("max_embedment", Row("deepest embedment", "mm", 1e3)),),
     ),
-    Output(
+    OutputQuantity(
         "slip", "", "m", "length of the way that the riser has slid over the seabed so far", "nodes",
         lambda i: i.touch.slip, ">= 0", needs="friction",
     ),
-    Output(
+    OutputQuantity(
         "moment_vector", "", "N m", "section moment", "nodes",
         lambda i: i.riser.moment_vector,
         "right-hand rule, global axes; exerted by the part towards the end on the part towards the start", vector=True,
     ),
 )  # fmt: skip
 
-OF_MODEL: tuple[Output[Instant], ...] = (
-    Output(
+OF_MODEL: tuple[OutputQuantity[Instant], ...] = (
+    OutputQuantity(
         "start_force", "", "N", "force at the start", "model",
         lambda i: i.riser.start_force, _ON_RISER, vector=True, figures=(Figure("start.force", size=3),),
     ),
-    Output(
+    OutputQuantity(
         "end_force", "", "N", "force at the end", "model",
         lambda i: i.riser.end_force, _ON_RISER, vector=True, figures=(Figure("end.force", size=3),),
     ),
-    Output(
+    OutputQuantity(
         "start_moment", "", "N m", "moment at the start", "model",
         lambda i: i.riser.start_moment, _RIGHT_HAND, vector=True, figures=(Figure("start.moment", size=3),),
     ),
-    Output(
+    OutputQuantity(
         "end_moment", "", "N m", "moment at the end", "model",
         lambda i: i.riser.end_moment, _RIGHT_HAND, vector=True, figures=(Figure("end.moment", size=3),),
     ),
-    Output(
+    OutputQuantity(
         "start_angle", "", "degree", "angle of the start from the horizontal", "summary",
         lambda i: angle_deg(i.riser.start_tangent), "positive where the riser rises with its arc",
         figures=(Figure("start.angle_deg"),),
     ),
-    Output(
+    OutputQuantity(
         "end_angle", "", "degree", "angle of the end from the horizontal", "summary",
         lambda i: angle_deg(i.riser.end_tangent), "positive where the riser rises with its arc",
         figures=(Figure("end.angle_deg"),),
     ),
-    Output(
+    OutputQuantity(
         "touchdown_arc", "", "m",
         "arc length of the touchdown point towards the end: where a rigid contact with the resultant and moment of the "
         "contact forces would end; nan when nothing touches", "model",
         lambda i: i.touch.touchdown_arc, figures=(Figure("touchdown_arc", row=Row("touchdown arc length", "m")),),
     ),
-    Output(
+    OutputQuantity(
         "touchdown_position", "", "m", "position of the riser's axis at the touchdown point", "model",
         lambda i: i.touch.touchdown_position, "global axes, z up", vector=True,
         figures=(Figure("touchdown_position", size=3, row=Row("touchdown point, x, y, z", "m")),),
     ),
-    Output(
+    OutputQuantity(
         "touchdown_points", "", "1",
         "places where the riser comes down or leaves the seabed, without its ends", "model",
         lambda i: i.touch.touchdown_points, dtype="i4",
         figures=(Figure("touchdown_points", row=Row("touchdown points")),),
     ),
-    Output(
+    OutputQuantity(
         "min_effective_tension", "", "N", "least effective tension along the riser", "model",
         lambda i: i.riser.effective_tension.min(), "negative in compression",
     ),
-    Output(
+    OutputQuantity(
         "min_effective_tension_arc", "", "m", "arc length of the least effective tension", "model",
         lambda i: i.arc[i.riser.effective_tension.argmin()],
     ),
-    Output(
+    OutputQuantity(
         "min_bend_radius", "", "m", "smallest bend radius, one over the largest curvature of the nodes", "model",
         lambda i: bend_radius(i.riser.curvature.max()),
     ),
-    Output(
+    OutputQuantity(
         "min_bend_radius_arc", "", "m", "arc length of the smallest bend radius", "model",
         lambda i: i.arc[i.riser.curvature.argmax()],
     ),
-    Output(
+    OutputQuantity(
         "max_penetration", "", "m", "deepest penetration of the riser into the seabed", "model",
         lambda i: i.touch.max_penetration, ">= 0",
         figures=(Figure("max_penetration", row=Row("deepest penetration", "mm", 1e3)),),
     ),
-    Output(
+    OutputQuantity(
         "contact_force_sum", "", "N", "sum of the contact forces", "model",
         lambda i: i.touch.contact_force, "exerted by the seabed on the riser; global axes, z up", vector=True,
         figures=(Figure("contact_force", lambda F: F[2], row=Row("contact force", "kN", 1e-3)),),
     ),
 )  # fmt: skip
 
-OF_SOIL: tuple[Output[SoilSnapshot], ...] = (
-    Output(
+OF_SOIL: tuple[OutputQuantity[SoilSnapshot], ...] = (
+    OutputQuantity(
         "displacement", "u", "m", "displacement since the geostatic start", "soil points",
         lambda soil: soil.displacement, "global axes, z up", vector=True,
     ),
-    Output("von_mises_stress", "q", "Pa", "von Mises stress", "soil cells", lambda soil: soil.von_mises, ">= 0"),
-    Output(
+    OutputQuantity("von_mises_stress", "q", "Pa", "von Mises stress", "soil cells", lambda s: s.von_mises, ">= 0"),
+    OutputQuantity(
         "equivalent_plastic_strain", "", "1", "equivalent plastic strain", "soil cells",
         lambda soil: soil.plastic_strain, ">= 0",
     ),
 )  # fmt: skip
 
 
-def of_instant() -> tuple[Output[Instant], ...]:
+def of_instant() -> tuple[OutputQuantity[Instant], ...]:
     """All that follows from the riser and its contact."""
     return (*ALONG_RISER, *OF_MODEL)
 
 
 def choices() -> tuple[str, ...]:
     """Names of the outputs among which a scene may choose."""
-    outputs: tuple[Output[Any], ...] = (*of_instant(), *OF_SOIL)
+    outputs: tuple[OutputQuantity[Any], ...] = (*of_instant(), *OF_SOIL)
     return tuple(output.name for output in outputs if output.chosen)
 
 
 def known(names: Iterable[str], has: Collection[str]) -> tuple[str, ...]:
-    """Those of the names whose needs are among what a run has."""
+    """The names of outputs whose needs a run meets."""
     unknown = {output.name for output in of_instant() if output.needs and output.needs not in has}
     return tuple(name for name in names if name not in unknown)
 
 
-def figures(order: Sequence[str]) -> list[tuple[Output[Instant], Figure]]:
+def figures(order: Sequence[str]) -> list[tuple[OutputQuantity[Instant], Figure]]:
     """All figures of the summary with their outputs: those named in their order, then the rest in the table's."""
     found = [(output, figure) for output in of_instant() for figure in output.figures]
     rank = {name: place for place, name in enumerate(order)}

@@ -1,4 +1,4 @@
-"""The contract between the parts of a scene and the system that solves them together.
+"""Interface of parts and fields: residual, tangent, energy and commit, as the system needs them.
 
 Every part adds its share to one residual R(u, v, a) = inertia·I + force·F + E, internal minus external:
 
@@ -45,7 +45,7 @@ class State:
 
 @dataclass(frozen=True)
 class Weights:
-    """How the time scheme combines the groups, and how rates follow increments (dv/du [1/s], da/du [1/s2])."""
+    """Weights of the groups in the time scheme, and how rates follow increments (dv/du [1/s], da/du [1/s2])."""
 
     inertia: float
     force: float
@@ -54,7 +54,7 @@ class Weights:
 
 
 @dataclass(frozen=True, eq=False)
-class Block:
+class MatrixBlock:
     """A batch of m dense element matrices: local dof numbers of rows (m, nr) and columns (m, nc); -1 is absent."""
 
     rows: IntArray
@@ -119,12 +119,12 @@ class Work:
 
 @dataclass(frozen=True)
 class Traits:
-    """What a part is; declared here, never guessed from its name, its blocks or its methods.
+    """Properties of a part, declared here, never guessed from its name, its blocks or its methods.
 
     groups: letters of those that its forces are in. In E they may jump from step to step, as where the riser lands.
     symmetric: its tangent.
     follows: its forces follow the line, but hardly stiffen or soften it, such as the drag of a current.
-    keeps_way: its state is of the way that the riser took alone, and no part of the configuration that it has come to.
+    keeps_way: its state depends on the path that the riser took, and is no part of its present configuration.
     roles: what it does beyond the contract of a part, see `roles`.
     """
 
@@ -147,10 +147,10 @@ class Part(Protocol):
 
     @property
     def active(self) -> bool:
-        """Whether this rank evaluates the part; where not, it is asked for nothing that follows."""
+        """Whether this rank evaluates the part; where not, no other method is called."""
         ...
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         """Patterns that the part adds to. Parts that share a key share the very same rows and columns."""
         ...
 
@@ -167,7 +167,7 @@ class Part(Protocol):
         ...
 
     def work(self, before: State, after: State) -> Work:
-        """This rank's share of the energy turned over by the step from `before` to `after`, asked before commit."""
+        """This rank's share of the energy turned over by the step from `before` to `after`, called before commit."""
         ...
 
     def commit(self, state: State) -> None:
@@ -203,14 +203,14 @@ class Field(Protocol):
         ...
 
     def describe(self, entry: int) -> str:
-        """Where a local entry sits, for messages."""
+        """Description of a local entry's place, for messages."""
         ...
 
 
 class LineField(Field, Protocol):
     """A field of translations (nn, d) and rotations along a line; it may turn as a whole.
 
-    lever: arm [m] by which a moment is weighed as the forces of a couple, so that nothing hangs on the unit of length.
+    lever: arm [m] by which moments are converted to forces in norms, so that nothing depends on the unit of length.
     """
 
     @property
@@ -222,7 +222,7 @@ class LineField(Field, Protocol):
         ...
 
     def predict(self, guess: State) -> Array:
-        """A better first guess of a step than the increments of `guess`, as its prescribed motion tells; a copy."""
+        """A better first guess of a step than the increments of `guess`, by its prescribed motion; a copy."""
         ...
 
     def inadmissible(self, state: State) -> str:
@@ -244,7 +244,7 @@ class LineField(Field, Protocol):
 
 @dataclass(eq=False)
 class Model:
-    """What a stage solves: the lines, the parts that act on them, and the other owners of dofs, such as the soil."""
+    """The model of a stage: the lines, the parts that act on them, and the other owners of dofs, such as the soil."""
 
     lines: Sequence[LineField]
     parts: Sequence[Part] = ()

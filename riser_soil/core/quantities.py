@@ -1,9 +1,9 @@
-"""Number types with their bounds, and the settings shared by every model of the scene language.
+"""Physical quantities of the scene language: number types with their units and bounds.
 
 Every quantity has a physical range. A riser is from a tenth of a metre to some kilometres long; the ranges hold all
 that such a riser has when it is scaled in length by a millionth to a million, by Froude's law (forces by the cube of
-the length, EI by its fifth power) or with the materials kept (gravity by its inverse). What lies beyond is a slip of
-units or of powers of ten, and would end in overflow or round-off somewhere in the middle of the run.
+the length, EI by its fifth power) or with the materials kept (gravity by its inverse). Values beyond are mistakes of
+units or powers of ten, and would lead to overflow or round-off during the run.
 """
 
 from collections.abc import Callable
@@ -20,7 +20,7 @@ MOST_ELEMENTS = 1_000_000
 
 
 @dataclass(frozen=True)
-class Within:
+class Bounds:
     """Least and greatest size of a quantity, whatever its sign. A least size of 0 is none: a component may be as small
     as it likes. zero: whether there may be nothing of the quantity.
     """
@@ -31,9 +31,9 @@ class Within:
     zero: bool = False
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_after_validator_function(self.held, handler(source))
+        return core_schema.no_info_after_validator_function(self.checked, handler(source))
 
-    def held(self, value: float) -> float:
+    def checked(self, value: float) -> float:
         """The value, or PydanticCustomError."""
         if value == 0.0 or self.least <= abs(value) <= self.most:
             return value
@@ -46,12 +46,12 @@ class Within:
         return f"must be {'0, or ' if self.zero else ''}from {self.least:g} to {self.most:g} {self.unit} in size"
 
 
-_LENGTH = Within(1e-12, 1e12, "m")
-_TIME = Within(1e-12, 1e12, "s")
-_STRESS = Within(1e-15, 1e24, "Pa")
-_STRENGTH_GRADIENT = Within(1e-15, 1e18, "Pa/m", zero=True)
-_WEIGHT = Within(1e-24, 1e24, "N/m")
-_RATIO = Within(1e-9, 1e9, "(no unit)")
+_LENGTH = Bounds(1e-12, 1e12, "m")
+_TIME = Bounds(1e-12, 1e12, "s")
+_STRESS = Bounds(1e-15, 1e24, "Pa")
+_STRENGTH_GRADIENT = Bounds(1e-15, 1e18, "Pa/m", zero=True)
+_WEIGHT = Bounds(1e-24, 1e24, "N/m")
+_RATIO = Bounds(1e-9, 1e9, "(no unit)")
 
 SHORTEST = _LENGTH.least
 """Least distance of two points [m]."""
@@ -72,40 +72,40 @@ Text = Annotated[str, Field(strict=True)]
 
 Length = Annotated[Positive, _LENGTH]
 LengthOrNone = Annotated[NonNegative, replace(_LENGTH, zero=True)]
-ArcLength = Annotated[NonNegative, Within(0.0, 1e12, "m")]
-Coordinate = Annotated[Real, Within(0.0, 1e12, "m")]
-Area = Annotated[NonNegative, Within(1e-24, 1e24, "m2", zero=True)]
-Volume = Annotated[NonNegative, Within(1e-36, 1e36, "m3", zero=True)]
-Angle = Annotated[Real, Within(0.0, 1e6, "deg")]
+ArcLength = Annotated[NonNegative, Bounds(0.0, 1e12, "m")]
+Coordinate = Annotated[Real, Bounds(0.0, 1e12, "m")]
+Area = Annotated[NonNegative, Bounds(1e-24, 1e24, "m2", zero=True)]
+Volume = Annotated[NonNegative, Bounds(1e-36, 1e36, "m3", zero=True)]
+Angle = Annotated[Real, Bounds(0.0, 1e6, "deg")]
 Time = Annotated[Positive, _TIME]
 TimeOrNone = Annotated[NonNegative, replace(_TIME, zero=True)]
-Instant = Annotated[NonNegative, Within(0.0, 1e12, "s")]
-Frequency = Annotated[Positive, Within(1e-12, 1e12, "Hz")]
-Velocity = Annotated[Real, Within(0.0, 1e9, "m/s")]
-Gravity = Annotated[NonNegative, Within(1e-9, 1e9, "m/s2", zero=True)]
-Density = Annotated[Positive, Within(1e-9, 1e9, "kg/m3")]
-Mass = Annotated[NonNegative, Within(1e-30, 1e30, "kg", zero=True)]
-MassPerLength = Annotated[Positive, Within(1e-18, 1e18, "kg/m")]
-RotaryInertiaPerLength = Annotated[NonNegative, Within(1e-36, 1e36, "kg.m", zero=True)]
+Instant = Annotated[NonNegative, Bounds(0.0, 1e12, "s")]
+Frequency = Annotated[Positive, Bounds(1e-12, 1e12, "Hz")]
+Velocity = Annotated[Real, Bounds(0.0, 1e9, "m/s")]
+Gravity = Annotated[NonNegative, Bounds(1e-9, 1e9, "m/s2", zero=True)]
+Density = Annotated[Positive, Bounds(1e-9, 1e9, "kg/m3")]
+Mass = Annotated[NonNegative, Bounds(1e-30, 1e30, "kg", zero=True)]
+MassPerLength = Annotated[Positive, Bounds(1e-18, 1e18, "kg/m")]
+RotaryInertiaPerLength = Annotated[NonNegative, Bounds(1e-36, 1e36, "kg.m", zero=True)]
 WeightPerLength = Annotated[Real, replace(_WEIGHT, zero=True)]
 PositiveWeightPerLength = Annotated[Positive, _WEIGHT]
-UnitWeight = Annotated[NonNegative, Within(1e-15, 1e18, "N/m3", zero=True)]
-AxialStiffness = Annotated[Positive, Within(1e-30, 1e36, "N")]
-BendingStiffness = Annotated[Positive, Within(1e-40, 1e45, "N.m2")]
-RotationalStiffness = Annotated[Positive, Within(1e-36, 1e42, "N.m/rad")]
-BedStiffness = Annotated[Positive, Within(1e-15, 1e24, "N/m2")]
-Pressure = Annotated[Real, Within(0.0, 1e24, "Pa")]
+UnitWeight = Annotated[NonNegative, Bounds(1e-15, 1e18, "N/m3", zero=True)]
+AxialStiffness = Annotated[Positive, Bounds(1e-30, 1e36, "N")]
+BendingStiffness = Annotated[Positive, Bounds(1e-40, 1e45, "N.m2")]
+RotationalStiffness = Annotated[Positive, Bounds(1e-36, 1e42, "N.m/rad")]
+BedStiffness = Annotated[Positive, Bounds(1e-15, 1e24, "N/m2")]
+Pressure = Annotated[Real, Bounds(0.0, 1e24, "Pa")]
 Stress = Annotated[Positive, _STRESS]
 StrengthGradient = Annotated[Real, _STRENGTH_GRADIENT]
 PositiveStrengthGradient = Annotated[NonNegative, _STRENGTH_GRADIENT]
 Ratio = Annotated[Positive, _RATIO]
 Coefficient = Annotated[NonNegative, replace(_RATIO, zero=True)]
-Factor = Annotated[Real, Within(0.0, 1e9, "(no unit)")]
-SolverTolerance = Annotated[Positive, Within(1e-16, 1.0, "(no unit)")]
-_ForceComponent = Annotated[Real, Within(0.0, 1e36, "N")]
-_LineForceComponent = Annotated[Real, Within(0.0, 1e24, "N/m")]
-_MomentComponent = Annotated[Real, Within(0.0, 1e42, "N.m")]
-_AxisComponent = Annotated[Real, Within(0.0, 1e12, "(no unit)")]
+Factor = Annotated[Real, Bounds(0.0, 1e9, "(no unit)")]
+SolverTolerance = Annotated[Positive, Bounds(1e-16, 1.0, "(no unit)")]
+_ForceComponent = Annotated[Real, Bounds(0.0, 1e36, "N")]
+_LineForceComponent = Annotated[Real, Bounds(0.0, 1e24, "N/m")]
+_MomentComponent = Annotated[Real, Bounds(0.0, 1e42, "N.m")]
+_AxisComponent = Annotated[Real, Bounds(0.0, 1e12, "(no unit)")]
 
 Vector = tuple[float, float, float]
 Position = tuple[Coordinate, Coordinate, Coordinate]

@@ -1,7 +1,7 @@
-"""What parts may do for the time stepper beyond their contract, each declared in the part's traits.
+"""Optional roles of parts in the time stepping: adaptive sparsity pattern, predictor, momentum correction.
 
-A role that is declared without its methods, such as one that is misspelt, is an error at the stage's start, and so is
-one that is there and not declared. Parts that keep something from step to step are `Stateful`, see `saved_state`.
+A role that is declared without its methods, such as a misspelt one, is an error at the stage's start, and so are the
+methods of a role that is not declared. Parts that keep something from step to step are `Stateful`, see `saved_state`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from riser_soil.core.saved_state import Stateful
 
 @runtime_checkable
 class Adaptive(Protocol):
-    """A part whose pattern covers what may come; it says when the motion has left it."""
+    """A part whose sparsity pattern covers candidate contacts; it says when the motion has left them."""
 
     outgrown: bool
 
@@ -26,7 +26,7 @@ class Adaptive(Protocol):
 
 @runtime_checkable
 class Predictor(Protocol):
-    """A part that knows a better first guess of a step than the increments of `guess`."""
+    """A part with a predictor: a better first guess of a step than the increments of `guess`."""
 
     def predict(self, guess: State) -> Array: ...
 

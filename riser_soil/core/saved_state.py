@@ -1,8 +1,8 @@
-"""State that can be saved: what all who hold committed state give as named arrays, and take back.
+"""Saved state: the committed state of all its owners as named arrays, for a restart between two steps.
 
-A stage is saved between two steps. Built anew from its scene and given the saved state back, it goes on as if it had
-not been left: to the last bit. So an owner saves all that the next steps depend on, unless it is the scene's, and
-nothing that they find again by themselves.
+A stage is saved between two steps. Built anew from its scene and given the saved state back, it continues as if it had
+not been interrupted, to the last bit. So an owner saves all that the next steps depend on, unless it is the scene's,
+and nothing that they find again by themselves.
 
 An owner within another has its names after that one's and a "/": `stepper/before/u`. Numbers are arrays without axes;
 what is neither, such as texts and lists of them, is JSON as bytes, see `packed`. Each rank saves its own share.
@@ -27,7 +27,7 @@ class Stateful(Protocol):
     """Owner of committed state, the same from one accepted step to the next."""
 
     def state(self) -> Saved:
-        """What is committed now, in arrays that do not change any more."""
+        """The committed state, in arrays that do not change any more."""
         ...
 
     def restore(self, saved: Saved) -> None:
@@ -40,14 +40,14 @@ def gathered(owners: Mapping[str, Stateful]) -> Saved:
     return {f"{name}/{key}": value for name, owner in owners.items() for key, value in owner.state().items()}
 
 
-def give_back(owners: Mapping[str, Stateful], saved: Saved) -> None:
+def restore_all(owners: Mapping[str, Stateful], saved: Saved) -> None:
     """Restore owners from what `gathered` gave of them."""
     for name, owner in owners.items():
         owner.restore(within(saved, name))
 
 
 def within(saved: Saved, name: str) -> Saved:
-    """What is saved of the owner of a name."""
+    """The saved state of the owner of a name."""
     first = f"{name}/"
     return {key[len(first) :]: value for key, value in saved.items() if key.startswith(first)}
 

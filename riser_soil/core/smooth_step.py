@@ -1,4 +1,4 @@
-"""A smooth beginning: from 0 to 1 in a given time, twice continuously differentiable."""
+"""Smooth step: ramp from 0 to 1 in a given time, twice continuously differentiable."""
 
 
 def smooth_step(t: float, ramp: float) -> tuple[float, float, float]:

@@ -1,4 +1,4 @@
-"""What the recorder is told: plain arrays and numbers, SI units, global axes (z up).
+"""Snapshots for the recorder: results of a state as plain arrays, SI units, global axes (z up).
 
 nn riser nodes in the order of the arc length; nv points and nc cells of the soil's output mesh.
 """
@@ -52,8 +52,8 @@ class SoilMesh:
 
 
 @dataclass(frozen=True, eq=False)
-class Touch:
-    """Where the riser touches the seabed and what the seabed does to it."""
+class ContactSnapshot:
+    """Contact of the riser with seabed and soil: touchdown, penetration and contact force."""
 
     touchdown_arc: float  # m, nan when nothing touches
     touchdown_position: Array  # (3,) m, of the riser's axis there; nan when nothing touches
@@ -71,12 +71,12 @@ class Instant:
 
     arc: Array
     riser: RiserSnapshot
-    touch: Touch
+    touch: ContactSnapshot
 
 
 @dataclass(frozen=True)
-class StepHealth:
-    """How hard the solver worked for one accepted step."""
+class StepStatistics:
+    """Solver statistics of one accepted step."""
 
     newton_iterations: int
     time_step: float  # s; in a static stage the increment of the load factor
@@ -119,15 +119,15 @@ class Ledger:
 
 @dataclass(frozen=True)
 class StepRecord:
-    """What is told of an accepted step."""
+    """Record of an accepted step."""
 
-    health: StepHealth
+    health: StepStatistics
     ledger: Ledger
 
 
 @dataclass(frozen=True)
 class RunFacts:
-    """What is known of a run before its first step."""
+    """Facts about a run, known before its first step."""
 
     title: str
     version: str

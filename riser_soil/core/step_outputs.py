@@ -1,10 +1,10 @@
-"""The table of outputs of every accepted step: how hard the solver worked, and the balance of energy."""
+"""Table of outputs of every accepted step: Newton iterations, step size, energy balance."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from riser_soil.core.output import Output
+from riser_soil.core.output import OutputQuantity
 
 if TYPE_CHECKING:
     from riser_soil.core.snapshot import StepRecord
@@ -12,39 +12,41 @@ if TYPE_CHECKING:
 _FROM_NOWHERE = "positive when energy appears from nowhere"
 TAKEN_OUT = "negative where it was taken out"
 
-OF_STEP: tuple[Output[StepRecord], ...] = (
-    Output(
+OF_STEP: tuple[OutputQuantity[StepRecord], ...] = (
+    OutputQuantity(
         "newton_iterations", "", "1", "Newton iterations", "step", lambda s: s.health.newton_iterations, dtype="i4"
     ),
-    Output(
+    OutputQuantity(
         "time_step", "Δt", "s", "time step; in static stages the increment of the load factor", "step",
         lambda s: s.health.time_step,
     ),
-    Output(
+    OutputQuantity(
         "energy_residual", "", "J", "residual of the step's energy balance; nan in static stages", "step",
         lambda s: s.health.energy_residual, _FROM_NOWHERE,
     ),
-    Output(
+    OutputQuantity(
         "relative_energy_residual", "", "1",
         "residual of the energy balance since the stage began, over the energy turned over; nan in static stages",
         "step", lambda s: s.ledger.relative_residual, _FROM_NOWHERE,
     ),
-    Output("kinetic_energy", "", "J", "kinetic energy, added mass included", "step", lambda s: s.ledger.kinetic),
-    Output("strain_energy", "", "J", "elastic energy", "step", lambda s: s.ledger.strain),
-    Output(
+    OutputQuantity(
+        "kinetic_energy", "", "J", "kinetic energy, added mass included", "step", lambda s: s.ledger.kinetic
+    ),
+    OutputQuantity("strain_energy", "", "J", "elastic energy", "step", lambda s: s.ledger.strain),
+    OutputQuantity(
         "potential_energy", "", "J", "energy of weight, buoyancy and contact; its zero is anywhere", "step",
         lambda s: s.ledger.potential,
     ),
-    Output(
+    OutputQuantity(
         "dissipated", "", "J", "energy dissipated since the stage began, but for the time scheme's", "step",
         lambda s: s.ledger.dissipated,
     ),
-    Output(
+    OutputQuantity(
         "dissipated_time_scheme", "", "J", "energy taken out by the time scheme since the stage began", "step",
         lambda s: s.ledger.numerical, "negative where it put energy in",
     ),
-    Output("work", "", "J", "energy put in since the stage began", "step", lambda s: s.ledger.work, TAKEN_OUT),
-    Output(
+    OutputQuantity("work", "", "J", "energy put in since the stage began", "step", lambda s: s.ledger.work, TAKEN_OUT),
+    OutputQuantity(
         "step_cuts", "", "1", "failed attempts before the step was accepted", "step", lambda s: s.health.step_cuts,
         dtype="i4",
     ),

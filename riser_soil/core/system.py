@@ -1,4 +1,4 @@
-"""All parts of a stage as one system: residual, tangent, prescribed motion, commit."""
+"""The coupled system of a stage: residual, tangent, prescribed motion and commit of all parts together."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from mpi4py import MPI
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.numbering import Numbering
-from riser_soil.core.part import Block, Energy, Field, Forces, Model, Part, State, Weights, Work, local
+from riser_soil.core.part import Energy, Field, Forces, MatrixBlock, Model, Part, State, Weights, Work, local
 from riser_soil.core.roles import require_roles
 from riser_soil.core.saved_state import Saved
 
 
 @dataclass
-class Clock:
+class Timer:
     """Seconds spent, by part."""
 
     seconds: defaultdict[str, float]
 
     @classmethod
-    def new(cls) -> Clock:
+    def new(cls) -> Timer:
         return cls(defaultdict(float))
 
     def add(self, name: str, since: float) -> None:
@@ -53,7 +53,7 @@ class System:
     lever: the longest one of a line, see `LineField`; levers (size,): of each local dof, 1 for translations.
     """
 
-    def __init__(self, comm: MPI.Intracomm, model: Model, clock: Clock) -> None:
+    def __init__(self, comm: MPI.Intracomm, model: Model, clock: Timer) -> None:
         self.comm, self.model, self.clock = comm, model, clock
         require_roles(model)
         self._active = [part for part in model.parts if part.active]
@@ -76,7 +76,7 @@ class System:
         return max(line.lever for line in self.model.lines), levers
 
     def _new_matrix(self) -> Matrix:
-        blocks: dict[str, Block] = {}
+        blocks: dict[str, MatrixBlock] = {}
         for part in self._active:
             blocks.update(part.blocks())
         return Matrix(self.numbering, blocks, self.symmetric)
@@ -136,7 +136,7 @@ class System:
         return self.sum([float(reactions @ u[self.prescribed_dofs])])[0]
 
     def reactions(self, forces: Forces) -> Array:
-        """What the supports of this rank's prescribed dofs exert [N, N.m]."""
+        """Reactions at this rank's prescribed dofs [N, N.m]."""
         at = self.prescribed_dofs
         return forces.inertia[at] + forces.force[at] + forces.end[at]
 
@@ -147,7 +147,7 @@ class System:
             owner.commit(state)
 
     def describe(self, row: int) -> str:
-        """Where a row of the system sits; collective."""
+        """Description of a row's place, for messages; collective."""
         entries = np.flatnonzero(self.numbering.index == row)
         return next(filter(None, self.comm.allgather(self._describe(entries))), f"row {row}")
 

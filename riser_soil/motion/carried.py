@@ -1,4 +1,4 @@
-"""Ends that are carried along by a displacement and a rotation vector given together, as by a table or a vessel."""
+"""Prescribed end motion by a displacement and a rotation vector given together, as by a table or a vessel."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.riser import rotations
-from riser_soil.riser.ends import Kinematics, Turning
+from riser_soil.riser.ends import Kinematics, SupportRotation
 from riser_soil.riser.vectors import matrix, vector
 
 SixDegreeMotion = Callable[[float], Kinematics]
@@ -20,7 +20,7 @@ derivatives.
 
 
 @dataclass(frozen=True, eq=False)
-class Displaced:
+class CarriedEnd:
     """`origin` (3,) [m], displaced by the first three of six."""
 
     origin: Array
@@ -33,15 +33,15 @@ class Displaced:
 
 
 @dataclass(frozen=True, eq=False)
-class Turned:
+class CarriedSupport:
     """A support turned by the last three of six, a rotation vector, from where it is at t = 0."""
 
     six: SixDegreeMotion
 
-    def __call__(self, t: float) -> Turning:
+    def __call__(self, t: float) -> SupportRotation:
         """Turning at t [s]."""
         rotation, rate, acceleration = (values[3:] for values in self.six(t))
-        return Turning(self._from_first(rotation), *angular_rates(rotation, rate, acceleration))
+        return SupportRotation(self._from_first(rotation), *angular_rates(rotation, rate, acceleration))
 
     def _from_first(self, rotation: Array) -> Array:
         """The rotation vector from where the support is at t = 0."""

@@ -1,4 +1,4 @@
-"""Harmonic motion that starts smoothly."""
+"""Harmonic prescribed motion with a smooth ramp."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from riser_soil.riser.ends import Kinematics
 
 
 @dataclass(frozen=True, eq=False)
-class Harmonic:
+class HarmonicMotion:
     """position = origin + r(t/ramp) amplitude sin(2 pi t/period + phase); r is twice continuously differentiable.
 
     origin, amplitude: (3,) [m]. period, ramp [s]; ramp 0 is the full motion at once. phase [rad]: one for all

@@ -1,4 +1,4 @@
-"""Move of an end in a static stage."""
+"""Prescribed displacement of an end in a static stage, by the load factor."""
 
 from __future__ import annotations
 
@@ -17,5 +17,5 @@ class SmoothMove:
     target: Array
 
     def __call__(self, t: float) -> tuple[Array, Array, Array]:
-        """Position [m] at the load factor t; statics know no rates."""
+        """Position [m] at the load factor t; there are no rates in statics."""
         return self.origin + t * (self.target - self.origin), np.zeros(3), np.zeros(3)

@@ -1,4 +1,4 @@
-"""A motion that grows to its full size."""
+"""Smooth ramp on a prescribed motion."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A vessel's linear response to the components of a sea."""
+"""Response amplitude operators (RAOs): a vessel's linear response to the wave components of a sea."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An angle that swings: ends on an arc about a hub, and supports that rock about an axis."""
+"""Harmonic rotation: ends that swing on an arc about a hub, and supports that rock about an axis."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.motion.ramped import ramped
-from riser_soil.riser.ends import Kinematics, Turning
+from riser_soil.riser.ends import Kinematics, SupportRotation
 
 
 @dataclass(frozen=True)
@@ -52,13 +52,13 @@ class SwingingEnd:
 
 
 @dataclass(frozen=True, eq=False)
-class Rocking:
+class RockingSupport:
     """A support that turns about a unit vector `axis` (3,) by the swing's angle, right-handed."""
 
     axis: Array
     swing: AngleOscillation
 
-    def __call__(self, t: float) -> Turning:
+    def __call__(self, t: float) -> SupportRotation:
         """Turning at t [s]."""
         phi, rate, acceleration = self.swing(t)
-        return Turning(phi * self.axis, rate * self.axis, acceleration * self.axis)
+        return SupportRotation(phi * self.axis, rate * self.axis, acceleration * self.axis)

@@ -1,4 +1,4 @@
-"""Motion through the rows of a table."""
+"""Time history of a prescribed motion: cubic splines through the rows of a table."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from riser_soil.motion.ramped import ramped
 from riser_soil.riser.ends import Kinematics
 
 
-class Table:
+class TabulatedMotion:
     """Cubic splines through rows, twice continuously differentiable, times a smooth step of t/ramp.
 
     time: (n,) increasing [s]. values: (n, 6) displacement [m] and rotation vector [rad]. Not-a-knot at both ends, which

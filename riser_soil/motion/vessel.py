@@ -1,4 +1,4 @@
-"""An end that belongs to a vessel in waves."""
+"""Prescribed motion of an end on a vessel in waves."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from riser_soil.riser.ends import Kinematics
 
 
 @dataclass(frozen=True, eq=False)
-class Response:
+class VesselResponse:
     """A vessel's motion at its reference point, the sum of Re(amplitude exp(i w t)); t: the waves' clock [s].
 
     frequency: w (n,) [rad/s]. amplitude: (n, 6), displacement [m] and rotation [rad] along and about global axes.
@@ -30,7 +30,7 @@ class Response:
 
 @dataclass(frozen=True, eq=False)
 class VesselAttachment:
-    """Where an end belongs on its vessel at rest, and where the vessel found it.
+    """Position of an end on its vessel: its mean, and where it was found as the vessel began to move it.
 
     mean: (3,) the end while the vessel is at rest [m]. reference: (3,) the point that the response belongs to, then
     [m]. found: (6,) the end's displacement from there [m] and rotation vector [rad] as the vessel began to move: not
@@ -43,7 +43,7 @@ class VesselAttachment:
 
 
 @dataclass(frozen=True, eq=False)
-class Vessel:
+class VesselMotion:
     """Displacement from the mean and rotation vector (6,) of an end on a vessel, and their derivatives.
 
     r response + (1 - r) found, r being a smooth step of ramp [s]. Linear, as RAOs are: the response of the end is
@@ -51,7 +51,7 @@ class Vessel:
     [s]. since: how long the vessel has been moving then [s].
     """
 
-    response: Response
+    response: VesselResponse
     attachment: VesselAttachment
     ramp: float
     clock: float

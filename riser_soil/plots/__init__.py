@@ -1,4 +1,4 @@
-"""Pictures of a run, from the files in its folder.
+"""Plots of a run, drawn from the files in its folder.
 
 They are drawn by a process of their own: VTK aborts where dolfinx was imported before it (their copies of
 std::regex get mixed up), and a machine without means to draw must not bring a run down.

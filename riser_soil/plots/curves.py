@@ -1,4 +1,4 @@
-"""Curves of a run on matplotlib's axes: shapes, quantities along the arc, reactions and tensions in time.
+"""Matplotlib plots of a run: shapes, quantities along the arc length, time histories of reactions and tension.
 
 Each function draws on axes that the caller has made, from the files of a finished or unfinished run; `sheet` and `save`
 make and write a figure. Records are counted as in results.nc: 0 is the first, −1 the last.

@@ -1,4 +1,4 @@
-"""Round numbers for colour bars and magnified deformations."""
+"""Round numbers for colour bars and for the magnification of deformations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Draws the touchdown zone off screen: python -m riser_soil.plots.touchdown FOLDER PNG [MAGNIFY]."""
+"""Picture of the touchdown zone, drawn off screen: python -m riser_soil.plots.touchdown FOLDER PNG [MAGNIFY]."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ _MOMENT_COLOURS, _STRESS_COLOURS = "viridis", "YlOrBr"
 
 
 @dataclass(frozen=True, eq=False)
-class _Still:
-    """What is drawn of one instant: arc (nn,) m, axis (nn, 3) m, moment (nn,) N.m, touchdown point (3,) m.
+class _Frame:
+    """Data of one picture: arc (nn,) m, axis (nn, 3) m, moment (nn,) N.m, touchdown point (3,) m.
 
     Where nothing touches, the riser's lowest point stands in for the touchdown point, and its arc is nan.
     """
@@ -86,13 +86,13 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _read(run: Run) -> _Still:
+def _read(run: Run) -> _Frame:
     if run.time.size == 0:
         raise ResultsError(f"{run.folder}: nothing was recorded, so there is nothing to draw")
     frame = run.soil_frame() if run.has_soil and run.soil_times.size else None
     at = -1 if frame is None else int(np.abs(run.time - frame.time).argmin())
     position, touchdown_arc = run["position"][at], float(run["touchdown_arc"][at])
-    return _Still(
+    return _Frame(
         title=run.summary["title"],
         time=float(run.time[at]),
         arc=run.arc,
@@ -146,7 +146,7 @@ def _along(position: Array) -> Array:
     return chord / length if length > 0.0 else np.array([1.0, 0.0, 0.0])
 
 
-def _draw_close(plotter: pv.Plotter, still: _Still, factor: float) -> None:
+def _draw_close(plotter: pv.Plotter, still: _Frame, factor: float) -> None:
     along = _along(still.position)
     side = np.cross(_UP, along)
     if still.soil is None:
@@ -175,7 +175,7 @@ def _mark(plotter: pv.Plotter, where: Array, text: str) -> None:
     )
 
 
-def _caption(still: _Still, factor: float) -> str:
+def _caption(still: _Frame, factor: float) -> str:
     words = f"{still.title}\nt = {still.time:.4g} s"
     if still.soil is None:
         return words
@@ -198,7 +198,7 @@ def _add_soil(plotter: pv.Plotter, soil: pv.UnstructuredGrid) -> None:
     )
 
 
-def _sunk(soil: pv.UnstructuredGrid, still: _Still) -> Array:
+def _sunk(soil: pv.UnstructuredGrid, still: _Frame) -> Array:
     """The soil's displacement (nn, 3) m under each node of the riser; 0 beside the block.
 
     Averaged along a few diameters: magnified, the soil's steps from cell to cell would kink the pipe.
@@ -211,7 +211,7 @@ def _sunk(soil: pv.UnstructuredGrid, still: _Still) -> Array:
     return np.asarray(weights @ under / weights.sum(axis=1, keepdims=True))
 
 
-def _reach(still: _Still) -> float:
+def _reach(still: _Frame) -> float:
     """m, what the close view shows from left to right, roughly."""
     if still.soil is None:
         return 0.2 * float(np.ptp(still.position, axis=0).max())
@@ -219,7 +219,7 @@ def _reach(still: _Still) -> float:
     return 0.4 * max(x1 - x0, y1 - y0)
 
 
-def _add_tube(plotter: pv.Plotter, position: Array, still: _Still) -> None:
+def _add_tube(plotter: pv.Plotter, position: Array, still: _Frame) -> None:
     top, labels = colour_scale(1e-3 * still.moment)
     plotter.add_mesh(
         _tube(position, still.moment, still.radius),
@@ -250,7 +250,7 @@ def _bar(title: str, left: float, labels: int) -> dict[str, object]:
     return {"title": title + "\n", **place, **fonts}
 
 
-def _draw_whole(plotter: pv.Plotter, still: _Still) -> None:
+def _draw_whole(plotter: pv.Plotter, still: _Frame) -> None:
     lowest, highest = still.position.min(axis=0), still.position.max(axis=0)
     size = highest - lowest
     tube = _tube(still.position, still.moment, 0.006 * float(size.max()))

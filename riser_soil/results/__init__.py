@@ -1,4 +1,4 @@
-"""The folder of a run: what is recorded, how its files are written, and how they are read again."""
+"""Results of a run: recording, netCDF, XDMF and summary files, and reading them."""
 
 from riser_soil.results.read import Run, SoilFrame
 

@@ -1,4 +1,4 @@
-"""What follows from a run's files: reactions in the riser's own vertical plane, largest values between samples."""
+"""Derived results: reactions in the riser's vertical plane, peak values between samples."""
 
 from __future__ import annotations
 

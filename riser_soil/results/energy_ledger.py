@@ -1,15 +1,15 @@
-"""The energy ledger of a stage, step by step.
+"""Energy balance of a stage, step by step: the energy ledger.
 
-Two errors of the time integration are told apart. With F the forces of group F, E those of group E, and W the work of
-supports, all that acts takes
+Two errors of the time integration are distinguished. With F the forces of group F, E those of group E, and W the work
+of supports, all that acts takes
 
     B = du.((F(n) + F(n+1))/2 + E(n+1)) - W
 
-out of the motion in a step (`Accepted.braking`). What the kinetic energy loses beyond that, -(K(n+1) - K(n)) - B, is
+out of the motion in a step (`AcceptedStep.braking`). What the kinetic energy loses beyond it, -(K(n+1) - K(n)) - B, is
 the time scheme's own: with linear inertia exactly what alpha_m, alpha_f, beta and gamma dissipate, zero to round-off
-for average acceleration (for Newmark's scheme: Hughes, The Finite Element Method, 1987, section 9.4). What the parts'
-energies tell otherwise than B is the residual: the error of the mean of nonlinear forces over a step, zero for linear
-ones and else of second order. Inertia that turns adds its own such error to the scheme's share.
+for average acceleration (for Newmark's scheme: Hughes, The Finite Element Method, 1987, section 9.4). The difference
+between the change of the parts' energies and B is the residual: the error of the mean of nonlinear forces over a step,
+zero for linear ones and else of second order. Inertia that turns adds its own such error to the scheme's share.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import numpy as np
 from riser_soil.core.part import Energy, Work
 from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.snapshot import Ledger
-from riser_soil.solve.time_stepper import Accepted
+from riser_soil.solve.time_stepper import AcceptedStep
 
 SPRINGS = ("start spring", "end spring")  # a spring works only as its support turns
 
@@ -43,7 +43,7 @@ class EnergyLedger:
             work_by=dict.fromkeys(working, 0.0),
         )
 
-    def add(self, energy: Energy, step: Accepted) -> float:
+    def add(self, energy: Energy, step: AcceptedStep) -> float:
         """Book a step; energy: stored after it. The step's own residual [J]."""
         before, turned = self.ledger, _by_kind(step.turned)
         dissipated_by = _added(before.dissipated_by, ((name, work.dissipated) for name, work in turned))

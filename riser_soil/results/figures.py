@@ -1,4 +1,4 @@
-"""The figures of summary.json: those of one instant packed into a vector, nested as in the file, and their extremes."""
+"""Figures of summary.json: their values at one instant, and their extremes with times."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run's folder: the names in it, and how it is taken over without ever looking whole before it is."""
+"""The results folder of a run: file names, lock, and replacement of an earlier run."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _LOCK = "lock"
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
-    """Replaces the file at once: a reader, or a kill, meets the old content or the new one."""
+    """Replaces the file at once: a reader, or a kill, finds the old content or the new one."""
     draft = draft_of(path)
     try:
         draft.write_bytes(content.encode() if isinstance(content, str) else content)
@@ -36,14 +36,14 @@ def write_atomically(path: Path, content: str | bytes) -> None:
 
 
 def draft_of(path: Path) -> Path:
-    """Where a file of the folder is written before it takes its place."""
+    """Path at which a file of the folder is written before it is renamed."""
     workshop = path.parent / _WORKSHOP
     workshop.mkdir(exist_ok=True)
     return workshop / path.name
 
 
 def is_finished(folder: Path) -> bool:
-    """Whether the folder holds a run that says of itself that it has finished."""
+    """Whether the folder has a run that is marked as finished."""
     try:
         summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -51,8 +51,8 @@ def is_finished(folder: Path) -> bool:
     return isinstance(summary, dict) and summary.get("finished") is True
 
 
-class Claim:
-    """One run's hold on its folder, from its beginning to `release` or the process's end, however that comes.
+class FolderLock:
+    """A run's lock on its folder, from its beginning to `release` or the process's end, however that comes.
 
     Raises SceneError where another run has it. On NFS the lock is the server's, so that runs on several machines see
     one another; where a file system has no locks at all, nobody is refused.

@@ -1,7 +1,7 @@
-"""A file that grows by whole updates: who opens it, and a kill at any moment, meets it before an update or after one.
+"""Atomic file updates: a growing file that is whole at every moment, also for readers and after a kill.
 
-Two copies take turns. An update goes to the one that nobody sees, which then takes the name of the other; the other
-gets the same update before the next. So an update costs what it changes, however long the file has become. An HDF5 file
+Two copies alternate. An update is written to the hidden one, which is then renamed to the visible name; the other gets
+the same update before the next one. So the cost of an update depends on its size, not on that of the file. An HDF5 file
 can't be appended to in place: torn in mid-write it cannot be opened at all.
 """
 
@@ -53,7 +53,7 @@ class GrowingFile:
         draft_of(self.path).unlink(missing_ok=True)
 
     def _catch_up(self, draft: Path) -> None:
-        if self._lacking is None or _held(draft):
+        if self._lacking is None or _open_elsewhere(draft):
             draft.unlink(missing_ok=True)
             shutil.copyfile(self.path, draft)
         else:
@@ -68,8 +68,8 @@ def _write(path: Path, changes: Mapping[int, bytes], size: int) -> None:
         file.truncate(size)
 
 
-def _held(path: Path) -> bool:
-    """Whether a reader has the file open; where there are no locks, nobody can tell."""
+def _open_elsewhere(path: Path) -> bool:
+    """Whether a reader has the file open; not known where there are no locks."""
     with path.open("r+b") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -98,7 +98,7 @@ def _exchange(draft: Path, path: Path) -> bool:
 def appending(file: GrowingFile) -> Iterator[h5py.File]:
     """The HDF5 file, to be changed; what has been written in the block becomes one update of it."""
     with file.path.open("rb") as base:
-        pages = _Pages(base, file.size)
+        pages = _MemoryFile(base, file.size)
         with h5py.File(pages, "r+") as store:
             yield store
     file.update(pages.changes(), pages.size)
@@ -115,8 +115,8 @@ def reading(path: Path) -> h5py.File:
         return h5py.File(path, "r", locking=False)
 
 
-class _Pages:
-    """A file to HDF5, which neither tells of a disk that is full nor survives it: what it writes stays in memory."""
+class _MemoryFile:
+    """In-memory file for HDF5, which neither reports a full disk nor survives it."""
 
     def __init__(self, base: BinaryIO, size: int) -> None:
         self.size = size

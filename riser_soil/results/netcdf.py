@@ -1,4 +1,4 @@
-"""results.nc: time series of one run (netCDF-4), readable at any moment, also after a kill.
+"""netCDF-4 time series of a run, results.nc; readable at any moment, also after a kill.
 
 The file is laid out once by h5netcdf. Rows are gathered in memory; `flush` appends them in one update, so that the
 file on disk is whole at every moment.
@@ -19,7 +19,7 @@ import numpy as np
 
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
-from riser_soil.core.output import Output
+from riser_soil.core.output import OutputQuantity
 from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.step_outputs import OF_STEP, TAKEN_OUT
 from riser_soil.results.growing_file import GrowingFile, appending
@@ -46,7 +46,7 @@ class Variable:
 _ARC = Variable(("arc",), "m", "unstressed arc length from the start")
 
 
-def variable(output: Output[Any]) -> Variable:
+def variable(output: OutputQuantity[Any]) -> Variable:
     """Of results.nc, where an output is written along the riser, by instants or by steps."""
     along = {"nodes": ("time", "arc"), "model": ("time",), "step": ("step",)}[output.where]
     dims = (*along, "component") if output.vector else along
@@ -161,7 +161,7 @@ class SeriesFile:
 
 
 def _kept(value: object) -> object:
-    """A copy of what the solver goes on with; numbers stay as they are."""
+    """A copy of values that the solver continues to use; numbers stay as they are."""
     return value.copy() if isinstance(value, np.ndarray) else value
 
 

@@ -1,4 +1,4 @@
-"""From the parts' states to what the recorder is told; the same calls on every rank, files on rank 0 only."""
+"""Observer of a run: collects snapshots from the parts' states on all ranks and hands them to the recorder."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from riser_soil.checks.inventory import built, dissipating, left_out, unknowns, 
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, State
-from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back
-from riser_soil.core.snapshot import RiserSnapshot, RunFacts, SoilSnapshot, StepHealth, Touch
-from riser_soil.core.system import Clock
+from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
+from riser_soil.core.snapshot import ContactSnapshot, RiserSnapshot, RunFacts, SoilSnapshot, StepStatistics
+from riser_soil.core.system import Timer
 from riser_soil.errors import Interruption, RiserSoilError, SolveError
-from riser_soil.interruption import undivided
+from riser_soil.interruption import uninterrupted
 from riser_soil.results.energy_ledger import EnergyLedger
 from riser_soil.results.plausibility import Plausibility
 from riser_soil.results.progress import Progress
@@ -39,14 +39,14 @@ from riser_soil.riser.section_forces import (
 )
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.stages import Stage, StaticStage
-from riser_soil.solve.dynamic_relaxation import Relaxed
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.dynamic_relaxation import RelaxationResult
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
 
 class Observer:
     """Follows a run: progress bar, energy ledger, files. recorder is None off rank 0."""
 
-    def __init__(self, assembly: Assembly, clock: Clock, recorder: Recorder | None, progress: Progress) -> None:
+    def __init__(self, assembly: Assembly, clock: Timer, recorder: Recorder | None, progress: Progress) -> None:
         self._assembly, self._clock, self._recorder, self._progress = assembly, clock, recorder, progress
         output = assembly.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
@@ -55,13 +55,13 @@ class Observer:
 
     @classmethod
     @contextmanager
-    def open(cls, assembly: Assembly, clock: Clock, folder: Path, force: bool) -> Iterator[Observer]:
+    def open(cls, assembly: Assembly, clock: Timer, folder: Path, force: bool) -> Iterator[Observer]:
         """Take the run's folder over; collective. What was written stays when the block is left early."""
         mesh = assembly.soil.output_mesh() if assembly.soil is not None else None
         known = facts(assembly)
         with Progress(enabled=assembly.comm.rank == 0) as progress:
             recorder = None
-            with _on_all_ranks(assembly.comm), undivided():
+            with _on_all_ranks(assembly.comm), uninterrupted():
                 if assembly.comm.rank == 0:
                     text, fields = dump_scene(assembly.scene), _known_fields(assembly)
                     recorder = Recorder.open(folder, known, assembly.line.arc, mesh, text, fields, force)
@@ -95,7 +95,7 @@ class Observer:
         if self._recorder is not None:
             self._recorder.begin_at(riser_snapshot(self._assembly, stepper), self._zone.look(stepper.now), soil)
 
-    def record(self, stepper: TimeStepper, step: Accepted, last: bool) -> None:
+    def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Tell the recorder of a step that has been committed; collective."""
         since = time.perf_counter()
         due = self._schedule.due(step.t, last)
@@ -104,7 +104,7 @@ class Observer:
         change = self._balance.add(stepper.energy, step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
         if self._recorder is not None:
-            health = StepHealth(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
+            health = StepStatistics(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
             riser, touching = riser_snapshot(self._assembly, stepper), self._zone.look(stepper.now)
             self._recorder.accept(step.t, due, riser, touching, health, self._balance.ledger, soil)
             if due.series:
@@ -113,7 +113,7 @@ class Observer:
         self._clock.add("output", since)
 
     def _judge(
-        self, recorder: Recorder, stepper: TimeStepper, riser: RiserSnapshot, touching: Touch, closely: bool
+        self, recorder: Recorder, stepper: TimeStepper, riser: RiserSnapshot, touching: ContactSnapshot, closely: bool
     ) -> None:
         """Look whether what was recorded is plausible; closely where it costs no more than what is written."""
         self._plausibility.look(recorder.now, stepper.now, riser, touching)
@@ -124,7 +124,7 @@ class Observer:
     def record_last(self, end: SolveError | Interruption) -> None:
         """The run ends before its time: write the last accepted step; collective where the ranks end together."""
         together = self._assembly.comm.size == 1 or not isinstance(end, Interruption) or end.together
-        with undivided():
+        with uninterrupted():
             soil = self._soil() if together else None
             if self._recorder is not None:
                 self._recorder.record_last(soil)
@@ -142,7 +142,7 @@ class Observer:
             helped = f" and {relaxations} dynamic relaxation(s)" if relaxations else ""
             print(f"{self._assembly.hanging}: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
 
-    def relaxed(self, relaxed: Relaxed) -> None:
+    def relaxed(self, relaxed: RelaxationResult) -> None:
         """Dynamic relaxation was needed; its Newton iterations count with the next step."""
         self._relaxed += relaxed.iterations
         if self._recorder is not None:
@@ -167,7 +167,7 @@ class Observer:
     def restore(self, saved: Saved) -> None:
         """Follow the stage on from where it was saved."""
         self._enter(self._assembly.scene.stages[int(saved["stage"])], Energy())
-        give_back(self._owners, saved)
+        restore_all(self._owners, saved)
         self._relaxed = int(saved["relaxed"])
         self._show(self._stage)
 
@@ -180,7 +180,7 @@ class Observer:
 
 @contextmanager
 def _on_all_ranks(comm: MPI.Intracomm) -> Iterator[None]:
-    """An error that one rank meets in the block is raised by all."""
+    """An error on one rank in the block is raised on all."""
     failure: RiserSoilError | None = None
     try:
         yield
@@ -192,7 +192,7 @@ def _on_all_ranks(comm: MPI.Intracomm) -> Iterator[None]:
 
 
 def _known_fields(assembly: Assembly) -> tuple[str, ...]:
-    """What the scene wants to be told of, as far as it is known."""
+    """Fields that the scene requests, as far as they can be computed."""
     has = {
         "pressures": assembly.pressures is not None,
         "min_bend_radius": bool(assembly.elements.min_bend_radius.any()),
@@ -253,7 +253,7 @@ def _contact_force(assembly: Assembly, state: State) -> Array:
 
 
 def facts(assembly: Assembly) -> RunFacts:
-    """What is known of a run before its first step; collective."""
+    """Facts about a run before its first step; collective."""
     return RunFacts(
         title=assembly.scene.title,
         version=__version__,

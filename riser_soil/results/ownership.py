@@ -1,4 +1,4 @@
-"""Which files of a result folder this program has written itself: those alone does a run replace.
+"""Ownership of result files: a run replaces only files that this program has written.
 
 A file of the same name that somebody else wrote, or changed since, is refused, whatever else is allowed.
 """
@@ -25,7 +25,7 @@ from riser_soil.results.folder import (
     SOIL_NUMBERS,
     SOIL_XDMF,
     SUMMARY,
-    Claim,
+    FolderLock,
     is_finished,
 )
 from riser_soil.results.growing_file import reading
@@ -55,7 +55,7 @@ def refuse(folder: Path, force: bool) -> None:
     try:
         if not force and is_finished(folder):
             raise SceneError(f"{folder}: holds a finished run; choose another folder (-o) or add --force")
-        Claim.try_out(folder)
+        FolderLock.try_out(folder)
         for name in NAMES:
             _refuse_foreign(folder / name)
     except OSError as err:
@@ -74,16 +74,16 @@ def refuse_together(folder: Path, force: bool, comm: Any) -> None:
         raise failure
 
 
-def prepare(folder: Path, force: bool) -> Claim:
-    """Makes the folder, or clears a previous run's files (and no others) out of it; the hold on it.
+def prepare(folder: Path, force: bool) -> FolderLock:
+    """Makes the folder, or clears a previous run's files (and no others) out of it; returns its lock.
 
     The old summary goes first, so that a kill in between cannot leave a folder that looks finished. The scene stays
     until there is another: it may be the one that is run.
     """
     refuse(folder, force)
     try:
-        claim = Claim(folder)
-        claim.clear()
+        lock = FolderLock(folder)
+        lock.clear()
         for name in NAMES:
             _refuse_foreign(folder / name)
         for name in NAMES:
@@ -91,7 +91,7 @@ def prepare(folder: Path, force: bool) -> Claim:
                 (folder / name).unlink(missing_ok=True)
     except OSError as err:
         raise _unusable(folder, err) from err
-    return claim
+    return lock
 
 
 def _unusable(folder: Path, err: OSError) -> RiserSoilError:
@@ -109,7 +109,8 @@ def _refuse_foreign(path: Path) -> None:
 
 
 def _own_scene(path: Path) -> bool:
-    """By its seal. Earlier versions had none: theirs is older than the results beside it, if nobody has changed it."""
+    """By its seal. Earlier versions had none: theirs is older than the results beside it, if it has not been changed.
+    """
     text = path.read_bytes()
     if seal := _SEALED.match(text):
         return hashlib.sha256(text[seal.end() :]).hexdigest() == seal[1].decode()

@@ -1,4 +1,4 @@
-"""Plausibility of results as they come: strains beyond small ones, bending that elements blur, soil never touched."""
+"""Plausibility of results: strains too large, bending that the elements do not resolve, soil never touched."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, packed, unpacked
-from riser_soil.core.snapshot import RiserSnapshot, Touch
+from riser_soil.core.snapshot import ContactSnapshot, RiserSnapshot
 from riser_soil.riser.resolution import misfit
 from riser_soil.riser.section_forces import at_most
 from riser_soil.scene.stages import Stage
@@ -27,20 +27,20 @@ SMALL_TURN = 2e-3
 
 
 @dataclass(frozen=True)
-class Worst:
+class LargestValue:
     """The largest value yet of what must stay small, its arc [m], and the time [s] or load factor."""
 
     value: float = 0.0
     arc: float = math.nan
     t: float = math.nan
 
-    def or_larger(self, values: Array, arcs: Array, t: float) -> Worst:
+    def or_larger(self, values: Array, arcs: Array, t: float) -> LargestValue:
         at = int(values.argmax())
-        return Worst(float(values[at]), float(arcs[at]), t) if values[at] > self.value else self
+        return LargestValue(float(values[at]), float(arcs[at]), t) if values[at] > self.value else self
 
 
 class Plausibility:
-    """What a stage's results look like at the instants that are recorded; on the rank that holds the riser.
+    """Plausibility of a stage's results at the recorded instants; on the rank that holds the riser.
 
     EA [N] and radius [m] (nn,): the smaller and the larger of what the two elements beside a node have.
     """
@@ -59,9 +59,9 @@ class Plausibility:
         self._last_stage = stage.name == self._assembly.scene.stages[-1].name
         self._unit = "s" if stage.kind == "dynamic" else "of the load"
         self._largest = 0.0  # moment [N.m]
-        self._axial = self._bending = self._smooth = self._steep = Worst()
+        self._axial = self._bending = self._smooth = self._steep = LargestValue()
 
-    def look(self, t: float, state: State, riser: RiserSnapshot, touch: Touch) -> None:
+    def look(self, t: float, state: State, riser: RiserSnapshot, touch: ContactSnapshot) -> None:
         """t: s of the run (static stages: load factor)."""
         arc = self._assembly.line.arc
         self._axial = self._axial.or_larger(np.abs(riser.effective_tension) / self.EA, arc, t)
@@ -80,7 +80,7 @@ class Plausibility:
         self._smooth = self._grown(self._smooth, found.smooth, found.smooth_at, t)
         self._steep = self._grown(self._steep, found.steep, found.steep_at, t)
 
-    def _grown(self, worst: Worst, moment: float, e: int, t: float) -> Worst:
+    def _grown(self, worst: LargestValue, moment: float, e: int, t: float) -> LargestValue:
         elements = self._assembly.elements
         small = moment * elements.length[e] < SMALL_TURN * max(elements.EI_y[e], elements.EI_z[e])
         return worst if small else worst.or_larger(np.array([moment]), self._middle[[e]], t)
@@ -121,7 +121,7 @@ class Plausibility:
                 )
                 return
 
-    def _at(self, worst: Worst) -> str:
+    def _at(self, worst: LargestValue) -> str:
         return f"{worst.value:.3g} at arc {worst.arc:.5g} m and {worst.t:.5g} {self._unit}"
 
     def _never(self) -> str:
@@ -141,5 +141,5 @@ class Plausibility:
     def restore(self, saved: Saved) -> None:
         """In the stage that has begun."""
         self._largest, self._touched = float(saved["largest"]), bool(saved["touched"])
-        self._axial, self._bending, self._smooth, self._steep = (Worst(*row) for row in saved["worst"].tolist())
+        self._axial, self._bending, self._smooth, self._steep = (LargestValue(*row) for row in saved["worst"].tolist())
         self._where, self._lowest = unpacked(saved["where"]), saved["lowest"]

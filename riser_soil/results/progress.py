@@ -1,4 +1,4 @@
-"""One line on the terminal while a run goes on."""
+"""Progress line on the terminal during a run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reads the folder of a run, finished or not, from its files alone."""
+"""Reader of a run's results, finished or not, from its files alone."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class Run:
         return np.array([float(grid.find("Time").get("Value")) for grid in self._soil_grids])
 
     def soil_frame(self, index: int = -1) -> SoilFrame:
-        """One frame of the soil, the last unless told."""
+        """One frame of the soil, by default the last."""
         if not self._soil_grids:
             raise ResultsError(f"{self.folder}: soil.xdmf holds no frame yet")
         grid = self._soil_grids[index]

@@ -1,4 +1,4 @@
-"""The recorder: told of every accepted step, it writes the run's folder. Lives on one rank only."""
+"""The recorder: writes every accepted step to the run's folder. Lives on one rank only."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ import numpy as np
 
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
-from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back
+from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import (
+    ContactSnapshot,
     Instant,
     Ledger,
     RiserSnapshot,
     RunFacts,
     SoilMesh,
     SoilSnapshot,
-    StepHealth,
     StepRecord,
-    Touch,
+    StepStatistics,
 )
 from riser_soil.errors import SceneError, WriteError
 from riser_soil.results import folder as run_folder
 from riser_soil.results.figures import final_state, pack
-from riser_soil.results.folder import Claim
+from riser_soil.results.folder import FolderLock
 from riser_soil.results.netcdf import SeriesFile, ledger_variables
 from riser_soil.results.ownership import prepare, sealed
 from riser_soil.results.record_rows import series_row, soil_frame, step_row
-from riser_soil.results.schedule import Due
+from riser_soil.results.schedule import DueOutputs
 from riser_soil.results.simulated_time import SimulatedTime
 from riser_soil.results.summary import StageTally, Summary
 from riser_soil.results.xdmf import Frame, XdmfFile, polyline
@@ -45,12 +45,12 @@ _MOST_WAITING, _STEP = 1 << 24, 2000
 
 
 @dataclass
-class Last:
-    """The state told last, and what it has been written to."""
+class LastState:
+    """The last recorded state, and the files that it has been written to."""
 
     seen: Instant
     soil: SoilSnapshot | None
-    written: Due
+    written: DueOutputs
     stamp: float = 0.0  # s, of its record in the series
 
 
@@ -63,7 +63,7 @@ class Recorder:
 
     def __init__(
         self,
-        claim: Claim,
+        lock: FolderLock,
         folder: Path,
         facts: RunFacts,
         arc: Array,
@@ -71,7 +71,7 @@ class Recorder:
         fields: tuple[str, ...],
     ) -> None:
         self.summary = Summary(facts)
-        self._claim, self._folder = claim, folder
+        self._lock, self._folder = lock, folder
         self._arc = arc
         self._fields = fields
         left_out = set(outputs.choices()) - set(fields)
@@ -84,7 +84,7 @@ class Recorder:
         self._time = SimulatedTime()
         self.now = 0.0  # s of the run at the last step; in a static stage its load factor
         self._latest: Array | None = None
-        self._last: Last | None = None
+        self._last: LastState | None = None
         self._settlement: float | None = None
         self._next_flush = 0.0
         self._waiting = 0
@@ -107,20 +107,20 @@ class Recorder:
         Raises SceneError for an unknown field and for a folder that the run may not have (see `ownership`).
         """
         wanted = _check_fields(outputs.choices() if fields is None else fields)
-        claim = prepare(folder, force)
+        lock = prepare(folder, force)
         try:
             with _told_when_full(folder):
                 run_folder.write_atomically(folder / run_folder.SCENE, sealed(scene_text))
-                recorder = cls(claim, folder, facts, arc, soil_mesh, wanted)
+                recorder = cls(lock, folder, facts, arc, soil_mesh, wanted)
                 recorder.flush()
         except BaseException:
-            claim.release()
+            lock.release()
             raise
         return recorder
 
     @property
     def reached(self) -> str:
-        """How far the run has come, to be told when it ends before its time."""
+        """Progress of the run, for the message of a run that ends early."""
         if self.summary.finished:
             return f"after the last stage; {self._folder} has the whole run"
         stages = [stage for stage in self.summary.stages if stage.steps]
@@ -154,20 +154,20 @@ class Recorder:
         self.summary.stages.append(stage)
         self._series.begin_stage(name)
 
-    def begin_at(self, riser: RiserSnapshot, touch: Touch, soil: SoilSnapshot | None = None) -> None:
+    def begin_at(self, riser: RiserSnapshot, touch: ContactSnapshot, soil: SoilSnapshot | None = None) -> None:
         """The state that the run begins with, where its first stage is dynamic: recorded at time zero."""
         seen = Instant(self._arc, riser, touch)
         self._latest = pack(seen)
         self.summary.stages[-1].extremes.update(self._time.now, self._latest)
-        self._record(seen, Due(series=True, pictures=True), soil)
+        self._record(seen, DueOutputs(series=True, pictures=True), soil)
 
     def accept(
         self,
         t: float,
-        due: Due,
+        due: DueOutputs,
         riser: RiserSnapshot,
-        touch: Touch,
-        health: StepHealth,
+        touch: ContactSnapshot,
+        health: StepStatistics,
         ledger: Ledger,
         soil: SoilSnapshot | None = None,
     ) -> None:
@@ -196,17 +196,17 @@ class Recorder:
         soil = last.soil or soil
         drawable = self._soil_frames is None or soil is not None
         if not last.written.series:
-            self._record(last.seen, Due(series=True, pictures=drawable), soil)
+            self._record(last.seen, DueOutputs(series=True, pictures=drawable), soil)
         elif drawable and not last.written.pictures:
             self._picture(last.stamp, series_row(last.stamp, last.seen, self._fields), soil)
-            last.written = Due(series=True, pictures=True)
+            last.written = DueOutputs(series=True, pictures=True)
 
     def add_seconds(self, seconds: Mapping[str, float]) -> None:
         """Adds wall time [s] to the named parts of the run."""
         self.summary.seconds.update(seconds)
 
     def flush(self) -> None:
-        """Brings everything told so far to disk: the frames, the series that tells how far they go, the summary."""
+        """Writes all records so far to disk: the frames, the series that gives their number, the summary."""
         begun = time.monotonic()
         with _told_when_full(self._folder, self._let_go):
             for frames in self._pictures:
@@ -241,7 +241,7 @@ class Recorder:
         for frames in self._pictures:
             frames.close()
         self._series.close()
-        self._claim.release()
+        self._lock.release()
 
     @property
     def _pictures(self) -> list[XdmfFile]:
@@ -258,8 +258,8 @@ class Recorder:
         stage.final = final_state(seen)
         stage.bend(now, self._arc, seen.riser)
 
-    def _record(self, seen: Instant, due: Due, soil: SoilSnapshot | None) -> None:
-        self._last = Last(seen, soil, due)
+    def _record(self, seen: Instant, due: DueOutputs, soil: SoilSnapshot | None) -> None:
+        self._last = LastState(seen, soil, due)
         if due.series:
             self._last.stamp = self._time.stamp()
             row = series_row(self._last.stamp, seen, self._fields)
@@ -289,7 +289,7 @@ class Recorder:
         return gathered(self._owners) | latest | settlement | {"now": np.array(self.now)}
 
     def restore(self, saved: Saved) -> None:
-        give_back(self._owners, saved)
+        restore_all(self._owners, saved)
         self.now, self._latest = float(saved["now"]), saved.get("latest")
         self._settlement = float(saved["settlement"]) if "settlement" in saved else None
 

@@ -1,4 +1,4 @@
-"""What is written of one state: rows of the series and of the steps, frames of the pictures."""
+"""Records of one state: rows of the time series and of the step table, frames of the XDMF files."""
 
 from __future__ import annotations
 

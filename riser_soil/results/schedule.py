@@ -1,4 +1,4 @@
-"""When to write: decided from the step's time alone, so that every rank comes to the same answer."""
+"""Output schedule: which accepted steps are written to which file, by their time alone."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.core.saved_state import Saved, gathered, give_back
+from riser_soil.core.saved_state import Saved, gathered, restore_all
 
 # Share of an interval by which a step may end early and still count: time is a sum of steps.
 _SLACK = 1e-6
 
 
 @dataclass(frozen=True)
-class Due:
-    """What a step is to be written to."""
+class DueOutputs:
+    """Files that a step is written to."""
 
     series: bool  # results.nc
     pictures: bool  # riser.xdmf and soil.xdmf
 
 
-class _Pace:
+class _OutputInterval:
     """Multiples of one interval [s]; none means every step."""
 
     def __init__(self, interval: float | None) -> None:
@@ -58,8 +58,8 @@ class Schedule:
     """
 
     def __init__(self, interval: float | None = None, picture_interval: float | None = None) -> None:
-        self._series = _Pace(interval)
-        self._pictures = _Pace(interval if picture_interval is None else picture_interval)
+        self._series = _OutputInterval(interval)
+        self._pictures = _OutputInterval(interval if picture_interval is None else picture_interval)
         self._static = True
 
     def begin_stage(self, kind: str) -> None:
@@ -68,20 +68,20 @@ class Schedule:
         self._series.restart()
         self._pictures.restart()
 
-    def due(self, t: float, last: bool) -> Due:
+    def due(self, t: float, last: bool) -> DueOutputs:
         """What the step that ends at t [s since the stage began] is written to. Call once per accepted step.
 
         last: whether it is the stage's last step.
         """
         if self._static:
-            return Due(last, last)
+            return DueOutputs(last, last)
         pictures = self._pictures.reached(t) or last
         series = self._series.reached(t) or pictures
-        return Due(series, pictures)
+        return DueOutputs(series, pictures)
 
     def state(self) -> Saved:
         return gathered({"series": self._series, "pictures": self._pictures}) | {"static": np.array(self._static)}
 
     def restore(self, saved: Saved) -> None:
-        give_back({"series": self._series, "pictures": self._pictures}, saved)
+        restore_all({"series": self._series, "pictures": self._pictures}, saved)
         self._static = bool(saved["static"])

@@ -1,4 +1,4 @@
-"""What a finished run tells on the screen."""
+"""Screen output of a finished run: a table for each stage."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def _stage_rows(stage: dict[str, Any]) -> list[Row]:
 
 
 def _figure_rows(stage: dict[str, Any]) -> Iterator[Row]:
-    """Of the figures that have a row and are known."""
+    """Rows of the known figures."""
     for _, figure in outputs.figures(_ORDER):
         final, extremes = (_found(stage[key], figure.path) for key in ("final", "extremes"))
         if figure.row is None or final is _NOTHING:
@@ -92,7 +92,7 @@ def _figure_rows(stage: dict[str, Any]) -> Iterator[Row]:
 
 
 def _found(nested: dict[str, Any], path: tuple[str, ...]) -> Any:
-    """What the summary has at a place, or _NOTHING."""
+    """The summary's entry at a place, or _NOTHING."""
     value: Any = nested
     for key in path:
         value = value.get(key, _NOTHING) if isinstance(value, dict) else _NOTHING

@@ -1,4 +1,4 @@
-"""Simulated time of a run, over all its stages: the time axis of the results."""
+"""Simulated time of a run over all its stages: the time axis of the results."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""summary.json: what a run was, how each stage ended, and the extremes on the way."""
+"""Summary of a run, summary.json: what was built, how each stage ended, extremes and warnings."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.output import bend_radius
-from riser_soil.core.saved_state import Saved, gathered, give_back, packed, under, unpacked, within
-from riser_soil.core.snapshot import Ledger, RiserSnapshot, RunFacts, StepHealth
+from riser_soil.core.saved_state import Saved, gathered, packed, restore_all, under, unpacked, within
+from riser_soil.core.snapshot import Ledger, RiserSnapshot, RunFacts, StepStatistics
 from riser_soil.results.figures import Extremes
 from riser_soil.results.folder import write_atomically
 
@@ -40,8 +40,8 @@ def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
 
 
 @dataclass(frozen=True)
-class Bend:
-    """Where and when the pipe is bent most for what is allowed: radius m, arc m, t s or load factor."""
+class TightestBend:
+    """The tightest bend relative to the allowable radius: radius m, arc m, t s or load factor."""
 
     utilisation: float = 0.0
     radius: float = math.inf
@@ -58,7 +58,7 @@ class Bend:
 
 @dataclass
 class StageTally:
-    """What is gathered of one stage while it runs. time: s simulated in it (0 in statics)."""
+    """Statistics of one stage, gathered while it runs. time: s simulated in it (0 in statics)."""
 
     name: str
     kind: str
@@ -72,7 +72,7 @@ class StageTally:
     final: dict[str, Any] | None = None
     extremes: Extremes = field(default_factory=Extremes)
     energy: Ledger = field(default_factory=Ledger)
-    tightest: Bend = Bend()
+    tightest: TightestBend = TightestBend()
     worst_residual: tuple[float, float] = (0.0, math.nan)  # of the energy balance [J], and its time [s]
     implausible: tuple[str, ...] = ()  # what is not plausible about the riser's shape, forces and surroundings
 
@@ -87,9 +87,9 @@ class StageTally:
         at = int(riser.bend_utilisation.argmax())
         used = float(riser.bend_utilisation[at])
         if used > self.tightest.utilisation:
-            self.tightest = Bend(used, bend_radius(riser.curvature[at]), float(arc[at]), t)
+            self.tightest = TightestBend(used, bend_radius(riser.curvature[at]), float(arc[at]), t)
 
-    def count(self, health: StepHealth) -> None:
+    def count(self, health: StepStatistics) -> None:
         self.steps += 1
         self.newton_iterations += health.newton_iterations
         self.most_newton_iterations = max(self.most_newton_iterations, health.newton_iterations)
@@ -97,7 +97,7 @@ class StageTally:
 
     @property
     def method(self) -> str | None:
-        """What it took to find the equilibria of a static stage."""
+        """The method by which the equilibria of a static stage were found."""
         if self.kind != "static":
             return None
         if self.relaxations:
@@ -118,7 +118,7 @@ class StageTally:
 
     @property
     def warnings(self) -> list[str]:
-        """What is doubtful about the stage's results, with numbers and a remedy."""
+        """Warnings about the stage's results, with numbers and a remedy."""
         off = energy_warnings(self.energy, *self.worst_residual) if self.kind == "dynamic" else ()
         return [*self.tightest.warnings("s" if self.kind == "dynamic" else "of the load"), *self.implausible, *off]
 
@@ -129,8 +129,8 @@ class StageTally:
 
     def restore(self, saved: Saved) -> None:
         vars(self).update(unpacked(saved["told"]))
-        give_back({"extremes": self.extremes}, saved)
-        self.energy, self.tightest = Ledger(**vars(self)["energy"]), Bend(**vars(self)["tightest"])
+        restore_all({"extremes": self.extremes}, saved)
+        self.energy, self.tightest = Ledger(**vars(self)["energy"]), TightestBend(**vars(self)["tightest"])
         worst, t = self.worst_residual
         self.worst_residual, self.implausible = (worst, t), tuple(self.implausible)
 
@@ -171,7 +171,7 @@ class Summary:
         self.laying, self.seconds = unpacked(saved["laying"]), Counter(unpacked(saved["seconds"]))
         stages = within(saved, "stages")
         self.stages = [StageTally("", "") for name in stages if name.endswith("/told")]
-        give_back({str(n): stage for n, stage in enumerate(self.stages)}, stages)
+        restore_all({str(n): stage for n, stage in enumerate(self.stages)}, stages)
 
 
 def plain_json(value: Any) -> Any:

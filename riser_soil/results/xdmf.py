@@ -1,7 +1,7 @@
 """XDMF time series for ParaView and VTK: numbers in HDF5, structure in XML, readable at any moment.
 
-One temporal collection of uniform grids. The HDF5 file gets its numbers before the XML that points into it, so that the
-XML never names what is not there.
+One temporal collection of uniform grids. The numbers are written to the HDF5 file before the XML that refers to them,
+so that the XML never refers to missing data.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""The riser: finite rotations, beam elements, the line's configuration and the parts that load it."""
+"""The riser: finite rotations, corotational beam elements, line configuration, inertia, damping and loads."""

@@ -1,4 +1,4 @@
-"""g = theta/sin(theta) and its derivatives by c = cos(theta): what turns the sine of an angle into the angle.
+"""The function g = theta/sin(theta) and its derivatives by c = cos(theta), for angles from their sines.
 
 Near theta = 0 the closed form loses digits; there g is the sum of (2 n)!!/(2 n + 1)!! x^n, x = sin^2(theta/2).
 """

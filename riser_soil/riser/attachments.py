@@ -1,4 +1,4 @@
-"""Point masses and buoyancy modules on the line, and their weight less buoyancy: the part "attachments".
+"""Point masses and buoyancy modules on the line, with their weight less buoyancy: the part "attachments".
 
 What acts at xi of an element reaches its q by the shape functions N(xi): a weight w as w N, a mass m as m N N^T. At a
 node that is the classical lumped weight and mass. There it counts with the element after the node, so section forces
@@ -22,7 +22,7 @@ from riser_soil.riser.line_part import LinePart
 
 
 @dataclass(frozen=True)
-class Attachment:
+class PointAttachment:
     """A point mass or buoyancy module.
 
     arc: place on the line [m]. mass: kg. net_weight: weight less the buoyancy of the whole volume [N], positive
@@ -38,22 +38,22 @@ class Attachment:
     added_mass: float = 0.0
 
 
-def places(line: Line, attachments: Sequence[Attachment]) -> tuple[IntArray, Array]:
+def places(line: Line, attachments: Sequence[PointAttachment]) -> tuple[IntArray, Array]:
     """Elements (m,) of the attachments, and where they sit in them, xi (m,)."""
     found = [line.place(attachment.arc) for attachment in attachments]
     return np.array([e for e, _ in found], dtype=np.int64), np.array([xi for _, xi in found])
 
 
-def _shares(line: Line, attachments: Sequence[Attachment]) -> tuple[IntArray, Array]:
+def _shares(line: Line, attachments: Sequence[PointAttachment]) -> tuple[IntArray, Array]:
     """Elements (m,) of the attachments, and N1..N4 (m, 4) where they sit."""
     element, xi = places(line, attachments)
     return element, hermite.shapes(xi, line.length[element])
 
 
-def split(line: Line, attachments: Sequence[Attachment]) -> tuple[list[Attachment], list[Attachment]]:
-    """Those along the line, and those at its two ends."""
+def split(line: Line, attachments: Sequence[PointAttachment]) -> tuple[list[PointAttachment], list[PointAttachment]]:
+    """Attachments along the line, and those at its two ends."""
     ends = (0, 0.0), (line.length.size - 1, 1.0)
-    sorted_out: tuple[list[Attachment], list[Attachment]] = ([], [])
+    sorted_out: tuple[list[PointAttachment], list[PointAttachment]] = ([], [])
     for attachment in attachments:
         sorted_out[line.place(attachment.arc) in ends].append(attachment)
     return sorted_out
@@ -66,12 +66,12 @@ class Masses(NamedTuple):
     ends: Array
 
 
-def masses(line: Line, attachments: Sequence[Attachment]) -> Masses:
+def masses(line: Line, attachments: Sequence[PointAttachment]) -> Masses:
     along, ends = (_mass_matrices(line, some) for some in split(line, attachments))
     return Masses(along, ends)
 
 
-def _mass_matrices(line: Line, attachments: Sequence[Attachment]) -> Array:
+def _mass_matrices(line: Line, attachments: Sequence[PointAttachment]) -> Array:
     M = np.zeros((line.length.size, 4, 4))
     element, N = _shares(line, attachments)
     mass = np.array([attachment.mass for attachment in attachments])
@@ -79,7 +79,7 @@ def _mass_matrices(line: Line, attachments: Sequence[Attachment]) -> Array:
     return M
 
 
-def _residual(line: Line, attachments: Sequence[Attachment]) -> Array:
+def _residual(line: Line, attachments: Sequence[PointAttachment]) -> Array:
     """Residual of weight less buoyancy, conjugate to q (ne, 4, d)."""
     F = np.zeros((line.length.size, 4, line.dimension))
     element, N = _shares(line, attachments)
@@ -97,7 +97,7 @@ class Attachments(LinePart):
     name = "attachments"
     traits = Traits("F", symmetric=True)
 
-    def __init__(self, line: Line, attachments: Sequence[Attachment]) -> None:
+    def __init__(self, line: Line, attachments: Sequence[PointAttachment]) -> None:
         super().__init__(line)
         self._along, self._ends = (_residual(line, some) for some in split(line, attachments))
         self._F = self._along + self._ends

@@ -1,4 +1,4 @@
-"""The elastic line under its own weight: the part "riser"."""
+"""Elastic beam elements of the line under submerged weight: the part "riser"."""
 
 from __future__ import annotations
 

@@ -23,14 +23,14 @@ from riser_soil.riser.bending import bow, bow_slopes, end_moments
 Vec2 = tuple[float, float]
 
 
-class Section(NamedTuple):
+class PlanarSection(NamedTuple):
     """Section stiffnesses of the elements, each of shape (ne,)."""
 
     EA: Array  # N
     EI: Array  # N m2
 
 
-class Reference(NamedTuple):
+class PlanarReference(NamedTuple):
     """Unstressed configuration of the elements, each of shape (ne,)."""
 
     L: Array  # arc length, m
@@ -39,7 +39,7 @@ class Reference(NamedTuple):
     theta2: Array
 
 
-class Element(NamedTuple):
+class PlanarElement(NamedTuple):
     """Stiffnesses and unstressed configuration of one element."""
 
     L: float
@@ -50,7 +50,7 @@ class Element(NamedTuple):
     theta2: float
 
 
-class Corotated(NamedTuple):
+class PlanarCorotated(NamedTuple):
     """Configuration of one element seen from its own frame."""
 
     axis: Vec2  # unit vector along the chord
@@ -59,7 +59,7 @@ class Corotated(NamedTuple):
     theta2: float
 
 
-class NodalForces(NamedTuple):
+class PlanarNodalForces(NamedTuple):
     """Force on node 2 (node 1 gets its opposite), along and across the chord, and moments on both nodes."""
 
     force: Vec2
@@ -74,39 +74,39 @@ def _without_turns(angle: float) -> float:
 
 
 @njit
-def corotate(chord: Array, direction1: float, direction2: float) -> Corotated:
+def corotate(chord: Array, direction1: float, direction2: float) -> PlanarCorotated:
     """The element seen from its chord, with the directions of its ends' tangents."""
     length = math.sqrt(chord[0] * chord[0] + chord[1] * chord[1])
     axis, angle = (chord[0] / length, chord[1] / length), math.atan2(chord[1], chord[0])
-    return Corotated(axis, length, _without_turns(direction1 - angle), _without_turns(direction2 - angle))
+    return PlanarCorotated(axis, length, _without_turns(direction1 - angle), _without_turns(direction2 - angle))
 
 
 @njit
-def reference(chord0: Array, direction0_1: Array, direction0_2: Array, L: Array) -> Reference:
+def reference(chord0: Array, direction0_1: Array, direction0_2: Array, L: Array) -> PlanarReference:
     """Unstressed configuration from chords (ne, 2), tangent directions and arc lengths (each (ne,))."""
     ne = len(L)
     l0, theta1, theta2 = np.empty(ne), np.empty(ne), np.empty(ne)
     for e in range(ne):
         at = corotate(chord0[e], direction0_1[e], direction0_2[e])
         l0[e], theta1[e], theta2[e] = at.length, at.theta1, at.theta2
-    return Reference(L, l0, theta1, theta2)
+    return PlanarReference(L, l0, theta1, theta2)
 
 
 @njit
-def element_at(ref: Reference, section: Section, e: int) -> Element:
+def element_at(ref: PlanarReference, section: PlanarSection, e: int) -> PlanarElement:
     """Stiffnesses and unstressed configuration of element e."""
     L = ref.L[e]
-    return Element(L, section.EA[e], section.EI[e] / L, ref.l0[e], ref.theta1[e], ref.theta2[e])
+    return PlanarElement(L, section.EA[e], section.EI[e] / L, ref.l0[e], ref.theta1[e], ref.theta2[e])
 
 
 @njit
-def _strain(element: Element, at: Corotated) -> float:
+def _strain(element: PlanarElement, at: PlanarCorotated) -> float:
     stretch = (at.length - element.l0) / element.L
     return stretch + bow(at.theta1, at.theta2) - bow(element.theta1, element.theta2)
 
 
 @njit
-def _stress(element: Element, at: Corotated) -> tuple[float, float, float]:
+def _stress(element: PlanarElement, at: PlanarCorotated) -> tuple[float, float, float]:
     """Derivatives of U by the chord's length and by theta_1 and theta_2."""
     N = element.EA * _strain(element, at)
     m1, m2 = end_moments(element.EI_per_L, at.theta1 - element.theta1, at.theta2 - element.theta2)
@@ -116,7 +116,7 @@ def _stress(element: Element, at: Corotated) -> tuple[float, float, float]:
 
 @njit
 def stress_variation(
-    element: Element, at: Corotated, N: float, stretch: float, dtheta1: float, dtheta2: float
+    element: PlanarElement, at: PlanarCorotated, N: float, stretch: float, dtheta1: float, dtheta2: float
 ) -> tuple[float, float, float]:
     """Variation of the stresses: the Hessian of U times a variation of the chord's length and of theta_i."""
     slope1, slope2 = bow_slopes(at.theta1, at.theta2)
@@ -130,7 +130,7 @@ def stress_variation(
 
 @njit
 def strain_energy(
-    chord: Array, direction1: Array, direction2: Array, ref: Reference, section: Section
+    chord: Array, direction1: Array, direction2: Array, ref: PlanarReference, section: PlanarSection
 ) -> Array:
     """Strain energy U (ne,) in J; arguments as in `forces`."""
     U = np.empty(len(chord))
@@ -144,13 +144,13 @@ def strain_energy(
 
 
 @njit
-def nodal_forces(at: Corotated, N: float, m1: float, m2: float) -> NodalForces:
+def nodal_forces(at: PlanarCorotated, N: float, m1: float, m2: float) -> PlanarNodalForces:
     """Nodal forces from the chord force N and the moments m_i conjugate to theta_i."""
-    return NodalForces((N, -(m1 + m2) / at.length), m1, m2)
+    return PlanarNodalForces((N, -(m1 + m2) / at.length), m1, m2)
 
 
 @njit
-def put_forces(axis: Vec2, forces: NodalForces, out: Array) -> None:
+def put_forces(axis: Vec2, forces: PlanarNodalForces, out: Array) -> None:
     """Write an element's forces, given along its frame, to `out` (6,) in the plane's axes."""
     along, across = forces.force
     p, z = axis[0] * along - axis[1] * across, axis[1] * along + axis[0] * across
@@ -159,7 +159,7 @@ def put_forces(axis: Vec2, forces: NodalForces, out: Array) -> None:
 
 
 @njit
-def forces(chord: Array, direction1: Array, direction2: Array, ref: Reference, section: Section) -> Array:
+def forces(chord: Array, direction1: Array, direction2: Array, ref: PlanarReference, section: PlanarSection) -> Array:
     """Internal forces f (ne, 6) for chords (ne, 2) and tangent directions (ne,) of both ends, rad."""
     f = np.empty((len(chord), 6))
     for e in range(len(chord)):
@@ -170,26 +170,26 @@ def forces(chord: Array, direction1: Array, direction2: Array, ref: Reference, s
 
 
 @njit
-def configuration_variation(at: Corotated, force: Vec2, stretch: float, spin: float) -> Vec2:
+def configuration_variation(at: PlanarCorotated, force: Vec2, stretch: float, spin: float) -> Vec2:
     """Variation of the force on node 2 at fixed N and m_i: the chord lengthens by `stretch` and spins."""
     return -spin * force[1], spin * force[0] - stretch / at.length * force[1]
 
 
 @njit
 def _vary(
-    element: Element, at: Corotated, N: float, force: Vec2, u: Vec2, w1: float, w2: float
-) -> NodalForces:
+    element: PlanarElement, at: PlanarCorotated, N: float, force: Vec2, u: Vec2, w1: float, w2: float
+) -> PlanarNodalForces:
     """Variation of an element's forces when its nodes move by u = u2 - u1, in its axes, and turn by w_i."""
     stretch, spin = u[0], u[1] / at.length
     dN, dm1, dm2 = stress_variation(element, at, N, stretch, w1 - spin, w2 - spin)
     change = nodal_forces(at, dN, dm1, dm2)
     moved = configuration_variation(at, force, stretch, spin)
     total = (change.force[0] + moved[0], change.force[1] + moved[1])
-    return NodalForces(total, change.moment1, change.moment2)
+    return PlanarNodalForces(total, change.moment1, change.moment2)
 
 
 @njit
-def _tangent(element: Element, at: Corotated, N: float, force: Vec2, K: Array) -> None:
+def _tangent(element: PlanarElement, at: PlanarCorotated, N: float, force: Vec2, K: Array) -> None:
     """Write the element's tangent, column by column, to K (6, 6)."""
     c, s = at.axis
     still = (0.0, 0.0)
@@ -203,7 +203,7 @@ def _tangent(element: Element, at: Corotated, N: float, force: Vec2, K: Array) -
 
 @njit
 def forces_and_tangent(
-    chord: Array, direction1: Array, direction2: Array, ref: Reference, section: Section
+    chord: Array, direction1: Array, direction2: Array, ref: PlanarReference, section: PlanarSection
 ) -> tuple[Array, Array]:
     """Internal forces f (ne, 6) and their derivative K (ne, 6, 6) by displacements and angles."""
     f, K = np.empty((len(chord), 6)), np.empty((len(chord), 6, 6))
@@ -214,7 +214,14 @@ def forces_and_tangent(
 
 @njit
 def put_element(
-    e: int, chord: Array, direction1: Array, direction2: Array, ref: Reference, section: Section, f: Array, K: Array
+    e: int,
+    chord: Array,
+    direction1: Array,
+    direction2: Array,
+    ref: PlanarReference,
+    section: PlanarSection,
+    f: Array,
+    K: Array,
 ) -> None:
     """Write forces f (6,) and tangent K (6, 6) of element e; all else as in `forces_and_tangent`."""
     element, at = element_at(ref, section, e), corotate(chord[e], direction1[e], direction2[e])

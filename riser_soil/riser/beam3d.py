@@ -16,8 +16,8 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser.corotation import (
-    Corotated,
-    NodalForces,
+    SpatialCorotated,
+    SpatialNodalForces,
     corotate,
     frame_spin,
     lengthen,
@@ -44,7 +44,7 @@ from riser_soil.riser.vectors import Mat, Vec, add, matrix, sub, vecmat, vector
 STILL = (0.0, 0.0, 0.0)
 
 
-class Section(NamedTuple):
+class SpatialSection(NamedTuple):
     """Section stiffnesses of the elements, each of shape (ne,)."""
 
     EA: Array  # N
@@ -53,7 +53,7 @@ class Section(NamedTuple):
     GJ: Array  # N m2, positive
 
 
-class Reference(NamedTuple):
+class SpatialReference(NamedTuple):
     """Unstressed configuration of the elements."""
 
     L: Array  # (ne,) arc length, m
@@ -65,7 +65,7 @@ class Reference(NamedTuple):
 class Shape(NamedTuple):
     """Configuration of one element, seen from its own frame, and its strains."""
 
-    frame: Corotated
+    frame: SpatialCorotated
     end1: SwingTwist
     end2: SwingTwist
     stations: tuple[Station, Station]
@@ -83,14 +83,14 @@ class SpatialChange(NamedTuple):
     db: Vec
 
 
-class Response(NamedTuple):
-    """What the variation of an element's forces needs besides its shape, in the element's frame."""
+class SpatialResponse(NamedTuple):
+    """Stresses and forces of an element in its own frame, as the variation of its forces needs them."""
 
     elastic: Strain  # what the stress comes from
     stress: Stress
     mu1: Vec  # generalised moments of the ends
     mu2: Vec
-    forces: NodalForces
+    forces: SpatialNodalForces
 
 
 @njit
@@ -103,7 +103,7 @@ def shape(L: float, chord: Vec, T1: Mat, T2: Mat) -> Shape:
 
 
 @njit
-def reference(chord0: Array, T0_1: Array, T0_2: Array, L: Array) -> Reference:
+def reference(chord0: Array, T0_1: Array, T0_2: Array, L: Array) -> SpatialReference:
     """Unstressed configuration from chords (ne, 3), end frames (ne, 3, 3) and arc lengths (ne,)."""
     ne = len(L)
     axial, twist, curvature = np.empty(ne), np.empty(ne), np.empty((ne, 2, 2))
@@ -112,23 +112,23 @@ def reference(chord0: Array, T0_1: Array, T0_2: Array, L: Array) -> Reference:
         axial[e], twist[e] = at.axial, at.twist
         curvature[e, 0, 0], curvature[e, 0, 1] = at.first
         curvature[e, 1, 0], curvature[e, 1, 1] = at.second
-    return Reference(L, axial, twist, curvature)
+    return SpatialReference(L, axial, twist, curvature)
 
 
 @njit
-def _unstressed(ref: Reference, e: int) -> Strain:
+def _unstressed(ref: SpatialReference, e: int) -> Strain:
     k = ref.curvature[e]
     return Strain(ref.axial[e], ref.twist[e], (k[0, 0], k[0, 1]), (k[1, 0], k[1, 1]))
 
 
 @njit
-def stiffness(ref: Reference, section: Section, e: int) -> Stiffness:
+def stiffness(ref: SpatialReference, section: SpatialSection, e: int) -> Stiffness:
     """Stiffnesses of element e."""
     return Stiffness(ref.L[e], section.EA[e], section.EIy[e], section.EIz[e], section.GJ[e])
 
 
 @njit
-def strain_energy(chord: Array, frame1: Array, frame2: Array, ref: Reference, section: Section) -> Array:
+def strain_energy(chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, section: SpatialSection) -> Array:
     """Strain energy (ne,) in J; arguments as in `forces`."""
     U = np.empty(len(chord))
     for e in range(len(chord)):
@@ -138,21 +138,21 @@ def strain_energy(chord: Array, frame1: Array, frame2: Array, ref: Reference, se
 
 
 @njit
-def respond(L: float, at: Shape, elastic: Strain, s: Stress) -> Response:
+def respond(L: float, at: Shape, elastic: Strain, s: Stress) -> SpatialResponse:
     """Forces of the stress s, which comes from the strains `elastic`."""
     mu1, mu2 = conjugate(L, at.end1.angles, at.end2.angles, at.stations, s)
     m1, m2 = moment(at.end1, mu1), moment(at.end2, mu2)
-    return Response(elastic, s, mu1, mu2, nodal_forces(at.frame.length, s.axial / L, m1, m2))
+    return SpatialResponse(elastic, s, mu1, mu2, nodal_forces(at.frame.length, s.axial / L, m1, m2))
 
 
 @njit
-def _respond(D: Stiffness, unstressed: Strain, at: Shape) -> Response:
+def _respond(D: Stiffness, unstressed: Strain, at: Shape) -> SpatialResponse:
     elastic = difference(at.strain, unstressed)
     return respond(D.L, at, elastic, stress(D, at.strain, elastic))
 
 
 @njit
-def put_forces(axes: Mat, forces: NodalForces, out: Array) -> None:
+def put_forces(axes: Mat, forces: SpatialNodalForces, out: Array) -> None:
     """Write an element's forces, given along its frame, to `out` (12,) in global axes."""
     force = vecmat(forces.force, axes)
     moment1 = vecmat(forces.moment1, axes)
@@ -165,7 +165,7 @@ def put_forces(axes: Mat, forces: NodalForces, out: Array) -> None:
 
 
 @njit
-def forces(chord: Array, frame1: Array, frame2: Array, ref: Reference, section: Section) -> Array:
+def forces(chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, section: SpatialSection) -> Array:
     """Internal forces f (ne, 12) for chords (ne, 3) and section frames (ne, 3, 3) of both ends."""
     f = np.empty((len(chord), 12))
     for e in range(len(chord)):
@@ -177,7 +177,7 @@ def forces(chord: Array, frame1: Array, frame2: Array, ref: Reference, section: 
 
 @njit
 def move(at: Shape, u: Vec, w1: Vec, w2: Vec) -> SpatialChange:
-    """What changes, to first order, when the nodes move by u = u2 - u1 and spin by w1, w2."""
+    """First-order change of the configuration when the nodes move by u = u2 - u1 and spin by w1, w2."""
     spin = frame_spin(at.frame.length, u)
     spin1, spin2 = sub(w1, spin), sub(w2, spin)
     return SpatialChange(u[0], spin, spin1, spin2, rate(at.end1, spin1), rate(at.end2, spin2))
@@ -190,19 +190,21 @@ def strain_of(L: float, at: Shape, m: SpatialChange) -> Strain:
 
 
 @njit
-def forces_change(L: float, at: Shape, response: Response, m: SpatialChange, change: Strain, ds: Stress) -> NodalForces:
+def forces_change(
+    L: float, at: Shape, response: SpatialResponse, m: SpatialChange, change: Strain, ds: Stress
+) -> SpatialNodalForces:
     """Change of an element's forces when it moves, its strains change and its stresses change by ds."""
     elastic1, elastic2 = conjugate(L, at.end1.angles, at.end2.angles, at.stations, ds)
     geometric1, geometric2 = conjugate_change(L, at.stations, response.stress, change, m.da, m.db)
     dm1 = add(moment(at.end1, add(elastic1, geometric1)), moment_variation(at.end1, response.mu1, m.spin1))
     dm2 = add(moment(at.end2, add(elastic2, geometric2)), moment_variation(at.end2, response.mu2, m.spin2))
     stressed = nodal_forces(at.frame.length, ds.axial / L, dm1, dm2)
-    moved = NodalForces(lengthen(at.frame.length, response.forces, m.stretch), STILL, STILL)
+    moved = SpatialNodalForces(lengthen(at.frame.length, response.forces, m.stretch), STILL, STILL)
     return plus(plus(stressed, moved), turn(response.forces, m.spin))
 
 
 @njit
-def _vary(D: Stiffness, at: Shape, response: Response, u: Vec, w1: Vec, w2: Vec) -> NodalForces:
+def _vary(D: Stiffness, at: Shape, response: SpatialResponse, u: Vec, w1: Vec, w2: Vec) -> SpatialNodalForces:
     """Variation of an element's forces when its nodes move by u = u2 - u1 and spin by w1, w2."""
     m = move(at, u, w1, w2)
     change = strain_of(D.L, at, m)
@@ -210,7 +212,7 @@ def _vary(D: Stiffness, at: Shape, response: Response, u: Vec, w1: Vec, w2: Vec)
 
 
 @njit
-def _tangent(D: Stiffness, at: Shape, response: Response, K: Array) -> None:
+def _tangent(D: Stiffness, at: Shape, response: SpatialResponse, K: Array) -> None:
     """Write the element's tangent, column by column, to K (12, 12)."""
     axes = at.frame.axes
     for k in range(3):
@@ -224,7 +226,7 @@ def _tangent(D: Stiffness, at: Shape, response: Response, K: Array) -> None:
 
 @njit
 def forces_and_tangent(
-    chord: Array, frame1: Array, frame2: Array, ref: Reference, section: Section
+    chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, section: SpatialSection
 ) -> tuple[Array, Array]:
     """Internal forces f (ne, 12) and their derivative K (ne, 12, 12) by displacements and spatial spins."""
     f, K = np.empty((len(chord), 12)), np.empty((len(chord), 12, 12))
@@ -235,7 +237,14 @@ def forces_and_tangent(
 
 @njit
 def put_element(
-    e: int, chord: Array, frame1: Array, frame2: Array, ref: Reference, section: Section, f: Array, K: Array
+    e: int,
+    chord: Array,
+    frame1: Array,
+    frame2: Array,
+    ref: SpatialReference,
+    section: SpatialSection,
+    f: Array,
+    K: Array,
 ) -> None:
     """Write forces f (12,) and tangent K (12, 12) of element e; all else as in `forces_and_tangent`."""
     D = stiffness(ref, section, e)

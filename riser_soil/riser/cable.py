@@ -1,4 +1,4 @@
-"""Balance of a line without bending stiffness in a vertical plane, hanging or resting on a level seabed.
+"""Static equilibrium of an elastic cable in a vertical plane, hanging or resting on a level seabed.
 
 The line is a chain of bars with the weight lumped at their joints. A bar of unstressed length l0 that carries the
 horizontal tension H and the vertical force V, with T = sqrt(H^2 + V^2), spans
@@ -38,7 +38,7 @@ TO_THE_EDGE = 0.9  # of the way to where a height, a push or H would vanish, in 
 
 
 @dataclass(frozen=True, eq=False)
-class Chain:
+class BarChain:
     """Unstressed length l0 [m] and EA [N] of the bars (nb,), weight W [N] of the joints (nb + 1,).
 
     z0 and z1 [m]: heights of the ends. hover [m]: at about this height above a seabed at z = 0 the line rests; None
@@ -75,7 +75,7 @@ class CableBalance:
     Also the change of these in a Newton step.
     """
 
-    chain: Chain
+    chain: BarChain
     H: float
     z: Array
     V: Array
@@ -101,33 +101,33 @@ class CableBalance:
 
 
 @dataclass(frozen=True)
-class Goal:
-    """Ends h [m] apart, unless that takes less than least_H [N]."""
+class SpanCondition:
+    """Ends h [m] apart, unless the horizontal tension would fall below least_H [N]."""
 
     h: float
     least_H: float
 
 
-def fit(chain: Chain, h: float, least_H: float) -> CableBalance:
+def fit(chain: BarChain, h: float, least_H: float) -> CableBalance:
     """The chain in balance with its ends h apart; with least_H [N] and its ends farther apart where it would need less.
 
     Raises SceneError when no balance is found.
     """
-    goal, straight = Goal(h, least_H), _straight(chain)
+    goal, straight = SpanCondition(h, least_H), _straight(chain)
     taut = _solved(straight, straight)
     far = _nearly(taut, goal)
     if far.reach <= h:
         found = _hardened(_solved(far, far, goal), goal)
         if least_H < found.H:
             return found
-    slack = _hardened(_nearly(taut, Goal(-np.inf, least_H)))
+    slack = _hardened(_nearly(taut, SpanCondition(-np.inf, least_H)))
     if slack.reach >= h:
         return slack
     near = _nearly(slack, goal)
     return _solved(near, near, goal)
 
 
-def _nearly(start: CableBalance, goal: Goal) -> CableBalance:
+def _nearly(start: CableBalance, goal: SpanCondition) -> CableBalance:
     """With nearly the H that reaches the goal, or with its least H where that reaches it too; mu is left as it is."""
     low, high, h, least_H, chain = start, start, goal.h, goal.least_H, start.chain
     while high.reach < h:
@@ -142,7 +142,7 @@ def _nearly(start: CableBalance, goal: Goal) -> CableBalance:
     return low
 
 
-def _straight(chain: Chain) -> CableBalance:
+def _straight(chain: BarChain) -> CableBalance:
     """A straight line over the seabed under a high tension; not in balance."""
     slope = (chain.z1 - chain.z0) / chain.L
     arc = np.append(0.0, np.cumsum(chain.l0))
@@ -154,19 +154,19 @@ def _straight(chain: Chain) -> CableBalance:
     return CableBalance(chain, chain.load, z, V, mu / z[1:-1], mu)
 
 
-def _hardened(found: CableBalance, goal: Goal | None = None) -> CableBalance:
-    """The same with the mu that is wanted in the end; as it is where H falls far below the goal's least."""
+def _hardened(found: CableBalance, goal: SpanCondition | None = None) -> CableBalance:
+    """The same with the final mu; unchanged where H falls far below the least H of the span condition."""
     while found.mu > found.chain.hardest and not _is_slack(found, goal):
         found = _solved(found, replace(found, mu=max(HARDER * found.mu, found.chain.hardest)), goal)
     return found
 
 
-def _is_slack(found: CableBalance, goal: Goal | None) -> bool:
+def _is_slack(found: CableBalance, goal: SpanCondition | None) -> bool:
     return goal is not None and goal.least_H > found.H
 
 
-def _solved(known: CableBalance, trial: CableBalance, goal: Goal | None = None) -> CableBalance:
-    """The trial's chain in balance at its mu, and at its H or at the one that meets the goal.
+def _solved(known: CableBalance, trial: CableBalance, goal: SpanCondition | None = None) -> CableBalance:
+    """Equilibrium of the trial's chain at its mu, at its H or at the H that meets the span condition.
 
     Found by way of values of H and mu nearer to those of a known balance where theirs are far from it. Gives up where
     H falls far below the goal's least.
@@ -181,7 +181,7 @@ def _solved(known: CableBalance, trial: CableBalance, goal: Goal | None = None) 
     return _solved(halfway, replace(halfway, H=trial.H, mu=trial.mu), goal)
 
 
-def _newton(trial: CableBalance, goal: Goal | None) -> CableBalance | None:
+def _newton(trial: CableBalance, goal: SpanCondition | None) -> CableBalance | None:
     """Newton's method; None where it does not converge."""
     size = _misfit(trial, goal)
     for _ in range(MOST_ITERATIONS):
@@ -191,7 +191,7 @@ def _newton(trial: CableBalance, goal: Goal | None) -> CableBalance | None:
     return None
 
 
-def _improved(trial: CableBalance, size: float, goal: Goal | None) -> tuple[CableBalance, float]:
+def _improved(trial: CableBalance, size: float, goal: SpanCondition | None) -> tuple[CableBalance, float]:
     """After a Newton step, shortened to stay inside and until the misfit falls; and its misfit."""
     step = _newton_step(trial, goal)
     fraction = min(1.0, *_ways_inside(trial, step))
@@ -225,7 +225,7 @@ def _misfits(trial: CableBalance) -> tuple[Array, Array]:
     return spans, np.diff(V) - chain.W[1:-1] + trial.q
 
 
-def _misfit(trial: CableBalance, goal: Goal | None) -> float:
+def _misfit(trial: CableBalance, goal: SpanCondition | None) -> float:
     """Misfits of spans, reach and heights over the length, plus that of forces over the load.
 
     Where tensions exceed the load by far, their round-off counts less.
@@ -237,7 +237,7 @@ def _misfit(trial: CableBalance, goal: Goal | None) -> float:
     return float((np.abs(spans).sum() + beyond + resting / scale) / chain.L + np.abs(forces).sum() / scale)
 
 
-def _newton_step(trial: CableBalance, goal: Goal | None) -> CableBalance:
+def _newton_step(trial: CableBalance, goal: SpanCondition | None) -> CableBalance:
     """Changes of H, heights, bar forces and pushes. Of a bar, k is dV/d(dz) at constant H, and c is d(dz)/dH = d(dx)/dV
     at constant V.
     """

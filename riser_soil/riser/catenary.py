@@ -1,4 +1,4 @@
-"""The elastic catenary between two points in space, as the first shape of a line; `cable` finds its balance."""
+"""Elastic catenary between two points in space, as the initial configuration; `cable` finds its equilibrium."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import SceneError
-from riser_soil.riser.cable import CableBalance, Chain, fit
+from riser_soil.riser.cable import BarChain, CableBalance, fit
 from riser_soil.riser.shapes import UP, Curve, X, from_nodes
 
 BARS = 2000  # error of H some 5e-8 of it
@@ -22,7 +22,7 @@ class Catenary:
     """Curve of the line, tensions at its nodes (nn,) N, and horizontal tension H (N).
 
     slack [m]: how far the end lies beyond its place, horizontally away from the start, where the line is too long to
-    hang there with the least H that was asked for; else 0.
+    hang there with the least H allowed; else 0.
     """
 
     curve: Curve
@@ -68,7 +68,7 @@ def catenary(
     return _in_space(found, nodes, start, end + slack * direction, direction, slack)
 
 
-def _chain(l0: Array, w: Array, EA: Array, ends: tuple[float, float], level: float) -> Chain:
+def _chain(l0: Array, w: Array, EA: Array, ends: tuple[float, float], level: float) -> BarChain:
     """The bars, heights counted from the seabed, or from the start where there is none."""
     W = 0.5 * (np.append(w * l0, 0.0) + np.append(0.0, w * l0))
     L, low = float(l0.sum()), min(ends)
@@ -77,12 +77,12 @@ def _chain(l0: Array, w: Array, EA: Array, ends: tuple[float, float], level: flo
             f"riser: an end at z = {low:.6g} m lies below the level {level:.6g} m at which the riser rests"
         )
     if np.isinf(level):
-        return Chain(l0, EA, W, 0.0, ends[1] - ends[0])
-    return Chain(l0, EA, W, ends[0] - level, ends[1] - level, hover=HOVER * L)
+        return BarChain(l0, EA, W, 0.0, ends[1] - ends[0])
+    return BarChain(l0, EA, W, ends[0] - level, ends[1] - level, hover=HOVER * L)
 
 
-def _hang_on(chain: Chain, points: Array) -> None:
-    """Add point weights to the joints around them; what hangs on a held end is no matter of the line."""
+def _hang_on(chain: BarChain, points: Array) -> None:
+    """Add point weights to the joints around them; weights at a prescribed end are carried by its support."""
     along = np.append(0.0, np.cumsum(chain.l0))
     bar = np.clip(np.searchsorted(along, points[:, 0], side="right") - 1, 0, chain.l0.size - 1)
     share = (points[:, 0] - along[bar]) / chain.l0[bar]

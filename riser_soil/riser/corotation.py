@@ -1,4 +1,4 @@
-"""The frame that follows a two-node beam element in space, and how it hands forces on to the nodes.
+"""Corotational frame of a two-node beam element in space, and nodal forces from forces in that frame.
 
 e1 lies along the chord; e2 is the second section axis of the first end, brought over by the shortest
 rotation of its tangent to e1. The strains of `strain3d` do not depend on how the frame is turned about
@@ -19,7 +19,7 @@ from riser_soil.core.compiled import njit
 from riser_soil.riser.vectors import Mat, Vec, add, cross, dot, matmul, scale, sub
 
 
-class Corotated(NamedTuple):
+class SpatialCorotated(NamedTuple):
     """An element's frame, chord and ends."""
 
     axes: Mat  # rows e1, e2, e3
@@ -28,7 +28,7 @@ class Corotated(NamedTuple):
     A2: Mat
 
 
-class NodalForces(NamedTuple):
+class SpatialNodalForces(NamedTuple):
     """Force on node 2 (node 1 gets its opposite) and moments on both nodes, conjugate to u, w_1 and w_2."""
 
     force: Vec
@@ -37,14 +37,14 @@ class NodalForces(NamedTuple):
 
 
 @njit
-def corotate(chord: Vec, T1: Mat, T2: Mat) -> Corotated:
+def corotate(chord: Vec, T1: Mat, T2: Mat) -> SpatialCorotated:
     """The element's frame from its chord and the section frames of its ends."""
     length = math.sqrt(dot(chord, chord))
     e1 = scale(1.0 / length, chord)
     tangent, second = (T1[0][0], T1[1][0], T1[2][0]), (T1[0][1], T1[1][1], T1[2][1])
     e2 = sub(second, scale(dot(second, e1) / (1.0 + dot(tangent, e1)), add(tangent, e1)))
     axes = (e1, e2, cross(e1, e2))
-    return Corotated(axes, length, matmul(axes, T1), matmul(axes, T2))
+    return SpatialCorotated(axes, length, matmul(axes, T1), matmul(axes, T2))
 
 
 @njit
@@ -54,24 +54,24 @@ def frame_spin(length: float, u: Vec) -> Vec:
 
 
 @njit
-def nodal_forces(length: float, N: float, m1: Vec, m2: Vec) -> NodalForces:
+def nodal_forces(length: float, N: float, m1: Vec, m2: Vec) -> SpatialNodalForces:
     """Nodal forces from the chord force N and the moments m_i conjugate to w_i - omega."""
-    return NodalForces((N, -(m1[2] + m2[2]) / length, (m1[1] + m2[1]) / length), m1, m2)
+    return SpatialNodalForces((N, -(m1[2] + m2[2]) / length, (m1[1] + m2[1]) / length), m1, m2)
 
 
 @njit
-def lengthen(length: float, forces: NodalForces, stretch: float) -> Vec:
+def lengthen(length: float, forces: SpatialNodalForces, stretch: float) -> Vec:
     """Change of the force on node 2, at fixed N and m_i, when the chord lengthens by `stretch`."""
     return (0.0, -stretch / length * forces.force[1], -stretch / length * forces.force[2])
 
 
 @njit
-def turn(forces: NodalForces, spin: Vec) -> NodalForces:
+def turn(forces: SpatialNodalForces, spin: Vec) -> SpatialNodalForces:
     """Change of the forces when the frame in which they are fixed spins."""
-    return NodalForces(cross(spin, forces.force), cross(spin, forces.moment1), cross(spin, forces.moment2))
+    return SpatialNodalForces(cross(spin, forces.force), cross(spin, forces.moment1), cross(spin, forces.moment2))
 
 
 @njit
-def plus(a: NodalForces, b: NodalForces) -> NodalForces:
+def plus(a: SpatialNodalForces, b: SpatialNodalForces) -> SpatialNodalForces:
     """Sum of two sets of forces."""
-    return NodalForces(add(a.force, b.force), add(a.moment1, b.moment1), add(a.moment2, b.moment2))
+    return SpatialNodalForces(add(a.force, b.force), add(a.moment1, b.moment1), add(a.moment2, b.moment2))

@@ -1,4 +1,4 @@
-"""Viscous forces of the elements of `beam2d`: stresses in proportion to the strains' rates.
+"""Stiffness-proportional (Kelvin-Voigt) damping of the plane elements of `beam2d`.
 
 The sections here are viscosities beta EA [N s] and beta EI [N m2 s]. With the rates of the chord and of the section
 angles as seen from the element's frame, the stresses are the Hessian of the elastic energy at no stress times the
@@ -13,11 +13,11 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser.beam2d import (
-    Corotated,
-    Element,
-    NodalForces,
-    Reference,
-    Section,
+    PlanarCorotated,
+    PlanarElement,
+    PlanarNodalForces,
+    PlanarReference,
+    PlanarSection,
     Vec2,
     configuration_variation,
     corotate,
@@ -41,20 +41,20 @@ class PlanarChange(NamedTuple):
 
 
 @njit
-def _move(at: Corotated, u: Vec2, w1: float, w2: float) -> PlanarChange:
-    """What changes when the nodes move by u = u2 - u1, in the element's axes, and turn by w_i."""
+def _move(at: PlanarCorotated, u: Vec2, w1: float, w2: float) -> PlanarChange:
+    """Change of the configuration when the nodes move by u = u2 - u1, in the element's axes, and turn by w_i."""
     spin = u[1] / at.length
     return PlanarChange(u[0], spin, w1 - spin, w2 - spin)
 
 
 @njit
-def _rates_of(at: Corotated, chord_rate: Array, w1: float, w2: float) -> PlanarChange:
+def _rates_of(at: PlanarCorotated, chord_rate: Array, w1: float, w2: float) -> PlanarChange:
     c, s = at.axis
     return _move(at, (c * chord_rate[0] + s * chord_rate[1], c * chord_rate[1] - s * chord_rate[0]), w1, w2)
 
 
 @njit
-def _rates_change(at: Corotated, rates: PlanarChange, m: PlanarChange, shift_v: float) -> PlanarChange:
+def _rates_change(at: PlanarCorotated, rates: PlanarChange, m: PlanarChange, shift_v: float) -> PlanarChange:
     """Change of the rates in a move that they follow by shift_v; the axes in which they are seen turn, too."""
     stretch = shift_v * m.stretch + m.spin * rates.spin * at.length
     lag = (m.spin * rates.stretch + m.stretch * rates.spin) / at.length
@@ -63,7 +63,7 @@ def _rates_change(at: Corotated, rates: PlanarChange, m: PlanarChange, shift_v: 
 
 @njit
 def _stress_change(
-    element: Element, at: Corotated, N: float, rates: PlanarChange, m: PlanarChange, d: PlanarChange
+    element: PlanarElement, at: PlanarCorotated, N: float, rates: PlanarChange, m: PlanarChange, d: PlanarChange
 ) -> tuple[float, float, float]:
     """Change of the viscous stresses when the element moves by m and the rates change by d."""
     slope1, slope2 = bow_slopes(m.theta1, m.theta2)
@@ -74,13 +74,19 @@ def _stress_change(
 
 @njit
 def _vary(
-    element: Element, at: Corotated, N: float, force: Vec2, rates: PlanarChange, m: PlanarChange, shift_v: float
-) -> NodalForces:
+    element: PlanarElement,
+    at: PlanarCorotated,
+    N: float,
+    force: Vec2,
+    rates: PlanarChange,
+    m: PlanarChange,
+    shift_v: float,
+) -> PlanarNodalForces:
     dN, dm1, dm2 = _stress_change(element, at, N, rates, m, _rates_change(at, rates, m, shift_v))
     change = nodal_forces(at, dN, dm1, dm2)
     moved = configuration_variation(at, force, m.stretch, m.spin)
     total = (change.force[0] + moved[0], change.force[1] + moved[1])
-    return NodalForces(total, change.moment1, change.moment2)
+    return PlanarNodalForces(total, change.moment1, change.moment2)
 
 
 @njit
@@ -88,8 +94,8 @@ def forces(
     chord: Array,
     direction1: Array,
     direction2: Array,
-    ref: Reference,
-    viscosity: Section,
+    ref: PlanarReference,
+    viscosity: PlanarSection,
     chord_rate: Array,
     turn_rate: Array,
 ) -> Array:
@@ -112,8 +118,8 @@ def tangent(
     chord: Array,
     direction1: Array,
     direction2: Array,
-    ref: Reference,
-    viscosity: Section,
+    ref: PlanarReference,
+    viscosity: PlanarSection,
     chord_rate: Array,
     turn_rate: Array,
     shift_v: float,

@@ -1,4 +1,4 @@
-"""Viscous forces of the elements of `beam3d`: stresses in proportion to the strains' rates.
+"""Stiffness-proportional (Kelvin-Voigt) damping of the spatial elements of `beam3d`.
 
 The sections here are viscosities: beta EA [N s], beta EI and beta GJ [N m2 s]. Rates are those of the chord (m/s) and
 the spatial angular velocities of the nodes (rad/s). Strains do not change in a rigid motion, so it is never damped,
@@ -13,11 +13,11 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser.beam3d import (
     STILL,
-    Reference,
-    Response,
-    Section,
     Shape,
     SpatialChange,
+    SpatialReference,
+    SpatialResponse,
+    SpatialSection,
     forces_change,
     move,
     put_forces,
@@ -26,7 +26,7 @@ from riser_soil.riser.beam3d import (
     stiffness,
     strain_of,
 )
-from riser_soil.riser.corotation import NodalForces
+from riser_soil.riser.corotation import SpatialNodalForces
 from riser_soil.riser.increments import rows_to_increments
 from riser_soil.riser.strain3d import Stiffness, strain_change_variation, total
 from riser_soil.riser.stress3d import linear_stress
@@ -54,7 +54,7 @@ class ElementVelocities(NamedTuple):
     rates: SpatialChange
 
 
-class Nodes(NamedTuple):
+class NodeRotations(NamedTuple):
     """Orientation of the nodes, each (nn, 3, 3) or (nn, 3): see `increments`; R is the present frame."""
 
     R: Array
@@ -71,7 +71,7 @@ def _flow(at: Shape, chord_rate: Vec, spin1: Vec, spin2: Vec) -> ElementVelociti
 
 
 @njit
-def _respond(D: Stiffness, at: Shape, flow: ElementVelocities) -> Response:
+def _respond(D: Stiffness, at: Shape, flow: ElementVelocities) -> SpatialResponse:
     strain_rates = strain_of(D.L, at, flow.rates)
     return respond(D.L, at, strain_rates, linear_stress(D, strain_rates))
 
@@ -97,8 +97,8 @@ def _rates_change(at: Shape, flow: ElementVelocities, m: SpatialChange, dc: Vec,
 
 @njit
 def _vary(
-    D: Stiffness, at: Shape, flow: ElementVelocities, response: Response, m: SpatialChange, d: SpatialChange
-) -> NodalForces:
+    D: Stiffness, at: Shape, flow: ElementVelocities, response: SpatialResponse, m: SpatialChange, d: SpatialChange
+) -> SpatialNodalForces:
     """Change of an element's forces when it moves by m and its rates change by d."""
     bending = strain_change_variation(D.L, at.stations, flow.rates.da, flow.rates.db, m.da, m.db)
     ds = linear_stress(D, total(strain_of(D.L, at, d), bending))
@@ -108,7 +108,7 @@ def _vary(
 @njit
 def _element(
     D: Stiffness, chord: Array, frame1: Array, frame2: Array, chord_rate: Array, spin1: Array, spin2: Array
-) -> tuple[Shape, ElementVelocities, Response]:
+) -> tuple[Shape, ElementVelocities, SpatialResponse]:
     at = shape(D.L, vector(chord), matrix(frame1), matrix(frame2))
     flow = _flow(at, vector(chord_rate), vector(spin1), vector(spin2))
     return at, flow, _respond(D, at, flow)
@@ -116,7 +116,13 @@ def _element(
 
 @njit
 def forces(
-    chord: Array, frame1: Array, frame2: Array, ref: Reference, viscosity: Section, chord_rate: Array, spin: Array
+    chord: Array,
+    frame1: Array,
+    frame2: Array,
+    ref: SpatialReference,
+    viscosity: SpatialSection,
+    chord_rate: Array,
+    spin: Array,
 ) -> Array:
     """Viscous forces f (ne, 12), conjugate to displacements and spatial spins.
 
@@ -132,8 +138,8 @@ def forces(
 
 @njit
 def _turn_column(
-    D: Stiffness, at: Shape, flow: ElementVelocities, response: Response, w: Vec, faster: Vec, end: int
-) -> NodalForces:
+    D: Stiffness, at: Shape, flow: ElementVelocities, response: SpatialResponse, w: Vec, faster: Vec, end: int
+) -> SpatialNodalForces:
     """Change of the forces when one end spins by w and its angular velocity grows by `faster`, both in global axes."""
     axes = at.frame.axes
     turned, spinning = matvec(axes, w), matvec(axes, faster)
@@ -148,7 +154,7 @@ def _turn_column(
 
 @njit
 def _shift_columns(
-    D: Stiffness, at: Shape, flow: ElementVelocities, response: Response, shift_v: float, K: Array
+    D: Stiffness, at: Shape, flow: ElementVelocities, response: SpatialResponse, shift_v: float, K: Array
 ) -> None:
     """Write the columns of both nodes' displacements to K (12, 12)."""
     axes = at.frame.axes
@@ -166,11 +172,11 @@ def tangent(
     chord: Array,
     frame1: Array,
     frame2: Array,
-    ref: Reference,
-    viscosity: Section,
+    ref: SpatialReference,
+    viscosity: SpatialSection,
     chord_rate: Array,
     spin: Array,
-    nodes: Nodes,
+    nodes: NodeRotations,
     shift_v: float,
 ) -> Array:
     """Derivative K (ne, 12, 12), by displacements and rotation vectors, of the forces conjugate to them.

@@ -1,4 +1,4 @@
-"""Node orientations: how rotation dofs turn the unit tangents at element ends, in the plane and in space.
+"""Node orientations (directors): unit tangents at element ends from rotation dofs, in the plane and in space.
 
 `PlanarFrames` keeps an angle per node, `SpatialFrames` a rotation matrix. Each gives the trial orientation
 for a rotation increment as a turn with the same members:
@@ -47,7 +47,7 @@ Maps = tuple[Array, Array, Array]
 SPACE = fixed(3)
 
 
-class PlanarTurn:
+class PlanarOrientation:
     """Trial orientation of a plane line. angle (nn,) [rad], initial angle of element ends alpha0 (ne, 2)."""
 
     def __init__(self, angle: Array, alpha0: Array) -> None:
@@ -81,7 +81,7 @@ class PlanarTurn:
         return np.asarray(_planar_geometric(self.tangent, F))
 
     def state(self) -> Saved:
-        """What `PlanarFrames.turn_of` makes the same turn of."""
+        """Arrays from which `PlanarFrames.turn_of` restores the orientation."""
         return {"angle": self.angle}
 
 
@@ -116,8 +116,8 @@ class PlanarFrames:
         """An angular rate (1,) as the dofs have it."""
         return rate
 
-    def turn(self, increment: Array) -> PlanarTurn:
-        return PlanarTurn(self.angle + increment[:, 0], self.alpha0)
+    def turn(self, increment: Array) -> PlanarOrientation:
+        return PlanarOrientation(self.angle + increment[:, 0], self.alpha0)
 
     def in_new_axes(self, moment: Array, increment: Array) -> Array:
         """Moments (nn, 1) conjugate to the increment, as the next one has them."""
@@ -126,8 +126,8 @@ class PlanarFrames:
     def commit(self, increment: Array) -> None:
         self.angle = self.angle + increment[:, 0]
 
-    def turn_of(self, saved: Saved) -> PlanarTurn:
-        return PlanarTurn(saved["angle"], self.alpha0)
+    def turn_of(self, saved: Saved) -> PlanarOrientation:
+        return PlanarOrientation(saved["angle"], self.alpha0)
 
     def state(self) -> Saved:
         return {"angle": self.angle}
@@ -136,7 +136,7 @@ class PlanarFrames:
         self.angle = saved["angle"]
 
 
-class SpatialTurn:
+class SpatialOrientation:
     """Trial orientation of a line in space; see `SpatialFrames` for the arguments."""
 
     def __init__(self, Rn: Array, Theta: Array, T0: Array) -> None:
@@ -170,7 +170,7 @@ class SpatialTurn:
         return _spatial_geometric(self.Rn, self.H, self.Theta, self.tangent, F)
 
     def state(self) -> Saved:
-        """What `SpatialFrames.turn_of` makes the same turn of, to the last bit."""
+        """Arrays from which `SpatialFrames.turn_of` restores the orientation, to the last bit."""
         return {"R": self.Rn, "increment": self.Theta}
 
 
@@ -202,8 +202,8 @@ class SpatialFrames:
         """An angular rate (3,) in global axes as the dofs have it."""
         return np.asarray(orientation.T @ rate)
 
-    def turn(self, increment: Array) -> SpatialTurn:
-        return SpatialTurn(self.R, np.ascontiguousarray(increment), self.T0)
+    def turn(self, increment: Array) -> SpatialOrientation:
+        return SpatialOrientation(self.R, np.ascontiguousarray(increment), self.T0)
 
     def in_new_axes(self, moment: Array, increment: Array) -> Array:
         """Moments (nn, 3) conjugate to the increment, as the next one has them: those in the turned body's axes."""
@@ -213,8 +213,8 @@ class SpatialFrames:
         """Keep R, brought back to a rotation to second order (round-off would pile up over many steps)."""
         self.R = _turned(self.R, increment)
 
-    def turn_of(self, saved: Saved) -> SpatialTurn:
-        return SpatialTurn(saved["R"], saved["increment"], self.T0)
+    def turn_of(self, saved: Saved) -> SpatialOrientation:
+        return SpatialOrientation(saved["R"], saved["increment"], self.T0)
 
     def state(self) -> Saved:
         return {"R": self.R}
@@ -224,7 +224,7 @@ class SpatialFrames:
 
 
 Frames = PlanarFrames | SpatialFrames
-Turn = PlanarTurn | SpatialTurn
+Orientation = PlanarOrientation | SpatialOrientation
 
 
 @njit

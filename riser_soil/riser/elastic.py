@@ -1,6 +1,4 @@
-"""The elastic elements of a line, in the plane and in space: trial state in, forces conjugate to its dofs
-out.
-"""
+"""Elastic forces and tangent of all elements of a line, in the plane and in space."""
 
 from __future__ import annotations
 
@@ -13,24 +11,26 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser import beam2d, beam3d, increments
-from riser_soil.riser.directors import PlanarFrames, PlanarTurn, SpatialFrames, SpatialTurn
+from riser_soil.riser.directors import PlanarFrames, PlanarOrientation, SpatialFrames, SpatialOrientation
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.trial import Trial
 
 
 class ElasticElements(ABC):
-    """What elements in the plane and in space have in common.
+    """Base class of the elements in the plane and in space.
 
-    kernels: the module of their formulas. ends (ne, 2, ...): unstressed orientation of element ends, as it takes them.
+    kernels: the module of their formulas; section_type: its section stiffnesses. ends (ne, 2, ...): unstressed
+    orientation of element ends, as it takes them.
     """
 
     kernels: ClassVar[ModuleType]
+    section_type: ClassVar[type[Any]]
 
     def __init__(self, line: Line, ends: Array, *stiffnesses: Array) -> None:
         first, second = (np.ascontiguousarray(ends[:, i]) for i in (0, 1))
         self.reference: Any = self.kernels.reference(line.chord0, first, second, line.length)
-        self.section: Any = self.kernels.Section(*stiffnesses)
+        self.section: Any = self.section_type(*stiffnesses)
 
     @abstractmethod
     def configuration(self, trial: Trial) -> tuple[Array, Array, Array]:
@@ -59,13 +59,14 @@ class PlanarElements(ElasticElements):
     """
 
     kernels: ClassVar[ModuleType] = beam2d
+    section_type: ClassVar[type[Any]] = beam2d.PlanarSection
 
     def __init__(self, line: Line, frames: PlanarFrames, elements: Elements) -> None:
         super().__init__(line, frames.alpha0, elements.EA, elements.EI_y)
 
     def configuration(self, trial: Trial) -> tuple[Array, Array, Array]:
         """Chords (ne, 2) and directions of the tangents at both ends (ne,)."""
-        assert isinstance(trial.turn, PlanarTurn)
+        assert isinstance(trial.turn, PlanarOrientation)
         angle = trial.turn.end_angle
         return trial.chord, angle[:, 0], angle[:, 1]
 
@@ -80,6 +81,7 @@ class SpatialElements(ElasticElements):
     """Elements of a line in space."""
 
     kernels: ClassVar[ModuleType] = beam3d
+    section_type: ClassVar[type[Any]] = beam3d.SpatialSection
 
     def __init__(self, line: Line, frames: SpatialFrames, elements: Elements) -> None:
         super().__init__(line, frames.T0, elements.EA, elements.EI_y, elements.EI_z, elements.GJ)
@@ -112,8 +114,8 @@ def _add_planar_tangent(
     chord: Array,
     direction1: Array,
     direction2: Array,
-    reference: beam2d.Reference,
-    section: beam2d.Section,
+    reference: beam2d.PlanarReference,
+    section: beam2d.PlanarSection,
 ) -> None:
     f, K = np.empty(6), np.empty((6, 6))
     for e in range(len(chord)):
@@ -123,7 +125,12 @@ def _add_planar_tangent(
 
 @njit
 def _spatial_forces(
-    chord: Array, frame1: Array, frame2: Array, reference: beam3d.Reference, section: beam3d.Section, H: Array
+    chord: Array,
+    frame1: Array,
+    frame2: Array,
+    reference: beam3d.SpatialReference,
+    section: beam3d.SpatialSection,
+    H: Array,
 ) -> Array:
     f = beam3d.forces(chord, frame1, frame2, reference, section)
     increments.forces_to_increments(f, H)
@@ -137,8 +144,8 @@ def _add_spatial_tangent(
     chord: Array,
     frame1: Array,
     frame2: Array,
-    reference: beam3d.Reference,
-    section: beam3d.Section,
+    reference: beam3d.SpatialReference,
+    section: beam3d.SpatialSection,
     nodes: tuple[Array, Array, Array],
 ) -> None:
     """nodes: H, Rn and Theta, see `increments`."""
@@ -156,7 +163,7 @@ def elastic_elements(line: Line, elements: Elements) -> PlanarElements | Spatial
     return SpatialElements(line, line.frames, elements)
 
 
-def spatial(trial: Trial) -> SpatialTurn:
+def spatial(trial: Trial) -> SpatialOrientation:
     """The orientation of a line in space."""
-    assert isinstance(trial.turn, SpatialTurn)
+    assert isinstance(trial.turn, SpatialOrientation)
     return trial.turn

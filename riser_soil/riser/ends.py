@@ -1,4 +1,4 @@
-"""How the line's ends are held, and how their supports move and turn."""
+"""End conditions of the line: which dofs are prescribed, and the prescribed motion of the supports."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ axes.
 """
 
 
-class Turning(NamedTuple):
+class SupportRotation(NamedTuple):
     """A support turned from where it is at the stage's beginning, each (3,) in global axes.
 
     rotation: rotation vector [rad]; about one axis it may count whole turns. angular_velocity [rad/s],
@@ -29,14 +29,14 @@ class Turning(NamedTuple):
 
 @dataclass
 class End:
-    """How an end is held.
+    """Boundary condition of an end.
 
-    motion, when given, moves a held position; without it the end stays where it is. turning, of the seconds since the
-    stage began, turns the support: a fixed rotation turns with it, and so does the direction in which a spring is at
-    rest. A free rotation knows nothing of it.
+    motion, when given, moves the prescribed position; without it the end stays where it is. turning, of the seconds
+    since the stage began, turns the support: a fixed rotation turns with it, and so does the rest direction of a
+    rotational spring. A free rotation is not affected.
     """
 
-    held: bool
+    prescribed: bool
     rotation_fixed: bool = False
     motion: Motion | None = None
-    turning: Callable[[float], Turning] | None = None
+    turning: Callable[[float], SupportRotation] | None = None

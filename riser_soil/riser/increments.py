@@ -1,4 +1,4 @@
-"""From spatial spins to rotation vectors: element forces and tangents along a chain of nodes.
+"""Change of variables from spatial spins to rotation vectors, for element forces and tangents.
 
 A node's frame is R = Rn exp[Theta]; its spin is w = H dTheta with H = Rn T_L(Theta). Element e joins
 nodes e and e + 1, its dofs are ordered displacement1, rotation1, displacement2, rotation2. Arrays are

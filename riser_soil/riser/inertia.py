@@ -1,4 +1,4 @@
-"""Inertia of the line's mass: the part "inertia" of dynamic stages."""
+"""Consistent mass of the line: the part "inertia" of dynamic stages."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""The riser's line: its dofs, committed configuration, ends and prescribed motion.
+"""The riser's line: dofs, committed configuration, end conditions and prescribed motion.
 
 Dofs are interleaved by node: in space x, y, z and a body-axes rotation vector; in a vertical plane p, z and
 an angle, p along the horizontal unit vector d, the angle positive from d towards z.
@@ -13,13 +13,13 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
-from riser_soil.core.part import Block, State
-from riser_soil.core.remembered import Remembered
+from riser_soil.core.identity_cache import IdentityCache
+from riser_soil.core.part import MatrixBlock, State
 from riser_soil.core.saved_state import Saved, under, values_of, within
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames
-from riser_soil.riser.ends import End, Turning
+from riser_soil.riser.ends import End, SupportRotation
 from riser_soil.riser.free_turns import free_turns, unit_lengths
 from riser_soil.riser.trial import Trial
 
@@ -49,7 +49,7 @@ class Line:
     """Field "riser": committed configuration, dofs and ends of the line; see the module's text and `Layout`.
 
     dimension: 2 or 3. A planar line needs a layout in one vertical plane (`shapes.vertical_direction`).
-    Where no end holds the rotation of a line in space, `hold_spin` keeps the start from spinning about the
+    Where no end prescribes the rotation of a line in space, `prescribe_spin` keeps the start from spinning about the
     pipe's axis: nothing else would in statics, as a round pipe spins at no cost.
     active: whether this rank evaluates and owns the riser.
     """
@@ -64,7 +64,7 @@ class Line:
         start: End,
         end: End,
         direction: Array | None = None,
-        hold_spin: bool = False,
+        prescribe_spin: bool = False,
         active: bool = True,
     ) -> None:
         self.dimension, self.start, self.end, self.active = dimension, start, end, active
@@ -85,9 +85,9 @@ class Line:
         self._supports = self._bases = {node: unturned.at(node).copy() for node in (0, self.arc.size - 1)}
         self.offset = 0
         self._left: Trial | None = None
-        self._trials = Remembered[State, Trial](first=1, latest=2)
+        self._trials = IdentityCache[State, Trial](first=1, latest=2)
         self._number()
-        self.hold_spin(hold_spin)
+        self.prescribe_spin(prescribe_spin)
 
     def _axes(self, first: Array) -> tuple[Array, Array]:
         """Constant basis (3, d) and origin of the in-plane coordinates; z is counted from zero, not from the
@@ -114,15 +114,15 @@ class Line:
         self.global_index: IntArray = np.arange(self.size, dtype=np.int64)
         self.owned: BoolArray = np.full(self.size, self.active)
 
-    def hold_spin(self, held: bool) -> None:
+    def prescribe_spin(self, spin: bool) -> None:
         """Whether the start of a line in space is kept from spinning about the pipe's axis; until the next call."""
         prescribed = np.zeros((self.nodes, self.ndof), dtype=bool)
         for node, end in ((0, self.start), (-1, self.end)):
-            prescribed[node, : self.dimension] = end.held
+            prescribed[node, : self.dimension] = end.prescribed
             prescribed[node, self.dimension :] = end.rotation_fixed
-        prescribed[0, self.dimension] |= held and self.dimension == 3
+        prescribed[0, self.dimension] |= spin and self.dimension == 3
         self.prescribed: BoolArray = prescribed.ravel()
-        self._held: IntArray = np.flatnonzero(self.prescribed)
+        self._prescribed_dofs: IntArray = np.flatnonzero(self.prescribed)
 
     @property
     def part(self) -> slice:
@@ -147,11 +147,11 @@ class Line:
         _scatter(element, nodal)
         return nodal
 
-    def element_block(self) -> Block:
+    def element_block(self) -> MatrixBlock:
         """Pattern "riser": all dofs of each element."""
         first = self.offset + self.ndof * np.arange(self.nodes - 1, dtype=np.int64)
         dofs = first[:, None] + np.arange(2 * self.ndof)
-        return Block(dofs, dofs)
+        return MatrixBlock(dofs, dofs)
 
     @property
     def translation_dofs(self) -> IntArray:
@@ -186,8 +186,8 @@ class Line:
         return self._trials.made_of(state, self._make_trial)
 
     def left_at(self, before: State) -> Trial:
-        """The line where a step begins, for all but the rotation dofs: the trial in which the last step has left it, so
-        that parts need not look at it anew, unless its rates have been changed since.
+        """The line where a step begins, for all but the rotation dofs: the trial at which the last step ended, so that
+        parts need not evaluate it again, unless its rates have been changed since.
         """
         left = self._left
         return left if left is not None and self._same_rates(before, left.state) else self.trial(before)
@@ -251,15 +251,15 @@ class Line:
         self._bases = self._supports
 
     def support(self, node: int, t: float) -> Array:
-        """Orientation of the support of the first or last node, as the turn's `at` gives that of the node: the
-        node's own at first, then as its turning says.
+        """Orientation of the support of the first or last node, as the turn's `at` gives that of the node: the node's
+        own at first, then turned by the support's rotation.
         """
         turning = (self.end if node else self.start).turning
         base = self._bases[node]
         return base if turning is None else self.frames.turned(base, turning(t).rotation @ self.turning_axes)
 
     def predict(self, guess: State) -> Array:
-        """First guess of a step: the guess's increment, with what the held ends move beyond it spread along the line.
+        """First guess of a step: the guess's increment, with the rest of the ends' motion spread along the line.
 
         Left to the last element alone, that remainder stretches it, and its false tension spoils the first
         iteration. The cube of the distance from the other end keeps the far part, often on the seabed, where it is.
@@ -267,13 +267,13 @@ class Line:
         predicted = guess.u.copy()
         moved = self.nodal(predicted)[:, : self.dimension]
         for node, end in self._ends:
-            if end.held and end.motion is not None:
+            if end.prescribed and end.motion is not None:
                 moved += self._reach[node] * (self._to(end.motion(guess.t)[0], node) - moved[node])
         return predicted
 
     @cached_property
     def _reach(self) -> dict[int, Array]:
-        """How far the end nodes take the others with them in a guess (nn, 1)."""
+        """Share of an end's motion that each node follows in a first guess (nn, 1)."""
         along = (self.arc / self.arc[-1])[:, None]
         return {0: (1.0 - along) ** 3, self.nodes - 1: along**3}
 
@@ -293,8 +293,8 @@ class Line:
     def inadmissible(self, state: State) -> str:
         """Where an element is folded (an end's tangent points against its chord) or wound up by whole turns.
 
-        A step of Newton's method that goes far astray ends in such a tangle; it balances the loads, even stably, but a
-        pipe knows nothing like it, and an end spring would count the turns.
+        A step of Newton's method that goes far astray ends in such a tangle; it balances the loads, even stably, but is
+        not physical for a pipe, and an end spring would count the turns.
         """
         trial = self.trial(state)
         faulty = _folded(trial.chord, trial.turn.tangent) | trial.turn.wound
@@ -314,11 +314,11 @@ class Line:
         return self.to_global(self.trial(state).x)
 
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
-        """Write the increments, rates and accelerations of the held ends into views of the field's slice."""
+        """Write the increments, rates and accelerations of the prescribed ends into views of the field's slice."""
         for values in (u, v, a):
-            values[self._held] = 0.0
+            values[self._prescribed_dofs] = 0.0
         for node, end in self._ends:
-            if end.held and end.motion is not None:
+            if end.prescribed and end.motion is not None:
                 at = slice(node * self.ndof, node * self.ndof + self.dimension)
                 position, velocity, acceleration = end.motion(t)
                 u[at] = self._to(position, node)
@@ -326,7 +326,7 @@ class Line:
             if end.rotation_fixed and end.turning is not None:
                 self._turn(node, end.turning(t), self.support(node, t), (u, v, a))
 
-    def _turn(self, node: int, turning: Turning, support: Array, values: tuple[Array, Array, Array]) -> None:
+    def _turn(self, node: int, turning: SupportRotation, support: Array, values: tuple[Array, Array, Array]) -> None:
         """Write the increment, rate and acceleration of a rotation that follows its support."""
         at = slice(node * self.ndof + self.dimension, (node + 1) * self.ndof)
         u, v, a = values

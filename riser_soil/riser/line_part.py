@@ -1,18 +1,16 @@
-"""What parts that act on a line have in common: its pattern; by default nothing is stored, turned over or kept, and
-nothing told of where the forces act.
-"""
+"""Base class of the parts that act on a line: sparsity pattern, and defaults without energy, history or forces."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Block, Energy, Part, State, Work
+from riser_soil.core.part import Energy, MatrixBlock, Part, State, Work
 from riser_soil.riser.line import Line
 
 
 class LinePart:
-    """Base of the parts that act on a line; asked on the rank alone that evaluates it."""
+    """Base of the parts that act on a line; called only on the rank that evaluates it."""
 
     def __init__(self, line: Line) -> None:
         self.line = line
@@ -21,7 +19,7 @@ class LinePart:
     def active(self) -> bool:
         return self.line.active
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         """All dofs of each element."""
         return {self.line.name: self.line.element_block()}
 

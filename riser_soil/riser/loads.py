@@ -1,4 +1,4 @@
-"""Loads of a stage on the riser, growing by their own histories: the part "loads"."""
+"""Point and distributed loads of a stage on the riser, with their load histories: the part "loads"."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Traits, Weights, Work
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
-from riser_soil.riser.directors import SpatialTurn, moment_stiffness
+from riser_soil.riser.directors import SpatialOrientation, moment_stiffness
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.trial import Trial
 
 
 @dataclass(frozen=True, eq=False)
-class Load:
+class AppliedLoad:
     """force [N] and moment [N m] at an arc length [m], or a load distributed [N/m] over the whole riser;
     global axes.
 
@@ -42,7 +42,7 @@ class PointLoads(LinePart):
 
     name = "loads"
 
-    def __init__(self, line: Line, loads: list[Load]) -> None:
+    def __init__(self, line: Line, loads: list[AppliedLoad]) -> None:
         super().__init__(line)
         self._loads = loads
         self._places = {load: self._place(load) for load in loads}
@@ -50,7 +50,7 @@ class PointLoads(LinePart):
         self._moments = [(load, self._node(load)) for load in loads if load.moment is not None]
         self.traits = Traits("F", symmetric=not (self._moments and line.dimension == 3))
 
-    def _node(self, load: Load) -> int:
+    def _node(self, load: AppliedLoad) -> int:
         node = int(np.argmin(np.abs(self.line.arc - load.arc)))
         if abs(self.line.arc[node] - load.arc) > 1e-9 * self.line.arc[-1]:
             raise SceneError(
@@ -59,7 +59,7 @@ class PointLoads(LinePart):
             )
         return node
 
-    def _place(self, load: Load) -> tuple[slice, Array]:
+    def _place(self, load: AppliedLoad) -> tuple[slice, Array]:
         """Elements that the load acts on, and what their q gets of it (m, 4, d)."""
         line = self.line
         if load.distributed is not None:
@@ -76,11 +76,11 @@ class PointLoads(LinePart):
             force @ line.basis
         )
 
-    def _inside(self, load: Load) -> bool:
+    def _inside(self, load: AppliedLoad) -> bool:
         """Whether a load acts within elements rather than on a node."""
         return load.distributed is not None or self.line.place(load.arc)[1] not in (0.0, 1.0)
 
-    def _F(self, t: float, loads: list[Load]) -> Array:
+    def _F(self, t: float, loads: list[AppliedLoad]) -> Array:
         """Residual of some of the loads, conjugate to q (ne, 4, d)."""
         F = np.zeros((self.line.length.size, 4, self.line.dimension))
         for load in loads:
@@ -111,23 +111,23 @@ class PointLoads(LinePart):
         for load, node in self._moments:
             rotations[node] -= self._conjugate(trial, node, self._moment(load, trial.state.t))
 
-    def _moment(self, load: Load, t: float) -> Array:
+    def _moment(self, load: AppliedLoad, t: float) -> Array:
         return load.factor(t) * np.asarray(load.moment, dtype=float)
 
     def _conjugate(self, trial: Trial, node: int, moment: Array) -> Array:
-        """What the node's rotation dofs (r,) get of a moment in global axes."""
-        if isinstance(trial.turn, SpatialTurn):
+        """Generalised forces on the node's rotation dofs (r,) of a moment in global axes."""
+        if isinstance(trial.turn, SpatialOrientation):
             return np.asarray(trial.turn.H[node].T @ moment)
         return np.array([moment @ self.line.normal])
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         trial, K = self.line.trial(state), values[self.line.name]
         trial.add_turning(K, weights.force, self._F(state.t, self._loads))
-        if isinstance(trial.turn, SpatialTurn):
+        if isinstance(trial.turn, SpatialOrientation):
             for load, node in self._moments:
                 self._add_moment_stiffness(K, trial.turn, node, -weights.force * self._moment(load, state.t))
 
-    def _add_moment_stiffness(self, K: Array, turn: SpatialTurn, node: int, moment: Array) -> None:
+    def _add_moment_stiffness(self, K: Array, turn: SpatialOrientation, node: int, moment: Array) -> None:
         element, at = (node, 3) if node < len(K) else (node - 1, 9)
         K[element, at : at + 3, at : at + 3] += np.array(
             moment_stiffness(turn.Rn[node], turn.Theta[node], moment)

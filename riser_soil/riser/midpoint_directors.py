@@ -1,4 +1,4 @@
-"""Directors fixed in the sections at element ends, from the start to the end of a step.
+"""Directors of the sections at element ends over a step of the midpoint rule.
 
 The midpoint rule needs of a director d its mean (d0 + d1)/2, its change d1 - d0, and how both follow the rotation
 increment Theta to the middle of the step; the end lies at twice that increment. A spin w of the middle turns the mean
@@ -32,7 +32,7 @@ from riser_soil.riser.vectors import (
 
 
 class Secant(NamedTuple):
-    """A director at element ends through a step: mean and change (ne, 2, d).
+    """A director at element ends over a step: mean and change (ne, 2, d).
 
     P (ne, 2, d, r): change of the mean by the spin of the middle that each rotation dof there gives. by_end (ne, 2, d,
     r): derivative by these dofs of the change, and of twice the mean.
@@ -105,8 +105,8 @@ def directors(frames: Frames, column: int) -> Directors:
     return SpatialDirectors(frames, column)
 
 
-class Carried:
-    """Directors and their rates through a step.
+class DirectorMotion:
+    """Directors and their rates over a step.
 
     The rates (ne, 2, d) at its end are those of the midpoint rule, whose mean over the step is change/dt. They need not
     be at right angles to the directors.

@@ -1,4 +1,4 @@
-"""Inertia for the midpoint rule, which keeps linear and angular momentum: the parts "inertia" and "rotary inertia".
+"""Momentum-conserving inertia of the midpoint rule: the parts "inertia" and "rotary inertia".
 
 The kinetic energy is 1/2 q' M q' with a constant mass M, q being positions and directors fixed in the sections. From
 q'(n+1) = 2 (q(n+1) - q(n))/dt - q'(n) the inertia force of a step is F = M (q'(n+1) - q'(n))/dt. It acts on the means
@@ -25,14 +25,14 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed
-from riser_soil.core.part import Block, Energy, Forces, Part, State, Traits, Weights
+from riser_soil.core.part import Energy, Forces, MatrixBlock, Part, State, Traits, Weights
 from riser_soil.core.roles import MomentumCorrecting
-from riser_soil.core.saved_state import Saved, Stateful, gathered, give_back
+from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.riser import hermite
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
-from riser_soil.riser.midpoint_directors import Carried, Secant, directors
+from riser_soil.riser.midpoint_directors import DirectorMotion, Secant, directors
 from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.trial import Trial
 
@@ -40,7 +40,7 @@ from riser_soil.riser.trial import Trial
 class MidpointInertia(LinePart):
     """The line's mass in steps of the midpoint rule (group I).
 
-    instant: the same mass as it acts at an instant, which is asked for at accepted states.
+    instant: the same mass at an instant, as evaluated at accepted states.
     """
 
     name, traits = "inertia", Traits("I", symmetric=False, roles=(MomentumCorrecting, Stateful))
@@ -48,13 +48,13 @@ class MidpointInertia(LinePart):
     def __init__(self, instant: Inertia) -> None:
         super().__init__(instant.line)
         self.instant = instant
-        self._tangents = Carried(directors(self.line.frames, 0))
+        self._tangents = DirectorMotion(directors(self.line.frames, 0))
 
     def begin(self, state: State) -> None:
         """Start from an accepted state."""
         self._tangents.begin(state.t, _turning(self.line, state.v))
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         return self.instant.blocks()
 
     def q_rate(self, state: State) -> Array:
@@ -122,7 +122,7 @@ class MidpointInertia(LinePart):
 class MidpointRotaryInertia(LinePart):
     """The sections' rotary inertia in steps of the midpoint rule (group I): mass that sits on their directors.
 
-    instant: the same inertia as it acts at an instant, which is asked for at accepted states. masses: of element ends
+    instant: the same inertia at an instant, as evaluated at accepted states. masses: of element ends
     on each of the directors [kg m2], (ne, 1, 1).
     """
 
@@ -133,18 +133,18 @@ class MidpointRotaryInertia(LinePart):
         self.instant = instant
         on = instant.on_directors()
         self.masses = [mass[:, None, None] for mass in on.values()]
-        self._directors = [Carried(directors(self.line.frames, k)) for k in on]
+        self._directors = [DirectorMotion(directors(self.line.frames, k)) for k in on]
 
     def begin(self, state: State) -> None:
         """Start from an accepted state."""
         for director in self._directors:
             director.begin(state.t, _turning(self.line, state.v))
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         return self.instant.blocks()
 
     def rates(self, state: State) -> Sequence[Array]:
-        """Of the directors, each (ne, 2, d), at the end of a step, as the midpoint rule has them."""
+        """Rates of the directors, each (ne, 2, d), at the end of a step of the midpoint rule."""
         return [director.rate(state.t, _turning(self.line, state.u)) for director in self._directors]
 
     def _step(self, trial: Trial) -> list[tuple[Secant, Array]]:
@@ -201,10 +201,10 @@ class MidpointRotaryInertia(LinePart):
         return gathered(self._by_number)
 
     def restore(self, saved: Saved) -> None:
-        give_back(self._by_number, saved)
+        restore_all(self._by_number, saved)
 
     @property
-    def _by_number(self) -> dict[str, Carried]:
+    def _by_number(self) -> dict[str, DirectorMotion]:
         return {str(k): director for k, director in enumerate(self._directors)}
 
 

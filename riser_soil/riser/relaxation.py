@@ -1,4 +1,4 @@
-"""Artificial drag for pseudo-time steps towards equilibrium: the last resort of statics."""
+"""Artificial viscous drag for dynamic relaxation: the part "relaxation"."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from riser_soil.riser.line_part import LinePart
 
 
 class Relaxation(LinePart):
-    """Part "relaxation": resists a pseudo-time step by `drag` times tributary length times translation, and turning as
-    a rod of that length would be resisted that turns about its middle.
+    """Part "relaxation": viscous drag on a pseudo-time step, `drag` times tributary length times translation.
+
+    Rotation meets the drag of a rod of the tributary length that turns about its middle.
 
     drag: N/m2, force per length and displacement in one step; large values allow small steps only. It may be changed
     between steps. The forces vanish with the increment, so that what it converges to is an equilibrium without it.
@@ -29,7 +30,7 @@ class Relaxation(LinePart):
         line.nodal(forces.force)[...] += self.drag * self._shares(line.tributary_length) * line.nodal(state.u)
 
     def _shares(self, length: Array) -> Array:
-        """Of the drag, by node or element and dof of a node [m, m3]."""
+        """Shares of the drag, by node or element and dof of a node [m, m3]."""
         shares = np.repeat(length[:, None], self.line.ndof, axis=1)
         shares[:, self.line.dimension :] *= length[:, None] ** 2 / 12.0
         return shares

@@ -1,14 +1,15 @@
-"""How well the elements of a line resolve its bending, judged by a solution itself.
+"""A posteriori estimate of the bending error: how well the elements resolve the curvature.
 
-The ends of an element turn against each other by the mean of its curvature k, and the moments and shear forces at its
-ends tell k and k' there. Where both describe one smooth curve, the formula of Euler and Maclaurin joins them:
+The relative rotation of an element's ends is the integral of its curvature k, and the moments and shear forces at its
+ends give k and k' there. Where both describe one smooth curve, the Euler-Maclaurin formula relates them:
 
     turn/L = (k1 + k2)/2 - L/12 (k2' - k1') + O(L^4 k'''')
 
-A tension T bends a line into shapes that a cubic can't follow, and spoils the moments of an element by about
-T L^4 k''/384, the fourth-order error of its deflection times T; what the two sides differ by is that error. Near a
-clamped end, where k falls off within sqrt(EI/T), shear and moment are spoilt alike. There the trapezoidal rule alone
-tells: its error is the drop of k within the element. At a pinned end, where k sets in, it is no error of the moment.
+A tension T bends a line into shapes that a cubic can't follow, and leaves an error in the moments of an element of
+about T L^4 k''/384, the fourth-order error of its deflection times T; the difference of the two sides is that error.
+Near a clamped end, where k decays within sqrt(EI/T), shear and moment have the same error. There the trapezoidal rule
+alone is used: its error is the drop of k within the element. At a pinned end, where k sets in, it is no error of the
+moment.
 """
 
 from __future__ import annotations
@@ -19,15 +20,15 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.riser.directors import SpatialTurn
+from riser_soil.riser.directors import SpatialOrientation
 from riser_soil.riser.line import Line
 from riser_soil.riser.section_forces import end_forces
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.trial import Trial
 
 
-class Misfit(NamedTuple):
-    """The largest difference [N m] between what an element's turn and its end moments say of its bending moment.
+class BendingMisfit(NamedTuple):
+    """The largest difference [N m] between an element's bending moment by its end rotations and by its end moments.
 
     smooth: by the formula with shear; steep: by the trapezoidal rule, without elements at ends where the moment sets
     in. Each with its element.
@@ -39,7 +40,7 @@ class Misfit(NamedTuple):
     steep_at: int
 
 
-def misfit(line: Line, elements: Elements, state: State, residual: Array) -> Misfit:
+def misfit(line: Line, elements: Elements, state: State, residual: Array) -> BendingMisfit:
     """residual (ne, 2 ndof): from `section_forces.element_residual`, less its viscous share."""
     trial, L = line.trial(state), line.length[:, None]
     force, moment = _sections(line, trial, residual)
@@ -54,7 +55,7 @@ def misfit(line: Line, elements: Elements, state: State, residual: Array) -> Mis
     for end, other in ((0, 1), (-1, 0)):
         steep[end] *= size[end, 1 - other] > size[end, other]
     i, j = int(smooth.argmax()), int(steep.argmax())
-    return Misfit(float(smooth[i]), i, float(steep[j]), j)
+    return BendingMisfit(float(smooth[i]), i, float(steep[j]), j)
 
 
 def _sections(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]:
@@ -66,7 +67,7 @@ def _sections(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]:
 
 def _over_stiffness(trial: Trial, elements: Elements, moment: Array) -> Array:
     """Curvatures (ne, 2, 3) of moments, global axes; about the section axes where there are two stiffnesses."""
-    if not isinstance(trial.turn, SpatialTurn):
+    if not isinstance(trial.turn, SpatialOrientation):
         return np.asarray(moment / elements.EI_y[:, None, None])
     frames = np.stack([trial.turn.frame1, trial.turn.frame2], axis=1)
     about = np.einsum("enij,eni->enj", frames, moment)
@@ -80,7 +81,7 @@ def _turns(line: Line, trial: Trial, tangent: Array) -> Array:
     """Rotation vectors (ne, 3) by which elements' ends turn against each other from the unstressed state on, less the
     twist.
     """
-    if not isinstance(trial.turn, SpatialTurn):
+    if not isinstance(trial.turn, SpatialOrientation):
         return np.asarray(np.diff(trial.turn.angle)[:, None] * line.normal)
     R = trial.turn.R
     Q = R[1:] @ R[:-1].transpose(0, 2, 1)

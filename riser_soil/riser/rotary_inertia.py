@@ -1,4 +1,4 @@
-"""Inertia of the cross-sections against turning: the part "rotary inertia" of dynamic stages."""
+"""Rotary inertia of the cross-sections: the part "rotary inertia" of dynamic stages."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class RotaryInertia(LinePart):
         """Masses [kg m2] of element ends (ne,) on the tangent (0) and the normals (1, 2) that have the same inertia.
 
         In space half the polar inertia sits on each normal, and on the tangent what the inertia across is more than
-        that: nothing for a round section, less than nothing for one with polar inertia alone.
+        that: zero for a round section, negative for one with polar inertia only.
         """
         if self.line.dimension == 2:
             return {1: self.across}

@@ -1,4 +1,4 @@
-"""Rotary inertia of element ends in space: moments, their derivative and kinetic energy.
+"""Rotary inertia moments of element ends in space, their derivatives and kinetic energy (Euler's equations).
 
 An end has the inertia tensor J [kg m2] in its node's body axes, where Euler's equations for the angular velocity W
 and acceleration A give the moment

@@ -14,7 +14,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
-from riser_soil.riser.directors import SpatialTurn
+from riser_soil.riser.directors import SpatialOrientation
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.sections import Elements
@@ -23,7 +23,8 @@ from riser_soil.riser.trial import Trial
 
 @dataclass(frozen=True, eq=False)
 class SectionForces:
-    """What the line after a node exerts on the line before it, at nodes and in global axes: (nn, 3) or (nn,).
+    """Section forces and moments at nodes, exerted by the line after a node on the line before it, in global axes: (nn,
+    3) or (nn,).
 
     force N, moment N m; effective_tension N, positive in tension; bending_moment N m and curvature 1/m, magnitudes.
     curvature_beside (ne, 2): of the elements themselves at their ends; they differ where stiffnesses meet.
@@ -132,7 +133,7 @@ def end_forces(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]
 def _global(line: Line, trial: Trial, dofs: Array, nodes: IntArray) -> tuple[Array, Array]:
     """Forces and moments (n, 3) in global axes from those conjugate to the dofs of the nodes (n, ndof)."""
     force, rest = dofs[:, : line.dimension] @ line.basis.T, dofs[:, line.dimension :]
-    if isinstance(trial.turn, SpatialTurn):
+    if isinstance(trial.turn, SpatialOrientation):
         return force, trial.turn.in_space(rest, nodes)
     return force, rest * line.normal
 
@@ -155,7 +156,7 @@ def _curvatures(trial: Trial, elements: Elements, bending: Array) -> tuple[Array
     """Bending moment over stiffness at both ends of the elements (ne,), about the section axes where there are two
     stiffnesses.
     """
-    if isinstance(trial.turn, SpatialTurn):
+    if isinstance(trial.turn, SpatialOrientation):
         return (
             _section_curvature(trial.turn.frame1, bending[:-1], elements),
             _section_curvature(trial.turn.frame2, bending[1:], elements),

@@ -1,4 +1,4 @@
-"""From line types and segments to arrays per element."""
+"""Section properties of the line: from line types and segments to arrays per element."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from riser_soil.errors import SceneError
 
 
 @dataclass(frozen=True)
-class LineType:
+class SectionProperties:
     """Section properties. Diameters m; mass kg/m, empty, in air; EA N; EI_y, EI_z, GJ N m2; submerged_weight
     N/m.
 
@@ -42,21 +42,21 @@ class LineType:
 
 
 @dataclass(frozen=True)
-class Segment:
+class MeshedSegment:
     """A run of elements of one line type: their unstressed lengths in m."""
 
-    line_type: LineType
+    line_type: SectionProperties
     lengths: tuple[float, ...]
 
     @classmethod
-    def even(cls, line_type: LineType, length: float, elements: int) -> Self:
+    def even(cls, line_type: SectionProperties, length: float, elements: int) -> Self:
         """Equal elements that add up to a length [m]."""
         return cls(line_type, (length / elements,) * elements)
 
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What fills and surrounds the pipe: densities in kg/m3 (0: nothing), gravity in m/s2."""
+    """Fluids in and around the pipe: densities in kg/m3 (0: nothing), gravity in m/s2."""
 
     gravity: float = 9.81
     contents: float = 0.0
@@ -98,12 +98,12 @@ def larger_beside(values: Array) -> Array:
     return np.maximum(np.append(values, 0.0), np.append(0.0, values))
 
 
-def mass_with_contents(line: LineType, around: Surroundings) -> float:
+def mass_with_contents(line: SectionProperties, around: Surroundings) -> float:
     """Mass of pipe and contents, kg/m."""
     return line.mass + around.contents * 0.25 * np.pi * line.inner_diameter**2
 
 
-def rotary_inertia(line: LineType, around: Surroundings) -> float:
+def rotary_inertia(line: SectionProperties, around: Surroundings) -> float:
     """(m (do^2 + di^2) + m_contents di^2)/16 [kg m] about an axis across the pipe, unless it is given.
 
     The wall's mass m is spread evenly between the diameters; the contents turn with the pipe.
@@ -111,14 +111,14 @@ def rotary_inertia(line: LineType, around: Surroundings) -> float:
     return _of_round_section(line, around) if line.rotary_inertia is None else line.rotary_inertia
 
 
-def _of_round_section(line: LineType, around: Surroundings) -> float:
+def _of_round_section(line: SectionProperties, around: Surroundings) -> float:
     """Rotary inertia [kg m] about an axis across a pipe of these diameters."""
     outside, inside = line.outer_diameter**2, line.inner_diameter**2
     return (line.mass * outside + mass_with_contents(line, around) * inside) / 16.0
 
 
-def polar_inertia(line: LineType, around: Surroundings) -> float:
-    """Inertia [kg m] about the pipe's own axis: twice that across it, or, where none is asked for, twice that of the
+def polar_inertia(line: SectionProperties, around: Surroundings) -> float:
+    """Inertia [kg m] about the pipe's own axis: twice that across it, or, where none is given, twice that of the
     diameters. Without diameters m (EI_y + EI_z)/EA, as for a homogeneous section. Never zero but for a massless pipe.
     """
     if across := rotary_inertia(line, around):
@@ -128,7 +128,7 @@ def polar_inertia(line: LineType, around: Surroundings) -> float:
     return mass_with_contents(line, around) * (line.EI_y + line.EI_z) / line.EA
 
 
-def submerged_weight(line: LineType, around: Surroundings) -> float:
+def submerged_weight(line: SectionProperties, around: Surroundings) -> float:
     """g (m + rho_contents pi di^2/4 - rho_water pi do^2/4), N/m, unless it is given."""
     if line.submerged_weight is not None:
         return line.submerged_weight
@@ -136,7 +136,7 @@ def submerged_weight(line: LineType, around: Surroundings) -> float:
     return around.gravity * (mass_with_contents(line, around) - buoyancy)
 
 
-def elements(segments: Sequence[Segment], around: Surroundings) -> Elements:
+def elements(segments: Sequence[MeshedSegment], around: Surroundings) -> Elements:
     """Properties of all elements, from start to end."""
     if not segments:
         raise SceneError("riser.segments: none given; at least one is needed")
@@ -150,7 +150,7 @@ def elements(segments: Sequence[Segment], around: Surroundings) -> Elements:
     return Elements(np.concatenate([s.lengths for s in segments]), **{name: spread(name) for name in names})
 
 
-_WITH_SURROUNDINGS: dict[str, Callable[[LineType, Surroundings], float]] = {
+_WITH_SURROUNDINGS: dict[str, Callable[[SectionProperties, Surroundings], float]] = {
     "mass": mass_with_contents,
     "weight": submerged_weight,
     "rotary_inertia": rotary_inertia,
@@ -158,7 +158,7 @@ _WITH_SURROUNDINGS: dict[str, Callable[[LineType, Surroundings], float]] = {
 }
 
 
-def _property(line: LineType, around: Surroundings, name: str) -> float | tuple[float, float]:
+def _property(line: SectionProperties, around: Surroundings, name: str) -> float | tuple[float, float]:
     """One of an element: the line type's own of that name, but for what the surroundings take part in."""
     value: float | tuple[float, float]
     value = _WITH_SURROUNDINGS[name](line, around) if name in _WITH_SURROUNDINGS else getattr(line, name)

@@ -147,13 +147,12 @@ def _second_axis(tangent: Array) -> Array:
 
 
 def layout(arc: Array, outer_diameter: Array, unstressed: Curve, initial: Curve) -> Layout:
-    """What the line starts from: the unstressed shape's frames, and rotations that bring them to the initial
-    tangents.
+    """Layout of the line: the unstressed shape's frames, and rotations that bring them to the initial tangents.
 
     The first frame turns from the unstressed to the initial tangent by the smallest rotation, and along
-    either curve frames turn by the smallest rotations, so the initial shape has no twist beyond what its
-    geometry asks for. A node's rotation is that of the element after it; it serves the element before too
-    where both curves have the same kink, or none.
+    either curve frames turn by the smallest rotations, so the initial shape has no twist beyond that of its geometry. A
+    node's rotation is that of the element after it; it serves the element before too where both curves have the same
+    kink, or none.
     """
     T0 = _end_frames(unstressed.tangent, _second_axis(unstressed.tangent[0, 0]))
     turn = smallest_turn(unstressed.tangent[0, 0], initial.tangent[0, 0])

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.riser import rotations
-from riser_soil.riser.directors import SpatialTurn, moment_stiffness
+from riser_soil.riser.directors import SpatialOrientation, moment_stiffness
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
 
@@ -28,10 +28,10 @@ class EndSpring(LinePart):
         self.node = node % line.nodes
         self.name = "start spring" if self.node == 0 else "end spring"
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         first = self.line.offset + self.node * self.line.ndof + self.line.dimension
         dofs = np.arange(first, first + self.line.frames.dofs, dtype=np.int64)[None]
-        return {self.name: Block(dofs, dofs)}
+        return {self.name: MatrixBlock(dofs, dofs)}
 
     def moment(self, state: State) -> Array:
         """Moment of the spring on the riser in its own axes: (3,) global in space, (1,) in the plane."""
@@ -43,15 +43,15 @@ class EndSpring(LinePart):
 
     def residual(self, state: State, forces: Forces) -> None:
         turn = self.line.trial(state).turn
-        H = turn.H[self.node] if isinstance(turn, SpatialTurn) else np.eye(1)
+        H = turn.H[self.node] if isinstance(turn, SpatialOrientation) else np.eye(1)
         self.line.nodal(forces.force)[self.node, self.line.dimension :] -= H.T @ self.moment(state)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         turn = self.line.trial(state).turn
-        K = self._spatial_tangent(turn, state) if isinstance(turn, SpatialTurn) else self.stiffness
+        K = self._spatial_tangent(turn, state) if isinstance(turn, SpatialOrientation) else self.stiffness
         values[self.name][0] += weights.force * K
 
-    def _spatial_tangent(self, turn: SpatialTurn, state: State) -> Array:
+    def _spatial_tangent(self, turn: SpatialOrientation, state: State) -> Array:
         """H^T k T_L^-1(phi) H, and the change of H at fixed moment."""
         H, phi = turn.H[self.node], self._rotation(state)
         material = self.stiffness * H.T @ np.array(rotations.left_tangent_inverse(phi)) @ H
@@ -63,6 +63,6 @@ class EndSpring(LinePart):
         return Energy(strain=0.5 * self.stiffness * float(phi @ phi))
 
     def work(self, before: State, after: State) -> Work:
-        """Of the support's turning against the spring: the mean moment times the rotation."""
+        """Work of the support's rotation against the spring: the mean moment times the rotation."""
         rotation = self.line.frames.rotation(*(self.line.support(self.node, state.t) for state in (before, after)))
         return Work(external=0.5 * float((self.moment(before) + self.moment(after)) @ rotation))

@@ -1,5 +1,4 @@
-"""Quadrature stations along the line's elements: from q to values there, and back to residuals and their
-blocks.
+"""Quadrature along the line's elements: values at Gauss points (stations), residuals and tangent blocks.
 
 Arrays follow `hermite`: q (ne, 4, d). A field has values (ne, ng, d) at the ng stations of each element, three Gauss
 points unless another rule is given.
@@ -20,21 +19,21 @@ POINTS = 0.5 + np.sqrt(0.6) * np.array([-0.5, 0.0, 0.5])
 GAUSS = np.array([5.0, 8.0, 5.0]) / 18.0
 
 
-class Rule(NamedTuple):
+class QuadratureRule(NamedTuple):
     """Quadrature over an element: places xi in 0..1 and weights that sum to one, each (ng,)."""
 
     points: Array
     weights: Array
 
 
-THREE_POINTS = Rule(POINTS, GAUSS)
-ENDS = Rule(np.array([0.0, 1.0]), np.array([0.5, 0.5]))
+THREE_POINTS = QuadratureRule(POINTS, GAUSS)
+ENDS = QuadratureRule(np.array([0.0, 1.0]), np.array([0.5, 0.5]))
 
 
-def gauss(n: int) -> Rule:
+def gauss(n: int) -> QuadratureRule:
     """Gauss and Legendre's rule of n points."""
     x, w = np.polynomial.legendre.leggauss(n)
-    return Rule(0.5 + 0.5 * x, 0.5 * w)
+    return QuadratureRule(0.5 + 0.5 * x, 0.5 * w)
 
 
 class Stations(NamedTuple):
@@ -49,7 +48,7 @@ class Stations(NamedTuple):
         return Stations(*(values[elements] for values in self))
 
 
-def stations(L: Array, rule: Rule = THREE_POINTS) -> Stations:
+def stations(L: Array, rule: QuadratureRule = THREE_POINTS) -> Stations:
     """Stations on elements of unstressed lengths L (ne,)."""
     N = np.stack([shapes(np.full(L.size, p), L) for p in rule.points], axis=1)
     dN = np.stack([slopes(np.full(L.size, p), L) for p in rule.points], axis=1)
@@ -181,7 +180,7 @@ def _follow_slope(A: Array, tau: Array, stretch: Array, D: Size) -> Array:
     return out
 
 
-class ByDofs(NamedTuple):
+class DofDerivatives(NamedTuple):
     """Derivatives by the dofs: of tangents in q, q' and q'' (ne, 2, d, r), of positions in q' and q'' the shifts."""
 
     q: Array
@@ -231,7 +230,7 @@ def _add_block(out: Array, room: _Room, weighted: Array, P: Array, D: Size, R: S
     add_rows(out, P, room.S, D, R)
 
 
-def add_tangent(out: Array, at: Stations, by: Derivatives, columns: ByDofs) -> None:
+def add_tangent(out: Array, at: Stations, by: Derivatives, columns: DofDerivatives) -> None:
     """Add to out (ne, n, n) the derivative by the dofs of the residual of a force per length, P = dt/dTheta held."""
     D, R = fixed(by.slope.shape[2]), fixed(columns.q.shape[3])
     _add_tangent(out, tuple(at), tuple(by), tuple(columns), D, R)
@@ -239,8 +238,8 @@ def add_tangent(out: Array, at: Stations, by: Derivatives, columns: ByDofs) -> N
 
 @njit
 def _add_tangent(out: Array, at: tuple, by: tuple, columns: tuple, D: Size, R: Size) -> None:
-    """Takes plain tuples, each of which numba reads half a microsecond faster than a named one."""
-    at, by, columns = Stations(*at), Derivatives(*by), ByDofs(*columns)
+    """Takes plain tuples: numba reads named ones half a microsecond slower."""
+    at, by, columns = Stations(*at), Derivatives(*by), DofDerivatives(*columns)
     room = _room(by.slope.shape[1], out.shape[1], D)
     for e in range(by.slope.shape[0]):
         for g in range(by.slope.shape[1]):
@@ -250,7 +249,9 @@ def _add_tangent(out: Array, at: tuple, by: tuple, columns: tuple, D: Size, R: S
 
 
 @njit
-def _put_change(change: Array, place: Place, at: Stations, by: Derivatives, columns: ByDofs, D: Size, R: Size) -> None:
+def _put_change(
+    change: Array, place: Place, at: Stations, by: Derivatives, columns: DofDerivatives, D: Size, R: Size
+) -> None:
     """Write how the force at a station of an element follows the dofs of one of its ends to change (d, n)."""
     e, g, side = place
     d, first = len(D), side * (len(D) + len(R))

@@ -1,4 +1,4 @@
-"""Strains of a two-node element in space, and the stresses that they cause.
+"""Strains of a two-node element in space, and the stress resultants that they cause.
 
 The ends of the element have turned from its frame by twists tau_i and swings (y_i, z_i), see
 `swing_twist`. Between them the swing is the quadratic whose mean vanishes, since the frame follows the

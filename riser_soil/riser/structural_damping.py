@@ -1,4 +1,4 @@
-"""Damping within the pipe, in proportion to its stiffness: the part "structural damping" of dynamic stages."""
+"""Structural damping in proportion to the elastic stiffness: the part "structural damping" of dynamic stages."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class SpatialDamping(ViscousElements):
 
     def tangent(self, trial: Trial, v: Array, shift_v: float) -> Array:
         turn = spatial(trial)
-        nodes = damping3d.Nodes(turn.R, turn.H, turn.Rn, turn.Theta)
+        nodes = damping3d.NodeRotations(turn.R, turn.H, turn.Rn, turn.Theta)
         return np.asarray(damping3d.tangent(*self._at(trial, v), nodes, shift_v))
 
 

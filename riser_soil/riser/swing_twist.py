@@ -1,4 +1,4 @@
-"""A rotation as a twist about the first axis followed by a swing: A = exp[(0, y, z)] exp[(tau, 0, 0)].
+"""Swing-twist decomposition of a rotation: A = exp[(0, y, z)] exp[(tau, 0, 0)].
 
 The swing turns e1 into t = A e1 by the shortest way; t alone fixes it:
 

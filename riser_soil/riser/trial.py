@@ -1,4 +1,4 @@
-"""The line at a trial state, and how loads on it reach its dofs."""
+"""Trial configuration of the line, and how loads per length reach its dofs."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed
 from riser_soil.core.part import State, Weights
 from riser_soil.riser import hermite
-from riser_soil.riser.directors import Turn
+from riser_soil.riser.directors import Orientation
 
 
-class ByIncrements(NamedTuple):
+class IncrementDerivatives(NamedTuple):
     """Derivatives of q, q' or q'' by the dofs: `tangent` (ne, 2, d, r) for the tangents, `shift` for the
     positions.
     """
@@ -24,19 +24,19 @@ class ByIncrements(NamedTuple):
     shift: float
 
 
-Columns = tuple[ByIncrements, ByIncrements, ByIncrements]
+Columns = tuple[IncrementDerivatives, IncrementDerivatives, IncrementDerivatives]
 
 
 class Trial:
     """The line at a trial state: x (nn, d), chord (ne, d), orientation `turn`; rates of q on demand."""
 
-    def __init__(self, state: State, x: Array, chord: Array, turn: Turn, rates: tuple[Array, Array]) -> None:
+    def __init__(self, state: State, x: Array, chord: Array, turn: Orientation, rates: tuple[Array, Array]) -> None:
         self.state, self.x, self.chord, self.turn = state, x, chord, turn
         self._v, self._a = rates
         self._kept: dict[Hashable, Any] = {}
 
     def once(self, key: Hashable, make: Callable[[Trial], Any]) -> Any:
-        """What a part makes of this trial under a key of its own; made when first asked for."""
+        """A value that a part computes at this trial, cached under a key of its own."""
         if key not in self._kept:
             self._kept[key] = make(self)
         return self._kept[key]
@@ -73,7 +73,7 @@ class Trial:
     def _columns_at(self, shift_v: float, shift_a: float) -> Columns:
         d = self.x.shape[1]
         maps = self.turn.maps(self._v[:, d:], self._a[:, d:], shift_v, shift_a)
-        q, rate, acceleration = map(ByIncrements, maps, (1.0, shift_v, shift_a))
+        q, rate, acceleration = map(IncrementDerivatives, maps, (1.0, shift_v, shift_a))
         return q, rate, acceleration
 
     def add_turning(self, out: Array, weight: float, F: Array) -> None:

@@ -1,4 +1,4 @@
-"""A constant load per length on shallow-arch elements: its potential, residual and tangent.
+"""Uniform load per length on shallow-arch elements: its potential, residual and tangent.
 
 The element bows from its chord by a cubic with the end angles theta_i between chord and tangents, so a load w
 per unstressed length L has the potential

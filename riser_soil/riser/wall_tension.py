@@ -1,4 +1,4 @@
-"""The tension in the pipe's wall, from the effective tension and the pressures inside and outside.
+"""Wall tension of the pipe from effective tension, internal and external pressure.
 
     T_w = T + p_i A_i - p_o A_o,    p_i = p + rho_i g (z_p - z),    p_o = rho_o g (z_s - z), at least 0.
 
@@ -17,7 +17,7 @@ from riser_soil.core.arrays import Array
 
 
 @dataclass(frozen=True)
-class Head:
+class HydrostaticPressure:
     """A fluid at rest: gauge pressure [Pa] at a level z [m], and its increase per depth [Pa/m]."""
 
     level: float
@@ -36,8 +36,8 @@ class Pressures:
     inner_diameter, outer_diameter: (ne,) m. At a joint the areas are the means of both sides, as section forces are.
     """
 
-    inside: Head | None
-    outside: Head | None
+    inside: HydrostaticPressure | None
+    outside: HydrostaticPressure | None
     inner_diameter: Array
     outer_diameter: Array
 

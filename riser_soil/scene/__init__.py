@@ -1,1 +1,1 @@
-"""The scene language: models, reader, checks across parts, echo and JSON schema."""
+"""The scene language: models, reader, checks, resolved scene and JSON schema."""

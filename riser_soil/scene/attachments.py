@@ -1,4 +1,4 @@
-"""What is attached to the riser at single places: point masses, clump weights, buoyancy modules."""
+"""Scene language: point masses, clump weights and buoyancy modules on the riser."""
 
 from typing import Annotated, Any, Self
 

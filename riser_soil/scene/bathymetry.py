@@ -1,4 +1,4 @@
-"""How high the ground is below a point, as far as a scene is checked; see `riser_soil.seabed.grounds` for its shape."""
+"""Height of the seabed below a point, for the checks of a scene; `riser_soil.seabed.grounds` has its shape."""
 
 import math
 from itertools import pairwise

@@ -1,4 +1,4 @@
-"""Files that a scene is read from: regular ones, and no larger than what makes sense."""
+"""Reading of input files with a size limit."""
 
 import errno
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Columns of numbers from a CSV file whose header names each with its unit: `t [s], x [m], y [m], z [m]`.
+"""CSV tables whose header gives the unit of each column: `t [s], x [m], y [m], z [m]`.
 
 Separated by commas or, where the header has any, by semicolons; empty lines and lines that begin with # don't count.
 Cells may stand in double quotes.

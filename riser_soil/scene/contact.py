@@ -1,4 +1,4 @@
-"""Contact between the riser and the seabed or the soil."""
+"""Scene language: contact of the riser with seabed and soil, friction and suction."""
 
 from typing import Literal
 

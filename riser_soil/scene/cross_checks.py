@@ -1,4 +1,4 @@
-"""Conflicts between parts of a scene that each by itself is well formed."""
+"""Consistency checks between parts of a scene, each of which is valid by itself."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -22,7 +22,7 @@ _ARC_TOLERANCE = 1e-6
 _POINTS_TOLERANCE = 0.05
 # Distance between an end's position and the initial shape, relative to the riser's length.
 _MEETING = 1e-6
-# Part of its radius by which a held end may lie in a rigid seabed.
+# Part of its radius by which a prescribed end may lie in a rigid seabed.
 _SUNK = 0.02
 # Strain of a riser pulled straight between its ends beyond which the positions must be a mistake.
 _GREATEST_STRAIN = 0.1
@@ -185,13 +185,13 @@ def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
 def _initial_shape_possible(scene: Scene) -> Iterator[Problem]:
     riser, path = scene.riser, ("riser", "initial")
     if riser.initial == "catenary" and "free" in (riser.start, riser.end):
-        yield Problem(
-            path, "a catenary hangs between two held ends", "hold both ends, or set initial: unstressed"
-        )
+        remedy = "give both ends a position, or set initial: unstressed"
+        yield Problem(path, "a catenary hangs between two ends with a position", remedy)
     elif riser.initial == "catenary" and scene.gravity == 0.0:
         yield Problem(path, "there is no catenary without gravity", "set initial: straight or unstressed")
     if riser.initial == "straight" and riser.unstressed != "straight" and "free" in (riser.start, riser.end):
-        yield Problem(path, "straight needs two held ends here", "hold both ends, or set initial: unstressed")
+        remedy = "give both ends a position, or set initial: unstressed"
+        yield Problem(path, "straight needs two ends with a position here", remedy)
 
 
 def _straight_without_slack(scene: Scene) -> Iterator[Problem]:
@@ -204,7 +204,7 @@ def _straight_without_slack(scene: Scene) -> Iterator[Problem]:
         yield Problem(
             ("riser", "initial"),
             f"straight would compress the riser's {length:g} m into the {distance:g} m between its ends",
-            "set initial: catenary, give points, or hold the end a length away and move it in a static stage",
+            "set initial: catenary, give points, or place the end a length away and move it in a static stage",
         )
 
 

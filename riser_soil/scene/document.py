@@ -1,4 +1,4 @@
-"""A YAML file as plain data, with the line of every value."""
+"""YAML file as plain data, with the line number of every value."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""The resolved scene as YAML: every default filled in; reading it gives the same scene."""
+"""The resolved scene as YAML, all defaults filled in; reading it gives the same scene."""
 
 import io
 

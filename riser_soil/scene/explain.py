@@ -1,4 +1,4 @@
-"""Problems in the words of the scene from the errors of the models."""
+"""Error messages: from the models' validation errors to problems in the words of the scene."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from riser_soil.scene.language import Spot, spot
+from riser_soil.scene.language import KeyInfo, spot
 from riser_soil.scene.problem import NOTHING, Path, Problem, did_you_mean, hint, value_at
 
 
@@ -30,12 +30,12 @@ class Failure:
         return value_at(self.data, self.path)
 
     @property
-    def here(self) -> Spot:
+    def here(self) -> KeyInfo:
         """What the language says about the place."""
         return spot(self.location)
 
     @property
-    def around(self) -> Spot:
+    def around(self) -> KeyInfo:
         """What the language says about the mapping or list that holds the place."""
         return spot(self.location[:-1])
 

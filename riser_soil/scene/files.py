@@ -1,4 +1,4 @@
-"""Files that a scene names."""
+"""Paths of the files that a scene names."""
 
 from pathlib import Path
 from typing import Annotated

@@ -1,4 +1,4 @@
-"""Lengths of elements that grow geometrically along a segment."""
+"""Graded element lengths: geometric growth along a segment."""
 
 import math
 
@@ -6,7 +6,7 @@ import math
 def graded_lengths(length: float, first: float, last: float) -> tuple[float, ...]:
     """Lengths [m] that add up to `length`, each the same multiple of the one before, from about `first` to `last`.
 
-    Their number n is the least for which none exceeds what was asked for: n - 1 equal quotients lead from `first` to
+    Their number n is the least for which none exceeds the given length: n - 1 equal quotients lead from `first` to
     `last`, and a common factor, between 1 - 1/n and 1 for n > 2, makes the sum right. first = last: n equal lengths.
     """
     n = graded_count(length, first, last)

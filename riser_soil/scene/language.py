@@ -1,4 +1,4 @@
-"""What the models say about a place of the scene: its keys, words and description."""
+"""Keys, words and descriptions of the scene language, looked up in its models."""
 
 from dataclasses import dataclass
 from types import UnionType
@@ -12,8 +12,8 @@ from riser_soil.scene.scene import Scene
 
 
 @dataclass(frozen=True)
-class Spot:
-    """A place of the language: the types that fit there and the description of its key."""
+class KeyInfo:
+    """A key of the scene language: the types that fit there and the description of its key."""
 
     types: tuple[Any, ...]
     description: str
@@ -41,27 +41,27 @@ class Spot:
     def _models(self) -> list[type[BaseModel]]:
         return [kind for kind in self.types if isinstance(kind, type) and issubclass(kind, BaseModel)]
 
-    def under(self, item: str | int) -> "Spot":
+    def under(self, item: str | int) -> "KeyInfo":
         """The place below a key or index; an alternative's tag `<Model>` narrows the types."""
         if isinstance(item, str) and item.startswith("<"):
             chosen = tuple(model for model in self._models if f"<{model.__name__}>" == item)
-            return Spot(chosen or self.types, self.description)
+            return KeyInfo(chosen or self.types, self.description)
         if isinstance(item, int):
-            return Spot(tuple(t for kind in self.types for t in _item_types(kind, item)), self.description)
+            return KeyInfo(tuple(t for kind in self.types for t in _item_types(kind, item)), self.description)
         return self._key(item)
 
-    def _key(self, key: str) -> "Spot":
+    def _key(self, key: str) -> "KeyInfo":
         for model in self._models:
             for name, field in model.model_fields.items():
                 if (field.alias or name) == key:
-                    return Spot(_types(field), field.description or "")
+                    return KeyInfo(_types(field), field.description or "")
         values = (get_args(kind)[1] for kind in self.types if get_origin(kind) is dict)
-        return Spot(tuple(t for kind in values for t in _alternatives(kind)), self.description)
+        return KeyInfo(tuple(t for kind in values for t in _alternatives(kind)), self.description)
 
 
-def spot(location: tuple[str | int, ...]) -> Spot:
+def spot(location: tuple[str | int, ...]) -> KeyInfo:
     """The place of the language at a location with or without tags."""
-    here = Spot((Scene,), "the scene")
+    here = KeyInfo((Scene,), "the scene")
     for item in location:
         here = here.under(item)
     return here

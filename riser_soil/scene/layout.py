@@ -1,4 +1,4 @@
-"""Where the riser's initial shape begins and ends."""
+"""End points of the riser's initial shape."""
 
 import math
 
@@ -12,7 +12,7 @@ _ALONG_X = (1.0, 0.0, 0.0)
 
 
 def initial_ends(riser: Riser) -> tuple[Vector, Vector]:
-    """Start and end of the initial shape [m]; they must lie where the riser is held."""
+    """Start and end of the initial shape [m]; they must lie at the prescribed positions of the ends."""
     start, end = (e.position if isinstance(e, Support) else None for e in (riser.start, riser.end))
     if isinstance(riser.initial, PointsShape):
         return riser.initial.points[0], riser.initial.points[-1]

@@ -1,4 +1,4 @@
-"""Line types: the properties of the pipe's cross-section."""
+"""Scene language: line types, the properties of the pipe's cross-section."""
 
 import math
 from typing import Annotated, Any, Literal, Self

@@ -1,4 +1,4 @@
-"""Conflicts of a prescribed motion with its stage and its end."""
+"""Consistency checks of prescribed motions with their stage and end."""
 
 import math
 from collections.abc import Iterator

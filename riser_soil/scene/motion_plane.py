@@ -1,11 +1,11 @@
-"""Where prescribed motions lead: vectors and axes that must lie in the riser's plane, or across it, to stay in it."""
+"""Plane motion check: vectors and axes of prescribed motions that must lie in the riser's plane or normal to it."""
 
 import math
 from collections.abc import Iterator
 from typing import assert_never
 
 from riser_soil.core.quantities import Vector
-from riser_soil.scene.motions import ArcMotion, Harmonic, Rotation, Table, Vessel, Way
+from riser_soil.scene.motions import ArcMotion, Harmonic, MotionKind, Rotation, Table, Vessel
 from riser_soil.scene.problem import Path
 from riser_soil.scene.rao import ROTATIONS, TRANSLATIONS
 from riser_soil.scene.scene import Scene
@@ -50,7 +50,7 @@ def rotation_axes(scene: Scene) -> Iterator[tuple[Path, Vector]]:
                 assert_never(way)
 
 
-def _ways(scene: Scene) -> Iterator[tuple[Path, Way]]:
+def _ways(scene: Scene) -> Iterator[tuple[Path, MotionKind]]:
     """All motions of the ends, stage by stage."""
     for n, stage in enumerate(scene.stages):
         if isinstance(stage, DynamicStage) and stage.motion:
@@ -59,7 +59,7 @@ def _ways(scene: Scene) -> Iterator[tuple[Path, Way]]:
 
 
 def _modes(scene: Scene, path: Path, vessel: Vessel, among: tuple[str, ...]) -> Iterator[tuple[Path, Vector]]:
-    """What a vessel does in the scene's waves."""
+    """Modes in which a vessel responds to the scene's waves."""
     waves = scene.water.waves if scene.water else None
     if waves:
         moving = vessel.table.moving(math.radians(waves.direction_deg - vessel.heading_deg))

@@ -1,4 +1,4 @@
-"""Prescribed motions of held ends in dynamic stages."""
+"""Scene language: prescribed motions of the ends in dynamic stages."""
 
 import math
 from functools import cached_property
@@ -150,7 +150,7 @@ class Vessel(BaseModel):
     """The end is part of a vessel that answers the scene's waves linearly, by its table of RAOs.
 
     Vessel axes: x forward along the heading, y to port, z up; rotations are right-handed (roll lowers starboard, pitch
-    the bow; yaw turns the bow to port). Wave directions count from the heading towards port and tell where waves run
+    the bow; yaw turns the bow to port). Wave directions count from the heading towards port and give where waves run
     to: 0 from astern, 90 from starboard, 180 from ahead. Phases are lags behind the crest at the reference point.
     """
 
@@ -186,7 +186,7 @@ class Vessel(BaseModel):
         return ((forward, across, 0.0), (-across, forward, 0.0), (0.0, 0.0, 1.0))[MODES.index(mode) % 3]
 
 
-Way = Harmonic | ArcMotion | Table | Vessel | Rotation
+MotionKind = Harmonic | ArcMotion | Table | Vessel | Rotation
 
 
 class EndMotion(BaseModel):
@@ -226,7 +226,7 @@ class EndMotion(BaseModel):
         return self
 
     @property
-    def ways(self) -> dict[str, Way]:
+    def ways(self) -> dict[str, MotionKind]:
         """What is given, by its key."""
         return {key: way for key, way in self if way is not None}
 
@@ -238,7 +238,7 @@ class EndMotion(BaseModel):
 
 
 class Motion(BaseModel):
-    """Prescribed motions of held ends."""
+    """Prescribed motions of the ends."""
 
     model_config = FROZEN
 

@@ -1,4 +1,4 @@
-"""Keys and values of the language that this version can't compute yet.
+"""Keys and values of the scene language that are not supported yet.
 
 They are named as such instead of being called unknown. A value that switches the thing off is dropped.
 """
@@ -22,7 +22,7 @@ VALUES: dict[tuple[str, ...], tuple[Any, ...]] = {
 
 
 def taken_out(data: Any) -> tuple[Any, list[Problem]]:
-    """A copy of the data without the keys of KEYS, and what asks for more than this version can do."""
+    """A copy of the data without the keys of KEYS, and problems for what this version does not support."""
     rest = copy.deepcopy(data)
     return rest, [*_keys(rest), *_values(rest)]
 

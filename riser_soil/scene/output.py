@@ -1,4 +1,4 @@
-"""What a run writes."""
+"""Scene language: what a run writes, and at which intervals."""
 
 from typing import TYPE_CHECKING, Literal
 

@@ -1,4 +1,4 @@
-"""Values given on the command line: `--set riser.segments.0.elements=70`."""
+"""Overrides of scene values on the command line: `--set riser.segments.0.elements=70`."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -1,4 +1,4 @@
-"""The vertical plane of a scene, and what leaves it."""
+"""The vertical plane of a two-dimensional scene, and what leaves it."""
 
 import math
 from collections.abc import Iterator
@@ -19,7 +19,7 @@ _FLAT = 1e-9
 
 
 @dataclass(frozen=True)
-class Plane:
+class VerticalPlane:
     """A vertical plane: a point of it [m], its horizontal unit direction from start to end, the riser's length [m]."""
 
     origin: Vector
@@ -49,10 +49,10 @@ class Plane:
         return math.hypot(*across) <= _FLAT * math.hypot(*axis)
 
 
-def vertical_plane(scene: Scene) -> Plane:
+def vertical_plane(scene: Scene) -> VerticalPlane:
     """The plane through the riser's start and end; along x when they give no direction."""
     points = _ends(scene)
-    return Plane(points[0], _direction(points), scene.riser.length)
+    return VerticalPlane(points[0], _direction(points), scene.riser.length)
 
 
 def resolved_dimension(scene: Scene) -> Literal[2, 3]:
@@ -71,17 +71,17 @@ def leaving_the_plane(scene: Scene) -> Iterator[Path]:
 
 
 def _ends(scene: Scene) -> tuple[Vector, ...]:
-    """Points that fix the plane: the held ends, or those of the unstressed shape."""
+    """Points that fix the plane: the prescribed ends, or those of the unstressed shape."""
     riser = scene.riser
-    held = tuple(end.position for end in (riser.start, riser.end) if isinstance(end, Support))
-    if len(held) == 2:
-        return held
+    prescribed = tuple(end.position for end in (riser.start, riser.end) if isinstance(end, Support))
+    if len(prescribed) == 2:
+        return prescribed
     if isinstance(riser.unstressed, PointsShape):
         return riser.unstressed.points
     if isinstance(riser.unstressed, ArcShape):
         arc = riser.unstressed.arc
         return arc.from_point, plus(arc.from_point, cross(arc.axis, (0.0, 0.0, 1.0)))
-    return held or ((0.0, 0.0, 0.0),)
+    return prescribed or ((0.0, 0.0, 0.0),)
 
 
 def _direction(points: tuple[Vector, ...]) -> Vector:
@@ -120,7 +120,7 @@ def _vectors(scene: Scene) -> Iterator[tuple[Path, Vector]]:
 
 
 def _flows(scene: Scene) -> Iterator[tuple[Path, Vector]]:
-    """What moves the water."""
+    """Directions of current and waves."""
     current = scene.water.current if scene.water else None
     for n, (_, ux, uy) in enumerate(current.profile if current else ()):
         yield ("water", "current", "profile", n), (ux, uy, 0.0)

@@ -1,4 +1,4 @@
-"""A problem in a scene, and the one line that tells it."""
+"""A problem found in a scene, and its one-line message."""
 
 import difflib
 import json
@@ -11,11 +11,11 @@ Path = tuple[str | int, ...]
 _WIDTH = 60
 
 
-class Nothing:
+class Missing:
     """Stands for a value that is not there (None is a value: null)."""
 
 
-NOTHING = Nothing()
+NOTHING = Missing()
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ def shown(value: Any) -> str:
     return text if len(text) <= _WIDTH else text[: _WIDTH - 3] + "..."
 
 
-def told(problem: Problem, data: Any) -> str:
+def message(problem: Problem, data: Any) -> str:
     """Path, value, what is allowed and what to do, in one line."""
     value = value_at(data, problem.path)
     given = "missing" if value is NOTHING else f"value {shown(value)}"

@@ -1,4 +1,4 @@
-"""Tables of a vessel's response amplitude operators (RAO)."""
+"""Tables of a vessel's response amplitude operators (RAOs)."""
 
 import cmath
 import math
@@ -100,7 +100,7 @@ def _modes(columns: CsvColumns) -> list[str]:
 
 
 def _frequencies(columns: CsvColumns) -> list[float]:
-    """Of each row [rad/s]."""
+    """Frequency of each row [rad/s]."""
     name = "frequency" if "frequency" in columns.values else "period"
     for line, value in zip(columns.lines, columns.values[name], strict=True):
         if value < NEAREST:
@@ -110,7 +110,7 @@ def _frequencies(columns: CsvColumns) -> list[float]:
 
 
 def _directions(columns: CsvColumns) -> list[float]:
-    """Of each row, from 0 to below 2 pi [rad]; to 12 digits, so that 360 deg are 0."""
+    """Wave direction of each row, from 0 to below 2 pi [rad]; to 12 digits, so that 360 deg are 0."""
     return [round(value % TURN, 12) % round(TURN, 12) for value in columns.values["direction"]]
 
 

@@ -1,4 +1,4 @@
-"""From a scene file to a checked scene."""
+"""Reader: from a scene file to a checked scene."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -13,7 +13,7 @@ from riser_soil.scene.cross_checks import conflicts
 from riser_soil.scene.document import Document, parse, read_text
 from riser_soil.scene.explain import problems_in
 from riser_soil.scene.overrides import override
-from riser_soil.scene.problem import Problem, told
+from riser_soil.scene.problem import Problem, message
 from riser_soil.scene.scene import Scene
 
 _MOST_LINES = 20
@@ -62,7 +62,7 @@ def _beside(problem: Problem, others: Iterable[Problem]) -> bool:
 
 
 def _scene_error(problems: Sequence[Problem], document: Document) -> SceneError:
-    placed = sorted((*document.where(problem.path), told(problem, document.data)) for problem in problems)
+    placed = sorted((*document.where(problem.path), message(problem, document.data)) for problem in problems)
     lines = [f"{place}: {text}" for _, place, text in placed]
     more = len(lines) - _MOST_LINES
     return SceneError(

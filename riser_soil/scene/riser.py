@@ -1,4 +1,4 @@
-"""The riser: its segments, contents, ends and shapes."""
+"""Scene language: the riser, its segments, contents, end supports and shapes."""
 
 import math
 from itertools import accumulate
@@ -80,7 +80,7 @@ class Segment(BaseModel):
 
     @property
     def _first_and_last(self) -> tuple[float, float]:
-        """The lengths asked for at the segment's start and at its end [m]."""
+        """The element lengths requested at the segment's start and end [m]."""
         given = self.element_length
         assert given is not None  # the validator has seen to it
         return given if isinstance(given, tuple) else (given, given)
@@ -117,11 +117,11 @@ Rotation = Annotated[
 
 
 class Support(BaseModel):
-    """An end held at a position."""
+    """The support of an end at a prescribed position."""
 
     model_config = FROZEN
 
-    position: Position = Field(description="where the end is held, [x, y, z] [m]")
+    position: Position = Field(description="prescribed position of the end, [x, y, z] [m]")
     rotation: Rotation = Field(
         default="free",
         description="free, fixed (keeps the direction of the initial shape), or {stiffness: N.m/rad}",
@@ -158,7 +158,7 @@ class Riser(BaseModel):
     initial: Initial = Field(
         default="unstressed",
         description="shape at the beginning: straight, catenary, unstressed or {points: ...}; by default "
-        "catenary when both ends are held and gravity acts, else unstressed",
+        "catenary when both ends have a position and gravity acts, else unstressed",
     )
 
     @model_validator(mode="after")

@@ -1,4 +1,4 @@
-"""The scene: everything that a run is made of."""
+"""Scene language: the whole scene."""
 
 import math
 from typing import Any, Literal
@@ -83,10 +83,10 @@ def _with_contact(data: dict[str, Any]) -> dict[str, Any]:
 
 
 def _with_initial(data: dict[str, Any]) -> dict[str, Any]:
-    """A riser held at both ends under gravity starts as a catenary."""
+    """A riser with both end positions prescribed starts under gravity as a catenary."""
     riser = data.get("riser")
     if not isinstance(riser, dict) or riser.get("initial") is not None:
         return data
-    held = all(isinstance(riser.get(end), dict) for end in ("start", "end"))
-    initial = "catenary" if held and data.get("gravity", 9.81) != 0 else "unstressed"
+    prescribed = all(isinstance(riser.get(end), dict) for end in ("start", "end"))
+    initial = "catenary" if prescribed and data.get("gravity", 9.81) != 0 else "unstressed"
     return {**data, "riser": {**riser, "initial": initial}}

@@ -1,4 +1,4 @@
-"""The JSON schema of the scene language, for editors."""
+"""JSON schema of the scene language, for editors."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Seabeds that stand in for a continuum."""
+"""Scene language: rigid, spring and hysteretic seabeds."""
 
 from itertools import pairwise
 from typing import Annotated, Literal

@@ -1,4 +1,4 @@
-"""Shapes of the whole riser: unstressed, and at the beginning of the run."""
+"""Scene language: unstressed and initial shape of the riser."""
 
 import math
 from itertools import pairwise

@@ -1,4 +1,4 @@
-"""The soil continuum: its block or mesh, its law and its initial stress."""
+"""Scene language: the soil continuum, its block or mesh, constitutive law and initial stress."""
 
 from typing import Annotated, Literal, Self
 

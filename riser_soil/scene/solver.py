@@ -1,4 +1,4 @@
-"""Settings of the nonlinear solver."""
+"""Scene language: settings of the nonlinear solver."""
 
 from typing import Annotated
 

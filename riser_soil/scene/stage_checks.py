@@ -1,4 +1,4 @@
-"""Conflicts between the stages and the rest of a scene."""
+"""Consistency checks of the stages with the rest of a scene."""
 
 import math
 from collections.abc import Iterator
@@ -56,16 +56,16 @@ def _nearest_node(scene: Scene, arc: float) -> float:
 def _static(scene: Scene, n: int, stage: StaticStage) -> Iterator[Problem]:
     ends = {"start": scene.riser.start, "end": scene.riser.end}
     if all(end == "free" for end in ends.values()):
-        remedy = "hold an end with position, or make the stage dynamic"
+        remedy = "give an end a position, or make the stage dynamic"
         yield Problem(("stages", n), "a riser with two free ends has no equilibrium", remedy)
     elif _swings_freely(scene):
-        remedy = "set rotation: fixed or a stiffness, hold the other end, or let gravity act"
+        remedy = "set rotation: fixed or a stiffness, give the other end a position, or let gravity act"
         yield Problem(
-            ("stages", n), "held at one freely rotating end, without gravity, it has no equilibrium", remedy
+            ("stages", n), "with one freely rotating support and without gravity, it has no equilibrium", remedy
         )
     if stage.move:
         targets = {"start": stage.move.start, "end": stage.move.end}
-        yield from _held(ends, {("stages", n, "move", k): k for k, v in targets.items() if v is not None})
+        yield from _prescribed(ends, {("stages", n, "move", k): k for k, v in targets.items() if v is not None})
         for key, target in targets.items():
             if scene.contact and target is not None and target[2] < (ground := ground_height(scene, target)):
                 allowed = f"must not lie below the seabed (z = {ground:g} m)"
@@ -73,14 +73,14 @@ def _static(scene: Scene, n: int, stage: StaticStage) -> Iterator[Problem]:
 
 
 def _swings_freely(scene: Scene) -> bool:
-    held = [end for end in (scene.riser.start, scene.riser.end) if isinstance(end, Support)]
-    return scene.gravity == 0.0 and len(held) == 1 and held[0].rotation == "free"
+    prescribed = [end for end in (scene.riser.start, scene.riser.end) if isinstance(end, Support)]
+    return scene.gravity == 0.0 and len(prescribed) == 1 and prescribed[0].rotation == "free"
 
 
 def _dynamic(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
     if stage.motion:
         ends = {"start": scene.riser.start, "end": scene.riser.end}
-        yield from _held(ends, {("stages", n, "motion", key): key for key in stage.motion.by_end})
+        yield from _prescribed(ends, {("stages", n, "motion", key): key for key in stage.motion.by_end})
         for key, motion in stage.motion.by_end.items():
             yield from motion_conflicts(scene, ("stages", n, "motion", key), motion, stage.duration)
     yield from _midpoint(scene, n, stage)
@@ -94,7 +94,7 @@ def _dynamic(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
 
 
 def _midpoint(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
-    """What the midpoint rule can't do: it has no forces or rotations at the end of a step alone."""
+    """Limits of the midpoint rule, which has no forces or rotations at the end of a step only."""
     if not isinstance(stage.scheme, MidpointScheme):
         return
     path, remedy = ("stages", n, "scheme"), "choose another scheme"
@@ -106,8 +106,8 @@ def _midpoint(scene: Scene, n: int, stage: DynamicStage) -> Iterator[Problem]:
             yield Problem(path, f"the midpoint rule can't turn a fixed end, and the riser's {key} turns", remedy)
 
 
-def _held(ends: dict[str, End], places: dict[Path, str]) -> Iterator[Problem]:
-    """Only held ends can be moved."""
+def _prescribed(ends: dict[str, End], places: dict[Path, str]) -> Iterator[Problem]:
+    """Only ends with a prescribed position can be moved."""
     for path, key in places.items():
         if ends[key] == "free":
             remedy = f"give riser.{key} a position, or leave this out"

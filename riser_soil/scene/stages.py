@@ -1,4 +1,4 @@
-"""The stages of a run: statics and dynamics, with their moves, motions, loads and time schemes."""
+"""Scene language: static and dynamic stages with their moves, motions, loads and time schemes."""
 
 from itertools import pairwise
 from typing import Annotated, Literal, Self
@@ -84,7 +84,7 @@ class Load(BaseModel):
 
 
 class MovedEnds(BaseModel):
-    """New positions of held ends, reached linearly with the stage's load factor."""
+    """New prescribed positions of ends, reached linearly with the stage's load factor."""
 
     model_config = FROZEN
 
@@ -92,7 +92,7 @@ class MovedEnds(BaseModel):
     end: Position | None = Field(default=None, description="new position of the end, [x, y, z] [m]")
 
 
-class Newmark(BaseModel):
+class NewmarkParameters(BaseModel):
     """Newmark's parameters."""
 
     model_config = FROZEN
@@ -106,10 +106,10 @@ class NewmarkScheme(BaseModel):
 
     model_config = FROZEN
 
-    newmark: Newmark = Field(description="beta and gamma")
+    newmark: NewmarkParameters = Field(description="beta and gamma")
 
 
-class GeneralizedAlpha(BaseModel):
+class GeneralizedAlphaParameters(BaseModel):
     """Parameter of the generalised-alpha scheme."""
 
     model_config = FROZEN
@@ -122,10 +122,10 @@ class GeneralizedAlphaScheme(BaseModel):
 
     model_config = FROZEN
 
-    generalized_alpha: GeneralizedAlpha = Field(description="rho_inf")
+    generalized_alpha: GeneralizedAlphaParameters = Field(description="rho_inf")
 
 
-class Midpoint(BaseModel):
+class MidpointParameters(BaseModel):
     """The midpoint rule has no parameters."""
 
     model_config = FROZEN
@@ -136,7 +136,7 @@ class MidpointScheme(BaseModel):
 
     model_config = FROZEN
 
-    midpoint: Midpoint = Field(description="no parameters: {}")
+    midpoint: MidpointParameters = Field(description="no parameters: {}")
 
 
 Scheme = Annotated[
@@ -160,7 +160,7 @@ class StaticStage(BaseModel):
 
     name: Text = Field(min_length=1, description="name of the stage, different from the others")
     kind: Literal["static"] = Field(description="static or dynamic")
-    move: MovedEnds | None = Field(default=None, description="new positions of held ends, {start, end}")
+    move: MovedEnds | None = Field(default=None, description="new prescribed positions of ends, {start, end}")
     loads: tuple[Load, ...] = Field(default=(), description="loads on the riser during this stage")
 
 
@@ -181,10 +181,10 @@ class DynamicStage(BaseModel):
         description="with time_step: auto, the largest local error of a step: an estimate of how far any node of the "
         "riser is off its path after this one step [m]; by default 0.02 of its outer diameter",
     )
-    motion: Motion | None = Field(default=None, description="prescribed motions of held ends, {start, end}")
+    motion: Motion | None = Field(default=None, description="prescribed motions of ends, {start, end}")
     loads: tuple[Load, ...] = Field(default=(), description="loads on the riser during this stage")
     scheme: Scheme = Field(
-        default=GeneralizedAlphaScheme(generalized_alpha=GeneralizedAlpha()),
+        default=GeneralizedAlphaScheme(generalized_alpha=GeneralizedAlphaParameters()),
         description="{newmark: {beta, gamma}}, {generalized_alpha: {rho_inf}} or {midpoint: {}}",
     )
 

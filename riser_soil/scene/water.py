@@ -1,4 +1,4 @@
-"""The water around the riser: its surface, current and waves."""
+"""Scene language: the water around the riser, its surface, current and waves."""
 
 import math
 from itertools import pairwise

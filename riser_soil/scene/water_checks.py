@@ -1,4 +1,4 @@
-"""Conflicts between the water and the rest of a scene."""
+"""Consistency checks of water, current and waves with the rest of a scene."""
 
 import math
 from collections.abc import Iterator

@@ -1,1 +1,1 @@
-"""What the water does to the riser."""
+"""Hydrodynamic loads: waves, current, Morison's formula, buoyancy at the surface."""

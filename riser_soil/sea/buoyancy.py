@@ -1,4 +1,4 @@
-"""Buoyancy that the riser loses where it comes out of the water: the part "buoyancy"."""
+"""Buoyancy lost by the riser where it is out of the water: the part "buoyancy"."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.wetting import Wetting
 
 
-class Dry(Protocol):
-    """Weight, beyond the submerged one, of what is not wet: that of the water displaced, times the dry share 1 - S."""
+class LostBuoyancy(Protocol):
+    """Buoyancy lost where a body is dry: the weight of the displaced water times the dry share 1 - S."""
 
     def residual(self, trial: Trial) -> Array:
         """Conjugate to q (ne, 4, d)."""
         ...
 
     def add_tangent(self, K: Array, trial: Trial, weights: Weights) -> None:
-        """Add its tangent to K (ne, n, n), directors held."""
+        """Add its tangent to K (ne, n, n), directors held constant."""
         ...
 
     def potential(self, trial: Trial) -> float:
@@ -32,7 +32,8 @@ class Dry(Protocol):
 
 
 class DryStations:
-    """What is dry as it is at the stations of a pipe. displaced: weight of the water in its place [N/m] (ne,)."""
+    """Lost buoyancy by the dry share at the stations of a pipe. displaced: weight of the displaced water [N/m] (ne,).
+    """
 
     def __init__(self, pipe: Pipe, wetting: Wetting, displaced: Array) -> None:
         self._pipe, self._wetting, self._displaced = pipe, wetting, displaced[:, None]
@@ -55,14 +56,14 @@ class DryStations:
 
 
 class Buoyancy(LinePart):
-    """The weight of what is dry (group F), downwards.
+    """Lost buoyancy of the dry part of the riser (group F), downwards.
 
     flat: whether the surface is level and at rest; the force then has a potential. Waves do work on it instead.
     """
 
     name = "buoyancy"
 
-    def __init__(self, pipe: Pipe, dry: Dry, flat: bool) -> None:
+    def __init__(self, pipe: Pipe, dry: LostBuoyancy, flat: bool) -> None:
         super().__init__(pipe.line)
         self._pipe, self._dry, self._flat = pipe, dry, flat
         self.traits = Traits("F", symmetric=flat)

@@ -1,4 +1,4 @@
-"""A sea as a sum of long-crested waves."""
+"""Wave components: a sea state as a sum of long-crested linear waves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A steady current that changes with height."""
+"""Steady current profile over height."""
 
 from __future__ import annotations
 

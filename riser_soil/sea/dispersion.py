@@ -1,4 +1,4 @@
-"""Dispersion of linear waves."""
+"""Dispersion relation of linear waves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What of the pipe is dry, so finely integrated that it floats by Archimedes' law at any inclination."""
+"""Lost buoyancy of the partly submerged pipe, integrated finely so that Archimedes' law holds at any inclination."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class _Sections(NamedTuple):
 
 
 class DryPipe:
-    """A `Dry`: sections of the pipe at many points of each element, under the surface as its stations see it.
+    """A `LostBuoyancy`: sections of the pipe at many points of each element, under the surface as its stations see it.
 
     displaced: weight of the water in the pipe's place [N/m] (ne,).
     """

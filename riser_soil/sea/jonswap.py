@@ -1,4 +1,4 @@
-"""The JONSWAP spectrum of wind waves, and a sea drawn from it."""
+"""JONSWAP wave spectrum, and a random sea drawn from it."""
 
 from __future__ import annotations
 

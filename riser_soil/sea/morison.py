@@ -1,4 +1,4 @@
-"""Hydrodynamic load on the riser: the part "morison" of stages under water that moves, or in which the riser does."""
+"""Hydrodynamic loads on the riser by Morison's formula: the part "morison"."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Morison(LinePart):
     def work(self, before: State, after: State) -> Work:
         """Drag of still water dissipates; all that moving water does is external work, of either sign.
 
-        So a riser at rest in a current neither takes nor loses energy, whoever holds it.
+        So a riser at rest in a current neither gains nor loses energy, whatever supports it.
         """
         first, last = self.line.left_at(before), self.line.trial(after)
         resisted = self._pipe.taken(lambda trial: self._q_forces(trial)[1], first, last)
@@ -56,11 +56,11 @@ class Morison(LinePart):
         return Work(external=changed - resisted, inertial=changed)
 
     def _changed(self, first: Trial, last: Trial) -> float:
-        """What a change dm of the added mass, as it turns or gets wet, adds to its kinetic energy beyond the work of
-        its force.
+        """Change of kinetic energy by a change dm of the added mass, as it turns or gets wet, beyond the work of its
+        force.
 
-        That force is m a, so the remainder is 1/2 v.dm v per length. Written in rates alone it owes nothing to the
-        accelerations, which generalised-alpha knows to first order only.
+        That force is m a, so the remainder is 1/2 v.dm v per length. Written in rates alone it does not depend on the
+        accelerations, which are of first order only in generalised-alpha.
         """
         v = 0.5 * (self._pipe.flow(first).v + self._pipe.flow(last).v)
         return 0.5 * self._pipe.total(v, self._loads.momentum(last, v) - self._loads.momentum(first, v))

@@ -1,4 +1,4 @@
-"""Morison's formula for a slender pipe: what the water resists with, per length.
+"""Morison's formula for a slender pipe: drag and added mass per length.
 
 With the pipe's velocity v through the water, acceleration a, unit tangent tau, v_t = v.tau and v_n = v - v_t tau, the
 pipe feels

@@ -1,4 +1,4 @@
-"""Loads of moving water on the pipe, per length at its stations: relative velocity, and accelerating water.
+"""Morison loads in moving water, per length: drag on the relative velocity, Froude-Krylov force and added mass.
 
 The pipe's velocity v and acceleration a meet those of the undisturbed water at its axis, u and u'. With the cross-
 section A = pi D^2/4 and the added mass m of `morison_law`,
@@ -29,7 +29,7 @@ from riser_soil.sea.still_water import Resistance, StationLoads
 from riser_soil.sea.water import Water, WaterMotion
 
 
-class Stream:
+class FlowAtStations:
     """Moving water around the pipe."""
 
     def __init__(self, pipe: Pipe, water: Water) -> None:
@@ -65,7 +65,7 @@ class RelativeDrag:
 
     dissipative = False
 
-    def __init__(self, still: Resistance, stream: Stream) -> None:
+    def __init__(self, still: Resistance, stream: FlowAtStations) -> None:
         self._still, self._stream = still, stream
 
     def forces(self, trial: Trial) -> tuple[Array, Array]:
@@ -88,14 +88,14 @@ class RelativeDrag:
 
 
 class AcceleratedWater:
-    """What the water's acceleration adds to other loads: rho A u' and m u'.
+    """Froude-Krylov force and added mass by the water's acceleration, added to other loads: rho A u' and m u'.
 
     mass: (ne, 2) as in `StillWater`. displaced: rho A (ne,) [kg/m].
     """
 
     dissipative = False
 
-    def __init__(self, loads: StationLoads, stream: Stream, mass: Array, displaced: Array) -> None:
+    def __init__(self, loads: StationLoads, stream: FlowAtStations, mass: Array, displaced: Array) -> None:
         self._loads, self._stream, self._pipe = loads, stream, stream.pipe
         self._mass = mass + displaced[:, None]  # rho A is the same across and along the pipe
 

@@ -1,4 +1,4 @@
-"""The pipe seen at the stations of its line, where the water acts on it."""
+"""Position, velocity and acceleration of the pipe at its quadrature stations, where the water acts on it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class StationFlow(NamedTuple):
     stretch: Array
 
 
-class Points(NamedTuple):
+class PointsOnLine(NamedTuple):
     """Single points of a line: their elements (m,), which may repeat, and `stations.points` there."""
 
     element: IntArray
@@ -38,7 +38,7 @@ class Pipe:
     forces, and the arc length that a point stands for is 1.
     """
 
-    def __init__(self, line: Line, points: Points | None = None) -> None:
+    def __init__(self, line: Line, points: PointsOnLine | None = None) -> None:
         self.line, self._points = line, points
         self.at = stations.stations(line.length) if points is None else points.at
 
@@ -50,7 +50,7 @@ class Pipe:
         return self.line.length[:, None] * stations.GAUSS
 
     def _own(self, values: Array) -> Array:
-        """Of the elements' values, those where the stations are."""
+        """The elements' values at the stations."""
         return values if self._points is None else values[self._points.element]
 
     def _gather(self, values: Array) -> Array:
@@ -67,7 +67,7 @@ class Pipe:
         return found
 
     def flow(self, trial: Trial) -> StationFlow:
-        """The pipe's own motion, as still water meets it."""
+        """The pipe's own motion, relative to still water."""
         flow: StationFlow = trial.once((self, "flow"), self._evaluate)
         return flow
 
@@ -84,11 +84,12 @@ class Pipe:
         return stations.inner(self.share, f, g)
 
     def add_tangent(self, K: Array, trial: Trial, weights: Weights, by: stations.Derivatives) -> None:
-        """Add to K (ne, n, n) what a force per length with these derivatives has as tangent, directors held."""
+        """Add to K (ne, n, n) the tangent of a force per length with these derivatives, directors held constant."""
         q, rate, acceleration = trial.columns(weights)
         own = K if self._points is None else np.zeros((len(self.at.N), *K.shape[1:]))
         first, second, third = (self._own(c.tangent) for c in (q, rate, acceleration))
-        stations.add_tangent(own, self.at, by, stations.ByDofs(first, second, third, rate.shift, acceleration.shift))
+        by_dofs = stations.DofDerivatives(first, second, third, rate.shift, acceleration.shift)
+        stations.add_tangent(own, self.at, by, by_dofs)
         if self._points is not None:
             np.add.at(K, self._points.element, own)
 

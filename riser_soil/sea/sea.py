@@ -1,4 +1,4 @@
-"""The water of a stage: its surface, and the flows below it."""
+"""The sea of a stage: its surface, and the sum of its current and waves."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from riser_soil.sea.water import WaterMotion
 
 
 class FlowComponent(Protocol):
-    """Something that moves the water."""
+    """A component of the flow: current or waves."""
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
         """Add the flow at time t to the motion of points x (n, 3), whose immersion so far is that under calm water."""

@@ -1,4 +1,4 @@
-"""Loads of still water on the pipe, per length at its stations; what moving water and a surface build upon."""
+"""Morison loads in still water, per length: drag and added mass."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class StationLoads(Protocol):
         ...
 
     def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
-        """Of both groups, weighed and summed."""
+        """Derivatives of both groups, weighted and summed."""
         ...
 
     def momentum(self, trial: Trial, v: Array) -> Array:

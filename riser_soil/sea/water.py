@@ -1,4 +1,4 @@
-"""What the water does at given points: the interface between water (current, waves) and the loads that it causes."""
+"""Water motion at given points: the interface between current or waves and the loads that they cause."""
 
 from __future__ import annotations
 

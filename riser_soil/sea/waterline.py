@@ -1,8 +1,8 @@
-"""What is dry of the line's elements, integrated finely enough for the waterline: loads along z, and their tangents.
+"""Quadrature at the waterline: lost buoyancy of partly submerged elements, with its tangent.
 
 Per element: z its heights (ne, 4), those of `hermite`'s q; h (ne, ng) the immersion at its Gauss stations; L length, b
-width of the wet section (ne,). A fine point at xi, of quadrature weight w, lies under the surface at the height that
-the stations' surface, h + z there, has there by its quadratic interpolation with the weights `lag` (n, ng).
+width of the wet section (ne,). At a fine point xi, of quadrature weight w, the height of the surface is interpolated
+quadratically from the stations' surface h + z, with the weights `lag` (n, ng).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def fine_points(n: int) -> FinePoints:
 
 @njit
 def _immersion(xi: float, lag: Array, z: Array, h: Array, at_stations: Array, L: float) -> float:
-    """Of one point; at_stations: heights of the element's stations (ng,)."""
+    """Immersion of one point; at_stations: heights of the element's stations (ng,)."""
     N = shape(xi, L)
     found = 0.0
     for g in range(lag.size):

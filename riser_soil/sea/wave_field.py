@@ -1,4 +1,4 @@
-"""Waves as a flow of the sea: in time, from their beginning on."""
+"""Ramped linear wave field in time."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ DEEPEST = -30.0
 Numbers = tuple[float, ...]
 
 
-class Train(NamedTuple):
+class WaveTrain(NamedTuple):
     """Components (m,) by increasing wave number, prepared for many evaluations.
 
     toward: (m, 2) unit vectors. speed: a w/(1 - exp(-2 k h)) [m/s]. mirror: exp(-2 k h).
@@ -42,7 +42,9 @@ class Train(NamedTuple):
 
 
 class Heights(NamedTuple):
-    """Where linear theory is asked: height z (n,) from the mean surface [m], its gradient (n, 3) at the points."""
+    """Points at which linear theory is evaluated: height z (n,) from the mean surface [m], its gradient (n, 3) at the
+    points.
+    """
 
     z: Array
     gradient: Array
@@ -57,21 +59,21 @@ class Kinematics(NamedTuple):
     da: Array
 
 
-def train(waves: Components, h: float) -> Train:
+def train(waves: Components, h: float) -> WaveTrain:
     """The components prepared for water of depth h [m]."""
     a, w, k, d, phase = (part[np.argsort(waves.wave_number)] for part in waves)
     toward = np.stack([np.cos(d), np.sin(d)], axis=-1)
-    return Train(a, w, k, toward, phase, a * w / -np.expm1(-2.0 * k * h), np.exp(-2.0 * k * h))
+    return WaveTrain(a, w, k, toward, phase, a * w / -np.expm1(-2.0 * k * h), np.exp(-2.0 * k * h))
 
 
-def circular(waves: Train, t: float, x: Array) -> tuple[Array, Array]:
+def circular(waves: WaveTrain, t: float, x: Array) -> tuple[Array, Array]:
     """cos theta and sin theta (n, m) at points x (n, 3)."""
     theta = x[:, :2] @ (waves.toward * waves.k[:, None]).T
     theta += waves.phase - np.remainder(waves.w * t, 2.0 * np.pi)
     return np.cos(theta), np.sin(theta)
 
 
-def surface(waves: Train, cosine: Array, sine: Array) -> tuple[Array, Array]:
+def surface(waves: WaveTrain, cosine: Array, sine: Array) -> tuple[Array, Array]:
     """Rise of the surface above its mean (n,) and its slope (n, 2)."""
     slopes = waves.toward * (waves.amplitude * waves.k)[:, None]
     return cosine @ waves.amplitude, -sine @ slopes
@@ -103,7 +105,7 @@ def _within(at: Heights, h: float) -> Heights:
     return Heights(np.clip(at.z, -h, 0.0), at.gradient * inside[:, None])
 
 
-def kinematics(waves: Train, cosine: Array, sine: Array, at: Heights) -> Kinematics:
+def kinematics(waves: WaveTrain, cosine: Array, sine: Array, at: Heights) -> Kinematics:
     """The sum over the components.
 
     Where z is stretched, both the formula of v and that of a are taken at z', as is the practice: a is dv/dt at a fixed
@@ -116,7 +118,7 @@ def kinematics(waves: Train, cosine: Array, sine: Array, at: Heights) -> Kinemat
 
 
 @njit
-def _sum(waves: Train, cosine: Array, sine: Array, at: Heights, out: Kinematics) -> None:
+def _sum(waves: WaveTrain, cosine: Array, sine: Array, at: Heights, out: Kinematics) -> None:
     for p in range(at.z.size):
         z = at.z[p]
         vx, vy, vz, vxx, vxy, vyy, vxz, vyz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0

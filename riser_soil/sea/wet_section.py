@@ -1,4 +1,4 @@
-"""How much of a lying circular pipe is under water.
+"""Submerged share of a horizontal circular pipe.
 
 At immersion h, the height of the surface above the pipe's axis, the wet share of a section of diameter b is
 

@@ -1,4 +1,4 @@
-"""Where the water has a surface: the wet share of the stations, and loads on it alone."""
+"""Submerged share of the pipe at its stations, and loads on that share alone."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def flat_surface(pipe: Pipe, level: float) -> WaterSurface:
     return immersion
 
 
-class Wet(NamedTuple):
+class WetShare(NamedTuple):
     """Wet share (ne, ng) and its gradient by position (ne, ng, d) [1/m]."""
 
     share: Array
@@ -50,14 +50,14 @@ class Wetting:
         given = np.maximum(pipe.line.outer_diameter[:, None], pipe.share) if span is None else span
         self._span = np.ascontiguousarray(np.broadcast_to(given, pipe.share.shape))
 
-    def at(self, trial: Trial) -> Wet:
-        wet: Wet = trial.once((self, "wet"), self._evaluate)
+    def at(self, trial: Trial) -> WetShare:
+        wet: WetShare = trial.once((self, "wet"), self._evaluate)
         return wet
 
-    def _evaluate(self, trial: Trial) -> Wet:
+    def _evaluate(self, trial: Trial) -> WetShare:
         h, gradient = self._surface(trial)
         share, slope = wet_section.wet_shares(h, self._span)
-        return Wet(share, slope[..., None] * gradient)
+        return WetShare(share, slope[..., None] * gradient)
 
     def dry_height(self, trial: Trial) -> Array:
         """`wet_section.dry_height` of the stations (ne, ng) [m]."""
@@ -89,8 +89,8 @@ class PartlyWet:
         wet, by = self._wetting.at(trial), self._loads.derivatives(trial, weights)
         inertia, force = self._submerged(trial)
         whole = weights.inertia * inertia + weights.force * force
-        held = Derivatives(*(wet.share[..., None, None] * d for d in by))
-        return held._replace(position=held.position + whole[..., :, None] * wet.gradient[..., None, :])
+        wetted = Derivatives(*(wet.share[..., None, None] * d for d in by))
+        return wetted._replace(position=wetted.position + whole[..., :, None] * wet.gradient[..., None, :])
 
     def momentum(self, trial: Trial, v: Array) -> Array:
         return self._wetting.at(trial).share[..., None] * self._loads.momentum(trial, v)

@@ -1,1 +1,1 @@
-"""Seabeds without dofs of their own: they stand in for a continuum, everywhere or outside a block of soil."""
+"""Seabed models without dofs (rigid, springs, hysteretic), with or without a block of soil inside."""

@@ -1,4 +1,4 @@
-"""What clay bears below a pipe pressed into it: strength, bearing resistance, and the weight of the clay displaced.
+"""Bearing capacity of clay below a pipe: shear strength, bearing resistance, buoyancy of the displaced clay.
 
 z: penetration of the pipe's lowest line [m], positive into the ground; functions return value and derivative by z.
 """
@@ -9,14 +9,14 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
-from riser_soil.core.lazy import Lazy
+from riser_soil.core.lazy import LazyModule
 
 if TYPE_CHECKING:
     import numpy as np
 
     from riser_soil.core.arrays import Array
 else:
-    np = Lazy("numpy")
+    np = LazyModule("numpy")
 
 Number = TypeVar("Number", float, "Array")
 

@@ -1,4 +1,4 @@
-"""The shape of a seabed without dofs: how far a point is above it, with exact first and second derivatives.
+"""Seabed geometry: distance of a point from the ground, with exact first and second derivatives.
 
 Heights grow along z. A distance [m] is positive above the ground; its gradient points away from it and is a unit vector
 on a plane, and nearly so on a profile.
@@ -16,7 +16,7 @@ from riser_soil.core.arrays import Array
 
 
 class Distance(NamedTuple):
-    """Of points (n, 3): value (n,) [m], gradient (n, 3), hessian (n, 3, 3) [1/m], None where it is zero."""
+    """Distance of points (n, 3): value (n,) [m], gradient (n, 3), hessian (n, 3, 3) [1/m], None where it is zero."""
 
     value: Array
     gradient: Array
@@ -24,10 +24,10 @@ class Distance(NamedTuple):
 
 
 class Ground(Protocol):
-    """What the riser may touch."""
+    """A surface that the riser may touch."""
 
     def distance(self, x: Array) -> Distance:
-        """Of points x (n, 3) in global axes."""
+        """Distance of points x (n, 3) in global axes."""
         ...
 
     @property

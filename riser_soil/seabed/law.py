@@ -1,4 +1,4 @@
-"""What a law of the seabed is: force per length of riser by its penetration, and its model in the scene.
+"""Interface of seabed laws: force per length by penetration, history per point, and the model in the scene.
 
 Penetration δ = −gap [m]; force f [N/m] pushes the two sides apart.
 """
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from riser_soil.core.arrays import Array, BoolArray
 
 
-class Answer(NamedTuple):
-    """At the end of a step to a penetration.
+class SeabedResponse(NamedTuple):
+    """Response of a seabed law at the end of a step.
 
     force [N/m]: positive where it pushes the riser away. slope [N/m2]: its derivative by the penetration. history
     (..., nh). stored [N]: energy per length that the ground gives back; what the force does beyond it is dissipated.
@@ -41,7 +41,7 @@ class NormalLaw(Protocol):
 
     @property
     def start(self) -> float:
-        """Gap [m] at which a riser that comes down begins to feel the ground."""
+        """Gap [m] at which contact begins as the riser comes down."""
         ...
 
     @property
@@ -54,16 +54,16 @@ class NormalLaw(Protocol):
         ...
 
     def active(self, penetration: Array, history: Array) -> BoolArray:
-        """Where there may be a force, or something stored."""
+        """Points where there may be a force, or stored energy."""
         ...
 
-    def update(self, penetration: Array, history: Array) -> Answer:
+    def update(self, penetration: Array, history: Array) -> SeabedResponse:
         """The answer to a step from a history to a penetration."""
         ...
 
 
 class SeabedLaw(BaseModel, ABC):
-    """A law as a scene gives it: `kind`, a Literal of one word, and its constants."""
+    """The model of a seabed law in the scene: `kind`, a Literal of one word, and its constants."""
 
     model_config = FROZEN
 

@@ -1,4 +1,4 @@
-"""The laws of a hysteretic seabed that a scene may name: one entry each."""
+"""Registry of the hysteretic seabed laws: one entry each."""
 
 from riser_soil.core.kinds import registry
 from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin

@@ -1,4 +1,4 @@
-"""Hysteretic resistance of clay to a pipe, with suction and softened repenetration, after Randolph & Quiggin.
+"""Hysteretic seabed of Randolph & Quiggin: hyperbolic penetration, uplift with suction, softened repenetration.
 
 Source: M. Randolph & P. Quiggin, Non-linear hysteretic seabed model for catenary pipeline contact, OMAE2009-79236.
 With z the penetration, D the diameter, zeta = z Kmax/D, x = |z - z0| Kmax/D since the last turn at (z0, P0):
@@ -10,10 +10,11 @@ With z the penetration, D the diameter, zeta = z Kmax/D, x = |z - z0| Kmax/D sin
     bound, both ways      P <= e^min(0, -lambda_rep (1 - c d) + max(0, z - zm)/zm) P1(z)                     (5)
     decay in uplift       d = e^-((z0 - z)/(lambda_suc zm))                                                  (6)
 
-zm is the largest penetration of all; s and c, 0 to 1, say how much suction the next uplift can find and how whole the
-clay is. Both are 1 at first touch, decay by (6) and are 0 after the pipe has left the ground; s recovers to P/P1 where
-the pipe is pressed again, c by penetrating beyond zm. (3) with P0 + f_suc Pu in place of S is the usual form
-P0 - x/(S/Pu(z0) + x) S, and (4) from the origin is (2). The soil's buoyancy adds f_b gamma' A(z), A the area displaced.
+zm is the largest penetration of all; s and c, 0 to 1, are the share of suction available at the next uplift and the
+intactness of the clay. Both are 1 at first touch, decay by (6) and are 0 after the pipe has left the ground; s recovers
+to P/P1 where the pipe is pressed again, c by penetrating beyond zm. (3) with P0 + f_suc Pu in place of S is the usual
+form P0 - x/(S/Pu(z0) + x) S, and (4) from the origin is (2). The soil's buoyancy adds f_b gamma' A(z), A the area
+displaced.
 
 Certainty. Read in an extract of the manual of a program with the model (OrcaFlex): su(z), Nc with its square root (1),
 f_suc as the ratio of suction to Pu, zeta, the start (z0, P0) of an episode, the order of the modes, no force out of
@@ -33,17 +34,17 @@ from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 from pydantic import Field
 
-from riser_soil.core.lazy import Lazy
+from riser_soil.core.lazy import LazyModule
 from riser_soil.core.quantities import Coefficient, NonNegative, PositiveStrengthGradient, Ratio, Stress, UnitWeight
 from riser_soil.seabed.bearing import SHALLOW, PowerLaw, Strength, displaced
-from riser_soil.seabed.law import Answer, SeabedLaw
+from riser_soil.seabed.law import SeabedLaw, SeabedResponse
 
 if TYPE_CHECKING:
     import numpy as np
 
     from riser_soil.core.arrays import Array, BoolArray
 else:
-    np = Lazy("numpy")
+    np = LazyModule("numpy")
 
 TINY = 1e-30
 
@@ -63,11 +64,11 @@ class RandolphQuiggin(SeabedLaw):
     lambda_rep: Coefficient = Field(default=0.3, description="softening of repenetration [-]")
     f_b: Coefficient = Field(default=1.5, description="factor of the soil's buoyancy [-]")
 
-    def of_pipe(self, diameter: float) -> Clay:
-        return Clay(diameter, self)
+    def of_pipe(self, diameter: float) -> RandolphQuigginFormula:
+        return RandolphQuigginFormula(diameter, self)
 
 
-class Past(NamedTuple):
+class RandolphQuigginHistory(NamedTuple):
     """History of a point: whether it went down, penetration z [m] and resistance P [N/m] where it is, z0, P0 where it
     last turned, largest penetration zm [m] when it turned; suction s and wholeness c when it turned.
     """
@@ -82,17 +83,17 @@ class Past(NamedTuple):
     c: Array
 
     @classmethod
-    def of(cls, history: Array) -> Past:
+    def of(cls, history: Array) -> RandolphQuigginHistory:
         return cls(*np.moveaxis(history, -1, 0))
 
 
 @dataclass(frozen=True)
-class Clay:
+class RandolphQuigginFormula:
     """The clay under a pipe of one diameter [m]; see the module's text."""
 
     diameter: float
     given: RandolphQuiggin
-    columns: ClassVar[tuple[str, ...]] = Past._fields
+    columns: ClassVar[tuple[str, ...]] = RandolphQuigginHistory._fields
 
     @cached_property
     def _ultimate(self) -> PowerLaw:
@@ -119,16 +120,16 @@ class Clay:
     def active(self, penetration: Array, history: Array) -> BoolArray:
         return penetration > 0.0
 
-    def update(self, penetration: Array, history: Array) -> Answer:
+    def update(self, penetration: Array, history: Array) -> SeabedResponse:
         """Stored is what a rebound at the greatest stiffness would give back, and the potential of buoyancy."""
         z = np.maximum(penetration, 0.0)
-        now = self._continued(z, Past.of(history))
+        now = self._continued(z, RandolphQuigginHistory.of(history))
         P, slope = self._clay(z, now)
         there = np.stack(now._replace(z=z, P=P), axis=-1)
         rebound = 0.5 * P**2 / np.maximum(self._per_metre * self._ultimate.resistance(z)[0], TINY)
         volume, area, width = displaced(z, self.diameter)
         weight = self.given.f_b * self.given.unit_weight
-        return Answer(
+        return SeabedResponse(
             P + weight * area,
             slope + weight * width,
             np.where((z > 0.0)[..., None], there, _out_of_contact(now.zm)),
@@ -143,28 +144,29 @@ class Clay:
         rise: Array = dPu * share + Pu * self._per_metre / (1.0 + x) ** 2
         return Pu * share, rise
 
-    def _continued(self, z: Array, past: Past) -> Past:
+    def _continued(self, z: Array, past: RandolphQuigginHistory) -> RandolphQuigginHistory:
         down = np.where(z == past.z, past.down > 0.0, z > past.z)
         lifted, sunk = self._after_uplift(past), self._after_sinking(past)
         turned = [np.where(down, a, b) for a, b in zip(lifted, sunk, strict=True)]
         kept = past[3:]
         went_on = down == (past.down > 0.0)
-        return Past(down * 1.0, past.z, past.P, *(np.where(went_on, a, b) for a, b in zip(kept, turned, strict=True)))
+        rest = (np.where(went_on, a, b) for a, b in zip(kept, turned, strict=True))
+        return RandolphQuigginHistory(down * 1.0, past.z, past.P, *rest)
 
-    def _after_uplift(self, past: Past) -> tuple[Array, ...]:
+    def _after_uplift(self, past: RandolphQuigginHistory) -> tuple[Array, ...]:
         d = np.exp(-np.maximum(past.z0 - past.z, 0.0) / self._decay_length(past))
         return past.z, past.P, past.zm, past.s * d, past.c * d
 
-    def _after_sinking(self, past: Past) -> tuple[Array, ...]:
+    def _after_sinking(self, past: RandolphQuigginHistory) -> tuple[Array, ...]:
         beyond = np.maximum(past.z - past.zm, 0.0) / np.maximum(self.given.lambda_rep * past.zm, TINY)
         pressed = past.P / np.maximum(self._first(past.z)[0], TINY)
         s = np.clip(pressed, past.s, 1.0)
         return past.z, past.P, np.maximum(past.zm, past.z), s, np.minimum(past.c + beyond, 1.0)
 
-    def _decay_length(self, past: Past) -> Array:
+    def _decay_length(self, past: RandolphQuigginHistory) -> Array:
         return np.maximum(self.given.lambda_suc * past.zm, TINY)
 
-    def _clay(self, z: Array, past: Past) -> tuple[Array, Array]:
+    def _clay(self, z: Array, past: RandolphQuigginHistory) -> tuple[Array, Array]:
         """Resistance without buoyancy, and its slope."""
         down = past.down > 0.0
         length = self._decay_length(past)
@@ -176,7 +178,7 @@ class Clay:
         value, derivative = np.where(free, P, bound), np.where(free, slope, bound_slope)
         return np.where(z > 0.0, value, 0.0), np.where(z > 0.0, derivative, 0.0)
 
-    def _uplift(self, z: Array, past: Past, d: Array, dd: Array) -> tuple[Array, Array]:
+    def _uplift(self, z: Array, past: RandolphQuigginHistory, d: Array, dd: Array) -> tuple[Array, Array]:
         Pu, dPu = self._ultimate.resistance(z)
         suction, dsuction = -self.given.f_suc * past.s * d * Pu, -self.given.f_suc * past.s * (d * dPu + dd * Pu)
         S = np.maximum(past.P0 - suction, 0.0)
@@ -186,13 +188,13 @@ class Clay:
         dS = np.where(S > 0.0, -dsuction, 0.0)
         return suction + S * part, dsuction + 2.0 * part * dS - part**2 * (dS - stiff * self._per_metre)
 
-    def _repenetration(self, z: Array, past: Past) -> tuple[Array, Array]:
+    def _repenetration(self, z: Array, past: RandolphQuigginHistory) -> tuple[Array, Array]:
         Pu, dPu = self._ultimate.resistance(z)
         T, x = Pu - past.P0, self._per_metre * np.maximum(z - past.z0, 0.0)
         part = T / np.maximum(T + Pu * x, TINY)
         return Pu - T * part, dPu - 2.0 * part * dPu + part**2 * (dPu * (1.0 + x) + Pu * self._per_metre)
 
-    def _bound(self, z: Array, past: Past, d: Array, dd: Array) -> tuple[Array, Array]:
+    def _bound(self, z: Array, past: RandolphQuigginHistory, d: Array, dd: Array) -> tuple[Array, Array]:
         """Resistance of clay as whole as it is, and its slope; dd: derivative of d."""
         first, slope = self._first(z)
         zm = np.maximum(past.zm, TINY)

@@ -1,1 +1,1 @@
-"""The seabed as a small-strain continuum: mesh, constitutive laws, and the Soil part."""
+"""The soil as a small-strain continuum: mesh, constitutive laws, and the part "soil"."""

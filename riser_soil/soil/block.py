@@ -1,4 +1,4 @@
-"""A plain block of soil in gmsh: layered hexahedra or tetrahedra, fine under the riser.
+"""Mesh of a soil block in gmsh: layered hexahedra or tetrahedra, fine under the riser.
 
 Needs a running gmsh; leaves the mesh in gmsh's current model with one physical volume.
 """

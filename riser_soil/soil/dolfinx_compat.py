@@ -1,4 +1,4 @@
-"""The only module that knows how versions of dolfinx differ (0.5, 0.9, 0.11).
+"""Compatibility with dolfinx 0.5, 0.9 and 0.11: the only module that knows how they differ.
 
 The soil needs three things of dolfinx: distribute a gmsh mesh over the ranks, number Lagrange nodes, and say
 where they are. Everything else works on the arrays returned here.

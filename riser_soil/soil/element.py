@@ -1,4 +1,4 @@
-"""Shape-function gradients at the quadrature points; constant, since strains are small.
+"""Shape-function gradients at the quadrature points (B-bar); constant, since strains are small.
 
 The strain-displacement operator B̄ replaces the volumetric part of the symmetric gradient by `volume`
 gradients: the cell's mean for hexahedra (mean dilatation: Hughes 1980, doi:10.1002/nme.1620150914; the full
@@ -18,7 +18,7 @@ from riser_soil.soil.families import Family
 
 @dataclass(frozen=True, eq=False)
 class Gradients:
-    """Of the nc cells of this rank.
+    """Shape-function gradients in the nc cells of this rank.
 
     full (nc, nq, nn, 3) [1/m]: dN/dx. volume (nc, 1 or nq, nn, 3) [1/m]: gradients that give the volume
     change. weights (nc, nq) [m3]: quadrature weight times the map's determinant. points (nc, nq, 3) [m].

@@ -1,4 +1,4 @@
-"""The two element families: eight-node hexahedra with mean dilatation, ten-node tetrahedra.
+"""Element families: eight-node hexahedra with mean dilatation (B-bar), ten-node tetrahedra.
 
 Undrained clay is nearly incompressible: fully integrated linear elements lock and never reach a collapse
 load. Node numbers are basix' (vertices 0.. in lexicographic order, then the edges' midpoints).
@@ -16,7 +16,7 @@ from riser_soil.core.arrays import Array
 
 @dataclass(frozen=True)
 class Family:
-    """What distinguishes one element family from the other.
+    """An element family: nodes, shape functions and quadrature of its cells.
 
     faces: local nodes of each face, corners in a cycle (`quad4`), for `tri6` followed by the midpoints of the
     sides 12, 23, 31. vtk: basix' local node at each place of VTK's order. flip: face nodes of the same face

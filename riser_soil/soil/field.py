@@ -1,4 +1,4 @@
-"""The soil's displacement field: its dofs, supports and committed displacement."""
+"""Displacement field of the soil: dofs, supports and committed displacement."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved
-from riser_soil.soil.grid import Grid
+from riser_soil.soil.grid import DistributedMesh
 
 
 class SoilField:
@@ -20,7 +20,7 @@ class SoilField:
     name = "soil"
     space = "soil"
 
-    def __init__(self, grid: Grid) -> None:
+    def __init__(self, grid: DistributedMesh) -> None:
         nodes = grid.nodes
         self.points = nodes.points
         self.size = 3 * len(nodes.points)

@@ -1,4 +1,4 @@
-"""The whole soil mesh on rank 0: for output, and for contact, which sees the top surface there."""
+"""The soil mesh gathered on rank 0, for output and contact."""
 
 from __future__ import annotations
 
@@ -10,34 +10,34 @@ import numpy.typing as npt
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.soil.field import components
-from riser_soil.soil.grid import Grid
+from riser_soil.soil.grid import DistributedMesh
 from riser_soil.soil.surface import SoilTop
 
 T = TypeVar("T", bound=np.generic)
 
 
 @dataclass(frozen=True, eq=False)
-class Gathered:
+class GatheredMesh:
     """Points (n, 3) [m] by global node number and cells (nc, nn), rank by rank; empty on the other ranks."""
 
     points: Array
     cells: IntArray
 
 
-def gather(grid: Grid) -> Gathered:
+def gather(grid: DistributedMesh) -> GatheredMesh:
     """Bring the mesh to rank 0 (collective)."""
     nodes = grid.nodes
     points = gather_rows(grid, nodes.points[: nodes.owned])
-    return Gathered(points, gather_rows(grid, nodes.number[nodes.cells]))
+    return GatheredMesh(points, gather_rows(grid, nodes.number[nodes.cells]))
 
 
-def gather_rows(grid: Grid, rows: npt.NDArray[T]) -> npt.NDArray[T]:
+def gather_rows(grid: DistributedMesh, rows: npt.NDArray[T]) -> npt.NDArray[T]:
     """Concatenate the ranks' rows on rank 0, in the order of ranks; no rows elsewhere (collective)."""
     pieces = grid.nodes.comm.gather(rows)
     return rows[:0] if pieces is None else np.concatenate(pieces)
 
 
-def top_of(grid: Grid, mesh: Gathered) -> SoilTop:
+def top_of(grid: DistributedMesh, mesh: GatheredMesh) -> SoilTop:
     """The surface that looks upwards; without points where the mesh is not gathered."""
     facets = top_facets(grid, mesh)
     used = np.unique(facets)
@@ -45,7 +45,7 @@ def top_of(grid: Grid, mesh: Gathered) -> SoilTop:
     return SoilTop(points, np.searchsorted(used, facets), components(used), grid.supported(points).ravel())
 
 
-def top_facets(grid: Grid, mesh: Gathered) -> IntArray:
+def top_facets(grid: DistributedMesh, mesh: GatheredMesh) -> IntArray:
     """Boundary facets that look upwards (nf, nv): counter-clockwise from above, ordered as `Family.faces`."""
     family = grid.family
     faces: IntArray = mesh.cells[:, np.array(family.faces)].reshape(-1, len(family.flip))

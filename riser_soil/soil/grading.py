@@ -1,4 +1,4 @@
-"""A plain block of soil and how its cells grow away from the riser; needs no mesh."""
+"""Mesh grading of a soil block: how its cells grow away from the riser; needs no mesh."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class BlockSpec:
     riser: tuple[Point, Point] | None = None
 
     def fine_range(self, axis: int) -> Point:
-        """Range of x (axis 0) or y (axis 1) that the riser takes up in plan, with half a cell around."""
+        """Range of x (axis 0) or y (axis 1) that the riser covers in plan, with half a cell around."""
         low, high = (self.x, self.y)[axis]
         if self.riser is None:
             return low, high

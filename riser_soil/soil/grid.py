@@ -1,4 +1,4 @@
-"""The soil's distributed mesh, from a block's description or a user's gmsh file."""
+"""Distributed mesh of the soil, from a block's description or a user's gmsh file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mpi4py import MPI
 
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.errors import MeshError
-from riser_soil.interruption import undisturbed
+from riser_soil.interruption import restoring_signal_handlers
 from riser_soil.soil import dolfinx_compat
 from riser_soil.soil.block import BlockSpec, make_block
 from riser_soil.soil.dolfinx_compat import Nodes
@@ -25,7 +25,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
+class DistributedMesh:
     """This rank's nodes and cells, their element family, and the corners of the whole mesh's box [m]."""
 
     family: Family
@@ -38,16 +38,16 @@ class Grid:
         near = 1e-6 * float(np.max(self.high - self.low))
         at_side = (points < self.low + near) | (points > self.high - near)
         bottom = points[:, 2] < self.low[2] + near
-        held: BoolArray = np.column_stack((at_side[:, 0] | bottom, at_side[:, 1] | bottom, bottom))
-        return held
+        prescribed: BoolArray = np.column_stack((at_side[:, 0] | bottom, at_side[:, 1] | bottom, bottom))
+        return prescribed
 
 
-def block_grid(comm: MPI.Intracomm, spec: BlockSpec) -> Grid:
+def block_grid(comm: MPI.Intracomm, spec: BlockSpec) -> DistributedMesh:
     """Mesh a plain block (collective)."""
     return _grid(comm, lambda: make_block(spec))
 
 
-def file_grid(comm: MPI.Intracomm, path: Path) -> Grid:
+def file_grid(comm: MPI.Intracomm, path: Path) -> DistributedMesh:
     """Read a gmsh .msh file of first-order tetrahedra or hexahedra (collective); MeshError if it won't do."""
     return _grid(comm, lambda: read_mesh(path))
 
@@ -68,24 +68,24 @@ def on_all_ranks(comm: MPI.Intracomm, make: Callable[[], T]) -> T:
 @contextmanager
 def silent_gmsh() -> Iterator[None]:
     """A gmsh session that prints nothing and reads no settings of the user."""
-    with undisturbed():
+    with restoring_signal_handlers():
         gmsh.initialize(readConfigFiles=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         yield
     finally:
-        with undisturbed():
+        with restoring_signal_handlers():
             gmsh.finalize()
 
 
-def _grid(comm: MPI.Intracomm, make: Callable[[], None]) -> Grid:
+def _grid(comm: MPI.Intracomm, make: Callable[[], None]) -> DistributedMesh:
     if comm.rank == 0:
         with silent_gmsh():
             return _distribute(comm, make)
     return _distribute(comm, make)
 
 
-def _distribute(comm: MPI.Intracomm, make: Callable[[], None]) -> Grid:
+def _distribute(comm: MPI.Intracomm, make: Callable[[], None]) -> DistributedMesh:
     """Make the model on rank 0; a failure there is raised on every rank, before the collective calls."""
     hexahedra, failure = comm.bcast(_outcome(make) if comm.rank == 0 else None)
     if failure:
@@ -95,12 +95,12 @@ def _distribute(comm: MPI.Intracomm, make: Callable[[], None]) -> Grid:
     nodes = dolfinx_compat.lagrange_nodes(mesh, family.degree, comm)
     low = np.array([comm.allreduce(x, MPI.MIN) for x in nodes.points.min(axis=0, initial=np.inf)])
     high = np.array([comm.allreduce(x, MPI.MAX) for x in nodes.points.max(axis=0, initial=-np.inf)])
-    grid = Grid(family, nodes, low, high)
+    grid = DistributedMesh(family, nodes, low, high)
     _check_box(grid)
     return grid
 
 
-def _check_box(grid: Grid) -> None:
+def _check_box(grid: DistributedMesh) -> None:
     """Bottom and upright sides must be planes with nodes on them, or nothing would hold the soil."""
     near = 1e-6 * float(np.max(grid.high - grid.low))
     mine = grid.nodes.points[: grid.nodes.owned]

@@ -1,4 +1,4 @@
-"""What a constitutive law of the soil is: its model in the scene, and its formula at n quadrature points.
+"""Interface of constitutive laws of the soil: stress update, consistent tangent and history at n quadrature points.
 
 Strains and stresses (n, 6) in the components of mandel.py, tension positive. The formula holds constants and the
 initial stress and no state: the caller keeps the history and decides when a trial becomes the start of the next step.
@@ -20,8 +20,8 @@ STRESS = ("stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_xz", "stre
 PLASTIC_STRAIN = "equivalent_plastic_strain"
 
 
-class Response(NamedTuple):
-    """At the end of a strain increment.
+class StressUpdate(NamedTuple):
+    """Result of a stress update, at the end of a strain increment.
 
     stress (n, 6) [Pa]. tangent (n, 6, 6) [Pa]: its derivative by the increment. history (n, nh). stored (n,) [J/m3]:
     free energy of the change since the start, beyond what the initial stress does on the elastic strain: it comes
@@ -53,7 +53,7 @@ class Formula(Protocol):
         """History (n, nh) of undisturbed soil, under its initial stress."""
         ...
 
-    def update(self, strain_increment: Array, history: Array) -> Response:
+    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
         """The answer to a strain increment (n, 6) from a history."""
         ...
 
@@ -63,14 +63,14 @@ class Formula(Protocol):
 
 
 class Bearing(NamedTuple):
-    """Force per length that the ground bears [N/m], and what that is."""
+    """Bearing capacity per length [N/m], and its meaning in words."""
 
     capacity: float
     meaning: str
 
 
 class SoilLaw(BaseModel, ABC):
-    """A law as a scene gives it: `kind`, a Literal of one word, and its constants."""
+    """The model of a soil law in the scene: `kind`, a Literal of one word, and its constants."""
 
     model_config = FROZEN
 
@@ -88,5 +88,5 @@ class SoilLaw(BaseModel, ABC):
         return None
 
     def bearing(self, width: float) -> Bearing | None:
-        """What the soil's surface bears on a strip of this width [m]; None without a limit."""
+        """Bearing capacity of the soil's surface under a strip of this width [m]; None without a limit."""
         return None

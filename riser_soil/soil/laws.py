@@ -1,4 +1,4 @@
-"""The laws of the soil that a scene may name: one entry each."""
+"""Registry of the constitutive laws of the soil: one entry each."""
 
 from riser_soil.core.kinds import registry
 from riser_soil.soil.law import SoilLaw

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import Field
 
-from riser_soil.core.lazy import Lazy
+from riser_soil.core.lazy import LazyModule
 from riser_soil.core.quantities import PoissonRatio, Stress
-from riser_soil.soil.law import STRESS, Response, SoilLaw
+from riser_soil.soil.law import STRESS, SoilLaw, StressUpdate
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from riser_soil.core.arrays import Array
     from riser_soil.soil import mandel
 else:
-    np, mandel = Lazy("numpy"), Lazy("riser_soil.soil.mandel")
+    np, mandel = LazyModule("numpy"), LazyModule("riser_soil.soil.mandel")
 
 
 class LinearElastic(SoilLaw):
@@ -50,10 +50,10 @@ class Elastic:
     def start(self) -> Array:
         return self.initial
 
-    def update(self, strain_increment: Array, history: Array) -> Response:
+    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
         stress = history + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
         elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
-        return Response(stress, self._moduli, stress, 0.5 * mandel.product(stress - self.initial, elastic), elastic)
+        return StressUpdate(stress, self._moduli, stress, 0.5 * mandel.product(stress - self.initial, elastic), elastic)
 
     def overstress(self, stress: Array) -> Array:
         return np.zeros(len(stress))

@@ -1,6 +1,7 @@
-"""Symmetric tensors as vectors of six: xx, yy, zz, √2 xy, √2 xz, √2 yz (Mandel); products are dot products.
+"""Mandel notation: symmetric tensors as vectors of six, xx, yy, zz, √2 xy, √2 xz, √2 yz.
 
-Tension positive. Arrays have the components last; elastic constants broadcast against the leading axes.
+Double contractions are dot products of the vectors. Tension positive. Arrays have the components last; elastic
+constants broadcast against the leading axes.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""A user's mesh of the soil: read by gmsh, checked, and left there as one volume of numbered nodes and cells.
+"""Soil mesh from a user's file: read by gmsh, checked, left in gmsh as one volume of numbered nodes and cells.
 
 Node numbers may have gaps, nodes may belong to no cell, and a cell may be listed once for each of its physical groups:
-gmsh writes such files. What would make another soil than was drawn is refused.
+gmsh writes such files. What would give another soil than the one drawn is refused.
 
 Needs a running gmsh.
 """

@@ -1,4 +1,4 @@
-"""The Soil part: a quasi-static, small-strain, elasto-plastic block of seabed."""
+"""Quasi-static, small-strain, elastoplastic soil: the part "soil"."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from typing import Literal
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
-from riser_soil.core.remembered import Remembered
+from riser_soil.core.identity_cache import IdentityCache
+from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
 from riser_soil.soil.element import cell_gradients
 from riser_soil.soil.field import SoilField, components
-from riser_soil.soil.gathered import Gathered, gather, gather_rows, top_of
-from riser_soil.soil.grid import Grid, on_all_ranks
-from riser_soil.soil.law import PLASTIC_STRAIN, Formula, Response
+from riser_soil.soil.gathered import GatheredMesh, gather, gather_rows, top_of
+from riser_soil.soil.grid import DistributedMesh, on_all_ranks
+from riser_soil.soil.law import PLASTIC_STRAIN, Formula, StressUpdate
 
 
 class Soil:
@@ -36,7 +36,7 @@ class Soil:
 
     def __init__(
         self,
-        grid: Grid,
+        grid: DistributedMesh,
         law: Callable[[Array, Array], Formula],
         *,
         level: float,
@@ -47,7 +47,7 @@ class Soil:
         _check_level(grid, level)
         self.grid = grid
         self.field = SoilField(grid)
-        self.mesh: Gathered = gather(grid)
+        self.mesh: GatheredMesh = gather(grid)
         self.surface = top_of(grid, self.mesh)
         self._cells = np.ascontiguousarray(grid.nodes.cells)
         self._gradients = on_all_ranks(
@@ -60,12 +60,12 @@ class Soil:
         self.traits = Traits("E", self.law.symmetric, roles=(Stateful,))
         self._check_start(initial, depth, K0)
         self._initial, self._found = initial, _at_rest(self.law, initial)
-        self._answers = Remembered[State, tuple[Array, Response]]()
+        self._answers = IdentityCache[State, tuple[Array, StressUpdate]]()
         self._load = self._internal(initial) if start == "geostatic" else self._weight(unit_weight)
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         rows = self.field.offset + components(self._cells)
-        return {"soil": Block(rows, rows)}
+        return {"soil": MatrixBlock(rows, rows)}
 
     def residual(self, state: State, forces: Forces) -> None:
         _, found = self._answer(state)
@@ -77,7 +77,7 @@ class Soil:
         kernels.add_stiffness(g.full, g.volume, g.weights, moduli, values["soil"])
 
     def energy(self, state: State) -> Energy:
-        """What the law stores of the change since the start, and potential of the unbalanced weight.
+        """Strain energy by the law since the start, and potential of the unbalanced weight.
 
         With σ0 the initial stress and εe the elastic strain since then, potential = ∫ σ0:εe − load·u, which is −∫ σ0:εp
         for a geostatic start: nothing, as long as K0 = 1.
@@ -119,18 +119,18 @@ class Soil:
             gather_rows(self.grid, self._cell_mean(self._plastic_strain())),
         )
 
-    def _answer(self, state: State) -> tuple[Array, Response]:
-        """Strain increment (n, 6) of a trial state and the law's answer; kept for the state asked last, whose arrays
+    def _answer(self, state: State) -> tuple[Array, StressUpdate]:
+        """Strain increment (n, 6) of a trial state and the law's answer; kept for the last state, whose arrays
         must not change then.
         """
         return self._answers.made_of(state, self._new_answer)
 
-    def _new_answer(self, state: State) -> tuple[Array, Response]:
+    def _new_answer(self, state: State) -> tuple[Array, StressUpdate]:
         strain = self._strain(state)
         return strain, self.law.update(strain, self._found.history)
 
     def _plastic_strain(self) -> Array:
-        """Equivalent plastic strain (n,), 0 of a law that knows none."""
+        """Equivalent plastic strain (n,), 0 for a law without plasticity."""
         history, columns = self._found.history, self.law.columns
         return history[:, columns.index(PLASTIC_STRAIN)] if PLASTIC_STRAIN in columns else np.zeros(len(history))
 
@@ -184,12 +184,12 @@ class Soil:
         self._answers.forget()
 
 
-def _at_rest(law: Formula, initial: Array) -> Response:
+def _at_rest(law: Formula, initial: Array) -> StressUpdate:
     """Before the first step."""
-    return Response(initial, np.empty(0), law.start(), np.zeros(len(initial)), np.zeros_like(initial))
+    return StressUpdate(initial, np.empty(0), law.start(), np.zeros(len(initial)), np.zeros_like(initial))
 
 
-def _check_level(grid: Grid, level: float) -> None:
+def _check_level(grid: DistributedMesh, level: float) -> None:
     low, high = float(grid.low[2]), float(grid.high[2])
     slack = 1e-6 * (high - low)
     if not low + slack < level <= high + slack:

@@ -1,4 +1,4 @@
-"""The soil's top surface as contact sees it: all of it on rank 0, none elsewhere."""
+"""Top surface of the soil for contact: all of it on rank 0, none elsewhere."""
 
 from __future__ import annotations
 

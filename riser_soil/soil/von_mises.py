@@ -1,4 +1,4 @@
-"""Perfectly plastic von Mises clay, undrained: q = √(3/2 s:s) ≤ √3·su.
+"""Undrained clay by von Mises plasticity, perfectly plastic: q = √(3/2 s:s) ≤ √3·su.
 
 The factor √3 makes simple shear (and plane strain flow) yield at the shear stress su; triaxial compression
 then fails at q = √3·su instead of 2·su. Radial return and its consistent tangent: Simo & Hughes,
@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import Field
 
-from riser_soil.core.lazy import Lazy
+from riser_soil.core.lazy import LazyModule
 from riser_soil.core.quantities import PoissonRatio, Ratio, StrengthGradient, Stress
 from riser_soil.seabed.bearing import Number, Strength, strip_capacity
-from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Bearing, Response, SoilLaw
+from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Bearing, SoilLaw, StressUpdate
 
 if TYPE_CHECKING:
     import numpy as np
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from riser_soil.core.arrays import Array
     from riser_soil.soil import mandel
 else:
-    np, mandel = Lazy("numpy"), Lazy("riser_soil.soil.mandel")
+    np, mandel = LazyModule("numpy"), LazyModule("riser_soil.soil.mandel")
 
 
 class VonMises(SoilLaw):
@@ -80,7 +80,7 @@ class PerfectlyPlastic:
     def start(self) -> Array:
         return np.column_stack((self.initial, np.zeros(len(self.limit))))
 
-    def update(self, strain_increment: Array, history: Array) -> Response:
+    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
         trial = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
         s = mandel.deviator(trial)
         q = np.sqrt(1.5 * mandel.product(s, s))
@@ -88,7 +88,7 @@ class PerfectlyPlastic:
         slip = q * (1.0 - shrink) / (3.0 * self.shear)
         stress = trial - (1.0 - shrink)[:, None] * s
         elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
-        return Response(
+        return StressUpdate(
             stress,
             self._tangent(s, q, shrink),
             np.column_stack((stress, history[:, 6] + slip)),

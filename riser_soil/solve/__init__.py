@@ -1,1 +1,1 @@
-"""Solving the system: Newton's method and its linear solver, static and time steps, step control, lost stability."""
+"""Solution: Newton's method, linear solver, time schemes, step control, dynamic relaxation, stability."""

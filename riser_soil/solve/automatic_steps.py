@@ -1,9 +1,9 @@
-"""Steps of a dynamic stage whose sizes follow from the local error that each makes.
+"""Adaptive time steps: step sizes from the local error that each step makes.
 
-The size that would have made just the error aimed at follows from the order of the error. Sizes go part of the way
-there (in the logarithm; an integral controller), downwards quickly, upwards slowly: a change of size kicks the stiff
-modes of a riser, which ring on at small steps. With sizes that follow the error as closely upwards as downwards, the
-tension of a hose that sweeps a floor was off by twice as much at the same cost.
+The step size that meets the error tolerance follows from the order of the error. An integral controller (in the
+logarithm) goes part of the way there, quickly downwards, slowly upwards: a change of step size excites the stiff modes
+of a riser, which persist at small steps. With sizes that follow the error as closely upwards as downwards, the error
+of the tension of a hose that sweeps a floor was twice as large at the same cost.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ NEAR = 1e-9
 
 
 class AutoSteps:
-    """Walks from 0 to `end` [s] by steps whose local error stays within `tolerance` [m]; see the module's text.
+    """Adaptive steps from 0 to `end` [s] whose local error stays within `tolerance` [m]; see the module's text.
 
     smallest [s]: steps are not cut below it. first [s]: size to begin with. stops [s]: times to be hit, in any order;
     up to the next one all steps are equal unless the error changes.

@@ -1,9 +1,9 @@
-"""The mode in which a riser leaves an unstable equilibrium.
+"""Buckling mode in which a riser leaves an unstable equilibrium.
 
-Of the tangent K and the drag D of dynamic relaxation it is the mode with the most negative w in K m = w D m, in which
-the riser moves away fastest. It comes by inverse iteration on K + s D, where s is the least power of two, in steps from
-any drag, that makes this stable: then w lies between -s and -s/2. The start is the same for all risers, and the sign
-makes the largest displacement positive, so that no round-off decides which way the riser goes.
+With the tangent K and the drag D of dynamic relaxation it is the mode of the most negative eigenvalue w of
+K m = w D m, the one that grows fastest. It is found by inverse iteration on K + s D, where s is the least power of two
+times any drag that makes this matrix positive definite: then w lies between -s and -s/2. The start vector is the same
+for all risers, and the largest displacement is positive, so that the direction does not depend on round-off.
 """
 
 from __future__ import annotations

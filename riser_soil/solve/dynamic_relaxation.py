@@ -1,9 +1,9 @@
-"""Dynamic relaxation: pseudo-time steps through an artificial drag, until equilibrium needs none.
+"""Dynamic relaxation: pseudo-time steps with artificial drag, until there is equilibrium without it.
 
 Used when Newton's method finds no equilibrium from the shape that a static stage starts with, and reported when used.
-The way there is none that the riser takes: the ground remembers nothing of it but its end.
-Where the equilibrium that it comes to is unstable, the riser leaves it in its mode of buckling: the first move is
-small, and the drag is that in which the mode grows to a multiple in each step, until the tangent is stable without it.
+The pseudo-time path has no physical meaning: the history of the ground is updated at its end only.
+An unstable equilibrium that it reaches is left in the buckling mode: the first displacement is small, and the drag is
+such that the mode grows by a constant factor in each step, until the tangent is stable without drag.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from mpi4py import MPI
 from riser_soil.core.part import Model, State
 from riser_soil.core.roles import with_role
 from riser_soil.core.saved_state import Stateful
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
 from riser_soil.riser.line import Line
 from riser_soil.riser.relaxation import Relaxation
@@ -35,16 +35,16 @@ NEARLY_THERE = 1e-2  # largest increment, in element lengths, from which equilib
 
 
 @dataclass
-class Relaxed:
-    """What it took: Newton iterations, and unstable equilibria that were left on the way."""
+class RelaxationResult:
+    """Result of dynamic relaxation: Newton iterations, and unstable equilibria left on the way."""
 
     iterations: int = 0
     branch_switches: int = 0
 
 
 def relax(
-    comm: MPI.Intracomm, model: Model, line: Line, weight: float, settings: NewtonSettings, clock: Clock, t: float
-) -> Relaxed:
+    comm: MPI.Intracomm, model: Model, line: Line, weight: float, settings: NewtonSettings, clock: Timer, t: float
+) -> RelaxationResult:
     """Bring the line to a stable equilibrium at the load factor t and commit it.
 
     weight: typical force per length [N/m]. Raises SolveError when no equilibrium is found.
@@ -60,9 +60,9 @@ def relax(
 
 
 @dataclass
-class Attempts:
-    """At an equilibrium without drag. After n failures for want of stability the next comes n steps later, and after an
-    unstable equilibrium was left not before the tangent is stable.
+class EquilibriumAttempts:
+    """Attempts at an equilibrium without drag. After n failures for want of stability the next comes n steps later, and
+    after an unstable equilibrium was left not before the tangent is stable.
     """
 
     failures: int = 0
@@ -80,8 +80,8 @@ class Attempts:
             raise SolveError(f"dynamic relaxation ends in no stable equilibrium: {failure}") from failure
 
 
-def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: float) -> Relaxed:
-    stiffest, done, moved, attempts = part.drag * STIFFEST, Relaxed(), np.inf, Attempts()
+def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: float) -> RelaxationResult:
+    stiffest, done, moved, attempts = part.drag * STIFFEST, RelaxationResult(), np.inf, EquilibriumAttempts()
     for _ in range(MOST_STEPS):
         slow = moved < NEARLY_THERE * line.length.min()
         if slow and attempts.due() and not _still_leaving(newton, part, t, attempts):
@@ -106,7 +106,7 @@ def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: fl
 
 
 def _without_drag(
-    system: System, newton: Newton, part: Relaxation, line: Line, t: float, attempts: Attempts
+    system: System, newton: Newton, part: Relaxation, line: Line, t: float, attempts: EquilibriumAttempts
 ) -> Solution | None:
     """An equilibrium where there is a stable one; one that is not is left where it is near."""
     try:
@@ -119,7 +119,7 @@ def _without_drag(
     return None
 
 
-def _still_leaving(newton: Newton, part: Relaxation, t: float, attempts: Attempts) -> bool:
+def _still_leaving(newton: Newton, part: Relaxation, t: float, attempts: EquilibriumAttempts) -> bool:
     """Whether the tangent is unstable where the riser is since it left an unstable equilibrium."""
     attempts.leaving = attempts.leaving and not _stable(newton, part, t, 0.0)
     return attempts.leaving

@@ -1,4 +1,4 @@
-"""The linear solver of a system: PETSc's own banded factorisation where a serial system is a chain, MUMPS otherwise."""
+"""Linear solver: PETSc's banded LU where a serial system is a chain, MUMPS otherwise."""
 
 from __future__ import annotations
 

@@ -1,18 +1,19 @@
-"""How far one step of a dynamic stage goes wrong: an estimate from the change of the accelerations.
+"""Local error estimate of a time step, from the change of the accelerations.
 
 While the acceleration changes linearly, Newmark's displacement misses (beta - 1/6) dt^2 (a(n+1) - a(n)) of the Taylor
 series (Zienkiewicz & Xie, A simple error estimator and adaptive time stepping procedure for dynamic analysis,
 Earthquake Engineering and Structural Dynamics 20, 1991), and its velocity (gamma - 1/2) dt (a(n+1) - a(n)), which is a
 displacement too one step later. What contact adds to the accelerations counts with beta = 1/2 and gamma = 1 (see
 `time_scheme`). Neither is filtered: an impact shorter than the step shows as an error of the order of the displacement
-that it undoes.
+that it reverses.
 
 Accelerations of generalised-alpha lag behind: a(n) belongs to the time t(n) - lag dt. Where stiff forces prescribe the
 motion, as a riser's stiffness in tension does, the displacement is exact and the velocity takes what it misses instead:
 it is off by -stiff_lag dt^2 da/dt. Where steps change size, both are brought from the last step's lag to that of the
 next. The first keeps the second order; without the second, each change of size sets off an oscillation of the tension
 from step to step (compare Brüls & Arnold, The generalized-alpha scheme as a linear multistep integrator, Journal of
-Computational and Nonlinear Dynamics 3, 2008, on the first). It moves velocities by what the scheme errs anyway.
+Computational and Nonlinear Dynamics 3, 2008, on the first). It changes velocities by no more than the error of the
+scheme.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, local
 from riser_soil.core.system import System
 from riser_soil.solve.linear_solver import PREFIX, defaults, factorise_directly
-from riser_soil.solve.stability import hold_free_turns, unstable_modes
+from riser_soil.solve.stability import prescribe_free_turns, unstable_modes
 from riser_soil.solve.time_scheme import Scheme, Static
 
 CONVERGED = PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
@@ -29,7 +29,7 @@ class NotConvergedError(Exception):
 
 
 class UnstableError(NotConvergedError):
-    """A balance of forces from which the riser would buckle or swing away: `solution`."""
+    """An unstable equilibrium, from which the riser would buckle or swing away: `solution`."""
 
     def __init__(self, text: str, solution: Solution) -> None:
         super().__init__(text)
@@ -42,11 +42,10 @@ class NewtonSettings:
     system's lever.
 
     floor [N]: the norm that counts as zero, for round-off of a scene whose forces all vanish.
-    reuse: an iteration that leaves less than this share of the residual hands its factorised tangent on to the next of
+    reuse: an iteration that leaves less than this share of the residual leaves its factorised tangent to the next of
     the same step (Shamanskii's method), as long as each leaves less than this share: two or three such iterations cost
     less than one with its own tangent. Only in time steps without contact, which start near their end: contact has
-    corners, and an equilibrium may be far away.
-    least_iterations: before a residual counts as small.
+    corners, and an equilibrium may be far away. least_iterations: before a residual counts as small.
     """
 
     tolerance: float
@@ -193,17 +192,17 @@ class Newton:
             self._trial(x)
             self.system.assemble(self._balanced, self._weights)
             if self._weights.inertia == 0.0:
-                hold_free_turns(self.system, self._balanced, self.settings.tolerance * self._scale(self._forces))
+                prescribe_free_turns(self.system, self._balanced, self.settings.tolerance * self._scale(self._forces))
 
     def _reusable(self) -> bool:
-        """Whether the tangent of the iteration before will do."""
+        """Whether the tangent of the previous iteration can be reused."""
         if not self._starts_near or len(self._norms) < 2:
             return False
         return self._norms[-1] < self.settings.reuse * self._norms[-2]
 
     @property
     def _least_iterations(self) -> int:
-        """A motion that its guess alone carries on would keep its errors."""
+        """A motion that continues by its first guess alone would keep its errors."""
         return max(self.settings.least_iterations, int(self._starts_near))
 
     @property

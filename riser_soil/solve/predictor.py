@@ -1,4 +1,4 @@
-"""The first guess of a step's increments: the motion of the steps before it continued."""
+"""Predictor: first guess of a step's increments, extrapolated from the steps before it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ FALL = 0.5  # at most, of each term beyond the parabola to the one before
 
 
 class Extrapolation:
-    """Newton's polynomial through where the last steps ended, by divided differences of the increments' sums.
+    """Polynomial extrapolation through the ends of the last steps, by Newton's divided differences of the increments'
+    sums.
 
     The first difference is the mean rate of the last step [1/s], the second half its change [1/s2]. Beyond them only
     terms that fall fast are taken: those of what is rough, such as short waves in the riser or a gust, don't.

@@ -1,4 +1,4 @@
-"""Accelerations of the riser that a given force causes: its mass matrix, banded, factorised where it is needed.
+"""Mass matrix of the riser, banded and factorised: accelerations caused by a given force.
 
 Needed once at the start of a dynamic stage and, with contact, once a step (see time_scheme).
 """

@@ -1,16 +1,16 @@
-"""Whether an equilibrium is stable: the negative eigenvalues of its tangent, less what round-off and free turns make.
+"""Stability of an equilibrium: inertia count (negative eigenvalues) of the tangent, safe against round-off.
 
-An entry of the tangent K is known to about eps times its size, and so is the factorisation that counts. Such an error
-lies between -B and B, the diagonal matrix B_ii = eps d_i sum_j |K_ij|/d_j with any d > 0, as what remains of B is then
-diagonally dominant, once scaled by d. With d = sqrt(|K_ii|) the bound hangs on no unit. The count is that of K + B:
-what it finds is there, and what it misses lies above -B; that of K - B finds what is there and what may be. On a strut
-of n equal elements with hinged ends that is a load above P_cr by less than 0.7 eps n^4 of it, or by less than 4 eps
-(n/pi)^2 EA/P if that is more and the strut lies along no axis of the dofs: 2e-4 for n = 1000, and 1e-3 for EA/P = 1e7.
-A strut with a free end counts as one twice as long.
+The negative pivots of a factorisation are counted. Entries of the tangent K and of its factors have a relative error of
+about eps. Such an error lies between -B and B, the diagonal matrix B_ii = eps d_i sum_j |K_ij|/d_j with any d > 0, as
+what remains of B is then diagonally dominant, once scaled by d. With d = sqrt(|K_ii|) the bound does not depend on
+units. The count is that of K + B: what it finds is certain, and what it misses lies above -B; that of K - B also finds
+the doubtful ones. For a strut of n equal elements with hinged ends loads are doubtful above P_cr by less than 0.7 eps
+n^4 of it, or by less than 4 eps (n/pi)^2 EA/P if that is more and the strut lies along no axis of the dofs: 2e-4 for n
+= 1000, and 1e-3 for EA/P = 1e7. A strut with a free end counts as one twice as long.
 
 A turn t of the whole riser that its supports leave free has no stiffness where the loads don't tell one direction from
-another, and what Newton's tolerance leaves of the residual makes a small one of either sign. As K t = 0, holding one
-dof that it moves takes it away and leaves all else as it is: v - c t, with that dof zero, has the energy of v.
+another, and what Newton's tolerance leaves of the residual makes a small one of either sign. As K t = 0, prescribing
+one dof that it moves takes it away and leaves all else as it is: v - c t, with that dof zero, has the energy of v.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ def unstable_modes(system: System, state: State, weights: Weights, forces: float
     if judged is None:
         return 0
     system.assemble(state, weights, judged)
-    held = _one_dof_each(system, _neutral(system, state, NO_STIFFNESS * forces))
+    prescribed = _one_dof_each(system, _neutral(system, state, NO_STIFFNESS * forces))
     diagonal = system.matrix.mat.getDiagonal()
     bounds = _row_bounds(system, diagonal.array)
-    mine = _of_this_rank(system, held)
+    mine = _of_this_rank(system, prescribed)
     diagonal.array_w[:] += (-EPS if doubtful else EPS) * bounds
     diagonal.array_w[mine] += bounds[mine]
     system.matrix.mat.setDiagonal(diagonal)
@@ -55,14 +55,14 @@ def unstable_modes(system: System, state: State, weights: Weights, forces: float
     return negative_pivots(system)
 
 
-def hold_free_turns(system: System, state: State, least: float) -> None:
-    """Hold free turns of the riser that meet less than `least` [N] in the assembled matrix, each at a dof; collective.
+def prescribe_free_turns(system: System, state: State, least: float) -> None:
+    """Prescribe a dof of each free turn of the riser that meets less than `least` [N] in the matrix; collective.
 
     It is singular there, so that round-off would decide where a step ends among equilibria that differ by a turn.
     """
-    held = _one_dof_each(system, _neutral(system, state, least))
-    if held.size:
-        diagonal, mine = system.matrix.mat.getDiagonal(), _of_this_rank(system, held)
+    prescribed = _one_dof_each(system, _neutral(system, state, least))
+    if prescribed.size:
+        diagonal, mine = system.matrix.mat.getDiagonal(), _of_this_rank(system, prescribed)
         diagonal.array_w[mine] += np.abs(diagonal.array_r[mine])
         system.matrix.mat.setDiagonal(diagonal)
         diagonal.destroy()

@@ -1,4 +1,4 @@
-"""Step sizes of a stage: the nominal step, halved where a step fails, doubled again where it goes well.
+"""Step size control: the nominal step, halved where a step fails, doubled again where it goes well.
 
 All times lie on a binary refinement of the nominal steps, so that nominal times are always hit. The last nominal step
 ends where the stage does; it may be shorter than the others.
@@ -17,9 +17,9 @@ LEVELS = 20
 
 
 class Control(Protocol):
-    """Says how far the next step goes. Times in s; in a static stage load factors.
+    """Step size control: gives the end of the next step. Times in s; in a static stage load factors.
 
-    judges_error: whether it asks for the local error of each step.
+    judges_error: whether it needs the local error of each step.
     """
 
     end: float
@@ -50,7 +50,7 @@ class Control(Protocol):
 
 
 class StepControl:
-    """Walks from 0 to `end` in nominal steps of size `step`; never below `smallest`."""
+    """Steps from 0 to `end` of nominal size `step`; never below `smallest`."""
 
     judges_error = False
 

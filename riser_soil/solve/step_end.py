@@ -1,4 +1,4 @@
-"""What becomes of a dynamic step at its end: contact's share of the accelerations, momentum, balance."""
+"""End of a dynamic step: accelerations caused by contact, momentum correction, energy balance."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from riser_soil.solve.riser_mass import RiserMass
 
 @dataclass(eq=False)
 class CommittedStep:
-    """A step just committed, and what its scheme may ask of the system there; collective.
+    """A step just committed, and what its scheme needs from the system there; collective.
 
     mass: None in statics. solved: its state, increments included; forces: in balance there [N]; dt [s].
     """

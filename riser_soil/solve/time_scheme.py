@@ -1,4 +1,4 @@
-"""From increments to rates, and from the groups of forces to one residual.
+"""Time integration schemes: Newmark, generalised-alpha, midpoint rule, and statics.
 
 One code path for statics, Newmark, generalised-alpha and the midpoint rule. With bulk forces I + F and end-of-step
 forces E (contact, quasi-static soil), the residual of a step from n to n + 1 is, but for the midpoint rule,
@@ -25,7 +25,7 @@ from riser_soil.solve.step_end import CommittedStep
 
 
 class Scheme(Protocol):
-    """What a step needs to know of the time integration. dynamic: whether there are rates and inertia."""
+    """Interface of the time integration schemes. dynamic: whether there are rates and inertia."""
 
     dynamic: bool
 
@@ -66,11 +66,11 @@ class Scheme(Protocol):
         ...
 
     def balanced_at(self, before: State, end: State, dt: float) -> State:
-        """Where in the step forces are asked for: at its end, or at another state that follows from the end."""
+        """Where in the step forces are evaluated: at its end, or at another state that follows from the end."""
         ...
 
     def past(self, start: Forces | None) -> Array | None:
-        """What the forces at the start of the step, where needed, add to the local residual."""
+        """Contribution of the forces at the start of the step to the local residual."""
         ...
 
     def combine(self, forces: Forces, past: Array | None) -> Array:

@@ -1,4 +1,4 @@
-"""One accepted step after the other: solve, balance the energy, commit, and keep the rates for the next."""
+"""Time stepping: solve a step, balance its energy, commit it, keep the rates for the next one."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ EASY = 6  # Newton iterations up to which a step that was cut may grow again
 
 
 @dataclass(frozen=True, eq=False)
-class Accepted:
+class AcceptedStep:
     """A solved step and its energy balance [J]; cuts: failed attempts before it.
 
     turned: what each part, and "supports", dissipates and puts in. braking: what all forces, supports included, take
@@ -52,11 +52,11 @@ class Accepted:
 
 
 class TimeStepper:
-    """A stage on its way, from the state `before` that it starts with, or from where another one was saved.
+    """Time stepper of a stage, from the state `before` that it starts with, or from a saved state.
 
     before: the accepted state that the next step starts from, its increments zero; its rates leave out what contact
     adds to them (see `time_scheme`). now: the same state as the riser moves; energy: stored in it [J].
-    largest_gain: share of the energy in motion that a step may make out of nothing.
+    largest_gain: share of the kinetic energy that a step may create.
     """
 
     def __init__(
@@ -116,7 +116,7 @@ class TimeStepper:
         changed = bool(np.any(change != 0.0) or np.any(end.u != 0.0))
         return bool(self.system.comm.allreduce(changed, MPI.LOR))
 
-    def advance(self, control: Control, most_cuts: int | None = None) -> Accepted:
+    def advance(self, control: Control, most_cuts: int | None = None) -> AcceptedStep:
         """Take one step, cut as often as it needs; SolveError when it can't be cut any more, or may not."""
         if control.judges_error and self._error is None:
             self._error = self._new_error()
@@ -131,7 +131,7 @@ class TimeStepper:
                         f"no convergence at t = {control.target:.6g} with the smallest step {control.dt:.3g}: {failure}"
                     ) from failure
 
-    def _attempt(self, control: Control, cuts: int) -> Accepted:
+    def _attempt(self, control: Control, cuts: int) -> AcceptedStep:
         """A step that is solved, accounted for and acceptable; else NotConvergedError."""
         solution = self._solve(self.next_step(control))
         step = self._account(solution, control, cuts)
@@ -183,8 +183,8 @@ class TimeStepper:
         self.newton.renew()
         return True
 
-    def _account(self, solution: Solution, control: Control, cuts: int) -> Accepted:
-        """What the step stores, dissipates and puts in."""
+    def _account(self, solution: Solution, control: Control, cuts: int) -> AcceptedStep:
+        """Energy balance of the step: stored, dissipated and external."""
         state = solution.state
         turned = self.system.work(self.before, state)
         reactions = self.scheme.mean(*(self.system.reactions(f) for f in (self._forces, solution.forces)))
@@ -194,11 +194,11 @@ class TimeStepper:
         against = self.system.work_against(bulk, solution.forces.end, state.u)
         braking = against - supports - sum(work.inertial for work in turned.values())
         turned["supports"] = Work(external=supports)
-        return Accepted(control.target, control.dt, solution, cuts, self.system.energy(state), turned, braking)
+        return AcceptedStep(control.target, control.dt, solution, cuts, self.system.energy(state), turned, braking)
 
-    def _reject_energy_gain(self, step: Accepted) -> None:
-        """A dynamic step that adds much to the energy in motion out of nothing is a root of the equations far from the
-        motion that it continues, or too long for it: NotConvergedError, so that it is cut.
+    def _reject_energy_gain(self, step: AcceptedStep) -> None:
+        """A dynamic step that creates much kinetic energy is a root of the equations far from the motion that it
+        continues, or too long: NotConvergedError, so that it is cut.
         """
         if not self.scheme.dynamic:
             return
@@ -214,7 +214,7 @@ class TimeStepper:
                 f"the step's solution makes {appeared:.3g} J out of nothing, beside {in_motion:.3g} J in motion"
             )
 
-    def _kinetic(self, step: Accepted) -> float:
+    def _kinetic(self, step: AcceptedStep) -> float:
         """Kinetic energy [J] after a step, not yet committed, as the riser moves: in the step's own energy contact has
         accelerated it as the bulk's forces do, so that it speeds up where it rests.
         """
@@ -223,7 +223,7 @@ class TimeStepper:
         contact = self._mass.accelerations(self.before.t, -step.solution.forces.end)
         return self._mass.kinetic_energy(self.scheme.split_contact(step.solution.state, contact, step.dt))
 
-    def _reject_inaccurate(self, step: Accepted, control: Control) -> None:
+    def _reject_inaccurate(self, step: AcceptedStep, control: Control) -> None:
         """NotConvergedError for a step whose local error is too large, so that it is cut."""
         if self._error is None:
             return
@@ -231,7 +231,7 @@ class TimeStepper:
         if rejection := control.rejection(error):
             raise NotConvergedError(rejection)
 
-    def commit(self, step: Accepted, control: Control) -> None:
+    def commit(self, step: AcceptedStep, control: Control) -> None:
         """Accept the step and get ready for the next."""
         state, forces = step.solution.state, step.solution.forces
         self.system.commit(state)
@@ -246,7 +246,7 @@ class TimeStepper:
         control.accept(easy=step.solution.iterations <= EASY)
         self._renew_pattern()
 
-    def _rates_after(self, step: Accepted) -> tuple[State, State]:
+    def _rates_after(self, step: AcceptedStep) -> tuple[State, State]:
         """The state just committed, increments zero: with the bulk's rates alone, and as the riser moves."""
         solved, forces = step.solution.state, step.solution.forces
         end = CommittedStep(self.system, self._mass, self._momentum_correcting, solved, forces, step.dt)
@@ -256,7 +256,7 @@ class TimeStepper:
         for part in self._momentum_correcting:
             part.begin(self.before)
 
-    def _energy_after(self, step: Accepted) -> Energy:
+    def _energy_after(self, step: AcceptedStep) -> Energy:
         """Stored energy of the accepted state: the step's, but kinetic as the riser moves."""
         if self.now.v is step.solution.state.v:
             return step.energy
@@ -267,7 +267,7 @@ class TimeStepper:
     def _renews_history(self) -> bool:
         return self.scheme.renews_history(self.system.smooth)
 
-    def _forces_after(self, step: Accepted) -> Forces:
+    def _forces_after(self, step: AcceptedStep) -> Forces:
         """Bulk forces at the state just accepted, in its own axes: the step's, unless contact has changed the rates."""
         if not self.system.smooth:
             return self.system.forces(self.before)

@@ -16,7 +16,7 @@ from typing import Any
 from riser_soil.scene.document import parse
 from tests.support.bad_scenes import GOOD
 from tests.support.coupled_scenes import LAY, heave, touchdown
-from tests.support.riser_scenes import IN_WAVES, dynamic, held, in_waves, riser_scene, static
+from tests.support.riser_scenes import IN_WAVES, dynamic, in_waves, prescribed, riser_scene, static
 
 ROOT = Path(__file__).parents[2]
 WRITTEN = (
@@ -95,7 +95,7 @@ def _turning() -> Mapping:
     load = {"at": "end", "force": [1.0, 0.0, -5.0], "history": [[0.0, 0.0], [0.5, 1.0]]}
     pipe = {key: IN_WAVES[key] for key in ("EA", "EI", "mass")}
     stages = static(loads=[load]), dynamic(0.3, 0.1, motion={"start": turn}, scheme={"newmark": {"beta": 0.25}})
-    start = held(0.0, 0.0, 0.0, rotation="fixed")
+    start = prescribed(0.0, 0.0, 0.0, rotation="fixed")
     return riser_scene(*stages, pipe=pipe, length=12.0, elements=6, start=start, end="free", gravity=9.81)
 
 

@@ -174,7 +174,7 @@ FREE_ENDS = {
     "riser.start=free": 'stages.0: value {"name": "bend"',
     "riser.start.rotation=free": "it has no equilibrium; set rotation: fixed",
     "stages.0.move={end: [70, 30, 1]}": "stages.0.move.end: value [70, 30, 1]: riser.end is free",
-    "riser.initial=catenary": 'riser.initial: value "catenary": a catenary hangs between two held ends',
+    "riser.initial=catenary": 'riser.initial: value "catenary": a catenary hangs between two ends with a position',
     "line_types.bar.GJ=null": "value null: needed in three dimensions (riser.unstressed.arc.axis leaves",
     "line_types.bar.mass=-1": "line_types.bar.mass: value -1: must be greater than 0",
 }

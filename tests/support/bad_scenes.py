@@ -304,7 +304,7 @@ CONFLICTS = [
         19,
         "riser.initial",
         '"catenary"',
-        "hold",
+        "give both ends a position",
         lines=2,
     ),
     Bad("initial: catenary", "initial: straight", 19, "riser.initial", '"straight"', "compress"),

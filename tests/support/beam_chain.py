@@ -43,11 +43,11 @@ class PlaneChain:
     x: Array
     direction: Array
     L: Array
-    section: beam2d.Section
+    section: beam2d.PlanarSection
     element: Element2d = beam2d.forces_and_tangent
     dofs: int = 3
     theta: Array = field(init=False)
-    ref: beam2d.Reference = field(init=False)
+    ref: beam2d.PlanarReference = field(init=False)
 
     def __post_init__(self) -> None:
         self.nn, self.theta = len(self.x), np.zeros(len(self.x))
@@ -74,10 +74,10 @@ class SpaceChain:
     x: Array
     T0: Array
     L: Array
-    section: beam3d.Section
+    section: beam3d.SpatialSection
     dofs: int = 6
     R: Array = field(init=False)
-    ref: beam3d.Reference = field(init=False)
+    ref: beam3d.SpatialReference = field(init=False)
 
     def __post_init__(self) -> None:
         self.nn, self.R = len(self.x), np.tile(np.eye(3), (len(self.x), 1, 1))
@@ -130,14 +130,14 @@ def load(chain: Chain, tip_load: Array, steps: int, tolerance: float = 1e-10) ->
 def straight_plane(n: int, L: float, EA: float, EI: float, element: Element2d) -> PlaneChain:
     """Straight chain of n elements along the first axis."""
     x = np.column_stack([np.linspace(0.0, L, n + 1), np.zeros(n + 1)])
-    section = beam2d.Section(np.full(n, EA), np.full(n, EI))
+    section = beam2d.PlanarSection(np.full(n, EA), np.full(n, EI))
     return PlaneChain(x, np.zeros((2, n)), np.full(n, L / n), section, element)
 
 
 def straight_space(n: int, L: float, EA: float, EI: tuple[float, float], GJ: float) -> SpaceChain:
     """Straight chain of n elements along x."""
     x = np.column_stack([np.linspace(0.0, L, n + 1), np.zeros(n + 1), np.zeros(n + 1)])
-    section = beam3d.Section(np.full(n, EA), np.full(n, EI[0]), np.full(n, EI[1]), np.full(n, GJ))
+    section = beam3d.SpatialSection(np.full(n, EA), np.full(n, EI[0]), np.full(n, EI[1]), np.full(n, GJ))
     return SpaceChain(x, np.tile(np.eye(3), (2, n, 1, 1)), np.full(n, L / n), section)
 
 
@@ -148,5 +148,5 @@ def arc_space(n: int, radius: float, angle: float, EA: float, EI: float, GJ: flo
     x = radius * np.column_stack([1.0 - np.cos(s), np.sin(s), o])
     tangent, inward = np.column_stack([np.sin(s), np.cos(s), o]), np.column_stack([np.cos(s), -np.sin(s), o])
     frames = np.stack([tangent, inward, np.cross(tangent, inward)], axis=2)
-    section = beam3d.Section(np.full(n, EA), np.full(n, EI), np.full(n, EI), np.full(n, GJ))
+    section = beam3d.SpatialSection(np.full(n, EA), np.full(n, EI), np.full(n, EI), np.full(n, GJ))
     return SpaceChain(x, np.array([frames[:-1], frames[1:]]), np.full(n, radius * angle / n), section)

@@ -15,19 +15,19 @@ from riser_soil.assembly import Assembly, build
 from riser_soil.assembly.stage import scheme_of
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from riser_soil.results.observer import Observer
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage, Stage
-from riser_soil.solve.dynamic_relaxation import Relaxed
+from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_scheme import Static
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 
-Watch = Callable[[System, Accepted], None]
+Watch = Callable[[System, AcceptedStep], None]
 
 
 def built(mapping: Mapping) -> Assembly:
@@ -40,7 +40,7 @@ def before_commit(watch: Watch | None) -> Iterator[None]:
     """Show every accepted step to a function before it is committed."""
     usual = TimeStepper.commit
 
-    def commit(stepper: TimeStepper, step: Accepted, control: Control) -> None:
+    def commit(stepper: TimeStepper, step: AcceptedStep, control: Control) -> None:
         if watch is not None:
             watch(stepper.system, step)
         usual(stepper, step, control)
@@ -53,18 +53,18 @@ def before_commit(watch: Watch | None) -> Iterator[None]:
 class Watcher(Observer):
     """Shows every committed step to a function; writes nothing."""
 
-    def __init__(self, after: Callable[[TimeStepper, Accepted], None] | None = None) -> None:
+    def __init__(self, after: Callable[[TimeStepper, AcceptedStep], None] | None = None) -> None:
         self._after = after
         self.relaxations = 0
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         self.energy_at_start = stepper.energy
 
-    def record(self, stepper: TimeStepper, step: Accepted, last: bool) -> None:
+    def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         if self._after is not None:
             self._after(stepper, step)
 
-    def relaxed(self, relaxed: Relaxed) -> None:
+    def relaxed(self, relaxed: RelaxationResult) -> None:
         self.relaxations += 1
 
 
@@ -72,7 +72,7 @@ def take(assembly: Assembly, stage: Stage, before: State | None = None, watch: W
     """Take a stage to its end; the state that it leaves, increments zero."""
     rest = State.at_rest(0.0, assembly.size) if before is None else before
     with before_commit(watch):
-        return run_stage(assembly, stage, rest, Watcher(), Clock.new())
+        return run_stage(assembly, stage, rest, Watcher(), Timer.new())
 
 
 class FirstStep:
@@ -86,7 +86,7 @@ class FirstStep:
         before = State.at_rest(0.0, assembly.size)
         for earlier in first:
             before = take(assembly, earlier, before)
-        self.system = System(assembly.comm, assembly.begin(stage), Clock.new())
+        self.system = System(assembly.comm, assembly.begin(stage), Timer.new())
         self.scheme = scheme_of(stage)
         solver = assembly.scene.solver
         settings = NewtonSettings(solver.tolerance, solver.max_iterations, assembly.scales.force_floor)

@@ -8,9 +8,9 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.scene.stages import Stage
-from riser_soil.solve.dynamic_relaxation import Relaxed
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
-from riser_soil.stages import Onlooker
+from riser_soil.solve.dynamic_relaxation import RelaxationResult
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
+from riser_soil.stages import StatelessObserver
 from tests.support.coupled_scenes import Mapping
 
 WEIGHT, LENGTH, DROP = 700.0, 20.0, 1.0  # N/m, m, m
@@ -56,7 +56,7 @@ def tilted(k: float, dt: float, duration: float = 3.0) -> Mapping:
     return fall("rigid", "free", TILTED, k, dt, duration)
 
 
-class Energies(Onlooker):
+class Energies(StatelessObserver):
     """Energies of a stage [J], one entry a step; follows `riser_soil.stages.run_stage`."""
 
     def __init__(self) -> None:
@@ -67,13 +67,13 @@ class Energies(Onlooker):
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         self._begun = stepper.energy.total
 
-    def record(self, stepper: TimeStepper, step: Accepted, last: bool) -> None:
+    def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """A step just committed; its kinetic energy is that of the pipe as it moves."""
         by_contact = step.turned["seabed"].dissipated
         self._rows.append((stepper.energy.total, step.work, step.dissipated, by_contact))
         self.cuts += step.cuts
 
-    def relaxed(self, relaxed: Relaxed) -> None:
+    def relaxed(self, relaxed: RelaxationResult) -> None:
         """Dynamic stages know no relaxation."""
 
     @property

@@ -23,12 +23,12 @@ from riser_soil.riser.section_forces import (
     end_reactions,
     section_forces,
 )
-from riser_soil.riser.sections import Elements, LineType, Segment, Surroundings, elements
+from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
 from tests.support.dense_chain import solve
 
 LENGTH, TOP = 350.0, np.array([150.0, 0.0, 150.0])
 EI, EA = 20.96e3, 15.38e8
-KIND = LineType(EA, EI, EI, GJ=2.0e4, outer_diameter=0.26, inner_diameter=0.20, mass=57.5)
+KIND = SectionProperties(EA, EI, EI, GJ=2.0e4, outer_diameter=0.26, inner_diameter=0.20, mass=57.5)
 FLOODED = Surroundings(gravity=9.81, contents=1025.0, water=1025.0)
 
 
@@ -58,7 +58,7 @@ class Hanging:
 
 
 def properties(count: int, EI: float = EI) -> Elements:
-    return elements([Segment.even(replace(KIND, EI_y=EI, EI_z=EI), LENGTH, count)], FLOODED)
+    return elements([MeshedSegment.even(replace(KIND, EI_y=EI, EI_z=EI), LENGTH, count)], FLOODED)
 
 
 def guess(e: Elements) -> Catenary:
@@ -69,7 +69,7 @@ def hang(count: int, dimension: int = 2, EI: float = EI) -> Hanging:
     """Newton from the catenary."""
     e = properties(count, EI)
     layout = shapes.layout(e.arc, e.outer_diameter, shapes.straight(e.arc), guess(e).curve)
-    line = Line(dimension, layout, End(True), End(True), hold_spin=True)
+    line = Line(dimension, layout, End(True), End(True), prescribe_spin=True)
     beam = Beam(line, e)
     iterations = solve(line, [beam])
     state = State.at_rest(1.0, line.size)
@@ -82,7 +82,7 @@ def elastica_H() -> tuple[float, float]:
     """H and the vertical force at the start of the extensible elastica, from its boundary value problem.
 
     With force (H, V0 + w s) on the section and strain e = T/EA: x' = (1 + e) cos, z' = (1 + e) sin, EI theta'
-    = M, M' = (1 + e) (H sin - V cos); both ends held, free to turn. Lengths are over LENGTH, forces over w
+    = M, M' = (1 + e) (H sin - V cos); both ends pinned. Lengths are over LENGTH, forces over w
     LENGTH.
     """
     e = properties(700)

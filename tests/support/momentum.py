@@ -6,7 +6,7 @@ import numpy as np
 
 from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
-from riser_soil.riser.directors import SpatialTurn
+from riser_soil.riser.directors import SpatialOrientation
 from riser_soil.riser.hermite import weigh
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.midpoint_directors import directors
@@ -42,6 +42,6 @@ def _of_sections(assembly: Assembly, stepper: TimeStepper, part: RotaryInertia |
     W = line.nodal(stepper.now.v)[:, line.dimension :]
     rates = [d.rates(W) for d in moving] if isinstance(part, RotaryInertia) else part.rates(stepper.now)
     impulses = [mass[:, None, None] * rate @ line.basis.T for mass, rate in zip(on.values(), rates, strict=True)]
-    assert isinstance(trial.turn, SpatialTurn) == (line.dimension == 3)
+    assert isinstance(trial.turn, SpatialOrientation) == (line.dimension == 3)
     pairs = zip(moving, impulses, strict=True)
     return np.asarray(sum(np.cross(d.secant(still).mean @ line.basis.T, p).sum(axis=(0, 1)) for d, p in pairs))

@@ -12,16 +12,16 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.snapshot import (
+    ContactSnapshot,
     Ledger,
     RiserSnapshot,
     RunFacts,
     SoilMesh,
     SoilSnapshot,
-    StepHealth,
-    Touch,
+    StepStatistics,
 )
 from riser_soil.results.record import Recorder
-from riser_soil.results.schedule import Due, Schedule
+from riser_soil.results.schedule import DueOutputs, Schedule
 
 EI, WEIGHT, RADIUS = 5.0e4, 650.0, 0.15  # N.m2, N/m, m
 FACTS = RunFacts(
@@ -69,10 +69,10 @@ class Catenary:
             end_tangent=top / np.linalg.norm(top),
         )
 
-    def touch(self, arc: Array) -> Touch:
+    def touch(self, arc: Array) -> ContactSnapshot:
         place, force = np.array([self.s0, 0.0, RADIUS]), np.array([0.0, 0.0, WEIGHT * self.s0])
         depth = np.where(arc < self.s0, 0.002, 0.0)
-        return Touch(self.s0, place, 1, 0.003, force, depth, 1.5 * depth, 0.1 * depth)
+        return ContactSnapshot(self.s0, place, 1, 0.003, force, depth, 1.5 * depth, 0.1 * depth)
 
 
 def block(nx: int = 40, ny: int = 10, nz: int = 5, *, tetrahedra: bool = False) -> SoilMesh:
@@ -115,7 +115,7 @@ def _ledger(heave: float) -> Ledger:
 CATENARY_ARC = np.concatenate([np.arange(0.0, 50.0, 0.5), np.arange(50.0, 150.0, 2.0)])
 
 
-EVERYWHERE, NOWHERE = Due(series=True, pictures=True), Due(series=False, pictures=False)
+EVERYWHERE, NOWHERE = DueOutputs(series=True, pictures=True), DueOutputs(series=False, pictures=False)
 
 
 @contextmanager
@@ -127,10 +127,10 @@ def a_recorder(folder: Path, kind: str = "dynamic", mesh: SoilMesh | None = None
 
 
 def step(
-    recorder: Recorder, t: float, due: Due = EVERYWHERE, pictured: SoilSnapshot | None = None
+    recorder: Recorder, t: float, due: DueOutputs = EVERYWHERE, pictured: SoilSnapshot | None = None
 ) -> None:
     """Tells the recorder of an accepted step."""
-    line, health = Catenary(32.0, 30.0 - 0.01 * t), StepHealth(3, 0.1, 1e-6, 0)
+    line, health = Catenary(32.0, 30.0 - 0.01 * t), StepStatistics(3, 0.1, 1e-6, 0)
     recorder.accept(t, due, line.riser(CATENARY_ARC), line.touch(CATENARY_ARC), health, _ledger(t), pictured)
 
 
@@ -163,7 +163,7 @@ def record(
                     schedule.due(float(t), t == times[-1]),
                     line.riser(arc),
                     line.touch(arc),
-                    StepHealth(3, 0.1, 1e-6, 0),
+                    StepStatistics(3, 0.1, 1e-6, 0),
                     _ledger(heave),
                     None if mesh is None else soil(mesh, line.s0),
                 )

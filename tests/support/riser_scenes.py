@@ -13,11 +13,11 @@ from riser_soil.assembly import build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.snapshot import RiserSnapshot
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.results.observer import riser_snapshot
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher
@@ -36,7 +36,7 @@ def riser_scene(
     return scene
 
 
-def held(*position: float, rotation: Any = "free") -> Mapping:
+def prescribed(*position: float, rotation: Any = "free") -> Mapping:
     return {"position": list(position), "rotation": rotation}
 
 
@@ -63,8 +63,8 @@ def in_waves(time_step: float, top: float, rho_inf: float = 0.8) -> Mapping:
         pipe=IN_WAVES,
         length=26.0,
         elements=8,
-        start=held(0.0, 0.0, 3.0),
-        end=held(14.0, 0.0, top),
+        start=prescribed(0.0, 0.0, 3.0),
+        end=prescribed(14.0, 0.0, top),
         water=water,
         gravity=9.81,
         solver={"tolerance": 1e-10},
@@ -72,7 +72,7 @@ def in_waves(time_step: float, top: float, rho_inf: float = 0.8) -> Mapping:
 
 
 @dataclass
-class Told:
+class StageHistory:
     """A stage, step by step: end times, steps [s], energies [J], node positions (nn, 3), the riser at the last step."""
 
     t: list[float] = field(default_factory=list)
@@ -89,14 +89,14 @@ class Told:
         return self.last
 
 
-def tell(scene: Mapping | Scene) -> list[Told]:
+def stage_histories(scene: Mapping | Scene) -> list[StageHistory]:
     """Take all stages of a scene without files."""
     assembly = build(scene if isinstance(scene, Scene) else scene_from_mapping(scene), MPI.COMM_SELF)
-    before, told = State.at_rest(0.0, assembly.size), list[Told]()
+    before, told = State.at_rest(0.0, assembly.size), list[StageHistory]()
     for stage in assembly.scene.stages:
-        now = Told()
+        now = StageHistory()
 
-        def watch(stepper: TimeStepper, step: Accepted, now: Told = now) -> None:
+        def watch(stepper: TimeStepper, step: AcceptedStep, now: StageHistory = now) -> None:
             now.t.append(step.t)
             now.dt.append(step.dt)
             now.cuts.append(step.cuts)
@@ -105,7 +105,7 @@ def tell(scene: Mapping | Scene) -> list[Told]:
             now.position.append(assembly.line.positions3(stepper.now))
             now.last = riser_snapshot(assembly, stepper)
 
-        before = run_stage(assembly, stage, before, Watcher(watch), Clock.new())
+        before = run_stage(assembly, stage, before, Watcher(watch), Timer.new())
         told.append(now)
     return told
 

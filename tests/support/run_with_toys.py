@@ -8,10 +8,10 @@ import sys
 from pathlib import Path
 
 from riser_soil.core import outputs, step_outputs
-from riser_soil.core.output import Output, Row, greatest
+from riser_soil.core.output import OutputQuantity, Row, greatest
 from riser_soil.core.snapshot import Instant, SoilSnapshot, StepRecord
 
-HEIGHT: Output[Instant] = Output(
+HEIGHT: OutputQuantity[Instant] = OutputQuantity(
     "height",
     "z",
     "m",
@@ -21,10 +21,10 @@ HEIGHT: Output[Instant] = Output(
     "positive upwards",
     figures=(greatest("max_height", Row("greatest height", "km", 1e-3)),),
 )
-SETTLEMENT: Output[SoilSnapshot] = Output(
+SETTLEMENT: OutputQuantity[SoilSnapshot] = OutputQuantity(
     "settlement", "s", "m", "settlement", "soil points", lambda soil: -soil.displacement[:, 2]
 )
-WHOLE_ENERGY: Output[StepRecord] = Output(
+WHOLE_ENERGY: OutputQuantity[StepRecord] = OutputQuantity(
     "stored_energy", "", "J", "all energy stored", "step", lambda step: step.ledger.stored
 )
 

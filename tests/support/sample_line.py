@@ -9,14 +9,14 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.riser import shapes
-from riser_soil.riser.attachments import Attachment, Attachments, masses
+from riser_soil.riser.attachments import Attachments, PointAttachment, masses
 from riser_soil.riser.beam import Beam
-from riser_soil.riser.ends import End, Turning
+from riser_soil.riser.ends import End, SupportRotation
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
-from riser_soil.riser.loads import Load, PointLoads
+from riser_soil.riser.loads import AppliedLoad, PointLoads
 from riser_soil.riser.rotary_inertia import RotaryInertia
-from riser_soil.riser.sections import Elements, LineType, Segment, Surroundings, elements
+from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.riser.springs import EndSpring
 from riser_soil.riser.structural_damping import StructuralDamping
 from riser_soil.sea.morison import Morison
@@ -27,7 +27,7 @@ from riser_soil.sea.still_water import StillWater
 DIRECTION = np.array([0.6, 0.8, 0.0])
 UP = np.array([0.0, 0.0, 1.0])
 START = np.array([3.0, -2.0, 5.0])
-THICK = LineType(
+THICK = SectionProperties(
     EA=4.0e4,
     EI_y=900.0,
     EI_z=1400.0,
@@ -40,7 +40,7 @@ THICK = LineType(
     rotary_inertia=None,
     damping=0.3,
 )
-THIN = LineType(
+THIN = SectionProperties(
     EA=3.0e4,
     EI_y=500.0,
     EI_z=300.0,
@@ -95,12 +95,13 @@ class Sample:
     def turned_spring(self) -> EndSpring:
         """Its support has turned about the normal of the sample's plane."""
         rotation, still = 0.9 * np.cross(DIRECTION, UP), np.zeros(3)
-        self.line.end.turning = lambda t: Turning(t * rotation, rotation, still)
+        self.line.end.turning = lambda t: SupportRotation(t * rotation, rotation, still)
         return self.spring()
 
-    def attached(self) -> list[Attachment]:
+    def attached(self) -> list[PointAttachment]:
         """A module within an element, a clump weight at a node and another at the end."""
-        return [Attachment(2.7, 80.0, -240.0, 0.1), Attachment(3.0, 300.0, 2600.0), Attachment(8.0, 50.0, 120.0)]
+        given = (2.7, 80.0, -240.0, 0.1), (3.0, 300.0, 2600.0, 0.0), (8.0, 50.0, 120.0, 0.0)
+        return [PointAttachment(*numbers) for numbers in given]
 
     def attachments(self) -> Attachments:
         return Attachments(self.line, self.attached())
@@ -109,14 +110,14 @@ class Sample:
         """A force within an element, one at the end, and a distributed load."""
         arc = self.line.arc
         tip, inner = np.array([30.0, 40.0, 25.0]), np.array([60.0, -20.0, 50.0])
-        spread = Load(lambda t: 2.0, distributed=np.array([5.0, 4.0, -3.0]))
-        loads = [Load(lambda t: 1.0 + t, arc[-1], tip), Load(lambda t: t, 0.3 * arc[1], inner), spread]
+        spread = AppliedLoad(lambda t: 2.0, distributed=np.array([5.0, 4.0, -3.0]))
+        loads = [AppliedLoad(lambda t: 1.0 + t, arc[-1], tip), AppliedLoad(lambda t: t, 0.3 * arc[1], inner), spread]
         return PointLoads(self.line, loads)
 
     def moments(self) -> PointLoads:
         moment = np.array([150.0, -90.0, 60.0])
-        loads = [Load(lambda t: 1.0 + t, self.line.arc[2], moment=moment)]
-        return PointLoads(self.line, [*loads, Load(lambda t: -t, self.line.arc[-1], moment=moment[::-1])])
+        loads = [AppliedLoad(lambda t: 1.0 + t, self.line.arc[2], moment=moment)]
+        return PointLoads(self.line, [*loads, AppliedLoad(lambda t: -t, self.line.arc[-1], moment=moment[::-1])])
 
 
 def planar_points(seed: int = 3) -> Array:
@@ -129,11 +130,11 @@ def sample(
     dimension: int, ends: tuple[End, End] | None = None, offset: int = 0, shaken: bool = True
 ) -> Sample:
     """The riser with an unstressed bend in the plane; shaken: after three random steps."""
-    e = elements([Segment.even(THICK, 3.0, 2), Segment.even(THIN, 5.0, 3)], AROUND)
+    e = elements([MeshedSegment.even(THICK, 3.0, 2), MeshedSegment.even(THIN, 5.0, 3)], AROUND)
     radius, normal = 6.0, np.cross(UP, DIRECTION)
     bend = shapes.circle(e.arc, START - radius * UP, START, 8.0 / radius, normal)
     layout = shapes.layout(e.arc, e.outer_diameter, bend, shapes.through(e.arc, planar_points()))
-    start, end = ends or (End(held=True), End(held=False))
+    start, end = ends or (End(prescribed=True), End(prescribed=False))
     made = Sample(Line(dimension, layout, start, end, direction=DIRECTION), e)
     made.line.offset = 0
     for seed in range(3 if shaken else 0):

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.riser.attachments import Attachment
+from riser_soil.riser.attachments import PointAttachment
 from riser_soil.sea.buoyancy import Buoyancy, DryStations
 from riser_soil.sea.dry_pipe import DryPipe
 from riser_soil.sea.modules import StillWaterOnModules, diameters, pipe_at
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
-from riser_soil.sea.moving_water import AcceleratedWater, RelativeDrag, Stream
+from riser_soil.sea.moving_water import AcceleratedWater, FlowAtStations, RelativeDrag
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.still_water import StationLoads, StillWater
 from riser_soil.sea.water import WaterMotion
@@ -64,18 +64,18 @@ def displaced(at: Sample) -> Array:
     return np.asarray(RHO * 0.25 * np.pi * at.elements.outer_diameter**2)
 
 
-def driven(loads: StillWater, stream: Stream, at: Sample) -> StationLoads:
+def driven(loads: StillWater, stream: FlowAtStations, at: Sample) -> StationLoads:
     return AcceleratedWater(RelativeDrag(loads, stream), stream, loads.mass, displaced(at))
 
 
 def current(at: Sample) -> Morison:
     loads = still(at)
-    return Morison(loads.pipe, RelativeDrag(loads, Stream(loads.pipe, water)))
+    return Morison(loads.pipe, RelativeDrag(loads, FlowAtStations(loads.pipe, water)))
 
 
 def waves(at: Sample) -> Morison:
     loads = still(at)
-    return Morison(loads.pipe, driven(loads, Stream(loads.pipe, water), at))
+    return Morison(loads.pipe, driven(loads, FlowAtStations(loads.pipe, water), at))
 
 
 def half_out(at: Sample) -> Morison:
@@ -86,14 +86,14 @@ def half_out(at: Sample) -> Morison:
 
 def half_out_in_waves(at: Sample) -> Morison:
     loads = still(at)
-    stream = Stream(loads.pipe, water)
+    stream = FlowAtStations(loads.pipe, water)
     return Morison(loads.pipe, PartlyWet(driven(loads, stream, at), Wetting(loads.pipe, stream.immersion)))
 
 
 MODULES = [
-    Attachment(2.7, volume=0.1, drag_area=0.4, added_mass=0.5),
-    Attachment(4.0, volume=0.3, drag_area=0.2),
-    Attachment(5.4, volume=0.3, drag_area=0.7, added_mass=0.8),
+    PointAttachment(2.7, volume=0.1, drag_area=0.4, added_mass=0.5),
+    PointAttachment(4.0, volume=0.3, drag_area=0.2),
+    PointAttachment(5.4, volume=0.3, drag_area=0.7, added_mass=0.8),
 ]
 
 
@@ -111,7 +111,7 @@ def modules(at: Sample) -> Morison:
 
 def modules_half_out_in_waves(at: Sample) -> Morison:
     loads, displaced = on_modules(at)
-    stream, added = Stream(loads.pipe, water), np.array([m.added_mass for m in MODULES])
+    stream, added = FlowAtStations(loads.pipe, water), np.array([m.added_mass for m in MODULES])
     mass = (added * displaced)[:, None] * np.ones(2)
     driven = AcceleratedWater(RelativeDrag(loads, stream), stream, mass, displaced)
     return Morison(loads.pipe, PartlyWet(driven, Wetting(loads.pipe, stream.immersion, diameters(MODULES)[:, None])))
@@ -132,4 +132,4 @@ def floating(at: Sample) -> Buoyancy:
 
 def floating_in_waves(at: Sample) -> Buoyancy:
     pipe = Pipe(at.line)
-    return Buoyancy(pipe, DryPipe(pipe, Stream(pipe, water).immersion, 9.81 * displaced(at)), flat=False)
+    return Buoyancy(pipe, DryPipe(pipe, FlowAtStations(pipe, water).immersion, 9.81 * displaced(at)), flat=False)

@@ -26,9 +26,9 @@ class Bench:
 
     def step(self, given: Array, tolerance: float = 1e-8, most: int = 25) -> None:
         """Find the equilibrium after the increment `given` of the driven dofs, and accept it."""
-        held = self.driven | self.soil.field.prescribed
-        free = np.flatnonzero(~held)
-        u = self._predict(np.where(held, given, 0.0), held, free)
+        prescribed = self.driven | self.soil.field.prescribed
+        free = np.flatnonzero(~prescribed)
+        u = self._predict(np.where(prescribed, given, 0.0), prescribed, free)
         self.norms = []
         for _ in range(most):
             force = self.force(u)
@@ -41,10 +41,10 @@ class Bench:
             u = u + self._length(u, change) * change
         raise AssertionError(f"no convergence: {self.norms}")
 
-    def _predict(self, given: Array, held: BoolArray, free: IntArray) -> Array:
+    def _predict(self, given: Array, prescribed: BoolArray, free: IntArray) -> Array:
         """The last increment again; in the first step the elastic response."""
         if self.increment is not None:
-            return np.where(held, given, self.increment)
+            return np.where(prescribed, given, self.increment)
         guess = given.copy()
         start = np.zeros_like(given)
         load = self.force(start) + assemble(self.soil, self._state(start)) @ given

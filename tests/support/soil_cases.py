@@ -12,7 +12,7 @@ from mpi4py import MPI
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.part import State
 from riser_soil.soil.block import BlockSpec
-from riser_soil.soil.grid import Grid, block_grid
+from riser_soil.soil.grid import DistributedMesh, block_grid
 from riser_soil.soil.linear_elastic import LinearElastic
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.von_mises import VonMises
@@ -22,12 +22,12 @@ ELASTIC = LinearElastic(kind="linear-elastic", E=1.2e6, nu=0.49).at_points
 KINDS = ("hex", "tet")
 
 
-def small_block(kind: Any, size: float = 0.5) -> Grid:
+def small_block(kind: Any, size: float = 0.5) -> DistributedMesh:
     """2 × 1.5 × 1 m, top at z = 0."""
     return block_grid(MPI.COMM_SELF, BlockSpec((0.0, 2.0), (0.0, 1.5), 1.0, size, size, kind=kind))
 
 
-def distorted(grid: Grid, amount: float = 0.08) -> Grid:
+def distorted(grid: DistributedMesh, amount: float = 0.08) -> DistributedMesh:
     """The grid with its inner vertices moved at random by up to `amount` [m]; edges stay straight."""
     points = grid.nodes.points.copy()
     move = inner(grid)
@@ -35,7 +35,7 @@ def distorted(grid: Grid, amount: float = 0.08) -> Grid:
     return replace(grid, nodes=replace(grid.nodes, points=straightened(grid, points)))
 
 
-def straightened(grid: Grid, points: Array) -> Array:
+def straightened(grid: DistributedMesh, points: Array) -> Array:
     """Points with every node placed by its cell's vertices."""
     family, cells = grid.family, grid.nodes.cells
     variant = basix.LagrangeVariant.gll_warped
@@ -45,7 +45,7 @@ def straightened(grid: Grid, points: Array) -> Array:
     return out
 
 
-def inner(grid: Grid) -> BoolArray:
+def inner(grid: DistributedMesh) -> BoolArray:
     """Nodes that lie on no face of the block."""
     p = grid.nodes.points
     result: BoolArray = np.all((p > grid.low + 1e-6) & (p < grid.high - 1e-6), axis=1)

@@ -7,17 +7,17 @@ from itertools import pairwise
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin, Trench
+from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin, AubenyBiscontinFormula
 from riser_soil.seabed.law import NormalLaw
-from riser_soil.seabed.randolph_quiggin import Clay, RandolphQuiggin
+from riser_soil.seabed.randolph_quiggin import RandolphQuiggin, RandolphQuigginFormula
 
 
-def randolph_quiggin(D: float, su: float, su_gradient: float = 0.0, **constants: float) -> Clay:
+def randolph_quiggin(D: float, su: float, su_gradient: float = 0.0, **constants: float) -> RandolphQuigginFormula:
     """Clay under a pipe of diameter D [m]."""
     return RandolphQuiggin(kind="randolph-quiggin", su=su, su_gradient=su_gradient, **constants).of_pipe(D)
 
 
-def aubeny_biscontin(D: float, su: float, su_gradient: float = 0.0, **constants: float) -> Trench:
+def aubeny_biscontin(D: float, su: float, su_gradient: float = 0.0, **constants: float) -> AubenyBiscontinFormula:
     """A seafloor under a pipe of diameter D [m]."""
     return AubenyBiscontin(kind="aubeny-biscontin", su=su, su_gradient=su_gradient, **constants).of_pipe(D)
 

@@ -5,22 +5,22 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.core.part import Block, Energy, Forces, State, Traits, Weights, Work
+from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.saved_state import Saved
 
 
 class Chain:
-    """Field of n heights z; the first may be held."""
+    """Field of n heights z; the first may be prescribed."""
 
     name, space = "chain", "chain"
 
-    def __init__(self, z: Array, held: bool = False, owner: bool = True) -> None:
+    def __init__(self, z: Array, prescribed: bool = False, owner: bool = True) -> None:
         self.z: Array = np.asarray(z, dtype=float)
         self.size, self.offset = len(self.z), 0
         self.global_index: IntArray = np.arange(self.size)
         self.owned: BoolArray = np.full(self.size, owner)
         self.prescribed: BoolArray = np.zeros(self.size, dtype=bool)
-        self.prescribed[0] = held
+        self.prescribed[0] = prescribed
 
     lever = 1.0
 
@@ -61,10 +61,10 @@ class Chain:
     def describe(self, entry: int) -> str:
         return f"mass {entry}"
 
-    def pairs(self) -> Block:
+    def pairs(self) -> MatrixBlock:
         nodes = self.offset + np.arange(self.size)
         rows = np.stack([nodes[:-1], nodes[1:]], axis=1)
-        return Block(rows, rows)
+        return MatrixBlock(rows, rows)
 
 
 class Inertia:
@@ -74,7 +74,7 @@ class Inertia:
     def __init__(self, chain: Chain, mass: float) -> None:
         self.chain, self.mass = chain, mass / 2.0
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         return {"chain": self.chain.pairs()}
 
     def nodal(self) -> Array:
@@ -107,7 +107,7 @@ class Springs:
     def __init__(self, chain: Chain, rest: float, k: float, cubic: float = 0.0, weight: float = 0.0) -> None:
         self.chain, self.rest, self.k, self.cubic, self.weight = chain, rest, k, cubic, weight
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         return {"chain": self.chain.pairs()}
 
     def _stretch(self, state: State) -> Array:
@@ -145,9 +145,9 @@ class Floor:
     def __init__(self, chain: Chain, stiffness: float) -> None:
         self.chain, self.stiffness = chain, stiffness
 
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, MatrixBlock]:
         nodes = (self.chain.offset + np.arange(self.chain.size))[:, None]
-        return {"floor": Block(nodes, nodes)}
+        return {"floor": MatrixBlock(nodes, nodes)}
 
     def _penetration(self, state: State) -> Array:
         return np.maximum(-self.chain.heights(state), 0.0)

@@ -17,9 +17,9 @@ from riser_soil.core.quantities import BedStiffness, PoissonRatio, PositiveWeigh
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed
 from riser_soil.scene.soil import SoilScene
-from riser_soil.seabed.law import Answer, SeabedLaw
+from riser_soil.seabed.law import SeabedLaw, SeabedResponse
 from riser_soil.soil import mandel
-from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Formula, Response, SoilLaw
+from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Formula, SoilLaw, StressUpdate
 from riser_soil.soil.linear_elastic import LinearElastic
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -92,7 +92,7 @@ class HardeningPoints:
     def start(self) -> Array:
         return np.column_stack((self.initial, np.zeros(len(self.shear))))
 
-    def update(self, strain_increment: Array, history: Array) -> Response:
+    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
         trial = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
         s, q, G3 = mandel.deviator(trial), mandel.von_mises(trial), 3.0 * self.shear
         slip = np.maximum(q - self.limit - self.H * history[:, 6], 0.0) / (G3 + self.H)
@@ -104,7 +104,7 @@ class HardeningPoints:
         moduli = elastic_moduli - turn[:, None, None] * n[:, :, None] * n[:, None]
         elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
         stored = 0.5 * mandel.product(stress - self.initial, elastic) + 0.5 * self.H * kappa**2
-        return Response(stress, moduli, np.column_stack((stress, kappa)), stored, elastic)
+        return StressUpdate(stress, moduli, np.column_stack((stress, kappa)), stored, elastic)
 
     def overstress(self, stress: Array) -> Array:
         return mandel.von_mises(stress) / self.limit
@@ -137,10 +137,10 @@ class PlasticBed:
     def active(self, penetration: Array, history: Array) -> BoolArray:
         return (penetration > history[..., 0]) | (history[..., 0] > 0.0)
 
-    def update(self, penetration: Array, history: Array) -> Answer:
+    def update(self, penetration: Array, history: Array) -> SeabedResponse:
         k, h, before = self.given.k, self.given.h, history[..., 0]
         slip = np.maximum(k * (penetration - before) - self.given.limit - h * before, 0.0) / (k + h)
         plastic = before + slip
         elastic = np.maximum(penetration - plastic, 0.0)
         slope = np.where(slip > 0.0, k * h / (k + h), k * (elastic > 0.0))
-        return Answer(k * elastic, slope, plastic[..., None], 0.5 * k * elastic**2 + 0.5 * h * plastic**2)
+        return SeabedResponse(k * elastic, slope, plastic[..., None], 0.5 * k * elastic**2 + 0.5 * h * plastic**2)

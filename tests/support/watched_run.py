@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
-from riser_soil.contact.contact import Contact
+from riser_soil.contact.contact import RiserContact
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import System
 from riser_soil.run import run
 from riser_soil.scene.scene import Scene
-from riser_soil.solve.time_stepper import Accepted
+from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.driven_stage import before_commit
 
 
@@ -47,7 +47,7 @@ def watched_run(scene: Scene, folder: Path, at_each: Callable[[], None] | None =
     """Run a scene into a folder. at_each: called after every accepted step, instead of gathering its facts."""
     watched = WatchedRun(folder)
 
-    def watch(system: System, step: Accepted) -> None:
+    def watch(system: System, step: AcceptedStep) -> None:
         if at_each is not None:
             at_each()
         else:
@@ -58,11 +58,11 @@ def watched_run(scene: Scene, folder: Path, at_each: Callable[[], None] | None =
     return watched
 
 
-def _facts(system: System, step: Accepted) -> StepFacts:
+def _facts(system: System, step: AcceptedStep) -> StepFacts:
     after = step.solution.state
     before = State.at_rest(0.0, after.u.size)
     turned = {p.name: p.work(before, after) for p in system.model.parts if p.name in ("contact", "seabed", "soil")}
-    contact = [p for p in system.model.parts if isinstance(p, Contact)]
+    contact = [p for p in system.model.parts if isinstance(p, RiserContact)]
     return StepFacts(
         static=not after.a.any(),
         t=step.t,

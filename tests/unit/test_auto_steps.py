@@ -11,7 +11,7 @@ from riser_soil.assembly.stage import times_to_hit
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.solve.automatic_steps import AIM, AutoSteps
-from tests.support.riser_scenes import dynamic, held, riser_scene
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene
 
 TOLERANCE = 1e-3
 
@@ -104,7 +104,9 @@ def test_output_ramps_and_bends_of_loads_are_hit() -> None:
     pipe = {"EA": 1e6, "EI": 500.0, "mass": 60.0, "outer_diameter": 0.2}
     output = {"interval": 0.5, "xdmf_interval": 1.5}
     scene = scene_from_mapping(
-        riser_scene(stage, pipe=pipe, length=9.0, elements=3, start=held(0, 0, 0), end=held(9, 0, 0), output=output)
+        riser_scene(
+            stage, pipe=pipe, length=9.0, elements=3, start=prescribed(0, 0, 0), end=prescribed(9, 0, 0), output=output
+        )
     )
     assert isinstance(scene.stages[0], DynamicStage)
     assert set(times_to_hit(scene, scene.stages[0])) == {0.0, 0.5, 0.9, 1.0, 1.5, 1.7, 2.0}

@@ -46,8 +46,8 @@ class Space(NamedTuple):
 
     chord0: Array
     frames0: Array  # (2, ne, 3, 3)
-    ref: beam3d.Reference
-    section: beam3d.Section
+    ref: beam3d.SpatialReference
+    section: beam3d.SpatialSection
     chord: Array
     frames: Array
 
@@ -63,7 +63,7 @@ def space(curved: float, rotation: float, seed: int = 7) -> Space:
     L, base = 1.0 + rng.random(NE), turns(rng, 1.0, NE)
     chord0 = (L * (1.0 - curved**2 / 8))[:, None] * base[:, :, 0]
     frames0 = np.array([turns(rng, curved, NE) @ base, turns(rng, curved, NE) @ base])
-    section = beam3d.Section(np.full(NE, EA), 1 + rng.random(NE), 2 + rng.random(NE), 1.5 + rng.random(NE))
+    section = beam3d.SpatialSection(np.full(NE, EA), 1 + rng.random(NE), 2 + rng.random(NE), 1.5 + rng.random(NE))
     rigid = turns(rng, 2.0, NE)
     chord = np.einsum("eij,ej->ei", rigid, chord0) * 1.02
     frames = np.array([turns(rng, rotation, NE) @ rigid @ end for end in frames0])
@@ -76,8 +76,8 @@ class Plane(NamedTuple):
 
     chord0: Array
     directions0: Array  # (2, ne)
-    ref: beam2d.Reference
-    section: beam2d.Section
+    ref: beam2d.PlanarReference
+    section: beam2d.PlanarSection
     chord: Array
     directions: Array
 
@@ -93,7 +93,7 @@ def plane(curved: float, rotation: float, seed: int = 7) -> Plane:
     L, base = 1.0 + rng.random(NE), 6.0 * rng.random(NE)
     chord0 = (L * (1.0 - curved**2 / 8)) * np.array([np.cos(base), np.sin(base)])
     directions0 = base + curved * rng.uniform(-1, 1, size=(2, NE))
-    section = beam2d.Section(np.full(NE, EA), 1 + rng.random(NE))
+    section = beam2d.PlanarSection(np.full(NE, EA), 1 + rng.random(NE))
     chord = 1.02 * np.array([[0.6, -0.8], [0.8, 0.6]]) @ chord0
     directions = directions0 + np.arctan2(0.8, 0.6) + rotation * rng.choice([-1.0, 1.0], size=(2, NE))
     ref = beam2d.reference(chord0.T, directions0[0], directions0[1], L)
@@ -199,7 +199,7 @@ def test_plane_is_space_restricted_to_a_plane(curved: float, rotation: float) ->
     flat = plane(curved, rotation)
     in_space = flat.chord0 @ np.eye(3)[[0, 2]], flat.chord @ np.eye(3)[[0, 2]]
     frames0, frames = upright(flat.directions0), upright(flat.directions)
-    section = beam3d.Section(flat.section.EA, 3 * flat.section.EI, flat.section.EI, flat.section.EI)
+    section = beam3d.SpatialSection(flat.section.EA, 3 * flat.section.EI, flat.section.EI, flat.section.EI)
     ref = beam3d.reference(in_space[0], frames0[0], frames0[1], flat.ref.L)
     f3, K3 = beam3d.forces_and_tangent(in_space[1], frames[0], frames[1], ref, section)
     f2, K2 = flat.call(beam2d.forces_and_tangent)
@@ -267,8 +267,8 @@ def test_forces_alone_and_with_tangent_transform_alike() -> None:
     assert difference(alone, f) < 1e-14
 
 
-def nothing(*_: object) -> corotation.NodalForces:
-    return corotation.NodalForces((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+def nothing(*_: object) -> corotation.SpatialNodalForces:
+    return corotation.SpatialNodalForces((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 # What a term of the tangent is replaced by to leave it out: module, function, substitute

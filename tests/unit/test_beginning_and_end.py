@@ -13,7 +13,7 @@ from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_scheme import Static
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 
 
@@ -22,7 +22,7 @@ def failing_after(monkeypatch: pytest.MonkeyPatch) -> list[BaseException]:
     """The run ends at its 8th step in motion, by what the test puts into the list."""
     usual, taken, ends = TimeStepper.advance, [0], list[BaseException]()
 
-    def advance(stepper: TimeStepper, control: Control, most_cuts: int | None = None) -> Accepted:
+    def advance(stepper: TimeStepper, control: Control, most_cuts: int | None = None) -> AcceptedStep:
         taken[0] += not isinstance(stepper.scheme, Static)
         if taken[0] == 8:
             raise ends[0]

@@ -13,7 +13,7 @@ from meshes.block import main as mesh
 from riser_soil.checks.check import describe
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.support.riser_scenes import held, riser_scene
+from tests.support.riser_scenes import prescribed, riser_scene
 
 
 def report(mapping: Mapping) -> str:
@@ -44,7 +44,7 @@ def test_a_whole_scene() -> None:
         "left out: springs: no end has a rotational spring",
         "left out: attachments: nothing is attached to the riser",
     ]
-    assert "riser: 36 elements of 0.5 to 1.5 m, 107 unknowns" in lines  # 37 nodes of 3, less two held positions
+    assert "riser: 36 elements of 0.5 to 1.5 m, 107 unknowns" in lines  # 37 nodes of 3, less two prescribed positions
     assert "contact stiffness on the seabed: 1e+05 N/m2" in lines
     assert lines[-1] == "no warnings"
 
@@ -187,7 +187,7 @@ def test_several_warnings_are_counted() -> None:
 def long_riser(elements: int) -> Mapping:
     """Nothing of it touches down, nothing is clamped; its largest moment is 264.4 N.m."""
     pipe: Mapping = {"EA": 1.0e9, "EI": 1.0e6, "mass": 120.0, "submerged_weight": 500.0}
-    ends = held(0.0, 0.0, 0.0), held(7000.0, 0.0, 6000.0)
+    ends = prescribed(0.0, 0.0, 0.0), prescribed(7000.0, 0.0, 6000.0)
     return riser_scene(
         LAY, pipe=pipe, length=1.0e4, elements=elements, start=ends[0], end=ends[1], gravity=9.81
     )

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from riser_soil.contact.contact import Contact
+from riser_soil.contact.contact import RiserContact
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
-from riser_soil.contact.soil_contact import Reach, SoilContact
+from riser_soil.contact.soil_contact import CandidateRange, SoilContact
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Weights
 from riser_soil.riser import shapes
@@ -75,7 +75,7 @@ class Case:
         surface.offset = 2 + riser.size + 3
         radius = np.full(riser.nodes, RADIUS)
         contact = SoilContact(
-            riser, radius, surface, LAW, footprint=footprint, along=along, reach=Reach(0.5, 0.3)
+            riser, radius, surface, LAW, footprint=footprint, along=along, reach=CandidateRange(0.5, 0.3)
         )
         return cls(riser, surface, contact)
 
@@ -267,14 +267,14 @@ def test_weightless_groups_and_inactive_ranks() -> None:
     assert_touches_nothing(idle)
 
 
-def assert_touches_nothing(contact: Contact) -> None:
+def assert_touches_nothing(contact: RiserContact) -> None:
     state = State.at_rest(0.0, 4 * 6)
     along = contact.force_per_length, contact.penetration, contact.depth
     assert all(np.array_equal(told(state), np.zeros(4)) for told in along)
     np.testing.assert_array_equal(contact.force_on_riser(state), np.zeros(3))
     assert contact.max_penetration(state) == 0.0
     assert np.isnan(contact.touchdown_arc(state))
-    assert contact.stretches(state) == []
+    assert contact.contact_intervals(state) == []
     assert contact.predict(state) is state.u
 
 
@@ -283,14 +283,14 @@ def test_contacts_of_all_grounds_tell_the_same() -> None:
     depth = np.array([0.01, 0.01, 0.002, 0.01])
     case = level_case(depth, top("quad4"))
     seabed = SeabedContact(case.riser, np.full(3, RADIUS), Plane.level(0.0), LAW, ENDS)
-    players: tuple[Contact, ...] = (case.contact, seabed)
+    players: tuple[RiserContact, ...] = (case.contact, seabed)
     for player in players:
-        assert isinstance(player, Contact)
+        assert isinstance(player, RiserContact)
     alike = "force_per_length", "penetration", "depth", "max_penetration", "force_on_riser", "touchdown_arc", "predict"
     for name in alike:
         on_soil, on_seabed = (np.asarray(getattr(player, name)(case.state())) for player in players)
         np.testing.assert_allclose(on_soil, on_seabed, rtol=1e-9, atol=1e-9, err_msg=name)
-    assert [[s[:2] for s in player.stretches(case.state())] for player in players] == 2 * [[(0.0, 1.5)]]
+    assert [[s[:2] for s in player.contact_intervals(case.state())] for player in players] == 2 * [[(0.0, 1.5)]]
     elsewhere = riser_at(case.riser.x, active=False)
     assert_touches_nothing(SeabedContact(elsewhere, np.full(3, RADIUS), Plane.level(0.0), LAW))
 

@@ -8,7 +8,7 @@ import pytest
 
 from riser_soil.contact.facets import inside, second_derivatives, shape
 from riser_soil.contact.gap import gap_forms, heights, penalty_hessian
-from riser_soil.contact.pairing import Pairing, invert
+from riser_soil.contact.pairing import FacetSearch, invert
 from riser_soil.core.arrays import Array, IntArray
 
 CORNERS = {
@@ -99,7 +99,7 @@ def test_every_point_of_a_deformed_surface_finds_its_facet(nv: int) -> None:
     deformed = points + 0.02 * rng.standard_normal(points.shape)
     place = np.array([0.2, 0.3]) if nv == 6 else np.array([-0.4, 0.8])
     xy = shape(nv, *place)[0] @ deformed[facets]
-    facet, xi = Pairing(points, facets).locate(xy[:, :2], deformed)
+    facet, xi = FacetSearch(points, facets).locate(xy[:, :2], deformed)
     np.testing.assert_array_equal(facet, np.arange(len(facets)))
     np.testing.assert_allclose(xi, np.tile(place, (len(facets), 1)), atol=1e-12)
     np.testing.assert_allclose(heights(facet, xi, facets, deformed), xy[:, 2], atol=1e-14)
@@ -110,11 +110,11 @@ def test_point_on_a_side_belongs_to_the_lowest_facet(nv: int) -> None:
     points, facets = grid(nv)
     shared, step = np.array([[0.5, 0.25], [1.0, 1.0], [1.5, 0.6]]), 1e-13
     for xy in (shared, shared + step, shared - step):
-        facet, _ = Pairing(points, facets).locate(xy, points)
+        facet, _ = FacetSearch(points, facets).locate(xy, points)
         around = [np.array([0, 4]), np.array([5, 6, 9, 10]), np.array([9, 13])]
         if nv == 4:
             np.testing.assert_array_equal(facet, [cells.min() for cells in around])
-        again, _ = Pairing(points, facets[::-1]).locate(xy, points)
+        again, _ = FacetSearch(points, facets[::-1]).locate(xy, points)
         assert (facet <= len(facets) - 1 - again).all()
 
 
@@ -122,7 +122,7 @@ def test_point_on_a_side_belongs_to_the_lowest_facet(nv: int) -> None:
 def test_no_facet_outside_the_surface(nv: int) -> None:
     points, facets = grid(nv)
     xy = np.array([[-1e-3, 0.3], [2.501, 0.3], [1.0, 2.001], [40.0, 0.0]])
-    facet, _ = Pairing(points, facets).locate(xy, points)
+    facet, _ = FacetSearch(points, facets).locate(xy, points)
     np.testing.assert_array_equal(facet, -1)
     np.testing.assert_array_equal(heights(facet, np.zeros((4, 2)), facets, points), -np.inf)
 
@@ -132,7 +132,7 @@ def test_far_facet_is_found_where_the_nearest_centres_mislead() -> None:
     x = np.append(np.linspace(0.0, 0.2, 21), 10.0)
     points = np.array([[a, b, 0.0] for a in x for b in (0.0, 1.0)])
     facets = np.array([[2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1] for i in range(21)])
-    facet, _ = Pairing(points, facets).locate(np.array([[0.25, 0.5]]), points)
+    facet, _ = FacetSearch(points, facets).locate(np.array([[0.25, 0.5]]), points)
     assert facet[0] == 20
 
 

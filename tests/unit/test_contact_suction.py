@@ -1,4 +1,4 @@
-"""Penalty contact that sticks: cap, reach, break-away, and what it stores."""
+"""Penalty contact with suction: cap, reach, breakaway, and stored energy."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.suction import Sticking
+from riser_soil.contact.suction import SuctionLaw
 from tests.support.soil_loops import after, at, forces, through, work
 
 K, CAP, REACH = 1.0e5, 500.0, 0.02
-SHARP = Sticking(Penalty(K), CAP, REACH)
-LAWS = [SHARP, Sticking(Penalty(K, 1e-3), CAP, REACH)]
+SHARP = SuctionLaw(Penalty(K), CAP, REACH)
+LAWS = [SHARP, SuctionLaw(Penalty(K, 1e-3), CAP, REACH)]
 PEAK = CAP / K
 
 
@@ -49,7 +49,7 @@ def test_breaking_away_takes_half_the_cap_times_the_reach() -> None:
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("way", [(0.0, 0.001), (0.0, 0.001, -0.003), (0.0, 0.001, -0.01), (0.0, 0.001, -0.03)])
-def test_force_is_continuous_and_slope_its_derivative(law: Sticking, way: tuple[float, ...]) -> None:
+def test_force_is_continuous_and_slope_its_derivative(law: SuctionLaw, way: tuple[float, ...]) -> None:
     history = after(law, through(*way))
     w, h = np.linspace(-0.03, 0.01, 2003), 1e-8
     slope = (at(law, w + h, history)[0] - at(law, w - h, history)[0]) / (2 * h)
@@ -60,7 +60,7 @@ def test_force_is_continuous_and_slope_its_derivative(law: Sticking, way: tuple[
 @pytest.mark.parametrize("law", LAWS)
 @settings(max_examples=100, deadline=None)
 @given(path=st.lists(st.floats(-0.03, 0.01), min_size=2, max_size=30))
-def test_every_step_dissipates_unless_it_tears(law: Sticking, path: list[float]) -> None:
+def test_every_step_dissipates_unless_it_tears(law: SuctionLaw, path: list[float]) -> None:
     """Sum over any path from the first touch: taken less stored is never negative, step by step."""
     history, begin = after(law, np.array([0.0])), np.array([0.0])
     for z in np.array(path)[:, None]:
@@ -73,4 +73,4 @@ def test_every_step_dissipates_unless_it_tears(law: Sticking, path: list[float])
 
 def test_a_reach_short_of_the_peak_is_refused() -> None:
     with pytest.raises(ValueError, match="farther than"):
-        Sticking(Penalty(K), CAP, 0.5 * PEAK)
+        SuctionLaw(Penalty(K), CAP, 0.5 * PEAK)

@@ -11,12 +11,12 @@ from mpi4py import MPI
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, Model, Part, State, Work
 from riser_soil.core.snapshot import Ledger
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from riser_soil.results.energy_ledger import EnergyLedger
 from riser_soil.solve.newton import Newton, NewtonSettings, Solution
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from tests.support.toy_chain import Chain, Floor, Inertia, Springs
 
 ALPHA = GeneralizedAlpha.from_rho_inf(0.6)
@@ -34,7 +34,7 @@ class Seen(NamedTuple):
 
 
 def balanced(chain: Chain, parts: list[Part], scheme: Scheme, v0: list[float], end: float, dt: float) -> Seen:
-    system = System(MPI.COMM_SELF, Model([chain], parts), Clock.new())
+    system = System(MPI.COMM_SELF, Model([chain], parts), Timer.new())
     newton = Newton(system, NewtonSettings(1e-12, 30, 1e-14))  # the springs' forces are rounded to some 1e-14 of them
     nothing = np.zeros(chain.size)
     stepper = TimeStepper(system, newton, scheme, State(0.0, nothing, np.array(v0), nothing))
@@ -52,8 +52,8 @@ def balanced(chain: Chain, parts: list[Part], scheme: Scheme, v0: list[float], e
 
 
 def swing(scheme: Scheme, dt: float = 0.1, cubic: float = 0.0) -> Seen:
-    """A held chain under weight."""
-    chain = Chain(np.arange(4.0), held=True)
+    """A chain under weight, its first height prescribed."""
+    chain = Chain(np.arange(4.0), prescribed=True)
     parts: list[Part] = [Springs(chain, 1.0, 20.0, cubic, weight=1.0), Inertia(chain, 1.0)]
     return balanced(chain, parts, scheme, [0.0, 0.3, 0.1, 0.8], 3.0, dt)
 
@@ -117,7 +117,7 @@ def test_what_has_no_account_can_t_be_booked() -> None:
         balance.add(Energy(), step({"friction": Work(dissipated=1e-21)}))
 
 
-def step(turned: dict[str, Work]) -> Accepted:
+def step(turned: dict[str, Work]) -> AcceptedStep:
     """A static step that turns some energy over."""
     nothing = State.at_rest(1.0, 0)
-    return Accepted(1.0, 1.0, Solution(nothing, Forces.zeros(0)), 0, Energy(), turned, 0.0)
+    return AcceptedStep(1.0, 1.0, Solution(nothing, Forces.zeros(0)), 0, Energy(), turned, 0.0)

@@ -10,14 +10,14 @@ import pytest
 
 from riser_soil.assembly import Assembly
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from riser_soil.riser.ends import End
 from riser_soil.solve import stability
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.time_scheme import Static
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import built, take
-from tests.support.riser_scenes import held, riser_scene, static
+from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.sample_line import sample
 
 FREE, HINGED, CLAMPED = End(False), End(True), End(True, rotation_fixed=True)
@@ -37,9 +37,9 @@ FREE, HINGED, CLAMPED = End(False), End(True), End(True, rotation_fixed=True)
     ],
 )
 def test_what_the_supports_leave_free(dimension: int, start: End, end: End, count: int) -> None:
-    """In space the spin of the start about its axis is held, as always in statics."""
+    """In space the spin of the start about its axis is prescribed, as always in statics."""
     line = sample(dimension, (start, end)).line
-    line.hold_spin(True)
+    line.prescribe_spin(True)
     turns, x = line.free_turns(State.at_rest(0.0, line.size)), line.x
     assert len(turns) == count
     assert np.abs(turns[:, line.prescribed]).max(initial=0.0) < 1e-8 * line.arc[-1]
@@ -53,20 +53,20 @@ def test_what_the_supports_leave_free(dimension: int, start: End, end: End, coun
 def hinged(x: float, z: float, given: Mapping, **pipe: float) -> Mapping:
     """A line in space between balls, 12 m long."""
     made: Mapping = {"EA": 1e8, "EI": 1e3, "GJ": 1e3} | pipe
-    ends: Mapping = {"start": held(0.0, 0.0, 0.0), "end": held(x, 0.0, z)}
+    ends: Mapping = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(x, 0.0, z)}
     return riser_scene(static(), pipe=made, length=12.0, elements=24, **ends, dimension=3, **given)
 
 
 @pytest.mark.parametrize("axis", [(0.0, 0.0, -1.0), (0.36, 0.48, -0.8), (0.6, 0.64, 0.48)])
 def test_a_straight_line_turns_about_itself_as_its_sections_spin(axis: tuple[float, float, float]) -> None:
-    """Of its three turns about a ball two are left where the spin of that end is held, and none comes twice."""
+    """Of its three turns about a ball two are left where the spin of that end is prescribed, and none comes twice."""
     shape: Mapping = {"riser": {"unstressed": {"points": [[0.0, 0.0, 0.0], [12.0 * a for a in axis]]}}, "gravity": 9.81}
     pipe: Mapping = {"EA": 1e8, "EI": 1e3, "GJ": 1e3, "submerged_weight": 500.0}
-    ends: Mapping = {"start": held(0.0, 0.0, 0.0), "end": "free"}
+    ends: Mapping = {"start": prescribed(0.0, 0.0, 0.0), "end": "free"}
     assembly = built(riser_scene(static(), pipe=pipe, length=12.0, elements=6, **ends, dimension=3, **shape))
     assembly.begin(assembly.scene.stages[0])
     line = assembly.line
-    line.hold_spin(True)
+    line.prescribe_spin(True)
     turns = line.free_turns(State.at_rest(0.0, assembly.size))
     sizes = np.linalg.svd(turns / np.linalg.norm(turns, axis=1)[:, None], compute_uv=False)
     assert len(turns) == 2
@@ -75,7 +75,7 @@ def test_a_straight_line_turns_about_itself_as_its_sections_spin(axis: tuple[flo
 
 @contextmanager
 def started(assembly: Assembly) -> Iterator[tuple[System, Newton]]:
-    system = System(assembly.comm, assembly.begin(assembly.scene.stages[-1]), Clock.new())
+    system = System(assembly.comm, assembly.begin(assembly.scene.stages[-1]), Timer.new())
     newton = Newton(system, NewtonSettings(1e-8, 25, assembly.scales.force_floor))
     yield system, newton
     newton.destroy()
@@ -117,14 +117,14 @@ def test_a_mode_of_buckling_is_no_free_turn(bow: float) -> None:
     assert judged(assembly, thrust) == (0, 2)
 
 
-def test_a_held_turn_leaves_newton_a_regular_matrix() -> None:
+def test_a_prescribed_turn_leaves_newton_a_regular_matrix() -> None:
     """The smallest eigenvalue of the scaled tangent is one of bending, and not that of the turn."""
     assembly = hanging(0.0)
     with started(assembly) as (system, _):
         state, found = State.at_rest(1.0, assembly.size), list[float]()
         for least in (0.0, 1e-4 * 6e3):
             system.assemble(state, Static().weights(0.0))
-            stability.hold_free_turns(system, state, least)
+            stability.prescribe_free_turns(system, state, least)
             K = system.matrix.mat.convert("dense").getDenseArray()
             d = np.sqrt(np.diag(K))
             found.append(float(np.linalg.eigvalsh(K / np.outer(d, d))[0]))

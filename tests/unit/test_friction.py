@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from riser_soil.contact.coulomb import traction
-from riser_soil.contact.friction import Friction, directions, mobilised_within
+from riser_soil.contact.friction import CoulombFriction, directions, mobilised_within
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array
@@ -68,14 +68,14 @@ def test_directions_lie_in_the_ground_and_follow_the_pipe() -> None:
     np.testing.assert_allclose(directions(tau[:, :1, ::2], up[:, :1, ::2])[0, 0], [[1.0], [0.0]], atol=1e-15)
 
 
-def straight(dimension: int) -> tuple[Line, Friction]:
+def straight(dimension: int) -> tuple[Line, CoulombFriction]:
     """10 m of pipe, evenly pressed into level ground."""
     arc = np.linspace(0.0, 10.0, 6)
     flat = shapes.straight(arc, (0.0, 0.0, -DEPTH))
     line = Line(dimension, shapes.layout(arc, np.full(5, 0.2), flat, flat), End(False), End(False))
     contact = SeabedContact(line, np.zeros(5), Plane.level(0.0), Penalty(K_N))
     stiffness = mobilised_within(MOBILISATION, AXIAL, LATERAL, np.full(5, PRESSED))
-    return line, Friction(contact, AXIAL, LATERAL, stiffness)
+    return line, CoulombFriction(contact, AXIAL, LATERAL, stiffness)
 
 
 def slid(line: Line, move: Array) -> State:
@@ -84,7 +84,7 @@ def slid(line: Line, move: Array) -> State:
     return State(0.0, u, np.zeros(line.size), np.zeros(line.size))
 
 
-def slide(line: Line, friction: Friction, moves: Array) -> tuple[Array, float, float]:
+def slide(line: Line, friction: CoulombFriction, moves: Array) -> tuple[Array, float, float]:
     """Force on the riser at the last of some moves (n, 3), the energy taken and that dissipated."""
     taken, lost = 0.0, 0.0
     force: Array = np.zeros(3)
@@ -182,10 +182,10 @@ GROUNDS: dict[str, Ground] = {"level": Plane.level(START[2] - 0.1), "profile": H
 ROUND = Penalty(4.0e4, smoothing=30.0)  # its rounded corner holds the whole sample
 
 
-def rubbing(dimension: int, ground: str, stiffness: float) -> tuple[Friction, State]:
+def rubbing(dimension: int, ground: str, stiffness: float) -> tuple[CoulombFriction, State]:
     at = sample(dimension)
     contact = SeabedContact(at.line, 0.5 * at.elements.outer_diameter, GROUNDS[ground], ROUND)
-    friction = Friction(contact, AXIAL, LATERAL, np.full(at.line.length.size, stiffness))
+    friction = CoulombFriction(contact, AXIAL, LATERAL, np.full(at.line.length.size, stiffness))
     first = at.state(5, 0.1)
     friction.commit(first)
     contact.commit(first)
@@ -233,7 +233,7 @@ def test_tangent_needs_all_its_terms(dimension: int, term: str, monkeypatch: pyt
 def test_random_steps_along_a_hill_dissipate(dimension: int) -> None:
     at = sample(dimension)
     contact = SeabedContact(at.line, 0.5 * at.elements.outer_diameter, HILL, Penalty(1.0e4, 1e-3), stations.gauss(5))
-    friction = Friction(contact, AXIAL, LATERAL, np.full(at.line.length.size, 5.0e4))
+    friction = CoulombFriction(contact, AXIAL, LATERAL, np.full(at.line.length.size, 5.0e4))
     for seed in range(8):
         rest, state = State.at_rest(0.0, at.line.size), at.state(seed, 0.05)
         assert friction.work(rest, state).dissipated >= -1e-9

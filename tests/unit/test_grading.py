@@ -12,7 +12,7 @@ from riser_soil.assembly.riser import elements_of
 from riser_soil.errors import SceneError
 from riser_soil.scene.grading import graded_lengths
 from riser_soil.scene.reader import scene_from_mapping
-from tests.support.riser_scenes import held, riser_scene, static
+from tests.support.riser_scenes import prescribed, riser_scene, static
 
 
 def test_doubling() -> None:
@@ -52,7 +52,7 @@ PIPE = {"EA": 1.0e8, "EI": 1.0e4, "submerged_weight": 0.0}
 def graded(load_at: float) -> dict[str, Any]:
     """Elements of 1, 2, 4 and 8 m, then two of 2.5 m; a moment somewhere."""
     load = {"at": load_at, "moment": [0.0, 1.0, 0.0]}
-    start = held(0.0, 0.0, 0.0, rotation="fixed")
+    start = prescribed(0.0, 0.0, 0.0, rotation="fixed")
     scene = riser_scene(static(loads=[load]), pipe=PIPE, length=15.0, elements=1, start=start, end="free")
     scene["riser"]["segments"] = [
         {"line_type": "pipe", "length": 15.0, "element_length": [1.0, 8.0]},

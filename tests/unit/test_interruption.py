@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import pytest
 
 from riser_soil.errors import Interruption
-from riser_soil.interruption import agreeing, check, listening, undivided
+from riser_soil.interruption import agreeing, check, handling_signals, uninterrupted
 from riser_soil.results import Run
 from tests.support.on_ranks import environment
 
@@ -40,7 +40,7 @@ main()
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_comes_as_an_interruption(number: signal.Signals) -> None:
     before = signal.getsignal(number)
-    with pytest.raises(Interruption) as end, listening():
+    with pytest.raises(Interruption) as end, handling_signals():
         signal.raise_signal(number)
     assert end.value.exit_status == 128 + number
     assert str(end.value) == f"ended by {number.name} before the first stage; nothing was computed"
@@ -51,41 +51,41 @@ def test_no_signal_divides_a_record() -> None:
     done: list[str] = []
 
     def record() -> None:
-        with undivided():
-            with undivided():
+        with uninterrupted():
+            with uninterrupted():
                 signal.raise_signal(signal.SIGTERM)
                 done.append("inner")
             done.append("outer")
 
-    with listening():
+    with handling_signals():
         with pytest.raises(Interruption):
             record()
-        with undivided():
+        with uninterrupted():
             done.append("told once")
     assert done == ["inner", "outer", "told once"]
 
 
 def test_what_fails_in_a_record_is_not_hidden_by_a_signal() -> None:
     def fail() -> None:
-        with undivided():
+        with uninterrupted():
             signal.raise_signal(signal.SIGTERM)
             raise ZeroDivisionError
 
-    with listening(), pytest.raises(ZeroDivisionError):
+    with handling_signals(), pytest.raises(ZeroDivisionError):
         fail()
 
 
 def test_ranks_leave_at_the_same_step() -> None:
     """This one was not told; the other one was."""
     others = SimpleNamespace(size=2, allgather=lambda number: [number, int(signal.SIGTERM)])
-    with listening(), agreeing(others), pytest.raises(Interruption) as end:
+    with handling_signals(), agreeing(others), pytest.raises(Interruption) as end:
         check(others)
     assert (end.value.number, end.value.together) == (signal.SIGTERM, True)
 
 
 def test_the_second_signal_is_obeyed_at_once() -> None:
     several = SimpleNamespace(size=2)
-    with listening(), agreeing(several):
+    with handling_signals(), agreeing(several):
         signal.raise_signal(signal.SIGINT)
         with pytest.raises(Interruption) as end:
             signal.raise_signal(signal.SIGINT)
@@ -93,7 +93,7 @@ def test_the_second_signal_is_obeyed_at_once() -> None:
 
 
 def test_alone_nobody_is_asked() -> None:
-    with listening(), agreeing(SimpleNamespace(size=1)):
+    with handling_signals(), agreeing(SimpleNamespace(size=1)):
         check(SimpleNamespace(size=1))
 
 
@@ -101,7 +101,7 @@ def test_signals_that_somebody_else_listens_to_are_left_to_him() -> None:
     heard: list[int] = []
     usual = signal.signal(signal.SIGTERM, lambda number, frame: heard.append(number))
     try:
-        with listening():
+        with handling_signals():
             signal.raise_signal(signal.SIGTERM)
     finally:
         signal.signal(signal.SIGTERM, usual)
@@ -113,7 +113,7 @@ def test_a_run_in_another_thread_listens_to_nothing() -> None:
 
     def listen() -> None:
         try:
-            with listening():
+            with handling_signals():
                 pass
         except ValueError as err:
             failures.append(err)

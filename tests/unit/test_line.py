@@ -14,9 +14,9 @@ from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.ends import End, Kinematics
 from riser_soil.riser.line import Line
-from riser_soil.riser.loads import Load, PointLoads
+from riser_soil.riser.loads import AppliedLoad, PointLoads
 from riser_soil.riser.section_forces import element_residual, end_reactions, section_forces
-from riser_soil.riser.sections import Elements, LineType, Segment, Surroundings, elements
+from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.riser.springs import EndSpring
 from tests.support.dense_chain import solve
 from tests.support.sample_line import DIRECTION, START, sample
@@ -31,7 +31,7 @@ def prescribed(line: Line, t: float) -> tuple[Array, Array, Array]:
 
 
 @both_dimensions
-def test_held_ends_follow_their_motion_and_nothing_else_is_written(dimension: int) -> None:
+def test_prescribed_ends_follow_their_motion_and_nothing_else_is_written(dimension: int) -> None:
     def motion(t: float) -> Kinematics:
         return START + 2.0 * t * DIRECTION, 2.0 * DIRECTION, 0.5 * DIRECTION
 
@@ -47,13 +47,13 @@ def test_held_ends_follow_their_motion_and_nothing_else_is_written(dimension: in
     assert np.array_equal(np.isfinite(u.ravel()), line.prescribed)
 
 
-def test_spin_is_held_at_the_start_about_the_pipes_axis() -> None:
+def test_spin_is_prescribed_at_the_start_about_the_pipes_axis() -> None:
     made = sample(3, shaken=False).line
     tangent = made.trial(State.at_rest(0.0, made.size)).turn.tangent[0, 0]
-    held = Line(3, shapes_layout(), End(True), End(True), hold_spin=True)
-    assert np.flatnonzero(held.prescribed).tolist() == [0, 1, 2, 3, *range(held.size - 6, held.size - 3)]
-    held.hold_spin(False)
-    assert not held.prescribed[3]
+    spinless = Line(3, shapes_layout(), End(True), End(True), prescribe_spin=True)
+    assert np.flatnonzero(spinless.prescribed).tolist() == [0, 1, 2, 3, *range(spinless.size - 6, spinless.size - 3)]
+    spinless.prescribe_spin(False)
+    assert not spinless.prescribed[3]
     spin = np.zeros((made.nodes, 3))
     spin[0, 0] = 0.4
     assert made.frames.turn(spin).tangent[0, 0] == pytest.approx(tangent, abs=1e-15)
@@ -110,12 +110,12 @@ def test_tributary_lengths_add_up() -> None:
     assert line.tributary_length[0] == pytest.approx(0.75)
 
 
-BAR = LineType(EA=1.0e7, EI_y=2.0e4, EI_z=2.0e4, GJ=1.0e4, outer_diameter=0.2, submerged_weight=50.0)
+BAR = SectionProperties(EA=1.0e7, EI_y=2.0e4, EI_z=2.0e4, GJ=1.0e4, outer_diameter=0.2, submerged_weight=50.0)
 
 
-def bar(dimension: int, start: End, end: End, count: int = 6, kind: LineType = BAR) -> tuple[Line, Elements]:
+def bar(dimension: int, start: End, end: End, count: int = 6, kind: SectionProperties = BAR) -> tuple[Line, Elements]:
     """A straight bar of 12 m along x."""
-    e = elements([Segment.even(kind, 12.0, count)], Surroundings())
+    e = elements([MeshedSegment.even(kind, 12.0, count)], Surroundings())
     straight = shapes.straight(e.arc)
     return Line(dimension, shapes.layout(e.arc, e.outer_diameter, straight, straight), start, end), e
 
@@ -124,7 +124,7 @@ def bar(dimension: int, start: End, end: End, count: int = 6, kind: LineType = B
 def test_cantilever_reactions_balance_weight_and_tip_load(dimension: int) -> None:
     line, e = bar(dimension, End(True, rotation_fixed=True), End(False))
     tip, moment = np.array([100.0, 0.0, 80.0]), np.array([0.0, 60.0, 0.0])
-    loads = PointLoads(line, [Load(lambda t: t, 12.0, tip, moment), Load(lambda t: t, 5.0, tip)])
+    loads = PointLoads(line, [AppliedLoad(lambda t: t, 12.0, tip, moment), AppliedLoad(lambda t: t, 5.0, tip)])
     beam = Beam(line, e)
     solve(line, [beam, loads])
     state = State.at_rest(1.0, line.size)
@@ -153,10 +153,10 @@ def test_small_deflections_give_textbook_section_forces() -> None:
 
 
 def test_curvature_is_resolved_in_section_axes() -> None:
-    kind = LineType(EA=1.0e7, EI_y=2.0e4, EI_z=8.0e4, GJ=1.0e4)
+    kind = SectionProperties(EA=1.0e7, EI_y=2.0e4, EI_z=8.0e4, GJ=1.0e4)
     line, e = bar(3, End(True, rotation_fixed=True), End(False), kind=kind)
     moment = np.array([0.0, 30.0, 40.0])
-    parts = (Beam(line, e), PointLoads(line, [Load(lambda t: t, 12.0, moment=moment)]))
+    parts = (Beam(line, e), PointLoads(line, [AppliedLoad(lambda t: t, 12.0, moment=moment)]))
     solve(line, parts, tolerance=1e-9)
     state = State.at_rest(1.0, line.size)
     found = section_forces(line, e, state, element_residual(line, parts, state))
@@ -167,9 +167,9 @@ def test_curvature_is_resolved_in_section_axes() -> None:
 @both_dimensions
 def test_a_spring_holds_the_end_like_its_stiffness_says(dimension: int) -> None:
     line, _ = bar(dimension, End(True), End(False))
-    loads = PointLoads(line, [Load(lambda t: t, 12.0, moment=np.array([0.0, -200.0, 0.0]))])
-    kind = LineType(EA=1.0e7, EI_y=2.0e4, EI_z=2.0e4, GJ=1.0e4)
-    weightless = Beam(line, elements([Segment.even(kind, 12.0, 6)], Surroundings()))
+    loads = PointLoads(line, [AppliedLoad(lambda t: t, 12.0, moment=np.array([0.0, -200.0, 0.0]))])
+    kind = SectionProperties(EA=1.0e7, EI_y=2.0e4, EI_z=2.0e4, GJ=1.0e4)
+    weightless = Beam(line, elements([MeshedSegment.even(kind, 12.0, 6)], Surroundings()))
     spring = EndSpring(line, 0, 1000.0)
     solve(line, [weightless, loads, spring])
     state = State.at_rest(1.0, line.size)
@@ -184,19 +184,19 @@ def test_a_spring_holds_the_end_like_its_stiffness_says(dimension: int) -> None:
 def test_a_moment_between_nodes_is_refused() -> None:
     line = sample(2).line
     with pytest.raises(SceneError, match=r"arc 2 m lies between nodes; move it to the nearest, 1\.5 m"):
-        PointLoads(line, [Load(lambda t: t, 2.0, moment=np.ones(3))])
+        PointLoads(line, [AppliedLoad(lambda t: t, 2.0, moment=np.ones(3))])
 
 
 def test_a_load_off_the_riser_is_refused() -> None:
     with pytest.raises(SceneError, match=r"at arc 9 m: the riser ends at 8 m"):
-        PointLoads(sample(2).line, [Load(lambda t: t, 9.0, force=np.ones(3))])
+        PointLoads(sample(2).line, [AppliedLoad(lambda t: t, 9.0, force=np.ones(3))])
 
 
 @both_dimensions
 def test_loads_work_is_force_times_way(dimension: int) -> None:
     at = sample(dimension)
     force = np.array([30.0, 40.0, 25.0])
-    loads = PointLoads(at.line, [Load(lambda t: 2.0, at.line.arc[-1], force)])
+    loads = PointLoads(at.line, [AppliedLoad(lambda t: 2.0, at.line.arc[-1], force)])
     before, after = State.at_rest(0.0, at.line.size), at.state(1)
     way = at.line.basis @ at.line.nodal(after.u)[-1, :dimension]
     assert loads.work(before, after).external == pytest.approx(2.0 * force @ way)
@@ -205,7 +205,7 @@ def test_loads_work_is_force_times_way(dimension: int) -> None:
 def test_a_fixed_axis_moment_works_on_the_turn_about_its_axis() -> None:
     at = sample(3)
     moment = np.array([7.0, -3.0, 5.0])
-    loads = PointLoads(at.line, [Load(lambda t: 1.0, at.line.arc[-1], moment=moment)])
+    loads = PointLoads(at.line, [AppliedLoad(lambda t: 1.0, at.line.arc[-1], moment=moment)])
     before, after = State.at_rest(0.0, at.line.size), at.state(1)
     turn = at.line.trial(after).turn
     assert hasattr(turn, "Rn")

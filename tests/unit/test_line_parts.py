@@ -12,14 +12,14 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, Part, State, Traits, Weights
 from riser_soil.riser import hermite, loads, rotary_moments, springs, stations
-from riser_soil.riser.directors import PlanarTurn, SpatialTurn
+from riser_soil.riser.directors import PlanarOrientation, SpatialOrientation
 from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.section_forces import element_residual, nodal_residual
 from riser_soil.riser.structural_damping import StructuralDamping
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import waterline, wet_section
-from riser_soil.sea.moving_water import Stream
+from riser_soil.sea.moving_water import FlowAtStations
 from riser_soil.sea.water import WaterMotion
 from tests.support import sample_water
 from tests.support.dense_chain import residual, tangent
@@ -109,7 +109,7 @@ def without_direction_changes(monkeypatch: pytest.MonkeyPatch, part: Part) -> No
 
 
 def without_director_rates(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
-    for turn in (PlanarTurn, SpatialTurn):
+    for turn in (PlanarOrientation, SpatialOrientation):
         original = turn.maps
 
         def still(self: object, v: Array, a: Array, *shifts: float, original: Callable = original) -> object:
@@ -138,13 +138,13 @@ def without_water(field: str) -> Callable[[pytest.MonkeyPatch, Part], None]:
     """Leave out one of the water's gradients."""
 
     def leave_out(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
-        usual = Stream.at
+        usual = FlowAtStations.at
 
-        def at(stream: Stream, trial: Trial) -> WaterMotion:
+        def at(stream: FlowAtStations, trial: Trial) -> WaterMotion:
             motion = usual(stream, trial)
             return motion._replace(**{field: 0.0 * getattr(motion, field)})
 
-        monkeypatch.setattr(Stream, "at", at)
+        monkeypatch.setattr(FlowAtStations, "at", at)
 
     return leave_out
 
@@ -321,7 +321,7 @@ def forces_in_global_axes(at: Sample, state: State, part: Part, weights: Weights
     """Residual with spatial moments instead of those conjugate to the rotation increment."""
     out = at.line.nodal(residual([part], state, weights)).copy()
     turn = at.line.trial(state).turn
-    if isinstance(turn, SpatialTurn):
+    if isinstance(turn, SpatialOrientation):
         out[:, 3:] = np.linalg.solve(np.swapaxes(turn.H, 1, 2), out[:, 3:, None])[..., 0]
     return out
 

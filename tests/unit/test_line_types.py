@@ -14,13 +14,13 @@ from riser_soil.riser.sections import Elements
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
-from tests.support.riser_scenes import dynamic, held, riser_scene, static
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 
 PIPE = {"EA": 1.0e8, "EI": 1.0e4, "GJ": 1.0e4, "mass": 50.0, "outer_diameter": 0.4, "inner_diameter": 0.2}
 
 
 def scene(**pipe: object) -> Scene:
-    ends = held(0.0, 0.0, 0.0), held(9.0, 0.0, 0.0)
+    ends = prescribed(0.0, 0.0, 0.0), prescribed(9.0, 0.0, 0.0)
     stages = static(), dynamic(1.0, 0.1)
     return scene_from_mapping(
         riser_scene(*stages, pipe=PIPE | pipe, length=9.0, elements=3, start=ends[0], end=ends[1], gravity=9.81)
@@ -59,7 +59,7 @@ def test_properties_of_the_same_name_reach_the_elements() -> None:
     for name in GIVEN.keys() - {"submerged_weight"}:
         assert getattr(made, name).tolist() == [GIVEN[name]] * 3, name
     assert made.weight.tolist() == [GIVEN["submerged_weight"]] * 3
-    alike = {each.name for each in fields(Elements)} & {each.name for each in fields(sections.LineType)}
+    alike = {each.name for each in fields(Elements)} & {each.name for each in fields(sections.SectionProperties)}
     formed = {"EI_y", "EI_z", "drag", "added_mass", "damping", "rotary_inertia"}
     assert alike & LineType.model_fields.keys() == GIVEN.keys() - {"submerged_weight"} | formed
 

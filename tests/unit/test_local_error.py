@@ -10,7 +10,7 @@ from mpi4py import MPI
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Model, Part, State
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from riser_soil.solve.local_error import LocalError, first_step
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.time_scheme import GeneralizedAlpha
@@ -57,7 +57,7 @@ def walk(
     chain: Chain, parts: list[Part], scheme: GeneralizedAlpha, v0: Array, steps: Given
 ) -> list[tuple[Array, Array]]:
     """Heights and velocities after each step, the beginning first."""
-    system = System(MPI.COMM_SELF, Model([chain], parts), Clock.new())
+    system = System(MPI.COMM_SELF, Model([chain], parts), Timer.new())
     newton = Newton(system, NewtonSettings(1e-10, 30, 1e-11))
     stepper = TimeStepper(system, newton, scheme, State(0.0, 0.0 * v0, v0.copy(), 0.0 * v0))
     seen = [(chain.z.copy(), v0.copy())]
@@ -71,7 +71,7 @@ def walk(
 
 def swing(scheme: GeneralizedAlpha, sizes: Array) -> tuple[list[tuple[Array, Array]], Given]:
     """A mass of 1 kg on a spring of 4 N/m, from rest length 1 m, moving off at 1 m/s."""
-    chain, steps = Chain(np.array([0.0, 1.0]), held=True), Given(sizes)
+    chain, steps = Chain(np.array([0.0, 1.0]), prescribed=True), Given(sizes)
     parts: list[Part] = [Springs(chain, 1.0, 4.0), Inertia(chain, 2.0)]
     return walk(chain, parts, scheme, np.array([0.0, 1.0]), steps), steps
 
@@ -110,7 +110,7 @@ def test_uneven_steps_need_accelerations_of_their_own_time(monkeypatch: pytest.M
 
 def test_impact_shorter_than_the_step_is_seen() -> None:
     """A mass at 1 m/s meets a stiff floor: what it can't go on is the error's order. At rest there is none."""
-    chain, dt = Chain(np.array([0.0, 0.105]), held=True), 0.02
+    chain, dt = Chain(np.array([0.0, 0.105]), prescribed=True), 0.02
     steps = Given(np.full(200, dt))
     parts: list[Part] = [Springs(chain, 0.0, 1e-9), Inertia(chain, 2.0), Floor(chain, 1e7)]
     walk(chain, parts, SCHEMES[1], np.array([0.0, -1.0]), steps)
@@ -118,8 +118,8 @@ def test_impact_shorter_than_the_step_is_seen() -> None:
     assert max(steps.errors[5:7]) > 0.5 * dt
 
 
-def test_held_places_have_no_error() -> None:
-    chain, steps = Chain(np.array([0.0, 1.0]), held=True), Given(np.full(5, 0.1))
+def test_prescribed_places_have_no_error() -> None:
+    chain, steps = Chain(np.array([0.0, 1.0]), prescribed=True), Given(np.full(5, 0.1))
     parts: list[Part] = [Springs(chain, 1.0, 4.0), Inertia(chain, 2.0)]
     walk(chain, parts, SCHEMES[0], np.zeros(2), steps)
     assert max(steps.errors) == 0.0
@@ -127,7 +127,7 @@ def test_held_places_have_no_error() -> None:
 
 def test_first_step_moves_the_riser_by_the_tolerance() -> None:
     chain = Chain(np.array([0.0, 1.0]))
-    system = System(MPI.COMM_SELF, Model([chain], [Springs(chain, 1.0, 4.0), Inertia(chain, 1.0)]), Clock.new())
+    system = System(MPI.COMM_SELF, Model([chain], [Springs(chain, 1.0, 4.0), Inertia(chain, 1.0)]), Timer.new())
     rest = State.at_rest(0.0, 2)
     assert first_step(system, rest, 1e-3) == np.inf
     falling = State(0.0, rest.u, rest.v, np.array([0.0, -9.81]))

@@ -7,26 +7,26 @@ import pytest
 from mpi4py import MPI
 
 from riser_soil.core.part import Model
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from riser_soil.solve.riser_mass import RiserMass
 from tests.support.toy_chain import Chain, Inertia, Springs
 
 
-@pytest.mark.parametrize("held", [False, True])
-def test_against_a_dense_solve(held: bool) -> None:
-    chain = Chain(np.arange(5.0), held=held)
+@pytest.mark.parametrize("prescribed", [False, True])
+def test_against_a_dense_solve(prescribed: bool) -> None:
+    chain = Chain(np.arange(5.0), prescribed=prescribed)
     inertia, springs = Inertia(chain, 2.0), Springs(chain, 1.0, 30.0)
-    system = System(MPI.COMM_SELF, Model([chain], [springs, inertia]), Clock.new())
+    system = System(MPI.COMM_SELF, Model([chain], [springs, inertia]), Timer.new())
     force = np.array([1.0, -2.0, 0.5, 3.0, 0.1])
     a = RiserMass(system).accelerations(0.0, force)
     expected = force / inertia.nodal()
-    expected[0] *= not held
+    expected[0] *= not prescribed
     assert a == pytest.approx(expected, rel=1e-14)
     system.destroy()
 
 
 def test_massless_dofs_stay() -> None:
     chain = Chain(np.arange(3.0))
-    system = System(MPI.COMM_SELF, Model([chain], [Inertia(chain, 0.0)]), Clock.new())
+    system = System(MPI.COMM_SELF, Model([chain], [Inertia(chain, 0.0)]), Timer.new())
     assert RiserMass(system).accelerations(0.0, np.ones(3)) == pytest.approx(np.zeros(3))
     system.destroy()

@@ -10,22 +10,22 @@ from mpi4py import MPI
 
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.numbering import Numbering
-from riser_soil.core.part import Block
+from riser_soil.core.part import MatrixBlock
 from tests.support.on_ranks import mpirun
 from tests.support.toy_chain import Chain
 
 
 def test_rows_are_the_free_dofs() -> None:
-    numbering = Numbering(MPI.COMM_SELF, [Chain(np.arange(4.0), held=True)])
+    numbering = Numbering(MPI.COMM_SELF, [Chain(np.arange(4.0), prescribed=True)])
     assert numbering.free == 3
     assert numbering.index.tolist() == [-1, 0, 1, 2]
     numbering.destroy()
 
 
 def test_blocks_add_up_and_absent_dofs_drop_out() -> None:
-    chain = Chain(np.arange(4.0), held=True)
+    chain = Chain(np.arange(4.0), prescribed=True)
     numbering = Numbering(MPI.COMM_SELF, [chain])
-    extra = Block(np.array([[3, -1]]), np.array([[3, -1]]))
+    extra = MatrixBlock(np.array([[3, -1]]), np.array([[3, -1]]))
     matrix = Matrix(numbering, {"riser": chain.pairs(), "extra": extra}, symmetric=True)
     for _ in range(2):  # assembly starts anew each time
         matrix.values["riser"][...] = np.array([[1.0, -1.0], [-1.0, 1.0]])
@@ -49,7 +49,7 @@ from tests.support.toy_chain import Chain
 
 comm = MPI.COMM_WORLD
 # All ranks hold the chain, the first one owns it, and every rank adds a share of every block.
-chain = Chain(np.arange(40.0), held=True, owner=comm.rank == 0)
+chain = Chain(np.arange(40.0), prescribed=True, owner=comm.rank == 0)
 numbering = Numbering(comm, [chain])
 matrix = Matrix(numbering, {"pairs": chain.pairs()}, symmetric=True)
 matrix.values["pairs"][...] = np.array([[1.0, -1.0], [-1.0, 1.0]]) / comm.size

@@ -9,13 +9,13 @@ import pytest
 from mpi4py import MPI
 
 from riser_soil.errors import MeshError
-from riser_soil.soil.grid import Grid, file_grid
+from riser_soil.soil.grid import DistributedMesh, file_grid
 from tests.support.mesh_drawings import LEFT, RIGHT, Drawing, msh
 
 COMM = MPI.COMM_SELF
 
 
-def read(folder: Path, text: str) -> Grid:
+def read(folder: Path, text: str) -> DistributedMesh:
     (folder / "mesh.msh").write_text(text)
     return file_grid(COMM, folder / "mesh.msh")
 

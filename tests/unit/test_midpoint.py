@@ -9,9 +9,9 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State, Weights
-from riser_soil.riser.directors import SpatialTurn
+from riser_soil.riser.directors import SpatialOrientation
 from riser_soil.riser.line import Line
-from riser_soil.riser.midpoint_directors import Carried
+from riser_soil.riser.midpoint_directors import DirectorMotion
 from riser_soil.riser.midpoint_inertia import MidpointInertia, MidpointRotaryInertia, over_steps
 from riser_soil.solve.time_scheme import Midpoint
 from tests.support.dense_chain import residual, tangent
@@ -78,8 +78,8 @@ def test_turning_means_matter_in_the_tangent(
     at, part, start = started(make, dimension)
     state = middle(start, at.state(5, 0.3).u)
     whole = tangent([part], state, WEIGHTS)
-    original = Carried.geometric
-    monkeypatch.setattr(Carried, "geometric", lambda *arguments: 0.0 * original(*arguments))
+    original = DirectorMotion.geometric
+    monkeypatch.setattr(DirectorMotion, "geometric", lambda *arguments: 0.0 * original(*arguments))
     assert error(tangent([part], state, WEIGHTS), whole) > 1e-4
 
 
@@ -88,7 +88,7 @@ def rigid(line: Line, state: State, spin: Array) -> Array:
     trial, out = line.trial(state), np.zeros(line.size)
     nodal, turn = line.nodal(out), trial.turn
     nodal[:, : line.dimension] = np.cross(spin, line.to_global(trial.x)) @ line.basis
-    if isinstance(turn, SpatialTurn):
+    if isinstance(turn, SpatialOrientation):
         nodal[:, 3:] = np.linalg.solve(turn.H, np.tile(spin, (line.nodes, 1))[..., None])[..., 0]
     else:
         nodal[:, 2] = spin @ line.normal
@@ -103,7 +103,7 @@ def angular_momentum(at: Sample, part: Stepping, state: State) -> Array:
         q = np.stack([x[:-1], t[:, 0], x[1:], t[:, 1]], axis=1)
         impulse = np.einsum("eab,ebi->eai", part.instant.M, part.q_rate(state)) @ line.basis.T
         return np.asarray(np.cross(q, impulse).sum(axis=(0, 1)))
-    if isinstance(trial.turn, SpatialTurn):
+    if isinstance(trial.turn, SpatialOrientation):
         frames = np.stack([trial.turn.frame1, trial.turn.frame2], axis=1)
         moving = [frames[..., k] for k in part.instant.on_directors()]
     else:

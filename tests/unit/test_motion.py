@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from riser_soil.motion.carried import Displaced, Turned
-from riser_soil.motion.harmonic import Harmonic
+from riser_soil.motion.carried import CarriedEnd, CarriedSupport
+from riser_soil.motion.harmonic import HarmonicMotion
 from riser_soil.motion.move import SmoothMove
-from riser_soil.motion.swing import AngleOscillation, Rocking, SwingingEnd
-from riser_soil.motion.table import Table
+from riser_soil.motion.swing import AngleOscillation, RockingSupport, SwingingEnd
+from riser_soil.motion.table import TabulatedMotion
 from riser_soil.riser import rotations
-from riser_soil.riser.ends import Motion, Turning
+from riser_soil.riser.ends import Motion, SupportRotation
 
 ORIGIN, AMPLITUDE = np.array([1.0, 2.0, 3.0]), np.array([0.5, 0.0, -1.5])
 PHASES = np.array([0.7, -0.2, 2.0])
@@ -24,22 +24,22 @@ RAMP = 4.0
 SWING = AngleOscillation(0.6, period=8.0, ramp=RAMP, phase=0.7)
 TIMES = np.array([0.0, 1.0, 2.5, 4.0, 5.5, 7.0, 9.0, 12.0])
 ROWS = np.random.default_rng(5).normal(size=(TIMES.size, 6))
-TABLE = Table(TIMES, ROWS, ramp=RAMP)
+TABLE = TabulatedMotion(TIMES, ROWS, ramp=RAMP)
 MOTIONS: dict[str, Motion] = {
-    "harmonic": Harmonic(ORIGIN, AMPLITUDE, 8.0, RAMP, 0.7),
-    "harmonic with phases": Harmonic(ORIGIN, AMPLITUDE, 8.0, RAMP, PHASES),
+    "harmonic": HarmonicMotion(ORIGIN, AMPLITUDE, 8.0, RAMP, 0.7),
+    "harmonic with phases": HarmonicMotion(ORIGIN, AMPLITUDE, 8.0, RAMP, PHASES),
     "arc": SwingingEnd(ORIGIN, np.array([0.5, -1.0, 4.0]), np.array([0.0, -1.0, 0.0]), SWING),
-    "table": Displaced(ORIGIN, TABLE),
+    "table": CarriedEnd(ORIGIN, TABLE),
 }
-TURNINGS: dict[str, Callable[[float], Turning]] = {
-    "rocking": Rocking(np.array([0.6, 0.0, 0.8]), SWING),
-    "table": Turned(TABLE),
-    "table without a ramp": Turned(Table(TIMES, ROWS)),
+TURNINGS: dict[str, Callable[[float], SupportRotation]] = {
+    "rocking": RockingSupport(np.array([0.6, 0.0, 0.8]), SWING),
+    "table": CarriedSupport(TABLE),
+    "table without a ramp": CarriedSupport(TabulatedMotion(TIMES, ROWS)),
 }
 
 
 def test_full_motion_is_a_sine() -> None:
-    motion = Harmonic(ORIGIN, AMPLITUDE, period=8.0, ramp=4.0)
+    motion = HarmonicMotion(ORIGIN, AMPLITUDE, period=8.0, ramp=4.0)
     position, velocity, acceleration = motion(10.0)
     w = 2.0 * np.pi / 8.0
     assert position == pytest.approx(ORIGIN + AMPLITUDE * np.sin(10.0 * w))
@@ -49,7 +49,7 @@ def test_full_motion_is_a_sine() -> None:
 
 def test_each_component_has_its_phase() -> None:
     """A quarter of a period apart, two components draw an ellipse."""
-    motion = Harmonic(ORIGIN, np.array([2.0, 0.0, 1.0]), period=8.0, phase=np.radians([0.0, 0.0, 90.0]))
+    motion = HarmonicMotion(ORIGIN, np.array([2.0, 0.0, 1.0]), period=8.0, phase=np.radians([0.0, 0.0, 90.0]))
     x, _, z = motion(3.3)[0] - ORIGIN
     assert (x / 2.0) ** 2 + z**2 == pytest.approx(1.0)
     assert [x, z] == pytest.approx([2.0 * np.sin(3.3 * np.pi / 4.0), np.cos(3.3 * np.pi / 4.0)])
@@ -120,7 +120,7 @@ def test_table_goes_through_its_rows_and_reproduces_a_cubic() -> None:
     for t, row in zip(TIMES[3:], ROWS[3:], strict=True):
         assert TABLE(t)[0] == pytest.approx(row, abs=1e-14)
     cubic = np.polynomial.Polynomial([0.3, -1.0, 0.5, 0.1])
-    spline = Table(TIMES, np.tile(cubic(TIMES)[:, None], 6))
+    spline = TabulatedMotion(TIMES, np.tile(cubic(TIMES)[:, None], 6))
     for t in (0.2, 3.3, 11.7):
         for order, values in enumerate(spline(t)):
             expected = cubic.deriv(order)(t) if order else cubic(t)
@@ -130,7 +130,7 @@ def test_table_goes_through_its_rows_and_reproduces_a_cubic() -> None:
 def test_table_is_of_fourth_order() -> None:
     def worst(rows: int) -> float:
         time = np.linspace(0.0, 10.0, rows)
-        table = Table(time, np.tile(np.cos(time)[:, None], 6))
+        table = TabulatedMotion(time, np.tile(np.cos(time)[:, None], 6))
         return max(abs(table(t)[0][0] - np.cos(t)) for t in np.linspace(0.0, 10.0, 2377))
 
     errors = [worst(rows) for rows in (101, 201, 401)]

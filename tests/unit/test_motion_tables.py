@@ -17,7 +17,7 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
-from tests.support.riser_scenes import dynamic, held, riser_scene
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene
 
 PIPE = {"EA": 1.0e8, "EI": 1.0e5, "GJ": 1.0e5, "mass": 50.0}
 HEADER = "t [s], x [m], y [m], z [m]\n"
@@ -32,7 +32,12 @@ def scene(folder: Path, text: str | None, table: Any = "motion.csv", rotation: A
         (folder / "motion.csv").write_text(text, encoding="utf-8")
     moving = dynamic(4.0, 0.1, motion={"end": {"table": table}})
     pipe = riser_scene(
-        moving, pipe=PIPE, length=30.0, elements=3, start=held(0.0, 0.0, 0.0), end=held(*END, rotation=rotation)
+        moving,
+        pipe=PIPE,
+        length=30.0,
+        elements=3,
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(*END, rotation=rotation),
     )
     return scene_from_mapping(pipe, folder)
 
@@ -178,7 +183,7 @@ def test_a_support_rocks_while_a_table_moves_it(tmp_path: Path) -> None:
     (tmp_path / "motion.csv").write_text(HEADER + STILL + ROWS, encoding="utf-8")
     rocking = {"axis": [0.0, 1.0, 0.0], "amplitude_deg": 9.0, "period": 4.0}
     moving = dynamic(4.0, 0.1, motion={"end": {"table": "motion.csv", "rotation": rocking}})
-    ends = held(0.0, 0.0, 0.0), held(30.0, 0.0, 0.0, rotation="fixed")
+    ends = prescribed(0.0, 0.0, 0.0), prescribed(30.0, 0.0, 0.0, rotation="fixed")
     both = riser_scene(moving, pipe=PIPE, length=30.0, elements=3, start=ends[0], end=ends[1])
     assembly = build(scene_from_mapping(both, tmp_path), MPI.COMM_SELF)
     assembly.begin(assembly.scene.stages[0])

@@ -10,7 +10,7 @@ import pytest
 
 from riser_soil.checks.motion_plausibility import motion_warnings
 from riser_soil.scene.reader import scene_from_mapping
-from tests.support.riser_scenes import Mapping, dynamic, held, riser_scene, static
+from tests.support.riser_scenes import Mapping, dynamic, prescribed, riser_scene, static
 
 PIPE = {"EA": 1.0e7, "EI": 1.0e5, "GJ": 1.0e5, "mass": 50.0, "submerged_weight": 200.0, "outer_diameter": 0.2}
 HARMONIC: Mapping = {"amplitude": [0.0, 0.0, 2.0], "period": 6.2831853}  # 2 m/s at its middle
@@ -23,8 +23,8 @@ def warnings(*stages: Mapping, folder: Path | None = None, rotation: Any = "fixe
         pipe=PIPE,
         length=60.0,
         elements=6,
-        start=held(0.0, 0.0, -30.0),
-        end=held(40.0, 0.0, 3.0, rotation=rotation),
+        start=prescribed(0.0, 0.0, -30.0),
+        end=prescribed(40.0, 0.0, 3.0, rotation=rotation),
         gravity=9.81,
         **more,
     )

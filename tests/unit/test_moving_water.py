@@ -14,7 +14,7 @@ from riser_soil.riser.line import End, Line
 from riser_soil.sea.components import regular
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
-from riser_soil.sea.moving_water import AcceleratedWater, RelativeDrag, Stream
+from riser_soil.sea.moving_water import AcceleratedWater, FlowAtStations, RelativeDrag
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.sea import Sea
 from riser_soil.sea.still_water import StationLoads, StillWater
@@ -42,7 +42,7 @@ def loads(line: Line, water: Water, Cd: float = CD, Ca: float = CA, Cdt: float =
     ones, displaced = np.ones_like(D), RHO * 0.25 * np.pi * D**2
     mass = added_masses(RHO, D, Ca * ones, 0.0 * ones)
     still = StillWater(pipe, drag_coefficients(RHO, D, Cd * ones, Cdt * ones), mass)
-    stream = Stream(pipe, water)
+    stream = FlowAtStations(pipe, water)
     return AcceleratedWater(RelativeDrag(still, stream), stream, mass, displaced)
 
 

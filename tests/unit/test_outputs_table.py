@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core import outputs
-from riser_soil.core.output import Output
+from riser_soil.core.output import OutputQuantity
 from riser_soil.core.step_outputs import OF_STEP
 from riser_soil.results import Run
 from riser_soil.results.netcdf import HEALTH, SERIES
@@ -23,8 +23,8 @@ from tests.support.pages import text
 from tests.support.run_with_toys import HEIGHT, SETTLEMENT, WHOLE_ENERGY
 from tests.support.vtk_reading import read_by_vtk
 
-OF_INSTANT: list[Output[Any]] = [*outputs.of_instant()]
-TABLE: list[Output[Any]] = [*OF_INSTANT, *outputs.OF_SOIL]
+OF_INSTANT: list[OutputQuantity[Any]] = [*outputs.of_instant()]
+TABLE: list[OutputQuantity[Any]] = [*OF_INSTANT, *outputs.OF_SOIL]
 
 
 @pytest.fixture(scope="module")

@@ -12,12 +12,12 @@ from riser_soil.assembly import Assembly
 from riser_soil.checks.overload import overload
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.seabed.bearing import Strength, strip_capacity
 from riser_soil.seabed.law import NormalLaw
 from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher, built
-from tests.support.riser_scenes import held, riser_scene, static
+from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.soil_loops import aubeny_biscontin, randolph_quiggin
 
 W, D = 700.0, 0.3
@@ -37,11 +37,11 @@ def test_capacity_of_hysteretic_clay(law: Callable[..., NormalLaw], a: float) ->
 
 
 def lying(seabed: dict[str, object]) -> Assembly:
-    """A pipe on a seabed, its end held 8 m above."""
+    """A pipe on a seabed, its end prescribed 8 m above."""
     pipe = {"EA": 3e8, "EI": 5e4, "outer_diameter": D, "submerged_weight": W}
-    ends = {"start": held(0.0, 0.0, 0.5 * D), "end": held(30.0, 0.0, 8.0)}
+    ends = {"start": prescribed(0.0, 0.0, 0.5 * D), "end": prescribed(30.0, 0.0, 8.0)}
     assembly = built(riser_scene(static(), pipe=pipe, length=32.0, elements=64, gravity=9.81, seabed=seabed, **ends))
-    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(), Clock.new())
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(), Timer.new())
     return assembly
 
 

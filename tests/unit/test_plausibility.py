@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from riser_soil.results.plausibility import Plausibility, Worst
+from riser_soil.results.plausibility import LargestValue, Plausibility
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built
-from tests.support.riser_scenes import dynamic, held, riser_scene, static
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 
 ONE_CELL: Mapping = {"kind": "hex", "size_at_riser": 9.0, "size_far": 9.0}
 ROPE: Mapping = {"EA": 1.0e4, "EI": 1.0, "mass": 5.0, "outer_diameter": 0.02}
@@ -26,8 +26,8 @@ def told(scene: Mapping, folder: Path) -> list[list[str]]:
 
 
 def pulled(*stages: Mapping) -> Mapping:
-    """A rope along x, held at its start."""
-    start = held(0.0, 0.0, 0.0, rotation="fixed")
+    """A rope along x, clamped at its start."""
+    start = prescribed(0.0, 0.0, 0.0, rotation="fixed")
     return riser_scene(*stages, pipe=ROPE, length=10.0, elements=5, start=start, end="free")
 
 
@@ -61,8 +61,8 @@ def test_a_stage_tells_its_worst_instant(tmp_path: Path) -> None:
 
 
 def test_the_worst_is_kept_with_its_place() -> None:
-    worst = Worst().or_larger(np.array([0.1, 0.3]), np.array([5.0, 6.0]), 1.0)
-    assert worst == Worst(0.3, 6.0, 1.0)
+    worst = LargestValue().or_larger(np.array([0.1, 0.3]), np.array([5.0, 6.0]), 1.0)
+    assert worst == LargestValue(0.3, 6.0, 1.0)
     assert worst.or_larger(np.array([0.3, 0.2]), np.array([5.0, 6.0]), 2.0) is worst
 
 
@@ -78,7 +78,7 @@ def test_section_changes_count_with_the_weaker_side() -> None:
 
 def test_bending_that_elements_blur_is_told_in_every_stage(tmp_path: Path) -> None:
     pipe: Mapping = {"EA": 3.0e8, "EI": 5.0e4, "mass": 120.0, "submerged_weight": 700.0}
-    ends = held(0.0, 0.0, 60.0), held(80.0, 0.0, 100.0, rotation="fixed")
+    ends = prescribed(0.0, 0.0, 60.0), prescribed(80.0, 0.0, 100.0, rotation="fixed")
     stages = static("hang"), static("pull", move={"end": [90.0, 0.0, 100.0]}), dynamic(0.2, 0.1)
     options: Mapping = {"pipe": pipe, "length": 150.0, "elements": 20, "start": ends[0], "end": ends[1]}
     hang, *others = told(riser_scene(*stages, **options, gravity=9.81), tmp_path)

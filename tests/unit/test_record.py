@@ -18,7 +18,7 @@ from rich.console import Console
 from riser_soil.errors import ResultsError, SceneError, WriteError
 from riser_soil.results import Run
 from riser_soil.results.progress import Progress
-from riser_soil.results.schedule import Due, Schedule
+from riser_soil.results.schedule import DueOutputs, Schedule
 from riser_soil.results.screen import print_summary
 from riser_soil.results.simulated_time import TICK, SimulatedTime
 from tests.support.recorded_run import (
@@ -60,10 +60,10 @@ def test_pictures_imply_the_series_and_each_has_its_pace() -> None:
     schedule = Schedule(0.4, 0.6)
     schedule.begin_stage("dynamic")
     due = {t: schedule.due(t, last=t == 1.3) for t in (0.4, 0.6, 0.7, 0.8, 1.3)}
-    assert due[0.4] == Due(series=True, pictures=False)
-    assert due[0.6] == Due(series=True, pictures=True)
-    assert due[0.7] == Due(series=False, pictures=False)
-    assert due[1.3] == Due(series=True, pictures=True)
+    assert due[0.4] == DueOutputs(series=True, pictures=False)
+    assert due[0.6] == DueOutputs(series=True, pictures=True)
+    assert due[0.7] == DueOutputs(series=False, pictures=False)
+    assert due[1.3] == DueOutputs(series=True, pictures=True)
 
 
 def test_a_static_stage_is_written_once_at_its_end() -> None:
@@ -209,7 +209,7 @@ def test_the_last_step_is_written_once(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("series", [False, True])
 def test_riser_and_soil_keep_one_time_axis_where_a_run_fails(series: bool, tmp_path: Path) -> None:
-    mesh, due = block(4, 3, 2), Due(series=series, pictures=False)
+    mesh, due = block(4, 3, 2), DueOutputs(series=series, pictures=False)
     with a_recorder(tmp_path, mesh=mesh) as recorder:
         step(recorder, 0.1, pictured=soil(mesh, 30.0))
         step(recorder, 0.2, due)

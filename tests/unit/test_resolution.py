@@ -8,34 +8,34 @@ import numpy as np
 import pytest
 
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.results.observer import elastic_residual
 from riser_soil.results.plausibility import SMOOTH_MISFIT, STEEP_MISFIT
-from riser_soil.riser.resolution import Misfit, misfit
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.riser.resolution import BendingMisfit, misfit
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
-from tests.support.riser_scenes import held, riser_scene, static
+from tests.support.riser_scenes import prescribed, riser_scene, static
 
 
-def found(scene: Mapping) -> tuple[Misfit, float]:
+def found(scene: Mapping) -> tuple[BendingMisfit, float]:
     """At the end of the last stage, and the riser's largest bending moment then [N.m]."""
     assembly = built(scene)
-    told: list[tuple[Misfit, float]] = []
+    told: list[tuple[BendingMisfit, float]] = []
 
-    def watch(stepper: TimeStepper, step: Accepted) -> None:
+    def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         residual = elastic_residual(assembly, stepper)
         moment = np.abs(residual[:, [2, -1]] if assembly.line.dimension == 2 else residual[:, [4, 10]])
         told.append((misfit(assembly.line, assembly.elements, stepper.now, residual), float(moment.max())))
 
     before = State.at_rest(0.0, assembly.size)
     for stage in assembly.scene.stages:
-        before = run_stage(assembly, stage, before, Watcher(watch), Clock.new())
+        before = run_stage(assembly, stage, before, Watcher(watch), Timer.new())
     return told[-1]
 
 
-def too_long(told: Misfit, largest: float) -> bool:
+def too_long(told: BendingMisfit, largest: float) -> bool:
     return told.smooth > SMOOTH_MISFIT * largest or told.steep > STEEP_MISFIT * largest
 
 
@@ -46,7 +46,7 @@ def test_a_cantilever_under_its_weight(elements: int, dimension: int) -> None:
     over k at the clamp 1/(6 n^2).
     """
     pipe: Mapping = {"EA": 1.0e9, "EI": 1.0e5, "GJ": 1.0e5, "mass": 1.0, "submerged_weight": 1.0}
-    start = held(0.0, 0.0, 0.0, rotation="fixed")
+    start = prescribed(0.0, 0.0, 0.0, rotation="fixed")
     scene = riser_scene(
         static(), pipe=pipe, length=10.0, elements=elements, start=start, end="free", gravity=9.81, dimension=dimension
     )
@@ -60,7 +60,7 @@ def test_two_bending_stiffnesses_have_each_their_curvature() -> None:
     """Pushed across both section axes, by a force for which curvature is linear: both rules are exact."""
     pipe: Mapping = {"EA": 1.0e9, "EI_y": 1.0e6, "EI_z": 3.0e6, "GJ": 1.0e6, "mass": 1.0}
     push = static(loads=[{"at": "end", "force": [0.0, 3.0, 2.0]}])
-    start = held(0.0, 0.0, 0.0, rotation="fixed")
+    start = prescribed(0.0, 0.0, 0.0, rotation="fixed")
     told, _ = found(riser_scene(push, pipe=pipe, length=10.0, elements=2, start=start, end="free"))
     assert told.steep < 1e-6
     assert told.smooth < 1e-6
@@ -69,7 +69,7 @@ def test_two_bending_stiffnesses_have_each_their_curvature() -> None:
 def hanging(elements: int, rotation: Any = "free", **more: Any) -> Mapping:
     """Ten kilometres of riser in the plane or in space; its largest moment is 264.4 N.m."""
     pipe: Mapping = {"EA": 1.0e9, "EI": 1.0e6, "GJ": 1.0e6, "mass": 120.0, "submerged_weight": 500.0}
-    ends = held(0.0, 0.0, 0.0), held(7000.0, 0.0, 6000.0, rotation=rotation)
+    ends = prescribed(0.0, 0.0, 0.0), prescribed(7000.0, 0.0, 6000.0, rotation=rotation)
     options: Mapping = {"pipe": pipe, "length": 1.0e4, "elements": elements, "start": ends[0], "end": ends[1]}
     return riser_scene(static(), **options, gravity=9.81, **more)
 
@@ -90,7 +90,7 @@ def test_moments_of_a_long_riser(elements: int, least: float, most: float, told:
 def test_moments_at_a_clamp(elements: int, most: float, told: bool) -> None:
     """150 m, clamped in the direction of the catenary, then moved by 10 m; its largest moment is 3,207.4 N.m."""
     pipe: Mapping = {"EA": 3.0e8, "EI": 5.0e4, "mass": 120.0, "submerged_weight": 700.0}
-    ends = held(0.0, 0.0, 60.0), held(80.0, 0.0, 100.0, rotation="fixed")
+    ends = prescribed(0.0, 0.0, 60.0), prescribed(80.0, 0.0, 100.0, rotation="fixed")
     stages = static("hang"), static("pull", move={"end": [90.0, 0.0, 100.0]})
     options: Mapping = {"pipe": pipe, "length": 150.0, "elements": elements, "start": ends[0], "end": ends[1]}
     seen, largest = found(riser_scene(*stages, **options, gravity=9.81))
@@ -101,6 +101,6 @@ def test_moments_at_a_clamp(elements: int, most: float, told: bool) -> None:
 def test_a_straight_riser_bends_by_round_off_only() -> None:
     pipe: Mapping = {"EA": 1.0e8, "EI": 1.0e4, "mass": 50.0}
     pull = static(loads=[{"at": "end", "force": [1.0e5, 0.0, 0.0]}])
-    start = held(0.0, 0.0, 0.0, rotation="fixed")
+    start = prescribed(0.0, 0.0, 0.0, rotation="fixed")
     told, _ = found(riser_scene(pull, pipe=pipe, length=30.0, elements=6, start=start, end="free"))
     assert max(told.smooth, told.steep) < 1e-6

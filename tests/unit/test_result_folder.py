@@ -13,7 +13,7 @@ import h5py
 import pytest
 
 from riser_soil.errors import SceneError, WriteError
-from riser_soil.results.folder import NAMES, Claim
+from riser_soil.results.folder import NAMES, FolderLock
 from riser_soil.results.ownership import prepare, refuse, sealed
 from tests.support.recorded_run import a_recorder, block, record, step
 
@@ -111,16 +111,16 @@ def test_a_second_run_is_refused_while_the_first_writes(force: bool, tmp_path: P
 
 def test_a_dead_run_holds_nothing(tmp_path: Path) -> None:
     hold = (
-        "import time\nfrom pathlib import Path\nfrom riser_soil.results.folder import Claim\n"
-        f"claim = Claim(Path({str(tmp_path)!r}))\nprint('held', flush=True)\ntime.sleep(60)"
+        "import time\nfrom pathlib import Path\nfrom riser_soil.results.folder import FolderLock\n"
+        f"lock = FolderLock(Path({str(tmp_path)!r}))\nprint('locked', flush=True)\ntime.sleep(60)"
     )
     with subprocess.Popen([sys.executable, "-c", hold], cwd=ROOT, stdout=subprocess.PIPE, text=True) as other:
         assert other.stdout is not None
-        assert other.stdout.readline() == "held\n"
+        assert other.stdout.readline() == "locked\n"
         with pytest.raises(SceneError, match=f"process {other.pid}"):
-            Claim(tmp_path)
+            FolderLock(tmp_path)
         other.send_signal(signal.SIGKILL)
-    Claim(tmp_path).release()
+    FolderLock(tmp_path).release()
     assert list(tmp_path.iterdir()) == []
 
 
@@ -128,11 +128,11 @@ def test_of_many_runs_one_gets_the_folder(tmp_path: Path) -> None:
     """Each holds it for a moment, and removes the lock's file at its end: nobody may hold a file that has gone."""
     take = (
         "import sys, time\nfrom pathlib import Path\nfrom riser_soil.errors import SceneError\n"
-        "from riser_soil.results.folder import Claim\n"
+        "from riser_soil.results.folder import FolderLock\n"
         f"folder = Path({str(tmp_path)!r})\nend = time.monotonic() + 1.0\n"
         "while time.monotonic() < end:\n"
-        "    try:\n        claim = Claim(folder)\n    except SceneError:\n        continue\n"
-        "    mark = folder / 'mark'\n    mark.touch(exist_ok=False)\n    mark.unlink()\n    claim.release()\n"
+        "    try:\n        lock = FolderLock(folder)\n    except SceneError:\n        continue\n"
+        "    mark = folder / 'mark'\n    mark.touch(exist_ok=False)\n    mark.unlink()\n    lock.release()\n"
     )
     running = [subprocess.Popen([sys.executable, "-c", take], cwd=ROOT) for _ in range(3)]
     assert [process.wait(60) for process in running] == [0, 0, 0]

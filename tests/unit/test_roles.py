@@ -12,7 +12,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Model, State, Traits
 from riser_soil.core.roles import Adaptive, MomentumCorrecting, Predictor, owners, with_role
 from riser_soil.core.saved_state import Saved, Stateful
-from riser_soil.core.system import Clock, System, total
+from riser_soil.core.system import System, Timer, total
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Floor
 
@@ -65,7 +65,7 @@ class Keeping(Floor):
 
 def start(kind: type[Floor]) -> System:
     chain = Chain(np.array([1.0, 2.0]))
-    return System(MPI.COMM_SELF, Model([chain], [kind(chain, 1e3)]), Clock.new())
+    return System(MPI.COMM_SELF, Model([chain], [kind(chain, 1e3)]), Timer.new())
 
 
 def test_a_declared_role_is_played() -> None:
@@ -93,9 +93,9 @@ def test_what_keeps_a_state_has_a_name_of_its_own() -> None:
     one, other, forgetful = Keeping(chain, 1e3), Keeping(chain, 1e3), Floor(chain, 1e3)
     assert owners(Model([chain], [one, forgetful])) == {"fields/chain": chain, "parts/contact": one}
     with pytest.raises(ValueError, match='more than one keeps its state as "parts/contact"'):
-        System(MPI.COMM_SELF, Model([chain], [one, forgetful, other]), Clock.new())
+        System(MPI.COMM_SELF, Model([chain], [one, forgetful, other]), Timer.new())
     with pytest.raises(ValueError, match='more than one keeps its state as "fields/chain"'):
-        System(MPI.COMM_SELF, Model([chain, Chain(np.zeros(1))]), Clock.new())
+        System(MPI.COMM_SELF, Model([chain, Chain(np.zeros(1))]), Timer.new())
 
 
 def test_a_part_that_is_not_active_is_asked_for_nothing() -> None:

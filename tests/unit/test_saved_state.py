@@ -14,15 +14,15 @@ from riser_soil.core.saved_state import (
     Saved,
     Stateful,
     gathered,
-    give_back,
     packed,
     record_of,
+    restore_all,
     unpacked,
     values_of,
     within,
 )
-from riser_soil.core.system import Clock, System
-from riser_soil.results.summary import Bend, StageTally
+from riser_soil.core.system import System, Timer
+from riser_soil.results.summary import StageTally, TightestBend
 from riser_soil.solve.automatic_steps import AutoSteps
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import Control, StepControl
@@ -47,7 +47,7 @@ def test_owners_have_names_within_names() -> None:
     assert set(saved) == {"fields/riser/value", "fields/riser top/value"}
     assert within(within(saved, "fields"), "riser").keys() == {"value"}
     first, second = Number(0.0), Number(0.0)
-    give_back({"fields/riser": first, "fields/riser top": second}, saved)
+    restore_all({"fields/riser": first, "fields/riser top": second}, saved)
     assert (first.value, second.value) == (1.0, 2.0)
 
 
@@ -98,7 +98,7 @@ def walked(control: Control, n: int) -> tuple[float, float]:
 
 
 def test_seconds_spent_before_count_too() -> None:
-    clock, again = Clock.new(), Clock.new()
+    clock, again = Timer.new(), Timer.new()
     clock.seconds |= {"riser": 2.0, "matrix": 1.0}
     again.seconds["riser"] = 0.5
     again.restore(clock.state())
@@ -106,7 +106,7 @@ def test_seconds_spent_before_count_too() -> None:
 
 
 def test_a_tally_comes_back_as_it_was() -> None:
-    tally = StageTally("heave", "dynamic", tightest=Bend(0.5, 3.0, 10.0, 0.1), worst_residual=(0.2, 0.1))
+    tally = StageTally("heave", "dynamic", tightest=TightestBend(0.5, 3.0, 10.0, 0.1), worst_residual=(0.2, 0.1))
     tally.implausible, tally.final = ("doubtful",), {"start": {"position": [0.0, 0.1, math.pi]}}
     again = StageTally("", "")
     again.restore(tally.state())
@@ -118,9 +118,9 @@ def test_a_tally_comes_back_as_it_was() -> None:
 @pytest.mark.parametrize("scheme", [GeneralizedAlpha.newmark(), GeneralizedAlpha.from_rho_inf(0.5)])
 def test_a_stepper_goes_on_to_the_last_bit(scheme: GeneralizedAlpha) -> None:
     """Masses on springs, 20 steps; another stepper takes over after 7."""
-    chain = Chain(np.array([0.0, 1.1, 1.9]), held=True)
+    chain = Chain(np.array([0.0, 1.1, 1.9]), prescribed=True)
     saved, alone = stepped(chain, scheme, State.at_rest(0.0, 3), 0, 20, save_after=7)
-    other = Chain(np.array([0.0, 1.1, 1.9]), held=True)
+    other = Chain(np.array([0.0, 1.1, 1.9]), prescribed=True)
     other.restore(within(saved, "chain"))
     _, rest = stepped(other, scheme, within(saved, "stepper"), 7, 20)
     assert rest == alone[7:]
@@ -133,7 +133,7 @@ def stepped(
     """Energies and heights after each step; what was saved after one of them."""
     field: LineField = chain
     parts: list[Part] = [Springs(chain, 1.0, 100.0), Inertia(chain, 2.0)]
-    system = System(MPI.COMM_SELF, Model([field], parts), Clock.new())
+    system = System(MPI.COMM_SELF, Model([field], parts), Timer.new())
     newton, control = Newton(system, NewtonSettings(1e-10, 20, 1e-12)), StepControl(1.0, 0.05, 0.05)
     control.restore({"at": np.array(first), "level": np.array(0)})
     stepper, rows, saved = TimeStepper(system, newton, scheme, begin), list[tuple[float, ...]](), Saved()

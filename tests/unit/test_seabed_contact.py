@@ -88,7 +88,7 @@ def test_sum_and_nodal_forces_of_a_line_pressed_evenly(dimension: int, rule: str
     assert part.force_on_riser(state) == pytest.approx([0.0, 0.0, 800.0])
     assert part.max_penetration(state) == pytest.approx(0.2)
     assert part.touchdown_arc(state) == pytest.approx(4.0)
-    assert [stretch[:2] for stretch in part.stretches(state)] == [pytest.approx((0.0, 4.0))]
+    assert [stretch[:2] for stretch in part.contact_intervals(state)] == [pytest.approx((0.0, 4.0))]
 
 
 @both_dimensions

@@ -10,8 +10,8 @@ import pytest
 from riser_soil.core.part import State, Weights
 from riser_soil.errors import SceneError
 from riser_soil.riser.sections import (
-    LineType,
-    Segment,
+    MeshedSegment,
+    SectionProperties,
     Surroundings,
     elements,
     polar_inertia,
@@ -21,7 +21,7 @@ from riser_soil.riser.sections import (
 from tests.support.dense_chain import residual
 from tests.support.sample_line import sample
 
-FLEXIBLE = LineType(
+FLEXIBLE = SectionProperties(
     EA=15.38e8, EI_y=20.96e3, EI_z=20.96e3, outer_diameter=0.26, inner_diameter=0.20, mass=57.5
 )
 FLOODED = Surroundings(gravity=9.81, contents=1025.0, water=1025.0)
@@ -41,7 +41,7 @@ def test_in_air_nothing_floats() -> None:
 
 def test_segments_become_elements_in_order() -> None:
     thin = replace(FLEXIBLE, EA=1.0, drag=(1.1, 0.1))
-    found = elements([Segment.even(FLEXIBLE, 10.0, 2), Segment.even(thin, 3.0, 3)], FLOODED)
+    found = elements([MeshedSegment.even(FLEXIBLE, 10.0, 2), MeshedSegment.even(thin, 3.0, 3)], FLOODED)
     assert found.arc.tolist() == [0.0, 5.0, 10.0, 11.0, 12.0, 13.0]
     assert found.EA.tolist() == [15.38e8, 15.38e8, 1.0, 1.0, 1.0]
     assert found.drag.tolist() == [[0.0, 0.0]] * 2 + [[1.1, 0.1]] * 3
@@ -61,14 +61,15 @@ def test_spin_has_inertia_whatever_is_asked_for() -> None:
     """rho (I_y + I_z) of the section: twice that about an axis across it; E drops out of a homogeneous section's."""
     across = rotary_inertia(replace(FLEXIBLE, rotary_inertia=None), FLOODED)
     types = [replace(FLEXIBLE, rotary_inertia=given) for given in (None, 3.0, 0.0)]
-    strip = LineType(EA=0.3 * 0.1 * 2e9, EI_y=0.3 * 0.1**3 / 12.0 * 2e9, EI_z=0.3**3 * 0.1 / 12.0 * 2e9, mass=30.0)
+    EI_y, EI_z = 0.3 * 0.1**3 / 12.0 * 2e9, 0.3**3 * 0.1 / 12.0 * 2e9
+    strip = SectionProperties(EA=0.3 * 0.1 * 2e9, EI_y=EI_y, EI_z=EI_z, mass=30.0)
     exact = 30.0 * (0.1**2 + 0.3**2) / 12.0
     found = [polar_inertia(line, FLOODED) for line in (*types, strip)]
     assert found == pytest.approx([2.0 * across, 6.0, 2.0 * across, exact], rel=1e-14)
 
 
 def test_uneven_elements_keep_their_lengths() -> None:
-    found = elements([Segment(FLEXIBLE, (1.0, 2.0, 4.0)), Segment.even(FLEXIBLE, 3.0, 2)], FLOODED)
+    found = elements([MeshedSegment(FLEXIBLE, (1.0, 2.0, 4.0)), MeshedSegment.even(FLEXIBLE, 3.0, 2)], FLOODED)
     assert found.arc.tolist() == [0.0, 1.0, 3.0, 7.0, 8.5, 10.0]
 
 

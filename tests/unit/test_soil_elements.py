@@ -11,7 +11,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
 from riser_soil.soil import kernels, mandel
 from riser_soil.soil.element import cell_gradients
-from riser_soil.soil.grid import Grid
+from riser_soil.soil.grid import DistributedMesh
 from riser_soil.soil.soil import Soil
 from tests.support.soil_bench import assemble
 from tests.support.soil_cases import CLAY, ELASTIC, KINDS, clay_block, distorted, inner, moved, small_block
@@ -20,7 +20,7 @@ EPS = np.finfo(float).eps
 GRADIENT = 1e-3 * np.array([[1.0, 0.4, -0.2], [0.7, -0.5, 0.3], [-0.6, 0.1, 0.8]])
 
 
-def strain_of(grid: Grid, displacement: Array) -> Array:
+def strain_of(grid: DistributedMesh, displacement: Array) -> Array:
     g = cell_gradients(grid.family, grid.nodes.points, grid.nodes.cells)
     out = np.empty((*g.weights.shape, 6))
     kernels.strain(g.full, g.volume, grid.nodes.cells, displacement.ravel(), out)

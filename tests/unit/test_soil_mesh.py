@@ -14,7 +14,7 @@ from riser_soil.core.part import State
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil.block import BlockSpec, graded
 from riser_soil.soil.element import cell_gradients
-from riser_soil.soil.grid import Grid, block_grid, file_grid, silent_gmsh
+from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid, silent_gmsh
 from riser_soil.soil.soil import Soil
 from tests.support.soil_cases import CLAY, ELASTIC, KINDS, clay_block, small_block
 
@@ -22,7 +22,7 @@ COMM = MPI.COMM_SELF
 DEMO = BlockSpec((10.0, 50.0), (-2.5, 2.5), 2.5, 0.5, 1.5, riser=((0.0, 0.0), (80.0, 0.0)))
 
 
-def soil_on(grid: Grid) -> Soil:
+def soil_on(grid: DistributedMesh) -> Soil:
     return Soil(grid, ELASTIC, level=0.0, unit_weight=5.0e3)
 
 
@@ -81,12 +81,12 @@ def test_mesh_file_gives_the_same_soil_as_the_block(kind: str, tmp_path: Path) -
 @pytest.mark.parametrize("kind", KINDS)
 def test_supports_hold_bottom_and_sides_and_leave_the_top_free(kind: str) -> None:
     field = soil_on(small_block(kind)).field
-    held, p = field.prescribed.reshape(-1, 3), field.points
+    prescribed, p = field.prescribed.reshape(-1, 3), field.points
     bottom = p[:, 2] < -1.0 + 1e-9
-    assert held[bottom].all()
-    assert not held[~bottom, 2].any()
+    assert prescribed[bottom].all()
+    assert not prescribed[~bottom, 2].any()
     side = (p[:, 0] < 1e-9) | (p[:, 0] > 2.0 - 1e-9)
-    np.testing.assert_array_equal(held[~bottom, 0], side[~bottom])
+    np.testing.assert_array_equal(prescribed[~bottom, 0], side[~bottom])
     u = np.ones(field.size)
     field.prescribe(0.0, u, u.copy(), u.copy())
     assert not u[field.prescribed].any()

@@ -9,11 +9,11 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
-from riser_soil.riser.directors import SpatialTurn
+from riser_soil.riser.directors import SpatialOrientation
 from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
-from riser_soil.riser.sections import Segment, Surroundings, elements
+from riser_soil.riser.sections import MeshedSegment, Surroundings, elements
 from riser_soil.riser.structural_damping import StructuralDamping
 from tests.support.dense_chain import residual, tangent
 from tests.support.sample_line import DIRECTION, START, THICK, THIN, UP, sample
@@ -31,7 +31,7 @@ def rigid(line: Line, u: Array, spin: Array, velocity: Array) -> State:
     v, trial = np.zeros(line.size), line.trial(moving(u, 0.0 * u))
     nodal, turn = line.nodal(v), trial.turn
     nodal[:, : line.dimension] = (velocity + np.cross(spin, line.to_global(trial.x))) @ line.basis
-    in_body_axes = np.swapaxes(turn.R, 1, 2) @ spin if isinstance(turn, SpatialTurn) else spin @ NORMAL
+    in_body_axes = np.swapaxes(turn.R, 1, 2) @ spin if isinstance(turn, SpatialOrientation) else spin @ NORMAL
     nodal[:, line.dimension :] = in_body_axes
     return moving(u, v)
 
@@ -50,7 +50,7 @@ def test_rigid_motion_is_not_damped_however_fast(dimension: int) -> None:
 @both_dimensions
 def test_forces_are_beta_times_the_stiffness_about_the_unstressed_shape(dimension: int) -> None:
     """A bend in the plane; in space a straight line, as the stiffness of a bend has a condensed twist in addition."""
-    e = elements([Segment.even(THICK, 3.0, 2), Segment.even(THIN, 5.0, 3)], Surroundings(gravity=0.0))
+    e = elements([MeshedSegment.even(THICK, 3.0, 2), MeshedSegment.even(THIN, 5.0, 3)], Surroundings(gravity=0.0))
     bend = shapes.circle(e.arc, START - 6.0 * UP, START, 8.0 / 6.0, -NORMAL)
     shape = bend if dimension == 2 else shapes.straight(e.arc, START, DIRECTION)
     layout = shapes.layout(e.arc, e.outer_diameter, shape, shape)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.output import angle_deg
-from riser_soil.core.snapshot import Instant, Ledger, Touch
+from riser_soil.core.snapshot import ContactSnapshot, Instant, Ledger
 from riser_soil.results.figures import Extremes, final_state, pack, unpack
 from riser_soil.results.summary import StageTally, Summary, plain_json
 from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary, record
@@ -137,7 +137,7 @@ def test_lifting_off_does_not_spoil_the_touchdown_extremes() -> None:
 def test_never_touching_is_null(tmp_path: Path) -> None:
     summary = Summary(FACTS)
     stage = StageTally("hang", "static", steps=1)
-    free = Touch(math.nan, np.full(3, math.nan), 0, 0.0, np.zeros(3))
+    free = ContactSnapshot(math.nan, np.full(3, math.nan), 0, 0.0, np.zeros(3))
     stage.extremes.update(1.0, pack(Instant(ARC, LINE.riser(ARC), free)))
     stage.final = final_state(Instant(ARC, LINE.riser(ARC), free))
     summary.stages.append(stage)

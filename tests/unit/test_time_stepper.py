@@ -9,7 +9,7 @@ import pytest
 from mpi4py import MPI
 
 from riser_soil.core.part import Forces, LineField, Model, Part, State
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
 from riser_soil.results import Run
 from riser_soil.run import run
@@ -17,7 +17,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Midpoint, Scheme
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from tests.support.toy_chain import Chain, Floor, Inertia, Springs
 
 AVERAGE = GeneralizedAlpha.newmark()
@@ -25,8 +25,8 @@ AVERAGE = GeneralizedAlpha.newmark()
 
 def walk_through(
     chain: LineField, parts: list[Part], scheme: Scheme, v0: np.ndarray, end: float, dt: float, tolerance: float = 1e-11
-) -> list[Accepted]:
-    system = System(MPI.COMM_SELF, Model([chain], parts), Clock.new())
+) -> list[AcceptedStep]:
+    system = System(MPI.COMM_SELF, Model([chain], parts), Timer.new())
     newton = Newton(system, NewtonSettings(tolerance, 20, 1e-12))
     nothing = np.zeros_like(v0)
     stepper = TimeStepper(system, newton, scheme, State(0.0, nothing, v0.copy(), nothing))
@@ -41,8 +41,8 @@ def walk_through(
 
 
 def oscillate(scheme: Scheme, dt: float) -> float:
-    """Height of the free end of a held nonlinear chain after 3 s."""
-    chain = Chain(np.arange(4.0), held=True)
+    """Height of the free end of a nonlinear chain after 3 s, the other end prescribed."""
+    chain = Chain(np.arange(4.0), prescribed=True)
     parts: list[Part] = [Springs(chain, 1.0, 20.0, 50.0), Inertia(chain, 1.0)]
     walk_through(chain, parts, scheme, np.array([0.0, 0.3, 0.1, 0.8]), 3.0, dt)
     return float(chain.z[-1])
@@ -67,7 +67,7 @@ def test_spectral_radius_one_is_the_average_acceleration() -> None:
 
 @pytest.mark.parametrize("scheme", [AVERAGE, Midpoint()])
 def test_average_acceleration_and_midpoint_rule_keep_the_energy_of_a_linear_chain(scheme: Scheme) -> None:
-    chain = Chain(np.arange(6.0), held=True)
+    chain = Chain(np.arange(6.0), prescribed=True)
     inertia = Inertia(chain, 1.0)
     parts: list[Part] = [Springs(chain, 1.0, 50.0, weight=2.0), inertia]
     v0 = np.array([0.0, 1.0, -1.0, 0.5, 0.2, 2.0])

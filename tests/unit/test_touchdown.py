@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.contact.touchdown import stretches, touchdown
+from riser_soil.contact.touchdown import contact_intervals, touchdown
 from riser_soil.core.arrays import Array
 from riser_soil.riser import stations
 
@@ -88,20 +88,20 @@ def test_stretches_part_at_spans_and_not_at_a_layers_small_gaps() -> None:
     clearance = np.where((arc < 5.0) | ((arc > 10.0) & (arc < 30.0)), -1e-3, 0.2)
     force = np.where(clearance < 0.0, W, 0.0)
     clearance[(arc > 18.0) & (arc < 19.0)] = 0.9e-3
-    first, second = stretches(arc, share, clearance, force)
+    first, second = contact_intervals(arc, share, clearance, force)
     assert (first.start, first.end) == pytest.approx((0.0, 5.0), abs=0.1)
     assert (second.start, second.end) == pytest.approx((10.0, 30.0), abs=0.1)
     assert touchdown(arc, share, clearance, force) == second.end
     span = (arc > 18.0) & (arc < 19.0)
     clearance[span] = 1.1e-3
-    assert len(stretches(arc, share, clearance, np.where(span, 0.0, force))) == 3
-    assert len(stretches(arc, share, clearance, np.where(span, -W, force))) == 2, "held by suction"
+    assert len(contact_intervals(arc, share, clearance, np.where(span, 0.0, force))) == 3
+    assert len(contact_intervals(arc, share, clearance, np.where(span, -W, force))) == 2, "held by suction"
 
 
 def test_a_trench_in_which_the_riser_hangs_is_no_place_where_it_lies() -> None:
     arc, share = points("line")
     clearance = np.where((arc < 20.0) | ((arc > 25.0) & (arc < 30.0)), -0.1, 0.2)
-    found = stretches(arc, share, clearance, np.where(arc < 18.0, W, 0.0))
+    found = contact_intervals(arc, share, clearance, np.where(arc < 18.0, W, 0.0))
     assert [s.end for s in found] == pytest.approx([18.0], abs=0.1)
 
 
@@ -137,7 +137,7 @@ def test_nothing_and_all_of_it() -> None:
     arc, share = points("line")
     none, all_of_it = np.zeros_like(arc), np.full_like(arc, W)
     assert np.isnan(touchdown(arc, share, none + 1.0, none))
-    assert stretches(arc, share, none + 1.0, none) == []
+    assert contact_intervals(arc, share, none + 1.0, none) == []
     assert touchdown(arc, share, none - 1.0, all_of_it) == pytest.approx(LENGTH)
 
 

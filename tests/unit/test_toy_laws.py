@@ -12,7 +12,7 @@ from riser_soil.assembly import Assembly
 from riser_soil.checks.check import describe
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.errors import SceneError
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import scene_from_mapping
@@ -24,7 +24,7 @@ from riser_soil.soil.soil import Soil
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import LAY, Mapping, touchdown
 from tests.support.driven_stage import Watcher, built
-from tests.support.riser_scenes import held, riser_scene, static
+from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.soil_bench import assemble
 from tests.support.soil_cases import KINDS, distorted, moved, small_block
 from tests.support.soil_loops import after, at, forces, through, work
@@ -63,7 +63,7 @@ def on_soil(law: Mapping) -> Mapping:
 def at_rest(scene: Mapping) -> Assembly:
     """After its only stage."""
     assembly = built(scene)
-    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(), Clock.new())
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(), Timer.new())
     return assembly
 
 
@@ -175,7 +175,7 @@ def test_without_its_entry_a_seabed_law_is_no_part_of_the_language() -> None:
 
 
 def lying() -> Mapping:
-    """A straight pipe, its ends held as deep as it comes to rest: limit + h z_p = W, z = z_p + W/k."""
+    """A straight pipe, its ends prescribed as deep as it comes to rest: limit + h z_p = W, z = z_p + W/k."""
     plastic = (W - 400.0) / 2.0e4
     height = 0.5 * D - plastic - W / 1.0e5
     return riser_scene(
@@ -183,8 +183,8 @@ def lying() -> Mapping:
         pipe={"EA": 3e8, "EI": 5e4, "outer_diameter": D, "submerged_weight": W},
         length=20.0,
         elements=10,
-        start=held(0.0, 0.0, height),
-        end=held(20.0, 0.0, height),
+        start=prescribed(0.0, 0.0, height),
+        end=prescribed(20.0, 0.0, height),
         gravity=9.81,
         dimension=2,
         seabed={"kind": "hysteretic", "law": dict(TOY_BED)},

@@ -11,7 +11,7 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.riser import rotations
-from riser_soil.riser.ends import End, Turning
+from riser_soil.riser.ends import End, SupportRotation
 from riser_soil.riser.line import Line
 from riser_soil.riser.springs import EndSpring
 from tests.support.sample_line import DIRECTION, UP, Sample, sample
@@ -20,25 +20,25 @@ both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 NORMAL = np.cross(DIRECTION, UP)
 
 
-def hub(t: float) -> Turning:
+def hub(t: float) -> SupportRotation:
     """Spun up about the normal of the sample's plane, by many turns."""
-    return Turning(*(rate * NORMAL for rate in (0.5 * t**2, t, 1.0)))
+    return SupportRotation(*(rate * NORMAL for rate in (0.5 * t**2, t, 1.0)))
 
 
-def tumbling(t: float) -> Turning:
+def tumbling(t: float) -> SupportRotation:
     """About an axis that turns itself: exp(z) exp(y) of angles z, y; whole turns are lost in its rotation vector."""
     (z, w, b), (y, q, c) = (0.3 * t**2, 0.6 * t, 0.6), (0.8 * t, 0.8, 0.0)
     about_z = np.array(rotations.exp((0.0, 0.0, z)))
     R = about_z @ np.array(rotations.exp((0.0, y, 0.0)))
     e, k = about_z[:, 1], np.array([0.0, 0.0, 1.0])
     rotation = np.array(rotations.log(tuple(map(tuple, R))))
-    return Turning(rotation, w * k + q * e, b * k + c * e + q * w * np.cross(k, e))
+    return SupportRotation(rotation, w * k + q * e, b * k + c * e + q * w * np.cross(k, e))
 
 
 CASES = pytest.mark.parametrize(("dimension", "turning"), [(2, hub), (3, hub), (3, tumbling)])
 
 
-def turned(dimension: int, turning: Callable[[float], Turning]) -> Sample:
+def turned(dimension: int, turning: Callable[[float], SupportRotation]) -> Sample:
     return sample(dimension, (End(True, rotation_fixed=True, turning=turning), End(True)), shaken=False)
 
 
@@ -57,7 +57,7 @@ def start_frame(line: Line) -> Array:
 
 @CASES
 def test_a_fixed_rotation_follows_its_support_through_many_turns(
-    dimension: int, turning: Callable[[float], Turning]
+    dimension: int, turning: Callable[[float], SupportRotation]
 ) -> None:
     line = turned(dimension, turning).line
     first = start_frame(line)
@@ -69,7 +69,7 @@ def test_a_fixed_rotation_follows_its_support_through_many_turns(
 
 
 @CASES
-def test_rates_are_derivatives_of_the_increments(dimension: int, turning: Callable[[float], Turning]) -> None:
+def test_rates_are_derivatives_of_the_increments(dimension: int, turning: Callable[[float], SupportRotation]) -> None:
     """A small increment from time t is the angular velocity there in body axes; accelerations are those of its
     components in the body axes."""
     line, t, h = turned(dimension, turning).line, 1.7, 1e-4
@@ -88,7 +88,7 @@ def test_rates_are_derivatives_of_the_increments(dimension: int, turning: Callab
 
 @CASES
 def test_a_new_stage_turns_on_from_where_the_support_is(
-    dimension: int, turning: Callable[[float], Turning]
+    dimension: int, turning: Callable[[float], SupportRotation]
 ) -> None:
     line = turned(dimension, turning).line
     step_to(line, 2.0)
@@ -105,7 +105,7 @@ def test_a_new_stage_turns_on_from_where_the_support_is(
 
 @CASES
 def test_a_spring_is_at_rest_where_its_support_points(
-    dimension: int, turning: Callable[[float], Turning]
+    dimension: int, turning: Callable[[float], SupportRotation]
 ) -> None:
     made = sample(dimension, (End(True, turning=turning), End(True)), shaken=False)
     line, spring = made.line, EndSpring(made.line, 0, 700.0)
@@ -121,7 +121,7 @@ def test_a_spring_is_at_rest_where_its_support_points(
 
 @CASES
 def test_turning_a_support_against_its_spring_is_work(
-    dimension: int, turning: Callable[[float], Turning]
+    dimension: int, turning: Callable[[float], SupportRotation]
 ) -> None:
     """While the riser stays as it is, the spring stores it all; to second order in the step."""
 

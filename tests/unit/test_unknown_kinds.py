@@ -106,7 +106,7 @@ def test_another_motion_is_refused() -> None:
     stage = scene().stages[1]
     motion = with_parts(stage, motion=another(by_end={"end": another(ways={"circle": another(period=3.0)})}))
     with pytest.raises(AssertionError, match="Another"):
-        set_motion(End(held=True), "end", np.zeros(3), motion, None)
+        set_motion(End(prescribed=True), "end", np.zeros(3), motion, None)
 
 
 def test_another_shape_is_refused() -> None:

@@ -18,13 +18,13 @@ from riser_soil.errors import SceneError
 from riser_soil.motion.rao import RaoTable
 from riser_soil.riser import rotations
 from riser_soil.riser.directors import SpatialFrames
-from riser_soil.riser.ends import Turning
+from riser_soil.riser.ends import SupportRotation
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import distance, dynamic, held, riser_scene, static, tell
+from tests.support.riser_scenes import distance, dynamic, prescribed, riser_scene, stage_histories, static
 
 PIPE = {"EA": 1.0e7, "EI": 1.0e5, "GJ": 1.0e5, "mass": 50.0, "submerged_weight": 200.0, "outer_diameter": 0.2}
 END, REFERENCE = [40.0, 0.0, 3.0], [55.0, 4.0, -2.0]
@@ -57,8 +57,8 @@ def mapping(*stages: Mapping, rotation: Any = "free", waves: Mapping = AIRY, **m
         pipe=PIPE,
         length=60.0,
         elements=6,
-        start=held(0.0, 0.0, -30.0),
-        end=held(*END, rotation=rotation),
+        start=prescribed(0.0, 0.0, -30.0),
+        end=prescribed(*END, rotation=rotation),
         gravity=9.81,
         water={"surface_level": 10.0, "waves": waves},
         **more,
@@ -86,7 +86,7 @@ def displaced(assembly: Assembly, t: float) -> Array:
     return assembly.line.end.motion(t)[0] - END
 
 
-def turned(assembly: Assembly, t: float) -> Turning:
+def turned(assembly: Assembly, t: float) -> SupportRotation:
     assert assembly.line.end.turning is not None
     return assembly.line.end.turning(t)
 
@@ -190,8 +190,8 @@ def test_a_vessel_sails_on_through_stages(tmp_path: Path) -> None:
     """Two stages are one, in positions, rates and directions of the end."""
     modes = {mode: (0.3 if n < 3 else 0.02, 50.0 * n) for n, mode in enumerate(MODES)}
     text, more = table(*EVERYWHERE, **modes), {"waves": JONSWAP, "rotation": {"stiffness": 1e5}}
-    long = tell(scene(tmp_path, text, static(), aboard(8.0), **more))[-1]
-    _, first, second = tell(scene(tmp_path, text, static(), aboard(5.0), aboard(3.0, "sail on"), **more))
+    long = stage_histories(scene(tmp_path, text, static(), aboard(8.0), **more))[-1]
+    _, first, second = stage_histories(scene(tmp_path, text, static(), aboard(5.0), aboard(3.0, "sail on"), **more))
     whole = np.array(long.position)
     assert distance(np.array([*first.position, *second.position])[:, -1], whole[:, -1]) < 1e-10
     assert distance(second.position[-1], whole[-1]) < 2e-3 * np.abs(whole[-1] - whole[0]).max()

@@ -12,7 +12,7 @@ from riser_soil.riser import shapes
 from riser_soil.riser.line import End, Line
 from riser_soil.sea.buoyancy import Buoyancy
 from riser_soil.sea.dry_pipe import DryPipe
-from riser_soil.sea.moving_water import Stream
+from riser_soil.sea.moving_water import FlowAtStations
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope
@@ -87,7 +87,7 @@ def rippled(t: float, x: Array) -> WaterMotion:
 
 def test_a_wavy_surface_is_followed_between_the_stations() -> None:
     at = pipe(np.array([0.0, 0.0, LEVEL + 0.1]), np.array([1.0, 0.0, 0.0]), 5, 2)
-    dry = DryPipe(at, Stream(at, rippled).immersion, np.ones(5))
+    dry = DryPipe(at, FlowAtStations(at, rippled).immersion, np.ones(5))
     found = dry.residual(at.line.trial(State.at_rest(0.0, at.line.size)))[:, [0, 2], 1].sum()
     k = 2.0 * np.pi / 12.0
     expected = quad(lambda x: 1.0 - wet_share(0.2 * np.cos(k * x) - 0.1, D), 0.0, L, epsabs=1e-10, limit=200)[0]

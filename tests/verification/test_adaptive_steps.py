@@ -12,7 +12,7 @@ from riser_soil.errors import SolveError
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
-from tests.support.riser_scenes import AVERAGE, dynamic, held, riser_scene, tell
+from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, stage_histories
 
 CATENARY = Path(__file__).parents[1] / "scenes/catenary.yaml"
 AUTO = ("stages.1.time_step=auto", "riser.segments.0.elements=30")
@@ -49,8 +49,8 @@ def test_changes_of_size_do_not_shake_the_tension() -> None:
     time, are as near as those of 0.4 s, the largest that they are.
     """
     surge = ("stages.1.duration=21", "riser.segments.0.elements=30")
-    reference = adaptive.course(*surge, "stages.1.time_step=0.02", scene_file=CATENARY)
-    seen = adaptive.course(*surge, "stages.1.time_step=auto", scene_file=CATENARY)
+    reference = adaptive.step_history(*surge, "stages.1.time_step=0.02", scene_file=CATENARY)
+    seen = adaptive.step_history(*surge, "stages.1.time_step=auto", scene_file=CATENARY)
     assert np.ptp(seen.dt) > 0.2
     assert adaptive.errors(seen, reference)[0] < 16.0
 
@@ -65,9 +65,16 @@ def test_error_falls_with_the_tolerance(scheme: dict[str, object]) -> None:
         pipe = {"EA": 1e6, "EI": 500.0, "mass": 60.0, "outer_diameter": 0.2}
         hung = {"name": "hang", "kind": "static"}
         scene = riser_scene(
-            hung, stage, pipe=pipe, length=20.0, elements=10, start=held(0, 0, 0), end=held(12, 0, 4), gravity=9.81
+            hung,
+            stage,
+            pipe=pipe,
+            length=20.0,
+            elements=10,
+            start=prescribed(0, 0, 0),
+            end=prescribed(12, 0, 4),
+            gravity=9.81,
         )
-        return tell(scene)[1].position[-1]
+        return stage_histories(scene)[1].position[-1]
 
     exact = swung(time_step=0.002)
     errors = [np.abs(swung(time_step="auto", tolerance=x) - exact).max() for x in (1e-2, 1e-3, 1e-4)]
@@ -81,13 +88,13 @@ def test_a_tolerance_out_of_reach_is_told() -> None:
         pipe={"EA": 1e6, "EI": 500.0, "mass": 60.0, "outer_diameter": 0.2},
         length=10.0,
         elements=5,
-        start=held(0, 0, 0, rotation="fixed"),
+        start=prescribed(0, 0, 0, rotation="fixed"),
         end="free",
         riser={"initial": "straight"},
         solver={"min_time_step": 0.01},
     )
     with pytest.raises(SolveError, match=r"smallest step 0\.01: .* of \S+ m exceeds the tolerance of 1e-06 m"):
-        tell(scene_from_mapping(scene))
+        stage_histories(scene_from_mapping(scene))
 
 
 @pytest.mark.verify

@@ -13,7 +13,7 @@ from scipy.special import ellipk
 from riser_soil.assembly import Assembly
 from riser_soil.core.part import State, Weights
 from riser_soil.riser import shapes
-from riser_soil.riser.attachments import Attachment, masses
+from riser_soil.riser.attachments import PointAttachment, masses
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.ends import End, Kinematics
 from riser_soil.riser.hermite import consistent_mass
@@ -21,11 +21,11 @@ from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import SectionForces, element_residual, section_forces
-from riser_soil.riser.sections import LineType, Segment, Surroundings, elements
+from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import solve, tangent
 from tests.support.driven_stage import built, take
-from tests.support.riser_scenes import AVERAGE, dynamic, held, riser_scene, static, tell
+from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, stage_histories, static
 from tests.support.sample_line import sample
 
 G, RHO = 9.81, 1025.0
@@ -53,7 +53,14 @@ def test_tension_jumps_by_the_weight_of_what_hangs(dimension: int) -> None:
     clumps: list[Mapping] = [{"at": [6.0, 20.0], "mass": 50.0}, {"at": 10.7, "mass": 300.0, "volume": 0.1}]
     down = {"unstressed": {"points": [[0.0, 0.0, 20.0], [0.0, 0.0, 0.0]]}}
     assembly = built(
-        scene(static(), attachments=clumps, riser=down, start=held(0.0, 0.0, 20.0), end="free", dimension=dimension)
+        scene(
+            static(),
+            attachments=clumps,
+            riser=down,
+            start=prescribed(0.0, 0.0, 20.0),
+            end="free",
+            dimension=dimension,
+        )
     )
     arc, tension = assembly.line.arc, inside(assembly).effective_tension
     weights = {6.0: 50.0 * G, 10.7: (300.0 - 0.1 * RHO) * G, 20.0: 50.0 * G}
@@ -66,7 +73,7 @@ def test_a_buoy_holds_its_mooring_straight_up(dimension: int) -> None:
     buoy = [{"at": 20.0, "mass": 200.0, "volume": 1.0}]
     up = {"unstressed": {"points": [[0.0, 0.0, 0.0], [0.0, 0.0, 20.0]]}}
     assembly = built(
-        scene(static(), attachments=buoy, riser=up, start=held(0.0, 0.0, 0.0), end="free", dimension=dimension)
+        scene(static(), attachments=buoy, riser=up, start=prescribed(0.0, 0.0, 0.0), end="free", dimension=dimension)
     )
     lift = (RHO - 200.0) * G
     found = inside(assembly)
@@ -85,8 +92,8 @@ def test_a_lazy_wave_balances_at_every_node() -> None:
             attachments=modules,
             length=120.0,
             elements=60,
-            start=held(0.0, 0.0, 0.0),
-            end=held(60.0, 0.0, 60.0),
+            start=prescribed(0.0, 0.0, 0.0),
+            end=prescribed(60.0, 0.0, 60.0),
             riser={"initial": "catenary"},
         )
     )
@@ -102,7 +109,7 @@ def test_a_lazy_wave_balances_at_every_node() -> None:
 
 def test_a_mass_at_a_node_is_the_lumped_mass() -> None:
     at = sample(2)
-    along, ends = masses(at.line, [Attachment(3.0, 7.0), Attachment(8.0, 5.0)])
+    along, ends = masses(at.line, [PointAttachment(3.0, 7.0), PointAttachment(8.0, 5.0)])
     expected = np.zeros((5, 4, 4))
     expected[2, 0, 0], expected[4, 2, 2] = 7.0, 5.0
     assert (along + ends).tolist() == expected.tolist()
@@ -114,7 +121,7 @@ def test_many_masses_are_a_mass_per_length() -> None:
     errors = []
     for n in (20, 40):
         elements_of_line = list(zip(line.arc[:-1], line.length, strict=True))
-        many = [Attachment(s + L * (k + 0.5) / n, 3.0 * L / n) for s, L in elements_of_line for k in range(n)]
+        many = [PointAttachment(s + L * (k + 0.5) / n, 3.0 * L / n) for s, L in elements_of_line for k in range(n)]
         M = masses(line, many).along
         errors.append(np.abs(M - consistent_mass(line.length, np.full(5, 3.0))).max())
     assert errors[0] < 5e-3
@@ -126,7 +133,7 @@ TAUT, EI, LENGTH, TENSION = 1.0e10, 500.0, 30.0, 4.0e4
 
 def lowest_frequency(place: float, mass: float, count: int) -> float:
     """Angular frequency [rad/s] of a mass on a taut massless line with pinned ends, in the plane."""
-    e = elements([Segment.even(LineType(TAUT, EI, EI), LENGTH, count)], Surroundings(gravity=0.0))
+    e = elements([MeshedSegment.even(SectionProperties(TAUT, EI, EI), LENGTH, count)], Surroundings(gravity=0.0))
     straight = shapes.straight(e.arc)
 
     def stretch(t: float) -> Kinematics:
@@ -134,7 +141,7 @@ def lowest_frequency(place: float, mass: float, count: int) -> float:
 
     line = Line(2, shapes.layout(e.arc, e.outer_diameter, straight, straight), End(True), End(True, motion=stretch))
     beam = Beam(line, e)
-    inertia = Inertia(line, e.mass, masses(line, [Attachment(place, mass)]))
+    inertia = Inertia(line, e.mass, masses(line, [PointAttachment(place, mass)]))
     solve(line, [beam], tolerance=1e-9)
     state, only_mass = State.at_rest(1.0, line.size), Weights(1.0, 0.0, 0.0, 1.0)
     across = np.zeros((line.nodes, 3), dtype=bool)
@@ -185,11 +192,11 @@ def test_a_pendulum_of_a_rod_and_masses_keeps_time_and_energy(dimension: int) ->
         pipe=rod,
         length=10.0,
         elements=4,
-        start=held(0.0, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
         end="free",
         dimension=dimension,
     )
-    (told,) = tell(swing)
+    (told,) = stage_histories(swing)
     x = np.array([position[-1, 0] for position in told.position])
     crossings = [i for i, (a, b) in enumerate(pairwise(x)) if a > 0.0 >= b or a < 0.0 <= b]
     times = [told.t[i] + told.dt[i] * x[i] / (x[i] - x[i + 1]) for i in crossings]
@@ -199,13 +206,14 @@ def test_a_pendulum_of_a_rod_and_masses_keeps_time_and_energy(dimension: int) ->
 
 @both_dimensions
 def test_the_support_moves_what_sits_at_its_end(dimension: int) -> None:
-    """A mass at a moving held end adds m (g + a) to the reaction there, and nothing to the line's tension."""
+    """A mass at a moving prescribed end adds m (g + a) to the reaction there, and nothing to the line's tension."""
     amplitude, period, t, mass = 0.2, 4.0, 5.3, 70.0
     motion = {"end": {"harmonic": {"amplitude": [0.0, 0.0, amplitude], "period": period, "ramp": 1.0}}}
-    ends = {"start": held(0.0, 0.0, 0.0), "end": held(10.0, 0.0, 12.0)}
+    ends = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(10.0, 0.0, 12.0)}
     soft = PIPE | {"EA": 1.0e6}
+    stage = dynamic(t, 0.1, motion=motion)
     bare, laden = (
-        tell(scene(dynamic(t, 0.1, motion=motion), attachments=attached, dimension=dimension, pipe=soft, **ends))[0].end
+        stage_histories(scene(stage, attachments=attached, dimension=dimension, pipe=soft, **ends))[0].end
         for attached in ([], [{"at": 20.0, "mass": mass}])
     )
     omega = 2.0 * np.pi / period

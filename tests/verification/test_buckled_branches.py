@@ -15,7 +15,7 @@ from scipy.special import ellipe, ellipk
 from riser_soil.assembly import Assembly, build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
@@ -24,7 +24,7 @@ from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.time_scheme import Static
 from tests.support.coupled_scenes import Mapping
 from tests.support.on_ranks import mpirun
-from tests.support.riser_scenes import held, riser_scene, static
+from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.rod_reference import Rod, first_buckling
 
 EULER = 0.25 * np.pi**2  # of a cantilever of unit length and bending stiffness
@@ -35,7 +35,7 @@ def column(elements: int, ratio: float, EA: float = 1e7, dimension: int = 2, axi
     """A straight cantilever without weight or imperfection, pushed along its axis by `ratio` times Euler's load."""
     load = {"at": "end", "force": [-ratio * EULER * a for a in axis]}
     more: Mapping = {"riser": {"unstressed": {"points": [[0.0, 0.0, 0.0], list(axis)]}}, "dimension": dimension}
-    ends: Mapping = {"start": held(0.0, 0.0, 0.0, rotation="fixed"), "end": "free"}
+    ends: Mapping = {"start": prescribed(0.0, 0.0, 0.0, rotation="fixed"), "end": "free"}
     pipe = {"EA": EA, "EI": 1.0, "GJ": 1.0}
     return riser_scene(static(loads=[load]), pipe=pipe, length=1.0, elements=elements, **ends, **more)
 
@@ -44,7 +44,7 @@ def blade(elements: int, force: float) -> Mapping:
     """The cantilever blade of `test_space_beams`, loaded across its deep section at the tip."""
     load = {"at": "end", "force": [0.0, 0.0, -force]}
     more: Mapping = {"riser": {"unstressed": {"points": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]}}, "dimension": 3}
-    ends: Mapping = {"start": held(0.0, 0.0, 0.0, rotation="fixed"), "end": "free"}
+    ends: Mapping = {"start": prescribed(0.0, 0.0, 0.0, rotation="fixed"), "end": "free"}
     pipe = {"EA": 1e5, "EI_y": 1e3, "EI_z": 1.0, "GJ": 0.5}
     return riser_scene(static(loads=[load]), pipe=pipe, length=1.0, elements=elements, **ends, **more)
 
@@ -55,7 +55,7 @@ def frame(elements: int, force: float) -> Mapping:
     pipe = {"EA": 71240.0 * 18.0, "EI_y": deep, "EI_z": across, "GJ": 71240.0 / 2.62 * 30.0 * 0.6**3 / 3.0}
     points = [[0.0, 0.0, 0.0], [240.0, 0.0, 0.0], [240.0, 0.0, -240.0]]
     load = {"at": "end", "force": [force, 0.0, 0.0]}
-    ends: Mapping = {"start": held(0.0, 0.0, 0.0, rotation="fixed"), "end": "free"}
+    ends: Mapping = {"start": prescribed(0.0, 0.0, 0.0, rotation="fixed"), "end": "free"}
     more: Mapping = {"riser": {"unstressed": {"points": points}}, "dimension": 3}
     return riser_scene(static(loads=[load]), pipe=pipe, length=480.0, elements=elements, **ends, **more)
 
@@ -96,7 +96,7 @@ def test_columns_of_many_elements_buckle(EA: float, dimension: int, elements: in
 def unstable_modes(scene: Mapping) -> int:
     """At the equilibrium that Newton's method finds in one step from the first shape."""
     assembly: Assembly = build(scene_from_mapping(scene), MPI.COMM_WORLD)
-    system = System(assembly.comm, assembly.begin(assembly.scene.stages[0]), Clock.new())
+    system = System(assembly.comm, assembly.begin(assembly.scene.stages[0]), Timer.new())
     newton = Newton(system, NewtonSettings(assembly.scene.solver.tolerance, 25, assembly.scales.force_floor))
     weights, still = Static().weights(1.0), State.at_rest(1.0, assembly.size)
     system.assemble(still, weights)

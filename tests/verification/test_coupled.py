@@ -15,7 +15,7 @@ from riser_soil.core.system import System, total
 from riser_soil.results import Run
 from riser_soil.riser.catenary import catenary
 from riser_soil.scene.reader import read_scene
-from riser_soil.solve.time_stepper import Accepted
+from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.coupled_scenes import DEMO, LAY, Mapping, touchdown
 from tests.support.driven_stage import built, take
 from tests.support.watched_run import WatchedRun
@@ -29,7 +29,7 @@ class Laid:
     def __init__(self, scene: Mapping) -> None:
         self.assembly: Assembly = built(scene)
 
-        def keep(system: System, step: Accepted) -> None:
+        def keep(system: System, step: AcceptedStep) -> None:
             self.step, self.system = step, system
             self.forces = total(step.solution.forces)
             state = step.solution.state
@@ -130,7 +130,7 @@ def pressed(kind: str) -> list[Array]:
     """Residual norms [N] above round-off of all steps."""
     histories = list[Array]()
 
-    def watch(system: System, step: Accepted) -> None:
+    def watch(system: System, step: AcceptedStep) -> None:
         norms = np.array(step.solution.norms)
         histories.append(norms[norms > ROUND_OFF])
 

@@ -12,7 +12,16 @@ from riser_soil.core.arrays import Array
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import AVERAGE, Told, distance, dynamic, held, riser_scene, static, tell
+from tests.support.riser_scenes import (
+    AVERAGE,
+    StageHistory,
+    distance,
+    dynamic,
+    prescribed,
+    riser_scene,
+    stage_histories,
+    static,
+)
 
 SCENES = Path(__file__).parents[1] / "scenes"
 FLEXIBLE = {
@@ -45,8 +54,8 @@ def plucked_string(dimension: int) -> Mapping:
         pipe=BEAM,
         length=LENGTH,
         elements=ELEMENTS,
-        start=held(0.0, 0.0, 0.0),
-        end=held(LENGTH, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(LENGTH, 0.0, 0.0),
         dimension=dimension,
         solver={"tolerance": 1e-9},
     )
@@ -71,7 +80,7 @@ def frequency(series: Array, dt: float) -> float:
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_free_vibration_has_the_frequencies_of_the_tensioned_beam(dimension: int) -> None:
     shapes = np.sin(np.outer(np.arange(1, 4), np.linspace(0.0, np.pi, ELEMENTS + 1)))
-    aside = np.array(tell(plucked_string(dimension))[-1].position)[:, :, 2]
+    aside = np.array(stage_histories(plucked_string(dimension))[-1].position)[:, :, 2]
     found = [frequency(aside @ shape, DT) for shape in shapes]
     assert found == pytest.approx([closed_form(n) for n in (1, 2, 3)], rel=1e-4)
 
@@ -89,8 +98,8 @@ def surging(time_step: float, **more: Any) -> Mapping:
         pipe=FLEXIBLE,
         length=350.0,
         elements=20,
-        start=held(0.0, 0.0, 0.0),
-        end=held(150.0, 0.0, 150.0),
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(150.0, 0.0, 150.0),
         gravity=9.81,
         water={"density": 1025.0},
         riser={"contents": {"density": 1025.0}, "initial": "catenary"},
@@ -100,7 +109,7 @@ def surging(time_step: float, **more: Any) -> Mapping:
 
 @pytest.mark.parametrize("scheme", [AVERAGE, {"generalized_alpha": {"rho_inf": 0.8}}, {"midpoint": {}}])
 def test_second_order_in_the_time_step(scheme: Mapping) -> None:
-    shapes = [tell(surging(dt, scheme=scheme))[-1].end.position for dt in (0.2, 0.1, 0.05)]
+    shapes = [stage_histories(surging(dt, scheme=scheme))[-1].end.position for dt in (0.2, 0.1, 0.05)]
     first, second = distance(shapes[0], shapes[1]), distance(shapes[1], shapes[2])
     assert np.log2(first / second) == pytest.approx(2.0, abs=0.2)
     assert second < 1e-2
@@ -109,16 +118,16 @@ def test_second_order_in_the_time_step(scheme: Mapping) -> None:
 @pytest.mark.parametrize("scheme", [AVERAGE, {"midpoint": {}}])
 def test_a_moving_hinge_carries_no_moment(scheme: Mapping) -> None:
     """Its recorded moment is what the inertia beside it leaves of the balance."""
-    last = tell(surging(0.1, scheme=scheme, duration=3.0))[-1].end
+    last = stage_histories(surging(0.1, scheme=scheme, duration=3.0))[-1].end
     assert np.linalg.norm(last.end_moment) < 1e-6 * last.bending_moment.max()
 
 
 def test_generalised_alpha_that_keeps_all_is_average_acceleration() -> None:
-    one = tell(surging(0.1, scheme=AVERAGE))[-1]
-    other = tell(surging(0.1, scheme={"generalized_alpha": {"rho_inf": 1.0}}))[-1]
+    one = stage_histories(surging(0.1, scheme=AVERAGE))[-1]
+    other = stage_histories(surging(0.1, scheme={"generalized_alpha": {"rho_inf": 1.0}}))[-1]
     moved = distance(np.array(one.position), one.position[0])
     assert distance(np.array(one.position), np.array(other.position)) < 1e-9 * moved
-    damped = tell(surging(0.1, scheme={"generalized_alpha": {"rho_inf": 0.8}}))[-1]
+    damped = stage_histories(surging(0.1, scheme={"generalized_alpha": {"rho_inf": 0.8}}))[-1]
     assert distance(np.array(one.position), np.array(damped.position)) > 1e-5 * moved
 
 
@@ -135,11 +144,11 @@ def test_linear_beam_keeps_its_energy() -> None:
         pipe=pipe,
         length=30.0,
         elements=10,
-        start=held(0.0, 0.0, 0.0),
-        end=held(30.0, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(30.0, 0.0, 0.0),
         solver={"tolerance": 1e-9},
     )
-    energy = np.array(tell(scene)[-1].energy)
+    energy = np.array(stage_histories(scene)[-1].energy)
     assert energy.size == 1000
     assert np.abs(energy / energy[0] - 1.0).max() < 1e-8
 
@@ -151,7 +160,7 @@ ARM, MOMENT, PUSHED = 6.0, 900.0, 8.0
 INERTIA = 50.0 * ARM**3 / 3.0
 
 
-def spun(dimension: int, axis: Array, direction: Array) -> list[Told]:
+def spun(dimension: int, axis: Array, direction: Array) -> list[StageHistory]:
     """A pipe hinged at its start is turned about an axis by a constant moment for 8 s, then left alone for 4 s."""
     moment = {"at": "start", "moment": list(MOMENT * axis)}
     points = [[0.0, 0.0, 0.0], list(ARM * direction)]
@@ -161,13 +170,13 @@ def spun(dimension: int, axis: Array, direction: Array) -> list[Told]:
         pipe=SPIN,
         length=ARM,
         elements=4,
-        start=held(0.0, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
         end="free",
         dimension=dimension,
         riser={"initial": {"points": points}},
         solver={"tolerance": 1e-9},
     )
-    return tell(scene)
+    return stage_histories(scene)
 
 
 @pytest.mark.parametrize(
@@ -209,8 +218,8 @@ def oblique(dimension: int, unstressed: Any = "straight") -> Mapping:
         pipe=FLEXIBLE,
         length=60.0,
         elements=12,
-        start=held(*start, rotation="fixed"),
-        end=held(*(start + 35.0 * d + np.array([0.0, 0.0, 38.0])), rotation={"stiffness": 2.0e4}),
+        start=prescribed(*start, rotation="fixed"),
+        end=prescribed(*(start + 35.0 * d + np.array([0.0, 0.0, 38.0])), rotation={"stiffness": 2.0e4}),
         dimension=dimension,
         gravity=9.81,
         water={"density": 1025.0},
@@ -228,7 +237,7 @@ def arch() -> Mapping:
 
 @pytest.mark.parametrize("unstressed", ["straight", "arc"])
 def test_planar_scene_is_the_same_in_plane_and_space(unstressed: str) -> None:
-    plane, space = (tell(oblique(n, arch() if unstressed == "arc" else "straight")) for n in (2, 3))
+    plane, space = (stage_histories(oblique(n, arch() if unstressed == "arc" else "straight")) for n in (2, 3))
     for a, b in zip(plane, space, strict=True):
         assert distance(np.array(a.position), np.array(b.position)) < 1e-9 * 60.0
         tension, moment = a.end.effective_tension, a.end.bending_moment
@@ -253,7 +262,7 @@ def gust(iterations: int) -> Mapping:
 
 def test_failed_step_is_cut_and_grows_again() -> None:
     """With few iterations allowed the steps under the gust fail."""
-    hard, easy = tell(gust(6))[-1], tell(gust(25))[-1]
+    hard, easy = stage_histories(gust(6))[-1], stage_histories(gust(25))[-1]
     assert sum(hard.cuts) > 0
     assert sum(easy.cuts) == 0
     smallest = int(np.argmin(hard.dt))
@@ -273,4 +282,5 @@ def test_three_stages_and_the_catenary_come_to_the_same_shape() -> None:
 
 def static_shape(scene: Scene) -> Array:
     """Shape (nn, 3) after the static stages of a scene."""
-    return tell(scene.model_copy(update={"stages": [s for s in scene.stages if s.kind == "static"]}))[-1].end.position
+    stages = [s for s in scene.stages if s.kind == "static"]
+    return stage_histories(scene.model_copy(update={"stages": stages}))[-1].end.position

@@ -12,7 +12,7 @@ from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import dynamic, held, in_waves, riser_scene, static
+from tests.support.riser_scenes import dynamic, in_waves, prescribed, riser_scene, static
 
 DENSITY, DRAG, WEIGHT, MASS, DIAMETER, LENGTH, DROP = 1025.0, 1.2, 700.0, 200.0, 0.3, 10.0, 2.0
 
@@ -100,7 +100,7 @@ def test_ledger_in_the_summary_is_that_of_the_last_step(tmp_path: Path) -> None:
 
 
 def test_what_cannot_turn_energy_over_is_not_told(tmp_path: Path) -> None:
-    ends = held(0.0, 0.0, 0.0), held(9.0, 0.0, 0.0)
+    ends = prescribed(0.0, 0.0, 0.0), prescribed(9.0, 0.0, 0.0)
     pipe = {"EA": 1e6, "EI": 2e3, "mass": 20.0}
     scene = riser_scene(static(), dynamic(0.1, 0.1), pipe=pipe, length=9.0, elements=3, start=ends[0], end=ends[1])
     run(scene_from_mapping(scene), tmp_path)
@@ -114,7 +114,7 @@ def test_what_cannot_turn_energy_over_is_not_told(tmp_path: Path) -> None:
 def test_too_long_steps_are_a_warning(tmp_path: Path, duration: float, capsys: pytest.CaptureFixture[str]) -> None:
     """A hanging line swings wildly in steps of 0.4 s."""
     pipe = {"EA": 1e5, "EI": 10.0, "mass": 20.0, "submerged_weight": 200.0}
-    top = held(0.0, 0.0, 0.0)
+    top = prescribed(0.0, 0.0, 0.0)
     given = riser_scene(dynamic(duration, 0.4), pipe=pipe, length=9.0, elements=6, start=top, end="free", gravity=9.81)
     given["riser"]["initial"] = "straight"
     run(scene_from_mapping(given), tmp_path)

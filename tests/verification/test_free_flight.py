@@ -16,14 +16,14 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.solve.step_control import StepControl
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
 from tests.support.momentum import momentum
-from tests.support.riser_scenes import AVERAGE, dynamic, held, riser_scene, tell
+from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, stage_histories
 
 MIDPOINT: Mapping = {"midpoint": {}}
 PULSE = {
@@ -58,10 +58,10 @@ class Flight:
         assembly = built(spaghetti(dimension, dt, duration, scheme))
         rows = list[tuple[float, Array, Array, float, int]]()
 
-        def watch(stepper: TimeStepper, step: Accepted) -> None:
+        def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
             rows.append((step.t, *momentum(assembly, stepper), stepper.energy.total, step.solution.iterations))
 
-        run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Clock.new())
+        run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Timer.new())
         columns = zip(*rows, strict=True)
         self.t, self.linear, self.angular, self.energy, self.iterations = (np.array(c) for c in columns)
         self.quiet = self.t > QUIET[dimension]
@@ -150,13 +150,13 @@ def spin_up(folder: Path, axis: Array, along: Array, dimension: int) -> tuple[Ar
         pipe={"EA": EA, "EI": EI, "GJ": EI, "mass": MASS},
         length=LENGTH,
         elements=6,
-        start=held(0.0, 0.0, 0.0, rotation="fixed"),
+        start=prescribed(0.0, 0.0, 0.0, rotation="fixed"),
         end="free",
         dimension=dimension,
         solver={"tolerance": 1e-9},
         riser={"initial": {"points": [[0.0, 0.0, 0.0], list(LENGTH * along)]}},
     )
-    told = tell(scene)[-1]
+    told = stage_histories(scene)[-1]
     tip, time, across = np.array(told.position)[:, -1], np.array(told.t), np.cross(axis, along)
     c, s = np.cos(hub_angle(time)), np.sin(hub_angle(time))
     x, y = tip @ along, tip @ across
@@ -195,10 +195,10 @@ def test_frames_stay_orthonormal_through_a_hundred_turns() -> None:
     rates[:, 2], rates[:, 3:] = [-0.5, 0.0, 0.5], [spin, -0.5, 0.0]
     momenta = list[Array]()
 
-    def watch(stepper: TimeStepper, step: Accepted) -> None:
+    def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         momenta.append(momentum(assembly, stepper)[1])
 
-    after = run_stage(assembly, assembly.scene.stages[0], before, Watcher(watch), Clock.new())
+    after = run_stage(assembly, assembly.scene.stages[0], before, Watcher(watch), Timer.new())
     turns = np.array([assembly.line.frames.turn(np.zeros((3, 3))).at(node) for node in range(3)])
     assert np.abs(turns @ np.swapaxes(turns, 1, 2) - np.eye(3)).max() < 1e-13
     assert np.linalg.norm(momenta[-1] - momenta[0]) < 1e-9 * np.linalg.norm(momenta[0])
@@ -209,7 +209,7 @@ def test_steps_of_changing_size_keep_momentum(monkeypatch: pytest.MonkeyPatch) -
     """As where Newton's method needs cuts: here every third step is a quarter of the others."""
     usual, count = TimeStepper.advance, iter(range(10000))
 
-    def advance(stepper: TimeStepper, control: StepControl) -> Accepted:
+    def advance(stepper: TimeStepper, control: StepControl) -> AcceptedStep:
         if next(count) % 3 == 0:
             assert control.cut()
             assert control.cut()

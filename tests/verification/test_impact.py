@@ -28,7 +28,7 @@ from benchmarks.impact import (
 from riser_soil.assembly import build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.results.observer import riser_snapshot
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
@@ -37,7 +37,7 @@ from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built, take
 from tests.support.falling_pipe import FALL, Energies, flat, pinned, tilted
-from tests.support.riser_scenes import tell
+from tests.support.riser_scenes import stage_histories
 
 AVERAGE = {"newmark": {"beta": 0.25, "gamma": 0.5}}
 PAGE = Path(__file__).parents[2] / "docs" / "impact.md"
@@ -48,7 +48,7 @@ PAIRS = list(product((1e6, 1e7, 1e8), (0.1, 0.02, 0.005)))
 def energies(scene: Mapping) -> Energies:
     """Those of a scene's only stage."""
     assembly, seen = built(scene), Energies()
-    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), seen, Clock.new())
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), seen, Timer.new())
     return seen
 
 
@@ -103,7 +103,7 @@ def test_automatic_steps_find_the_impact() -> None:
     """Before it steps are long; the impact, whose contact lasts about pi sqrt(m/k) = 3.4 ms, is as finely resolved as
     the tolerance asks. Its energy is still kept.
     """
-    coarse, fine = tell(automatic(2e-2))[0], tell(automatic(2e-3))[0]
+    coarse, fine = stage_histories(automatic(2e-2))[0], stage_histories(automatic(2e-3))[0]
     for told in (coarse, fine):
         assert max(told.dt[: len(told.dt) // 4]) > 5.0 * min(told.dt)
         assert sum(told.cuts) < 0.15 * len(told.dt)
@@ -115,10 +115,10 @@ def test_automatic_steps_find_the_impact() -> None:
 def test_a_pipe_that_lies_still_needs_no_cuts() -> None:
     """At rest on the floor no energy moves; what contact gives and takes within a step is none from nowhere."""
     for k, dt in ((1e6, 0.02), (1e8, 0.005)):
-        assert sum(tell(flat(k, dt))[0].cuts) == 0
+        assert sum(stage_histories(flat(k, dt))[0].cuts) == 0
     scene = flat(1e8, 0.1)
     scene["stages"][0] |= {"time_step": "auto"}
-    told = tell(scene)[0]
+    told = stage_histories(scene)[0]
     assert sum(told.cuts) < 15
     assert max(told.dt) > 0.05
 
@@ -159,7 +159,7 @@ def top_tension(dt: float) -> Array:
     assembly = build(scene, MPI.COMM_SELF)
     before = take(assembly, scene.stages[0])
     watcher = Watcher(lambda stepper, _: tension.append(float(riser_snapshot(assembly, stepper).effective_tension[-1])))
-    run_stage(assembly, scene.stages[1], before, watcher, Clock.new())
+    run_stage(assembly, scene.stages[1], before, watcher, Timer.new())
     return np.array(tension)
 
 
@@ -196,7 +196,7 @@ def no_energy_appears_in_the_tank(k: float, dt: float) -> None:
     scene = tank(k, dt, duration=6.0, ramp=2.0)
     assembly, seen = build(scene, MPI.COMM_SELF), Energies()
     before = take(assembly, scene.stages[0])
-    run_stage(assembly, scene.stages[1], before, seen, Clock.new())
+    run_stage(assembly, scene.stages[1], before, seen, Timer.new())
     print(f"tank, k {k:.0e} N/m2, dt {dt:g} s: {seen.report()}")
     turned_over = np.ptp(seen.gain)
     assert seen.gain.max() < 1e-4 * turned_over

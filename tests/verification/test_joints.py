@@ -15,9 +15,9 @@ from riser_soil.riser.beam import Beam
 from riser_soil.riser.catenary import catenary
 from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
-from riser_soil.riser.loads import Load, PointLoads
+from riser_soil.riser.loads import AppliedLoad, PointLoads
 from riser_soil.riser.section_forces import element_residual, section_forces
-from riser_soil.riser.sections import Elements, LineType, Segment, Surroundings, elements
+from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.scene.grading import graded_lengths
 from tests.support.dense_chain import solve
 
@@ -28,7 +28,7 @@ NOTHING = Surroundings(gravity=0.0)
 def bent(e: Elements, curve: shapes.Curve, force: Array) -> Line:
     """A cantilever under a force at its end, in the plane."""
     line = Line(2, shapes.layout(e.arc, e.outer_diameter, curve, curve), End(True, rotation_fixed=True), End(False))
-    solve(line, [Beam(line, e), PointLoads(line, [Load(lambda t: 1.0, e.arc[-1], force)])], tolerance=1e-7)
+    solve(line, [Beam(line, e), PointLoads(line, [AppliedLoad(lambda t: 1.0, e.arc[-1], force)])], tolerance=1e-7)
     return line
 
 
@@ -46,7 +46,7 @@ def deflection(count: int, per_segment: int = 2) -> float:
     """Of the tip, by segments that have the stiffness of their middles."""
     joints = np.linspace(0.0, L, count + 1)
     EI = stiffness(0.5 * (joints[1:] + joints[:-1]))
-    e = elements([Segment.even(LineType(1.0e7, s, s), L / count, per_segment) for s in EI], NOTHING)
+    e = elements([MeshedSegment.even(SectionProperties(1.0e7, s, s), L / count, per_segment) for s in EI], NOTHING)
     line = bent(e, shapes.straight(e.arc), FORCE * UP)
     return float(line.to_global(line.x)[-1, 2])
 
@@ -83,8 +83,8 @@ def test_stiffeners_of_graded_segments_converge_to_the_taper() -> None:
 def test_an_angle_of_two_pipes_bends_as_a_frame() -> None:
     """A column of height a that carries an arm b, loaded at its tip: the corner turns and keeps its right angle."""
     a, b, columns, arms, P = 2.0, 3.0, 4.0e5, 1.0e5, 2.0
-    types = LineType(1.0e9, columns, columns), LineType(1.0e9, arms, arms)
-    e = elements([Segment.even(types[0], a, 2), Segment.even(types[1], b, 3)], NOTHING)
+    types = SectionProperties(1.0e9, columns, columns), SectionProperties(1.0e9, arms, arms)
+    e = elements([MeshedSegment.even(types[0], a, 2), MeshedSegment.even(types[1], b, 3)], NOTHING)
     position = np.array([[max(s - a, 0.0), 0.0, min(s, a)] for s in e.arc])
     across, up = np.array([1.0, 0.0, 0.0]), UP
     tangent = np.array([[up, up] if s < a else [across, across] for s in e.arc[:-1]])
@@ -114,8 +114,9 @@ class Joined:
 def joined(n: int) -> Joined:
     """Equal elements in the stiff part, and beyond the joint graded ones, the first half as long as their neighbour."""
     h = LENGTHS[0] / n
-    types = [LineType(EA, EI, EI, submerged_weight=w) for EI, w in zip(STIFFNESSES, WEIGHTS, strict=True)]
-    stiff, soft = Segment.even(types[0], LENGTHS[0], n), Segment(types[1], graded_lengths(LENGTHS[1], 0.5 * h, 1.5 * h))
+    types = [SectionProperties(EA, EI, EI, submerged_weight=w) for EI, w in zip(STIFFNESSES, WEIGHTS, strict=True)]
+    stiff = MeshedSegment.even(types[0], LENGTHS[0], n)
+    soft = MeshedSegment(types[1], graded_lengths(LENGTHS[1], 0.5 * h, 1.5 * h))
     e = elements([stiff, soft], Surroundings(gravity=9.81))
     first = catenary(e.arc, np.zeros(3), TOP, float(np.average(e.weight, weights=e.length)), EA)
     layout = shapes.layout(e.arc, e.outer_diameter, shapes.straight(e.arc), first.curve)

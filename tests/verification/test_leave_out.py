@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from riser_soil.assembly import Assembly
-from riser_soil.core.system import Clock, System
+from riser_soil.core.system import System, Timer
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built
 from tests.support.on_ranks import HANGS, ROOT, environment
@@ -93,7 +93,7 @@ def test_hanging_riser_starts_at_once(tmp_path: Path) -> None:
 
 
 def system(assembly: Assembly, stage: int) -> System:
-    return System(assembly.comm, assembly.begin(assembly.scene.stages[stage]), Clock.new())
+    return System(assembly.comm, assembly.begin(assembly.scene.stages[stage]), Timer.new())
 
 
 @pytest.mark.parametrize(("dimension", "dofs"), [(2, 3), (3, 6)])

@@ -9,7 +9,7 @@ import pytest
 
 from riser_soil.sea.wet_section import wet_share
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import Told, dynamic, held, riser_scene, static, tell
+from tests.support.riser_scenes import StageHistory, dynamic, prescribed, riser_scene, stage_histories, static
 
 G, RHO = 9.81, 1025.0
 ROD: Mapping = {"EA": 1.0e9, "EI": 1.0e8, "GJ": 1.0e8, "mass": 1.0, "submerged_weight": 0.0}
@@ -23,9 +23,10 @@ def scene(*stages: Mapping, module: Mapping, water: Mapping = WATER, **more: Any
     return riser_scene(*stages, riser=riser, water=water, **(sizes | more))
 
 
-def sunk(time_step: float, dimension: int) -> Told:
+def sunk(time_step: float, dimension: int) -> StageHistory:
     module = {"at": 1.0, "mass": 900.0, "volume": 0.5, "drag_area": 0.6, "added_mass": 0.5}
-    return tell(scene(dynamic(4.0, time_step), module=module, start="free", end="free", dimension=dimension))[0]
+    falling = scene(dynamic(4.0, time_step), module=module, start="free", end="free", dimension=dimension)
+    return stage_histories(falling)[0]
 
 
 @both_dimensions
@@ -48,8 +49,8 @@ def test_a_sinking_weight_falls_by_the_hyperbolic_tangent(dimension: int) -> Non
 def test_a_current_pushes_a_module_with_its_drag_area(dimension: int) -> None:
     module = {"at": 0.7, "mass": 10.0, "drag_area": 0.8}
     stream = WATER | {"current": {"profile": [[0.0, 1.3, 0.0]]}}
-    ends = {"start": held(0.0, 0.0, 0.0), "end": held(0.0, 0.0, 2.0)}
-    told = tell(scene(static(), module=module, water=stream, dimension=dimension, **ends))[0].end
+    ends = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(0.0, 0.0, 2.0)}
+    told = stage_histories(scene(static(), module=module, water=stream, dimension=dimension, **ends))[0].end
     total = told.start_force + told.end_force
     assert total == pytest.approx([-0.5 * RHO * 0.8 * 1.3**2, 0.0, 10.0 * G], rel=1e-9, abs=1e-6)
 
@@ -60,9 +61,9 @@ def test_a_buoy_floats_at_the_draught_that_carries_its_rod(dimension: int) -> No
     buoy, rod = {"at": 2.0, "mass": 40.0, "volume": 0.2}, ROD | {"submerged_weight": 300.0}
     water = WATER | {"surface_level": 0.1}
     scene_ = scene(
-        static(), module=buoy, water=water, pipe=rod, start=held(0.0, 0.0, 0.0), end="free", dimension=dimension
+        static(), module=buoy, water=water, pipe=rod, start=prescribed(0.0, 0.0, 0.0), end="free", dimension=dimension
     )
-    told = tell(scene_)[0].end
+    told = stage_histories(scene_)[0].end
     share = (0.5 * 300.0 * 2.0 + 40.0 * G) / (RHO * G * 0.2)
     assert 0.1 < share < 0.9
     span = np.cbrt(6.0 * 0.2 / np.pi)
@@ -75,14 +76,14 @@ def test_waves_accelerate_the_water_in_and_around_a_module() -> None:
     V, Ca, height, period, depth = 0.4, 0.6, 0.2, 8.0, 5.0
     module = {"at": 1.0, "mass": RHO * V, "volume": V, "added_mass": Ca}
     waves = {"airy": {"height": height, "period": period}, "stretching": "vertical", "ramp": 2.0}
-    ends = {"start": held(-1.0, 0.0, -depth, rotation="fixed"), "end": held(1.0, 0.0, -depth, rotation="fixed")}
+    ends = {key: prescribed(x, 0.0, -depth, rotation="fixed") for key, x in (("start", -1.0), ("end", 1.0))}
     water = WATER | {"surface_level": 0.0, "waves": waves}
     times: list[float] = []
     pushed: list[float] = []
     scheme = {"generalized_alpha": {"rho_inf": 0.0}}
     for duration in np.linspace(8.0, 16.0, 9):
         stage = dynamic(float(duration), 0.1, scheme=scheme)
-        told = tell(scene(stage, module=module, water=water, elements=2, **ends))[0].end
+        told = stage_histories(scene(stage, module=module, water=water, elements=2, **ends))[0].end
         times.append(duration)
         pushed.append(-(told.start_force[0] + told.end_force[0]))
     omega = 2.0 * np.pi / period

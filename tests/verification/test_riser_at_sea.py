@@ -10,7 +10,17 @@ from scipy.integrate import solve_ivp
 
 from riser_soil.core.arrays import Array
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import AVERAGE, Told, distance, dynamic, held, in_waves, riser_scene, static, tell
+from tests.support.riser_scenes import (
+    AVERAGE,
+    StageHistory,
+    distance,
+    dynamic,
+    in_waves,
+    prescribed,
+    riser_scene,
+    stage_histories,
+    static,
+)
 
 RHO, D, CD, CA, MASS = 1025.0, 0.3, 1.1, 1.0, 120.0
 PIPE: Mapping = {"EA": 1.0e6, "EI": 2.0e3, "GJ": 2.0e3, "outer_diameter": D, "mass": MASS}
@@ -38,11 +48,11 @@ def test_current_on_a_fixed_pipe_is_borne_by_its_ends(stage: str) -> None:
         pipe=PIPE | {"EI": 1.0e9, "EA": 1.0e9},
         length=20.0,
         elements=4,
-        start=held(0.0, 0.0, 0.0, rotation="fixed"),
-        end=held(0.0, 0.0, 20.0, rotation="fixed"),
+        start=prescribed(0.0, 0.0, 0.0, rotation="fixed"),
+        end=prescribed(0.0, 0.0, 20.0, rotation="fixed"),
         water={"density": RHO, "current": {"profile": [[0.0, SPEED, 0.0]]}},
     )
-    end = tell(scene)[-1].end
+    end = stage_histories(scene)[-1].end
     for force in (end.start_force, end.end_force):
         assert force == pytest.approx([-0.5 * ROUGH * SPEED**2 * 20.0, 0.0, 0.0], rel=1e-6, abs=0.1)
 
@@ -54,8 +64,8 @@ def sheared(elements: int) -> Mapping:
         pipe=PIPE | {"EI": 4.0e4, "EA": 5.0e6},
         length=52.0,
         elements=elements,
-        start=held(0.0, 0.0, 0.0),
-        end=held(20.0, 0.0, 47.0),
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(20.0, 0.0, 47.0),
         water={"density": RHO, "current": {"profile": [[0.0, 0.2, 0.1], [47.0, 1.2, 0.7]]}},
         gravity=9.81,
         solver={"tolerance": 1e-10},
@@ -63,7 +73,7 @@ def sheared(elements: int) -> Mapping:
 
 
 def test_deflection_under_a_current_profile_converges_with_fourth_order() -> None:
-    points = [tell(sheared(n))[-1].position[-1][:: n // 8] for n in (8, 16, 32, 128)]
+    points = [stage_histories(sheared(n))[-1].position[-1][:: n // 8] for n in (8, 16, 32, 128)]
     errors = [distance(p, points[-1]) for p in points[:-1]]
     assert np.all(orders(errors) > 4.0)
 
@@ -80,7 +90,7 @@ def test_a_pipe_let_go_in_a_current_comes_to_drift_with_it() -> None:
         riser={"unstressed": {"points": [[0.0, 0.0, 0.0], [0.0, 0.0, 6.0]]}},
         water={"density": RHO, "current": {"profile": [[0.0, SPEED, 0.0]]}},
     )
-    told = tell(scene)[0]
+    told = stage_histories(scene)[0]
     mass, t = MASS + CA * DISPLACED, np.array(told.t)
     exact = SPEED * t - mass / ROUGH * np.log1p(ROUGH * SPEED * t / mass)
     moved = np.array([x[:, 0].mean() for x in told.position])
@@ -90,7 +100,7 @@ def test_a_pipe_let_go_in_a_current_comes_to_drift_with_it() -> None:
 # The surface
 
 
-def heaving(lift: float, time_step: float, drag: bool) -> Told:
+def heaving(lift: float, time_step: float, drag: bool) -> StageHistory:
     """A lying pipe let go above its draught.
 
     By the average acceleration: generalised-alpha weighs inertia at another time than forces, which costs it an order,
@@ -109,7 +119,7 @@ def heaving(lift: float, time_step: float, drag: bool) -> Told:
         gravity=9.81,
         solver={"tolerance": 1e-10},
     )
-    return tell(scene)[0]
+    return stage_histories(scene)[0]
 
 
 def share(z: float) -> float:
@@ -158,13 +168,13 @@ def test_an_upright_pipe_heaves_about_its_draught() -> None:
         gravity=9.81,
         solver={"tolerance": 1e-10},
     )
-    told = tell(scene)[0]
+    told = stage_histories(scene)[0]
     middle = np.array([x[:, 2].mean() for x in told.position]) + 0.1 * length
     exact = lift * np.cos(np.sqrt(9.81 / (0.6 * length)) * np.array(told.t))
     assert middle == pytest.approx(exact, abs=2e-3 * lift)
 
 
-def balance(told: Told) -> float:
+def balance(told: StageHistory) -> float:
     """Largest error of the energy balance since the first step [J]."""
     energy, work = np.array(told.energy), np.cumsum(told.work)
     return float(np.abs(energy - energy[0] - (work - work[0])).max())
@@ -180,8 +190,8 @@ def test_heave_keeps_its_energy_to_second_order() -> None:
 
 
 @cache
-def moved_by_waves(time_step: float, top: float, rho_inf: float = 0.8) -> Told:
-    return tell(in_waves(time_step, top, rho_inf))[-1]
+def moved_by_waves(time_step: float, top: float, rho_inf: float = 0.8) -> StageHistory:
+    return stage_histories(in_waves(time_step, top, rho_inf))[-1]
 
 
 @pytest.mark.parametrize(("top", "rho_inf"), [(18.0, 0.8), (18.0, 0.2), (21.0, 0.8)])

@@ -8,7 +8,15 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from tests.support.riser_scenes import AVERAGE, Told, distance, dynamic, held, riser_scene, tell
+from tests.support.riser_scenes import (
+    AVERAGE,
+    StageHistory,
+    distance,
+    dynamic,
+    prescribed,
+    riser_scene,
+    stage_histories,
+)
 
 PIPE = {"EA": 1.0e7, "EI": 2.0e5, "GJ": 1.5e5, "mass": 40.0, "outer_diameter": 0.3, "rotary_inertia": True}
 ARM = 8.0
@@ -17,7 +25,7 @@ ACROSS, OBLIQUE = [0.0, -1.0, 0.0], [0.3, -0.8, 0.5]
 
 def rocked(
     time_step: float, axis: list[float], dimension: int = 3, rotation: Any = "fixed", **more: Any
-) -> Told:
+) -> StageHistory:
     """The pipe sticks out along x from a support that turns by up to 60 degrees, for 4 s."""
     rocking = {"axis": axis, "amplitude_deg": 60.0, "period": 6.0, "ramp": 3.0}
     scene = riser_scene(
@@ -25,16 +33,16 @@ def rocked(
         pipe=PIPE,
         length=ARM,
         elements=4,
-        start=held(0.0, 0.0, 0.0, rotation=rotation),
+        start=prescribed(0.0, 0.0, 0.0, rotation=rotation),
         end="free",
         dimension=dimension,
         solver={"tolerance": 1e-11},
         **more,
     )
-    return tell(scene)[-1]
+    return stage_histories(scene)[-1]
 
 
-def missing(told: Told) -> float:
+def missing(told: StageHistory) -> float:
     """Energy that no work accounts for, over the largest energy."""
     return float(np.abs(np.array(told.energy) - np.cumsum(told.work)).max() / max(told.energy))
 
@@ -50,7 +58,7 @@ def test_work_of_the_turning_support_is_the_energy_of_the_pipe(
     assert missing(coarse) / missing(fine) == pytest.approx(4.0, rel=0.3)
 
 
-def tip(told: Told) -> Array:
+def tip(told: StageHistory) -> Array:
     return np.array(told.position)[:, -1]
 
 

@@ -13,7 +13,7 @@ from riser_soil.riser.beam import Beam
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import End, Line
 from riser_soil.riser.rotary_inertia import RotaryInertia
-from riser_soil.riser.sections import LineType, Segment, Surroundings, elements
+from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from tests.support.dense_chain import tangent
 from tests.support.driven_stage import built, take
 from tests.support.riser_scenes import AVERAGE, dynamic, riser_scene
@@ -24,8 +24,8 @@ MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
 
 def frequencies(dimension: int, count: int, moving: list[int]) -> Array:
     """Angular frequencies (rad/s), ascending, of a pinned pipe's dofs `moving`."""
-    kind = LineType(EA, EI, EI, GJ, mass=MASS, rotary_inertia=INERTIA)
-    e = elements([Segment.even(kind, LENGTH, count)], Surroundings(gravity=0.0))
+    kind = SectionProperties(EA, EI, EI, GJ, mass=MASS, rotary_inertia=INERTIA)
+    e = elements([MeshedSegment.even(kind, LENGTH, count)], Surroundings(gravity=0.0))
     straight = shapes.straight(e.arc)
     line = Line(dimension, shapes.layout(e.arc, e.outer_diameter, straight, straight), End(True), End(True))
     state, free = State.at_rest(0.0, line.size), np.zeros((line.nodes, line.ndof), dtype=bool)

@@ -17,7 +17,7 @@ from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 from tests.support.coupled_scenes import Mapping
 from tests.support.flexible_riser import elastica_H, guess, properties
-from tests.support.riser_scenes import held, riser_scene, static
+from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.rod_reference import Rod, tip
 
 SCENES = Path(__file__).parents[1] / "scenes"
@@ -114,7 +114,7 @@ def test_sprung_end(solve: Solve, dimension: int) -> None:
     """The spring turns by P L/k, the cantilever adds P L^3/(3 EI)."""
     k = 4.0e5
     load = {"at": "end", "force": [0.0, 0.0, FORCE]}
-    start = held(0.0, 0.0, 0.0, rotation={"stiffness": k})
+    start = prescribed(0.0, 0.0, 0.0, rotation={"stiffness": k})
     done = solve(beam(static(loads=[load]), start=start, end="free", dimension=dimension))
     expected = FORCE * SPAN**2 / k + FORCE * SPAN**3 / (3.0 * EI)
     assert done["position"][-1, -1, 2] == pytest.approx(expected, rel=1e-6)
@@ -127,7 +127,8 @@ def test_sprung_end(solve: Solve, dimension: int) -> None:
 def test_point_load_at_an_arc(solve: Solve, dimension: int, at: float) -> None:
     """A simply supported beam, at a node and within an element; deflection of the nodes left of the load."""
     load = {"at": at, "force": [0.0, 0.0, -FORCE]}
-    scene = beam(static(loads=[load]), start=held(0.0, 0.0, 0.0), end=held(SPAN, 0.0, 0.0), dimension=dimension)
+    left, right = prescribed(0.0, 0.0, 0.0), prescribed(SPAN, 0.0, 0.0)
+    scene = beam(static(loads=[load]), start=left, end=right, dimension=dimension)
     done = solve(scene)
     x = done.arc[done.arc <= at]
     b = SPAN - at
@@ -142,7 +143,8 @@ def test_moment_at_an_arc(solve: Solve, dimension: int) -> None:
     """A simply supported beam turned at a node, right-handed about +y: M x (L^2 - 3 b^2 - x^2)/(6 EI L) up."""
     M, at = 30.0, 3.75
     load = {"at": at, "moment": [0.0, M, 0.0]}
-    scene = beam(static(loads=[load]), start=held(0.0, 0.0, 0.0), end=held(SPAN, 0.0, 0.0), dimension=dimension)
+    left, right = prescribed(0.0, 0.0, 0.0), prescribed(SPAN, 0.0, 0.0)
+    scene = beam(static(loads=[load]), start=left, end=right, dimension=dimension)
     done = solve(scene)
     x = done.arc[done.arc <= at]
     b = SPAN - at
@@ -155,7 +157,7 @@ def test_moment_at_an_arc(solve: Solve, dimension: int) -> None:
 def test_distributed_load(solve: Solve) -> None:
     """5 q L^4/(384 EI) at the middle of a simply supported beam."""
     load = {"distributed": [0.0, 0.0, -FORCE / SPAN]}
-    scene = beam(static(loads=[load]), start=held(0.0, 0.0, 0.0), end=held(SPAN, 0.0, 0.0))
+    scene = beam(static(loads=[load]), start=prescribed(0.0, 0.0, 0.0), end=prescribed(SPAN, 0.0, 0.0))
     sag = solve(scene)["position"][-1, 4, 2]
     assert sag == pytest.approx(-5.0 * FORCE * SPAN**3 / (384.0 * EI), rel=1e-6)
 
@@ -166,7 +168,7 @@ def test_distributed_load(solve: Solve) -> None:
 def test_history_of_a_static_load(solve: Solve, history: list[list[float]] | None, factor: float) -> None:
     """The stage's end counts; on the way the load has bent the beam, as the largest moment of the stage shows."""
     load: Mapping = {"at": "end", "force": [0.0, 0.0, FORCE]} | ({"history": history} if history else {})
-    start = held(0.0, 0.0, 0.0, rotation="fixed")
+    start = prescribed(0.0, 0.0, 0.0, rotation="fixed")
     done = solve(beam(static(loads=[load]), start=start, end="free", solver={"load_steps": 4}))
     bent, unseen = (force * SPAN**3 / (3.0 * EI) for force in (factor * FORCE, FORCE_FLOOR * BEAM["EA"]))
     assert done["position"][-1, -1, 2] == pytest.approx(bent, rel=1e-5, abs=unseen)
@@ -177,7 +179,7 @@ def test_history_of_a_static_load(solve: Solve, history: list[list[float]] | Non
 
 def test_loads_end_with_their_stage(solve: Solve) -> None:
     load = {"at": "end", "force": [0.0, 0.0, FORCE]}
-    start = held(0.0, 0.0, 0.0, rotation="fixed")
+    start = prescribed(0.0, 0.0, 0.0, rotation="fixed")
     done = solve(beam(static("push", loads=[load]), static("rest"), start=start, end="free"))
     bent, straight = done["position"][:, -1, 2]
     assert bent == pytest.approx(FORCE * SPAN**3 / (3.0 * EI), rel=1e-5)

@@ -15,7 +15,7 @@ from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
 from riser_soil.seabed.laws import LAWS
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import distance, held, riser_scene, static, tell
+from tests.support.riser_scenes import distance, prescribed, riser_scene, stage_histories, static
 
 SCENES = Path(__file__).parents[1] / "scenes"
 W, SLOPE = 700.0, 2.0  # N/m, deg; steeper, the riser would be pushed at its start, and lie down beside its plane
@@ -40,15 +40,15 @@ def lying(
         pipe=PIPE,
         length=length,
         elements=elements,
-        start=held(0.0, 0.0, 0.0),
-        end=held(88.0, 66.0, 60.0),
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(88.0, 66.0, 60.0),
         gravity=9.81,
         seabed={key: value for key, value in ground.items() if value is not None},
         contact={"method": method} | (more_contact or {}),
         solver={"tolerance": 1e-10},
         **more,
     )
-    return tell(scene)[-1].end
+    return stage_histories(scene)[-1].end
 
 
 def resting(found: RiserSnapshot) -> slice:
@@ -121,7 +121,7 @@ CLAY = {"kind": "randolph-quiggin", "su": 2e3, "su_gradient": 1.5e3}
 
 
 @pytest.mark.parametrize("law", ["randolph-quiggin", "aubeny-biscontin"])
-def test_riser_at_rest_on_clay_that_remembers(law: str) -> None:
+def test_riser_at_rest_on_hysteretic_clay(law: str) -> None:
     """Well behind the touchdown point it lies as deep as the law answers with its weight."""
     clay = {"kind": "hysteretic", "stiffness": None, "law": CLAY | {"kind": law}}
     found = lying(clay, dimension=2)

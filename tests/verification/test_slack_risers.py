@@ -13,15 +13,15 @@ from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import dynamic, held, riser_scene, static
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 
 W, PIPE = 500.0, {"EA": 1e8, "EI": 1e4, "GJ": 1e4, "submerged_weight": 500.0, "outer_diameter": 0.2, "mass": 60.0}
 
 
 def slack_scene(*end: float, length: float = 60.0, elements: int = 60, **more: Any) -> Mapping:
     stages = more.pop("stages", (static(),))
-    start = held(0.0, 0.0, 0.0)
-    options: Mapping = {"pipe": PIPE, "length": length, "elements": elements, "start": start, "end": held(*end)}
+    start = prescribed(0.0, 0.0, 0.0)
+    options: Mapping = {"pipe": PIPE, "length": length, "elements": elements, "start": start, "end": prescribed(*end)}
     return riser_scene(*stages, **options, gravity=9.81, solver={"tolerance": 1e-11}, **more)
 
 

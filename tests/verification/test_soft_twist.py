@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 from riser_soil.scene.reader import read_scene
-from tests.support.riser_scenes import Told, tell
+from tests.support.riser_scenes import StageHistory, stage_histories
 
 FIRST_SCENE = Path(__file__).parents[2] / "demos" / "first_scene.yaml"
 AGREEMENT = 1e-9  # m; Newton's tolerance leaves some of it, round-off the rest
 
 
-def heaved(duration: float, dimension: int, GJ: float) -> Told:
+def heaved(duration: float, dimension: int, GJ: float) -> StageHistory:
     """The first scene's heave."""
     changes = (f"dimension={dimension}", f"line_types.flexible.GJ={GJ}", f"stages.1.duration={duration}")
-    return tell(read_scene(FIRST_SCENE, (*changes, "solver.tolerance=1e-10")))[-1]
+    return stage_histories(read_scene(FIRST_SCENE, (*changes, "solver.tolerance=1e-10")))[-1]
 
 
 def require_same_motion(duration: float, GJ: float) -> None:

@@ -13,7 +13,7 @@ from mpi4py import MPI
 from riser_soil.core.arrays import Array
 from riser_soil.soil.block import BlockSpec
 from riser_soil.soil.families import Family
-from riser_soil.soil.grid import Grid, block_grid
+from riser_soil.soil.grid import DistributedMesh, block_grid
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.von_mises import VonMises
 from tests.support.on_ranks import mpirun
@@ -83,7 +83,7 @@ def strip_soil(kind: str, cells: int, family: Family | None, far: float) -> tupl
     h = 1.0 / cells
     fine = ((-1.0, 0.0), (1.25 - 0.5 * h, 0.0))  # cells of size h from the symmetry plane to x = 1.25
     spec = BlockSpec((0.0, 5.0), (0.0, h), 3.0, h, far, kind="tet" if kind == "tet" else "hex", riser=fine)
-    grid: Grid = block_grid(MPI.COMM_SELF, spec)
+    grid: DistributedMesh = block_grid(MPI.COMM_SELF, spec)
     law = VonMises(kind="von-mises", su=SU, su_gradient=0.0, E_over_su=300.0, nu=0.49).at_points
     soil = Soil(replace(grid, family=family or grid.family), law, level=0.0, unit_weight=0.0)
     x, _, z = grid.nodes.points.T

@@ -161,7 +161,10 @@ def right_angle(n: int) -> SpaceChain:
     count = 2 * n
     full = [np.full(count, value) for value in (FRAME_EA, *FRAME_EI, FRAME_GJ)]
     return SpaceChain(
-        np.concatenate([first, second[1:]]), np.stack([frames, frames]), np.full(count, LEG / n), beam3d.Section(*full)
+        np.concatenate([first, second[1:]]),
+        np.stack([frames, frames]),
+        np.full(count, LEG / n),
+        beam3d.SpatialSection(*full),
     )
 
 

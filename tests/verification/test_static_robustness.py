@@ -15,7 +15,7 @@ from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import held, riser_scene, static
+from tests.support.riser_scenes import prescribed, riser_scene, static
 
 SCENES = Path(__file__).parents[1] / "scenes"
 DISTANCE, W = 100.0, 500.0
@@ -60,8 +60,8 @@ class Case:
         more: dict[str, Any] = {"dimension": given.dimension, "gravity": 9.81, "solver": {"tolerance": 1e-10}}
         if GROUNDS[self.ground] is not None:
             more["seabed"] = GROUNDS[self.ground]
-        start, elements = held(0.0, 0.0, 0.0), given.elements * self.refined
-        options: Mapping = {"pipe": pipe | {"outer_diameter": 0.2}, "start": start, "end": held(*ENDS[self.end])}
+        start, elements = prescribed(0.0, 0.0, 0.0), given.elements * self.refined
+        options: Mapping = {"pipe": pipe | {"outer_diameter": 0.2}, "start": start, "end": prescribed(*ENDS[self.end])}
         return riser_scene(static(), length=self.length * DISTANCE, elements=elements, **options, **more)
 
     @property

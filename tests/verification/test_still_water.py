@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from riser_soil.core.arrays import Array
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import AVERAGE, Told, dynamic, held, riser_scene, static, tell
+from tests.support.riser_scenes import AVERAGE, StageHistory, dynamic, prescribed, riser_scene, stage_histories, static
 
 RHO, D, CD, CA, MASS, WEIGHT = 1025.0, 0.3, 1.1, 1.0, 150.0, 800.0
 PIPE: Mapping = {"EA": 1.0e7, "EI": 1.0e4, "outer_diameter": D, "mass": MASS, "submerged_weight": WEIGHT}
@@ -16,7 +16,7 @@ PIPE |= {"drag": {"normal": CD}, "added_mass": {"normal": CA}}
 WATER = {"density": RHO}
 
 
-def fallen(time_step: float, dimension: int) -> Told:
+def fallen(time_step: float, dimension: int) -> StageHistory:
     scene = riser_scene(
         dynamic(3.0, time_step),
         pipe=PIPE | {"GJ": 1.0e4},
@@ -28,7 +28,7 @@ def fallen(time_step: float, dimension: int) -> Told:
         gravity=9.81,
         dimension=dimension,
     )
-    return tell(scene)[0]
+    return stage_histories(scene)[0]
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -68,13 +68,13 @@ def string(steps_per_cycle: int) -> Array:
         pipe=pipe,
         length=LENGTH,
         elements=16,
-        start=held(0.0, 0.0, 0.0),
-        end=held(LENGTH, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(LENGTH, 0.0, 0.0),
         water=WATER,
         solver={"tolerance": 1e-9},
     )
     shape = np.sin(np.linspace(0.0, np.pi, 17)) / 8.0
-    return np.array(tell(scene)[-1].position)[:, :, 2] @ shape
+    return np.array(stage_histories(scene)[-1].position)[:, :, 2] @ shape
 
 
 def first_mode(t: Array, count: int = 10) -> Array:

@@ -9,7 +9,7 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import AVERAGE, dynamic, held, riser_scene, static, tell
+from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, stage_histories, static
 
 LENGTH, EA, EI, MASS, TENSION, RATIO, ELEMENTS, DT = 30.0, 1.0e9, 5.0e5, 80.0, 4.0e4, 0.02, 20, 0.02
 STRETCH = 1.0 + TENSION / EA
@@ -32,8 +32,8 @@ def plucked(dimension: int, tension: float, frequency: float, dt: float = DT) ->
         pipe=pipe,
         length=LENGTH,
         elements=ELEMENTS,
-        start=held(0.0, 0.0, 0.0),
-        end=held(LENGTH, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(LENGTH, 0.0, 0.0),
         dimension=dimension,
         solver={"tolerance": 1e-9},
     )
@@ -41,7 +41,7 @@ def plucked(dimension: int, tension: float, frequency: float, dt: float = DT) ->
 
 def modes(scene: Mapping) -> list[Array]:
     """Amplitudes of the first three sine modes, step by step."""
-    aside = np.array(tell(scene)[-1].position)[:, :, 2]
+    aside = np.array(stage_histories(scene)[-1].position)[:, :, 2]
     shapes = np.sin(np.outer(np.arange(1, 4), np.linspace(0.0, np.pi, ELEMENTS + 1)))
     return [aside @ shape for shape in shapes]
 
@@ -97,7 +97,7 @@ def swinging(dt: float, dimension: int, **damping: Any) -> Mapping:
         pipe={"EA": 2.0e5, "EI": 4.0e3, "GJ": 3.0e3, "mass": 20.0, "submerged_weight": 196.2, **damping},
         length=6.0,
         elements=6,
-        start=held(0.0, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
         end="free",
         dimension=dimension,
         gravity=9.81,
@@ -110,10 +110,10 @@ def swinging(dt: float, dimension: int, **damping: Any) -> Mapping:
 def test_energy_balance_closes_with_damping(dimension: int) -> None:
     given, gaps = {"damping": {"ratio": 0.05, "frequency": 1.0}}, []
     for dt in (0.01, 0.005):
-        told = tell(swinging(dt, dimension, **given))[-1]
+        told = stage_histories(swinging(dt, dimension, **given))[-1]
         stored, turned = np.array(told.energy), np.cumsum(told.work)
         gaps.append(np.abs(stored - turned - (stored[0] - turned[0])).max())
-    lost = tell(swinging(0.01, dimension))[-1].energy[-1] - told.energy[-1]
+    lost = stage_histories(swinging(0.01, dimension))[-1].energy[-1] - told.energy[-1]
     assert lost > 25.0
     assert gaps[1] < 2e-2 * lost
     assert gaps[0] / gaps[1] > 3.5

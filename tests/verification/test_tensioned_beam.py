@@ -13,7 +13,7 @@ from riser_soil.riser.beam import Beam
 from riser_soil.riser.ends import End, Kinematics
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
-from riser_soil.riser.sections import LineType, Segment, Surroundings, elements
+from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses
 from riser_soil.sea.pipe import Pipe
@@ -33,14 +33,15 @@ def exact(mass: float, n: Array) -> Array:
 
 def frequencies(dimension: int, count: int, tension: float = TENSION, added: float = 0.0) -> Array:
     """All transverse angular frequencies (rad/s), ascending; in space each comes twice."""
-    e = elements([Segment.even(LineType(EA, EI, EI, GJ=EI, mass=MASS), LENGTH, count)], Surroundings(gravity=0.0))
+    kind = SectionProperties(EA, EI, EI, GJ=EI, mass=MASS)
+    e = elements([MeshedSegment.even(kind, LENGTH, count)], Surroundings(gravity=0.0))
     straight = shapes.straight(e.arc)
 
     def stretch(t: float) -> Kinematics:
         return np.array([LENGTH * (1.0 + t * tension / EA), 0.0, 0.0]), np.zeros(3), np.zeros(3)
 
     layout = shapes.layout(e.arc, e.outer_diameter, straight, straight)
-    line = Line(dimension, layout, End(True), End(True, motion=stretch), hold_spin=True)
+    line = Line(dimension, layout, End(True), End(True, motion=stretch), prescribe_spin=True)
     beam, inertia = Beam(line, e), Inertia(line, e.mass)
     normal, none = np.full(count, added), np.zeros(count)
     masses = added_masses(RHO, np.full(count, DIAMETER), normal, none)

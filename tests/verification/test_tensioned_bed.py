@@ -21,12 +21,12 @@ from scipy.optimize import brentq
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.results.observer import riser_snapshot
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher, built
-from tests.support.riser_scenes import held, riser_scene, static
+from tests.support.riser_scenes import prescribed, riser_scene, static
 
 EI, H, WEIGHT = 1.0e3, 1.0e3, 0.1  # l = 1 m; slopes of some thousandths
 PIPE = {"outer_diameter": 0.1, "mass": 1.0, "submerged_weight": WEIGHT, "EA": 1.0e9, "EI": EI}
@@ -53,7 +53,7 @@ def lying(k: float, length: float, size: float, method: str, *loads: Any, tensio
         pipe=PIPE,
         length=length,
         elements=int(np.ceil(length / size)),
-        start=held(0.0, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
         end="free",
         riser={"initial": {"points": [[0.0, 0.0, 0.0], [length, 0.0, 0.0]]}},
         seabed={"kind": "spring", "level": 0.0, "stiffness": k, "contact_at": "axis"},
@@ -64,7 +64,7 @@ def lying(k: float, length: float, size: float, method: str, *loads: Any, tensio
     )
     assembly, found = built(scene), list[Found]()
 
-    def watch(stepper: TimeStepper, step: Accepted) -> None:
+    def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         riser, line = riser_snapshot(assembly, stepper), assembly.line
         assert assembly.seabed is not None
         tangent = line.trial(stepper.now).turn.tangent
@@ -72,7 +72,7 @@ def lying(k: float, length: float, size: float, method: str, *loads: Any, tensio
         touchdown = assembly.seabed.touchdown_arc(stepper.now)
         found.append(Found(line.arc, riser.position[:, 2], slope, riser.bending_moment, touchdown))
 
-    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Clock.new())
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Timer.new())
     return found[-1]
 
 

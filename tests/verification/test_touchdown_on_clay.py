@@ -12,13 +12,13 @@ from demos.compute import compute
 from riser_soil.assembly.ground import GAUSS_POINTS
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.riser import stations
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
-from tests.support.riser_scenes import held, riser_scene, static
+from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.touchdown_reference import equivalent_point
 
 D, AREA, INERTIA = 0.27, 1.71405e-2, 1.32801e-4  # m, m2, m4 of a steel pipe whose wall is 22 mm
@@ -55,8 +55,8 @@ def laid(seabed: Mapping, size: float, *stages: Mapping, **more: Mapping) -> lis
         pipe=PIPE,
         length=2500.0,
         elements=round(2500.0 / size),
-        start=held(0.0, 0.0, 0.5 * D),
-        end=held(1500.0, 0.0, 1500.0),
+        start=prescribed(0.0, 0.0, 0.5 * D),
+        end=prescribed(1500.0, 0.0, 1500.0),
         seabed=seabed,
         gravity=9.81,
         dimension=2,
@@ -68,7 +68,7 @@ def laid(seabed: Mapping, size: float, *stages: Mapping, **more: Mapping) -> lis
     law = seabed_contact.law
     arc = assembly.line.arc[:-1, None] + assembly.line.length[:, None] * stations.gauss(GAUSS_POINTS).points
 
-    def watch(stepper: TimeStepper, step: Accepted) -> None:
+    def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         seen = seabed_contact.evaluate(assembly.line.trial(stepper.now))
         force = np.zeros_like(seabed_contact.share)
         force[seen.touching.elements] = seen.touching.force
@@ -78,7 +78,7 @@ def laid(seabed: Mapping, size: float, *stages: Mapping, **more: Mapping) -> lis
 
     before = State.at_rest(0.0, assembly.size)
     for stage in assembly.scene.stages:
-        before = run_stage(assembly, stage, before, Watcher(watch), Clock.new())
+        before = run_stage(assembly, stage, before, Watcher(watch), Timer.new())
     return found
 
 

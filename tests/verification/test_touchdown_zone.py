@@ -8,14 +8,14 @@ import h5py
 import numpy as np
 import pytest
 
-from riser_soil.contact.touchdown import Stretch
+from riser_soil.contact.touchdown import ContactInterval
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
 from riser_soil.results.touchdown_zone import joined
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import LAY, Mapping, touchdown
-from tests.support.riser_scenes import dynamic, held, riser_scene, static
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 
 EI, ALLOWED, RADIUS = 2.0e4, 4.0, 0.1
 PIPE: Mapping = {"EA": 1e7, "EI": EI, "mass": 60.0, "outer_diameter": 2.0 * RADIUS, "submerged_weight": 300.0}
@@ -30,8 +30,8 @@ def sagging(stiffness: float = 1e5, **more: object) -> Mapping:
         pipe=PIPE | {"min_bend_radius": ALLOWED},
         length=60.0,
         elements=80,
-        start=held(0.0, 0.0, 8.0),
-        end=held(48.0, 0.0, 8.0),
+        start=prescribed(0.0, 0.0, 8.0),
+        end=prescribed(48.0, 0.0, 8.0),
         seabed={"kind": "spring", "stiffness": stiffness},
         gravity=9.81,
         **more,
@@ -123,7 +123,8 @@ def test_only_what_is_asked_and_known(tmp_path: Path) -> None:
 def test_where_line_types_meet_the_one_nearer_to_its_limit_counts(tmp_path: Path) -> None:
     """A cantilever of two pipes: the moment at the joint is one, the curvatures are M/EI of either pipe."""
     soft, stiff = PIPE | {"min_bend_radius": 3.0}, PIPE | {"EI": 4.0 * EI, "min_bend_radius": 10.0}
-    scene = riser_scene(static(), pipe=soft, length=2.0, elements=4, start=held(0, 0, 0, rotation="fixed"), end="free")
+    clamped = prescribed(0, 0, 0, rotation="fixed")
+    scene = riser_scene(static(), pipe=soft, length=2.0, elements=4, start=clamped, end="free")
     scene["line_types"]["stiff"] = stiff
     scene["riser"]["segments"].insert(0, {"line_type": "stiff", "length": 2.0, "elements": 4})
     scene["riser"]["initial"] = "straight"
@@ -147,7 +148,8 @@ def test_embedment_in_soil_counts_from_where_it_lay(tmp_path: Path) -> None:
 
 
 def test_ground_after_ground_is_one_stretch() -> None:
-    on_seabed, on_soil, far = Stretch(0.0, 10.0, 0, 9), Stretch(10.4, 20.0, 0, 5), Stretch(25.0, 30.0, 8, 9)
+    on_seabed, on_soil = ContactInterval(0.0, 10.0, 0, 9), ContactInterval(10.4, 20.0, 0, 5)
+    far = ContactInterval(25.0, 30.0, 8, 9)
     assert [s[:2] for s in joined([far, on_soil, on_seabed], near=0.5)] == [(0.0, 20.0), (25.0, 30.0)]
     assert len(joined([on_seabed, on_soil], near=0.3)) == 2
     assert joined([], near=1.0) == []

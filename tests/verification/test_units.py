@@ -16,14 +16,14 @@ from mpi4py import MPI
 from riser_soil.assembly import build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.results.observer import riser_snapshot
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher
-from tests.support.riser_scenes import dynamic, held, riser_scene, static
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 
 SCALES = (1e-6, 1e-3, 1e3, 1e6)
 SEABEDS: dict[str, Mapping] = {
@@ -53,8 +53,8 @@ def hose(s: float, seabed: str, dimension: int, time_step: float | str) -> Mappi
         pipe=pipe,
         length=40.0 * s,
         elements=60,
-        start=held(0.0, 0.0, 0.075 * s),
-        end=held(28.0 * s, 0.0, 15.0 * s),
+        start=prescribed(0.0, 0.0, 0.075 * s),
+        end=prescribed(28.0 * s, 0.0, 15.0 * s),
         seabed=ground,
         contact={"friction": {"axial": 0.4}},
         water={"density": 1025.0},
@@ -69,7 +69,7 @@ def told(s: float, seabed: str, dimension: int = 2, time_step: float | str = 0.1
     assembly = build(scene_from_mapping(hose(s, seabed, dimension, time_step)), MPI.COMM_SELF)
     rows = list[list[float]]()
 
-    def watch(stepper: TimeStepper, step: Accepted) -> None:
+    def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         riser, contact = riser_snapshot(assembly, stepper), assembly.seabed
         assert contact is not None
         forces = [riser.start_force[0] / s**3, riser.effective_tension[-1] / s**3, riser.bending_moment.max() / s**4]
@@ -79,7 +79,7 @@ def told(s: float, seabed: str, dimension: int = 2, time_step: float | str = 0.1
 
     before = State.at_rest(0.0, assembly.size)
     for stage in assembly.scene.stages:
-        before = run_stage(assembly, stage, before, Watcher(watch), Clock.new())
+        before = run_stage(assembly, stage, before, Watcher(watch), Timer.new())
     return np.array(rows)
 
 

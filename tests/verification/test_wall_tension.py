@@ -13,7 +13,7 @@ from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import held, riser_scene, static, tell
+from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
 
 G, RHO, OIL, L = 9.81, 1025.0, 850.0, 40.0
 OUTER, INNER, MASS = 0.3, 0.2, 120.0
@@ -25,12 +25,13 @@ def hanging(top: float, contents: Mapping | None = None, **more: Any) -> Mapping
     """A closed pipe that hangs from its start down to its free end."""
     riser: Mapping = {"unstressed": {"points": [[0.0, 0.0, top], [0.0, 0.0, top - L]]}}
     riser |= {"contents": contents} if contents else {}
-    sizes: dict[str, Any] = {"pipe": PIPE, "length": L, "elements": 8, "start": held(0.0, 0.0, top), "end": "free"}
+    sizes: dict[str, Any] = {"pipe": PIPE, "length": L, "elements": 8, "end": "free"}
+    sizes["start"] = prescribed(0.0, 0.0, top)
     return riser_scene(static(), riser=riser, gravity=G, **(sizes | more))
 
 
 def settled(scene: Mapping) -> RiserSnapshot:
-    (stage,) = tell(scene)
+    (stage,) = stage_histories(scene)
     return stage.end
 
 

@@ -1,6 +1,6 @@
 """Waves along a bar: it strikes a rigid floor, or is pulled taut; with the speed v and c = sqrt(EA/m).
 
-Until a wave returns from the other end the force is EA v/c = m c v, twice that where the wave meets a held end; a bar
+Until a wave returns from the other end the force is EA v/c = m c v, twice that where the wave meets a fixed end; a bar
 that falls on a rigid floor stays there for 2 L/c and leaves with the speed that it came with.
 K. F. Graff, Wave motion in elastic solids (1975), chapter 2.
 """
@@ -16,13 +16,13 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import Clock
+from riser_soil.core.system import Timer
 from riser_soil.results.observer import riser_snapshot
-from riser_soil.solve.time_stepper import Accepted, TimeStepper
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built
-from tests.support.riser_scenes import dynamic, held, riser_scene
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene
 
 L, MASS, EA, V = 10.0, 100.0, 1e8, 1.0
 C = float(np.sqrt(EA / MASS))
@@ -51,10 +51,10 @@ def seen(mapping: Mapping, axis: int, v: Array, look: Callable[[Any, TimeStepper
     assembly.line.nodal(rates)[:, axis] = v
     before = State(0.0, np.zeros(assembly.size), rates, np.zeros(assembly.size))
 
-    def watch(stepper: TimeStepper, step: Accepted) -> None:
+    def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         rows.append((step.t / PASS, *look(assembly, stepper)))
 
-    run_stage(assembly, assembly.scene.stages[0], before, Watcher(watch), Clock.new())
+    run_stage(assembly, assembly.scene.stages[0], before, Watcher(watch), Timer.new())
     return np.array(rows).T
 
 
@@ -124,14 +124,14 @@ def test_bar_against_a_rigid_wall_converges(rho_inf: float) -> None:
 
 
 def taut_peak(folder: Path, steps: int, elements: int, rho_inf: float = 0.8) -> float:
-    """Largest force at the held start over 2 m c v, as the end of a slack straight line moves off."""
+    """Largest force at the prescribed start over 2 m c v, as the end of a slack straight line moves off."""
     line = scene(
         steps,
         duration=2.2,
         elements=elements,
         rho_inf=rho_inf,
-        start=held(0.0, 0.0, 0.0),
-        end=held(L, 0.0, 0.0),
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(L, 0.0, 0.0),
         riser={"initial": "straight"},
         stage={"motion": {"end": {"table": str(_moving_off(folder / "motion.csv"))}}},
     )
@@ -170,12 +170,12 @@ def test_slack_line_pulled_taut_converges(tmp_path: Path, rho_inf: float) -> Non
 
 
 def test_tether_that_snaps_taut_in_no_time_overshoots_by_a_sixth() -> None:
-    """A line flies off along its axis until its start is held. At a front no mesh resolves a peak stays above m c v,
+    """A line flies off along its axis until its start is stopped. At a front no mesh resolves a peak stays above m c v,
     however fine the steps; after it the force is m c v.
     """
     peaks = []
     for steps in (20, 40):
-        line = scene(steps, 1.8, steps, 0.8, start=held(0.0, 0.0, 0.0), end="free", riser={"initial": "straight"})
+        line = scene(steps, 1.8, steps, 0.8, start=prescribed(0.0, 0.0, 0.0), end="free", riser={"initial": "straight"})
         speeds = np.full(steps + 1, V)
         speeds[0] = 0.0
         t, force = seen(line, 0, speeds, lambda assembly, stepper: (_start_force(assembly, stepper),))

@@ -1,4 +1,4 @@
-"""What was made of an object, kept by the object's identity."""
+"""Identity cache: values computed from an object, kept by the object's identity."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ Of = TypeVar("Of")
 Made = TypeVar("Made")
 
 
-class Remembered(Generic[Of, Made]):
-    """What was made of the first objects since `forget`, and of the latest ones; objects must not change while kept.
+class IdentityCache(Generic[Of, Made]):
+    """Values computed from the first objects since `forget`, and from the latest ones; objects must not change while
+    kept.
 
     Equal objects are not the same: comparing them would take as long as making. Whoever makes passes the function along
     with the object, so that nothing here holds on to its owner.

@@ -1,4 +1,4 @@
-"""Which entries of the tangent contact may need: the candidates, kept until the riser moves out of them."""
+"""Candidate contact pairs, which set the sparsity pattern of contact in the tangent."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ EMPTY = np.empty(0, dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False)
-class Patch:
+class CandidatePairs:
     """Candidate pairs of a node and a facet, sorted and without repetition.
 
     pairs (mp,): node·facets + facet, where `facets` is the number of facets.
@@ -23,18 +23,18 @@ class Patch:
     pairs: IntArray
 
     @classmethod
-    def of(cls, facets: int, node: IntArray, facet: IntArray) -> Patch:
+    def of(cls, facets: int, node: IntArray, facet: IntArray) -> CandidatePairs:
         """Candidates from lists (n,) of a node and the facet below it."""
         return cls(facets, np.unique(node * facets + facet))
 
     @classmethod
-    def none(cls, facets: int) -> Patch:
+    def none(cls, facets: int) -> CandidatePairs:
         """No candidates."""
         return cls(facets, EMPTY)
 
-    def joined(self, other: Patch) -> Patch:
+    def joined(self, other: CandidatePairs) -> CandidatePairs:
         """The candidates of both."""
-        return Patch(self.facets, np.union1d(self.pairs, other.pairs).astype(np.int64))
+        return CandidatePairs(self.facets, np.union1d(self.pairs, other.pairs).astype(np.int64))
 
     @property
     def nodes(self) -> IntArray:
@@ -53,7 +53,7 @@ class Patch:
         return np.where(self.pairs[at] == wanted, at, -1)
 
 
-def around(nodes: IntArray, xy: Array, points: Array, facets: IntArray, distance: float) -> Patch:
+def pairs_around(nodes: IntArray, xy: Array, points: Array, facets: IntArray, distance: float) -> CandidatePairs:
     """Nodes (n,) at xy (n, 2), paired with all facets whose horizontal box is within a distance [m].
 
     points (np, 3): deformed points. facets (nf, nv).
@@ -61,4 +61,4 @@ def around(nodes: IntArray, xy: Array, points: Array, facets: IntArray, distance
     boxes = bounds(points, facets)
     low, high = boxes[None, :, :2] - distance, boxes[None, :, 2:] + distance
     i, facet = np.nonzero(np.all((xy[:, None] >= low) & (xy[:, None] <= high), axis=2))
-    return Patch.of(len(facets), nodes[i], facet)
+    return CandidatePairs.of(len(facets), nodes[i], facet)
