@@ -2,10 +2,11 @@
 
 import argparse
 
-from benchmarks import adaptive, coupled, impact, riser_only, tank
+from benchmarks import adaptive, coupled, impact, riser_only, tank, twins
 
 argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__).parse_args()
 riser_only.report()
+twins.report()
 coupled.report()
 adaptive.report()
 impact.report()

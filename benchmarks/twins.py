@@ -6,7 +6,9 @@ alike. `python -m benchmarks.twins` prints the table alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import argparse
+import functools
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from statistics import median
 
@@ -43,13 +45,14 @@ def measure() -> dict[str, tuple[float, float]]:
     benches = [Bench(stage) for stage in stages]
     iterations = [[timed_iteration(bench) for bench in benches] for _ in range(STEPS)]
     found["Newton iteration"] = medians(iterations)
-    found["step"] = in_turn([lambda stage=stage: stage.walk(1) for stage in stages], STEPS)
-    for thing in (*benches, *stages):
-        thing.destroy()
+    found["step"] = in_turn([functools.partial(stage.walk, 1) for stage in stages], STEPS)
+    for bench, stage in zip(benches, stages, strict=True):
+        bench.destroy()
+        stage.destroy()
     return found
 
 
-def in_turn(pair: list[Action], repeats: int) -> tuple[float, float]:
+def in_turn(pair: Sequence[Action], repeats: int) -> tuple[float, float]:
     for action in pair:
         action()
     return medians([[timed(action) for action in pair] for _ in range(repeats)])
@@ -128,11 +131,12 @@ def damped(stage: TimedStage, state: State) -> Action:
 
 def rotary(stage: TimedStage, state: State) -> Action:
     line = stage.assembly.line
-    part, K = RotaryInertia(line, np.ones(line.length.size)), matrices(line)
+    sections, K = RotaryInertia(line, np.ones(line.length.size))._sections, matrices(line)
+    turning = [np.ascontiguousarray(line.nodal(values)[:, line.dimension :]) for values in (state.u, state.v, state.a)]
 
     def act() -> None:
-        part.element_forces(state)
-        part.tangent(state, WEIGHTS, {line.name: K})
+        sections.forces(*turning)
+        sections.add_tangent(K, WEIGHTS, *turning)
 
     return act
 
@@ -144,4 +148,5 @@ def midpoint(line: Line, state: State) -> Action:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     report()

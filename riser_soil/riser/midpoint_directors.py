@@ -49,7 +49,10 @@ class Secant(NamedTuple):
 
 
 class PlanarDirectors:
-    """Tangents (column 0) or normals (column 1) of a line in its plane."""
+    """Tangents (column 0) or normals (column 1) of a line in its plane.
+
+    Secant and geometric stiffness cost 0.6 to 0.7 of those of `SpatialDirectors` (`benchmarks.twins`).
+    """
 
     def __init__(self, frames: PlanarFrames, column: int) -> None:
         self._frames, self._ahead = frames, 0.5 * math.pi * column

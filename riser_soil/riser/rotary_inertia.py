@@ -13,7 +13,10 @@ from riser_soil.riser.line_part import LinePart
 
 
 class PlanarSections:
-    """Sections that turn in the line's plane; inertia [kg m2] of each element end."""
+    """Sections that turn in the line's plane; inertia [kg m2] of each element end.
+
+    Moments and tangent, linear here, cost 0.7 to 0.9 of those of `SpatialSections` (`benchmarks.twins`).
+    """
 
     def __init__(self, inertia: Array) -> None:
         self._inertia = inertia

