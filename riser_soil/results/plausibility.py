@@ -19,6 +19,8 @@ from riser_soil.scene.stages import Stage
 
 # Strain from which EA and EI would be no constants, and a section would not keep its shape.
 LARGE_STRAIN = 0.1
+# Stretch in plan of the soil's surface under the riser from which small strain no longer holds.
+LARGE_STRETCH = 1.2
 # Shares of the largest moment by which turn and end moments of an element may differ, see riser/resolution.py.
 # Of 48 catenaries, hanging, clamped and on the seabed, those whose largest moment is off by less than 2 % stay below.
 SMOOTH_MISFIT, STEEP_MISFIT = 0.1, 0.2
@@ -59,7 +61,7 @@ class Plausibility:
         self._last_stage = stage.name == self._assembly.scene.stages[-1].name
         self._unit = "s" if stage.kind == "dynamic" else "of the load"
         self._largest = 0.0  # moment [N.m]
-        self._axial = self._bending = self._smooth = self._steep = LargestValue()
+        self._axial = self._bending = self._smooth = self._steep = self._stretch = LargestValue()
 
     def look(self, t: float, state: State, riser: RiserSnapshot, touch: ContactSnapshot) -> None:
         """t: s of the run (static stages: load factor)."""
@@ -68,8 +70,9 @@ class Plausibility:
         self._bending = self._bending.or_larger(self.radius * riser.curvature, arc, t)
         self._largest = max(self._largest, float(riser.bending_moment.max()))
         contact = self._assembly.soil_contact
-        if contact is not None and not self._touched:
-            self._touched = bool(contact.force_per_length(state).any())
+        if contact is not None:
+            self._touched = self._touched or bool(contact.force_per_length(state).any())
+            self._stretch = self._stretch.or_larger(np.array([contact.stretch(state)]), np.full(1, np.nan), t)
         down = not math.isnan(touch.touchdown_arc)
         self._where = "touches down at" if down else "hangs with its lowest point at"
         self._lowest = touch.touchdown_position if down else riser.position[riser.position[:, 2].argmin()]
@@ -92,6 +95,7 @@ class Plausibility:
     def _told(self) -> Iterator[str]:
         yield from self._strains()
         yield from self._blurred()
+        yield from self._stretched()
         if self._last_stage and not self._touched:
             yield self._never()
 
@@ -121,6 +125,15 @@ class Plausibility:
                 )
                 return
 
+    def _stretched(self) -> Iterator[str]:
+        if self._stretch.value > LARGE_STRETCH:
+            yield (
+                f"the soil's surface under the riser is stretched to {self._stretch.value:.3g} times its area at "
+                f"{self._stretch.t:.5g} {self._unit}: soil is computed at small strain, and soil that flows from under "
+                f"the pipe bears too little from some {LARGE_STRETCH:g} times on; take the depth that the riser sinks "
+                "to for no figure, or raise su"
+            )
+
     def _at(self, worst: LargestValue) -> str:
         return f"{worst.value:.3g} at arc {worst.arc:.5g} m and {worst.t:.5g} {self._unit}"
 
@@ -133,13 +146,18 @@ class Plausibility:
             f"m: at the end it {self._where} [{down}] m; move the soil there, or leave it out"
         )
 
+    @property
+    def _largest_values(self) -> tuple[LargestValue, ...]:
+        return self._axial, self._bending, self._smooth, self._steep, self._stretch
+
     def state(self) -> Saved:
-        worst = [astuple(found) for found in (self._axial, self._bending, self._smooth, self._steep)]
+        worst = [astuple(found) for found in self._largest_values]
         seen = {"largest": np.array(self._largest), "touched": np.array(self._touched), "worst": np.array(worst)}
         return seen | {"where": packed(self._where), "lowest": self._lowest}
 
     def restore(self, saved: Saved) -> None:
         """In the stage that has begun."""
         self._largest, self._touched = float(saved["largest"]), bool(saved["touched"])
-        self._axial, self._bending, self._smooth, self._steep = (LargestValue(*row) for row in saved["worst"].tolist())
+        found = (LargestValue(*row) for row in saved["worst"].tolist())
+        self._axial, self._bending, self._smooth, self._steep, self._stretch = found
         self._where, self._lowest = unpacked(saved["where"]), saved["lowest"]
