@@ -494,7 +494,7 @@ NOT_YET = [
         "randolph-quiggin",
     ),
     Bad("soil:\n", "soil:\n  inertia: true\n", 22, "soil.inertia", "true", "not supported yet"),
-    Bad("method: node", "method: surface", 26, "contact.method", '"surface"', "not supported yet"),
+    Bad("method: node", "method: surfaces", 26, "contact.method", '"surfaces"', 'did you mean "surface"?'),
     Bad("method: node", "friction: 0.5", 26, "contact.friction", "0.5", "must be a mapping"),
     Bad("method: node", "suction: {cap: 1.0}", 26, "contact.suction.reach", "missing", "the key is required here"),
     Bad(

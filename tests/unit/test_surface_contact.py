@@ -137,6 +137,27 @@ def test_the_tangent_is_the_slope_of_the_residual(kind: str, dimension: int) -> 
 
 
 @KINDS
+def test_an_end_of_the_riser_presses_as_a_sphere(kind: str) -> None:
+    """Beyond the end the distance is that from its middle, and the tangent that of such a distance."""
+    ends = np.array([[1.02, 0.03, RADIUS - 0.03], [1.6, 0.1, RADIUS - 0.02], [2.1, 0.2, RADIUS + 0.3]])
+    made = case(ends, top(kind))
+    near = made.contact.evaluate(made.state()).pressed.points
+    assert np.any(near.along == 0.0)
+    u, h = shaken(made, 2, 0.002), 1e-7
+    direction = shaken(made, 3, 1.0)
+    slope = differences(partial(along_line, made, u, direction), h)
+    wanted = made.tangent(u) @ direction
+    assert np.abs(wanted - slope).max() < 2e-6 * np.abs(wanted).max()
+
+
+def test_soil_that_has_come_through_is_pushed_down() -> None:
+    """A pipe that a guess has put too deep still presses on the soil above its axis, not on its way up."""
+    made = case(sagging(depth=RADIUS + 0.02), top("quad4"))
+    on_soil = made.contact.force_on_soil(made.state())
+    assert on_soil[2] < -0.5 * np.linalg.norm(on_soil)
+
+
+@KINDS
 def test_forces_and_moments_on_riser_and_soil_sum_to_zero(kind: str) -> None:
     surface = top(kind)
     surface.committed = 0.01 * np.random.default_rng(5).normal(size=surface.points.shape)

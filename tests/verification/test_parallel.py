@@ -29,6 +29,9 @@ def scene(name: str) -> Mapping:
     """Scenes short enough to compute three times, solved to 1e-10 of their forces."""
     if name in ("hex", "tet"):
         return touchdown(LAY, heave(1.0), kind=name, su=1000.0, dimension=3, tolerance=1e-10)
+    if name == "surface":
+        pressed = touchdown(LAY, heave(0.5), su=6000.0, dimension=3, tolerance=1e-10)
+        return pressed | {"contact": {"method": "surface", "smoothing": 1e-3}}
     if name == "sea":
         return in_waves(0.1, 21.0) | {"output": {"interval": 0.1}}
     given: Mapping = YAML(typ="safe").load({"demo": DEMO, "riser": CATENARY, "clay": CLAY}[name])
@@ -116,6 +119,10 @@ def assert_same_summary(other: Any, one: Any, place: str = "summary") -> None:
 @pytest.mark.parametrize("name", ["hex", "tet", "riser"])
 def test_small_scenes_agree_on_several_ranks(name: str, ranks: int) -> None:
     assert_same(name, ranks)
+
+
+def test_surface_contact_agrees_on_two_ranks() -> None:
+    assert_same("surface", 2)
 
 
 @pytest.mark.parametrize("name", ["sea", "clay"])

@@ -37,6 +37,11 @@ def plastic_clay_in_space() -> Scene:
     return scene_from_mapping(touchdown(LAY, heave(0.6), dimension=3))
 
 
+def surface_on_clay() -> Scene:
+    scene = touchdown(LAY, heave(0.6), su=1000.0)
+    return scene_from_mapping(scene | {"contact": {"method": "surface", "smoothing": 1e-3}})
+
+
 SHORT = {
     "first scene": (lambda: shortened("demos/first_scene.yaml", 1.0), (5,)),
     "catenary": (lambda: shortened("demos/catenary/scene.yaml", 1.0), (1, 6)),
@@ -45,6 +50,7 @@ SHORT = {
     "waves": (two_storms, (4, 7)),
     "touchdown on clay": (lambda: shortened("demos/touchdown_clay/scene.yaml", 1.0, *COARSE), (4,)),
     "plastic clay in space": (plastic_clay_in_space, (4,)),
+    "surface contact on plastic clay": (surface_on_clay, (4,)),
     "midpoint rule": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT), (6,)),
     "midpoint rule in space": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT, *IN_SPACE), (6,)),
     "automatic steps": (lambda: shortened("demos/catenary/scene.yaml", 2.0, "stages.1.time_step=auto"), (7,)),
