@@ -24,7 +24,7 @@ from riser_soil.soil.surface import SoilTop
 
 
 @dataclass(frozen=True, eq=False)
-class Pressed:
+class ActivePairs:
     """What touches at a trial: n points in m pairs of an element and a facet.
 
     points: the n points. pair (n,): of each point; element, facet (m,): of each pair. forms, C: see `gap_forms`.
@@ -72,7 +72,7 @@ class SurfaceState:
 
     trial: Trial
     deformed: Array
-    pressed: Pressed
+    pressed: ActivePairs
 
 
 class SurfaceContact(SoilContact):
@@ -123,7 +123,7 @@ class SurfaceContact(SoilContact):
         element, facet = np.divmod(pairs, len(self._soil.facets))
         answer = self.law.update(-near.gap, self.law.initial_history(near.gap.shape))
         weighed = near.area * answer.force, near.area * answer.slope, float(near.area @ answer.stored)
-        pressed = Pressed(near, pair, element, facet, forms, C, *weighed, self.line.dimension)
+        pressed = ActivePairs(near, pair, element, facet, forms, C, *weighed, self.line.dimension)
         return SurfaceState(trial, deformed, pressed)
 
     def _axis(self, trial: Trial) -> Axis:
@@ -169,7 +169,7 @@ class SurfaceContact(SoilContact):
         np.add.at(F, found.pressed.element, found.pressed.gradient[:, : 4 * d].reshape(-1, 4, d))
         return F
 
-    def _on_facets(self, pressed: Pressed) -> Array:
+    def _on_facets(self, pressed: ActivePairs) -> Array:
         """Residual (m, 3 nv) of the pairs' facets [N]."""
         return pressed.gradient[:, 4 * self.line.dimension :]
 
@@ -182,7 +182,7 @@ class SurfaceContact(SoilContact):
         add_blocks(values[SOIL], places, np.swapaxes(by_dofs, 1, 2) @ pressed.hessian() @ by_dofs)
         found.trial.add_turning(values[self.line.name], 1.0, self._on_line(found))
 
-    def _by_dofs(self, trial: Trial, pressed: Pressed) -> Array:
+    def _by_dofs(self, trial: Trial, pressed: ActivePairs) -> Array:
         """Derivative (m, nz, nr) of the pairs' q and facet nodes by their dofs."""
         P, d = trial.turn.P[pressed.element], self.line.dimension
         n, soil = d + P.shape[3], pressed.forms.shape[2] - 4 * d
