@@ -1,5 +1,4 @@
-"""Distance of points of the soil from the pipe's cylinder around its curved axis, with its exact first and second
-derivatives.
+"""Gap between points of the soil and the pipe's cylinder around its curved axis, with exact derivatives.
 
 The axis is the cubic c(s) = Σ N_a(s) q_a of a beam element. With s the closest place to the point p, d = p - c,
 rho = |d|, n = d/rho, tau = c'/|c'|, b = tau x n and kappa = n·c'', the gap g = rho - R to the radius R has
