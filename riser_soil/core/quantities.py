@@ -65,6 +65,7 @@ FLATTEST = 1e-12
 Real = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
 NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0)]
+Share = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, lt=1)]
 PoissonRatio = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=-1, lt=0.5)]
 Count = Annotated[int, Field(strict=True, ge=1, le=1_000_000_000)]
 ElementCount = Annotated[int, Field(strict=True, ge=1, le=MOST_ELEMENTS)]

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 from pydantic import Field
 
 from riser_soil.core.lazy import LazyModule
-from riser_soil.core.quantities import PoissonRatio, Ratio, StrengthGradient, Stress
-from riser_soil.seabed.bearing import Number, Strength, strip_capacity
-from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Bearing, SoilLaw, StressUpdate
+from riser_soil.soil.clay import UndrainedClay
+from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, StressUpdate
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,41 +25,13 @@ else:
     np, mandel = LazyModule("numpy"), LazyModule("riser_soil.soil.mandel")
 
 
-class VonMises(SoilLaw):
+class VonMises(UndrainedClay):
     """Undrained clay: elastic, perfectly plastic; su is the strength in simple shear and plane strain."""
 
     kind: Literal["von-mises"] = Field(description="the law's name")
-    su: Stress = Field(description="undrained shear strength at the seabed [Pa]")
-    su_gradient: StrengthGradient = Field(default=0.0, description="growth of su with depth [Pa/m]")
-    E_over_su: Ratio = Field(description="Young's modulus over su, the same at every depth [-]")
-    nu: PoissonRatio = Field(default=0.49, description="Poisson's ratio [-]")
-
-    @property
-    def surface_modulus(self) -> float:
-        return self._modulus(self._strength.at(0.0))
-
-    @property
-    def _strength(self) -> Strength:
-        return Strength(self.su, self.su_gradient)
-
-    def _modulus(self, strength: Number) -> Number:
-        """Young's modulus of clay of that strength [Pa]."""
-        return self.E_over_su * strength
 
     def at_points(self, depth: Array, initial: Array) -> PerfectlyPlastic:
-        strength = self._strength.at(depth)
-        E = self._modulus(strength)
-        moduli = mandel.bulk_modulus(E, self.nu), mandel.shear_modulus(E, self.nu)
-        return PerfectlyPlastic(*moduli, np.sqrt(3.0) * strength, initial)
-
-    def wrong_within(self, depth: float) -> tuple[str, str] | None:
-        if self._strength.at(depth) > 0.0:
-            return None
-        return "su must stay positive down to the block's bottom", "raise su_gradient or take a shallower block"
-
-    def bearing(self, width: float) -> Bearing:
-        capacity = strip_capacity(self._strength, width)
-        return Bearing(capacity, f"(2 + pi) su D + su_gradient D^2/4 with D = {width:.4g} m")
+        return PerfectlyPlastic(*self._constants(depth), initial)
 
 
 @dataclass(frozen=True, eq=False)

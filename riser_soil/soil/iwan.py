@@ -1,0 +1,157 @@
+"""Cyclic clay by Iwan's overlay of elastic, perfectly plastic elements in parallel: exact Masing loops.
+
+The backbone τ(γ) in simple shear is a polygon through points of a curve of G/G0 by shear strain, up to su, where it
+stays. Its slopes fall, k1 > k2 > …; element i has the modulus Gi = ki - k(i+1) and the strength Gi γi, γi being the
+strain at the polygon's corner. Each is a von Mises element with radial return (see `von_mises`), the bulk modulus is
+elastic. W. D. Iwan, On a class of models for the yielding behavior of continuous and composite systems, J. Appl. Mech.
+34 (1967).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, ClassVar, Literal, Self
+
+from pydantic import Field, model_validator
+
+from riser_soil.core.lazy import LazyModule
+from riser_soil.core.quantities import ElementCount, Positive, Share, wrong
+from riser_soil.soil.clay import UndrainedClay
+from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, StressUpdate
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from riser_soil.core.arrays import Array
+    from riser_soil.soil import mandel
+else:
+    np, mandel = LazyModule("numpy"), LazyModule("riser_soil.soil.mandel")
+
+SMALLEST, LARGEST = 0.05, 200.0  # corners of the hyperbola, over su/G0
+
+
+class IwanOverlay(UndrainedClay):
+    """Undrained clay under cyclic load: Masing loops from a curve of G/G0 by shear strain, up to su."""
+
+    kind: Literal["iwan"] = Field(description="the law's name")
+    elements: ElementCount = Field(
+        default=12,
+        le=100,
+        description="without curve: elements in parallel, as many as corners of a hyperbola with the asymptote su",
+    )
+    curve: tuple[tuple[Positive, Share], ...] | None = Field(
+        default=None,
+        description="secant modulus over its initial value by shear strain, [[γ, G/G0], ...], γ growing; its last side "
+        "goes on up to su",
+    )
+
+    @model_validator(mode="after")
+    def _is_a_backbone(self) -> Self:
+        points = [(0.0, 0.0), *((strain, strain * ratio) for strain, ratio in self.curve or ())]
+        sides = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(points)]
+        slopes = [1.0, *(rise / run if run > 0.0 else math.inf for run, rise in sides)]
+        if slopes[-1] <= 0.0 or any(after > before for before, after in pairwise(slopes)):
+            raise wrong(
+                "curve",
+                "stress, γ times G/G0, must rise with γ, ever less steeply from the slope 1 on",
+                "correct the points, or leave curve out for a hyperbola",
+            )
+        return self
+
+    def at_points(self, depth: Array, initial: Array) -> Overlay:
+        bulk, shear, limit = self._constants(depth)
+        strain, slope = self._backbone()
+        parts = (slope - np.append(slope[1:], 0.0)) * shear[:, None]
+        return Overlay(bulk, shear, parts, np.sqrt(3.0) * parts * strain, limit, initial)
+
+    def _backbone(self) -> tuple[Array, Array]:
+        """Shear strains of the corners, the last one where the stress is su, and slopes before them over G0, (N,)."""
+        strength = 2.0 * (1.0 + self.nu) / self.E_over_su  # over G0
+        if self.curve is None:
+            x = np.append(0.0, np.geomspace(SMALLEST, LARGEST, self.elements))
+            strain, stress = strength * x, strength * x / (1.0 + x)
+            stress[-1] = strength
+        else:
+            strain, ratio = np.array([(0.0, 1.0), *self.curve]).T
+            stress = strain * ratio
+        slope = np.diff(stress) / np.diff(strain)
+        last = min(int(np.searchsorted(stress[1:], strength)), len(slope) - 1)
+        corners = strain[1 : last + 2].copy()
+        corners[last] = strain[last] + (strength - stress[last]) / slope[last]
+        return corners, slope[: last + 1]
+
+
+@dataclass(frozen=True, eq=False)
+class Overlay:
+    """Bulk and shear modulus (n,); shear moduli and largest equivalent stresses of the elements (n, N), which sum up to
+    the shear modulus and to `limit` (n,); initial stress (n, 6) [Pa].
+
+    History (n, 7 + 6 N): stress, equivalent plastic strain, deviators of the elements.
+    """
+
+    bulk: Array
+    shear: Array
+    moduli: Array
+    limits: Array
+    limit: Array
+    initial: Array
+    symmetric: ClassVar[bool] = True
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        own = (f"element_{i + 1}{name[6:]}" for i in range(self.moduli.shape[1]) for name in STRESS)
+        return (*STRESS, PLASTIC_STRAIN, *own)
+
+    def start(self) -> Array:
+        return np.column_stack((self.initial, np.zeros(len(self.limit)), self._first.reshape(len(self.limit), -1)))
+
+    @property
+    def _first(self) -> Array:
+        """Deviators (n, N, 6) of elements as loaded in proportion to the initial stress: the backbone at its q."""
+        s = mandel.deviator(self.initial)
+        q = np.sqrt(1.5 * mandel.product(s, s))
+        corners = self.limits / (3.0 * self.moduli)  # equivalent strains
+        strain = np.array([self._strain_at(*point) for point in zip(q, corners, self.moduli, strict=True)])
+        of_each = np.minimum(3.0 * self.moduli * strain[:, None], self.limits)
+        return of_each[:, :, None] * (s / np.where(q > 0.0, q, 1.0)[:, None])[:, None, :]
+
+    @staticmethod
+    def _strain_at(q: float, corners: Array, moduli: Array) -> float:
+        stress = np.minimum(corners[:, None], corners) @ (3.0 * moduli)
+        return float(np.interp(q, np.append(0.0, stress), np.append(0.0, corners)))
+
+    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
+        n, e = len(self.limit), mandel.deviator(strain_increment)
+        trial = history[:, 7:].reshape(n, -1, 6) + 2.0 * self.moduli[:, :, None] * e[:, None, :]
+        q = np.sqrt(1.5 * np.einsum("nki,nki->nk", trial, trial))
+        shrink = self.limits / np.maximum(q, self.limits)
+        s = shrink[:, :, None] * trial
+        before = history[:, :6]
+        change = s.sum(axis=1) - mandel.deviator(before)
+        pressed = 3.0 * (self.bulk * mandel.mean(strain_increment))[:, None] * mandel.UNIT
+        stress = before + change + pressed
+        plastic = e - change / (2.0 * self.shear)[:, None]
+        slip = history[:, 6] + np.sqrt(2.0 / 3.0 * mandel.product(plastic, plastic))
+        elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
+        stored = self._stored(stress, s) - self._stored(self.initial, self._first)
+        stored -= mandel.product(self.initial, elastic)
+        after = np.column_stack((stress, slip, s.reshape(n, -1)))
+        return StressUpdate(stress, self._tangent(trial, q, shrink), after, stored, elastic)
+
+    def _stored(self, stress: Array, s: Array) -> Array:
+        """Elastic energy of all elements and of the volume (n,) [J/m3]."""
+        of_elements = np.einsum("nki,nki,nk->n", s, s, 0.25 / self.moduli)
+        return of_elements + 0.5 * mandel.mean(stress) ** 2 / self.bulk
+
+    def _tangent(self, trial: Array, q: Array, shrink: Array) -> Array:
+        """K 1⊗1 + Σ 2 Gi θi (P - n⊗n where it yields)."""
+        moduli = mandel.stiffness(self.bulk, np.einsum("nk,nk->n", self.moduli, shrink))
+        yields = shrink < 1.0
+        weight = np.where(yields, 3.0 * self.moduli * shrink / np.maximum(q, self.limits) ** 2, 0.0)
+        moduli -= np.einsum("nk,nki,nkj->nij", weight, trial, trial, optimize=True)
+        return moduli
+
+    def overstress(self, stress: Array) -> Array:
+        return mandel.von_mises(stress) / self.limit

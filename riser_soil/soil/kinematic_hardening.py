@@ -1,0 +1,161 @@
+"""Cyclic clay by von Mises plasticity with nonlinear kinematic hardening: one backstress, Armstrong & Frederick's.
+
+    f = √(3/2) |s - α| - q0 ≤ 0,   Δα = (2/3) C Δεp - γ α Δp,   Δεp = √(3/2) Δp n,   n = (s - α)/|s - α|
+
+with α bounded by √(3/2) |α| = C/γ, so that q = q0 + C/γ = √3·su at failure. Parameters from su, the modulus and the
+share of the strength that is elastic as in Anastasopoulos et al., Simplified constitutive model for simulation of
+cyclic response of shallow foundations, J. Geotech. Geoenviron. Eng. 137 (2011): C = E, γ = C/(√3·su - q0). Backward
+Euler: with θ = 1/(1 + γ Δp) and η = s_trial - θ α, the direction n is that of η, and Δp solves
+
+    |η| = √(2/3) (q0 + C θ Δp) + √6 G Δp.
+
+Its left side less the right falls with Δp, by √6 G at least, so that the root is one and Newton's method finds it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
+
+from pydantic import Field
+
+from riser_soil.core.lazy import LazyModule
+from riser_soil.core.quantities import Share
+from riser_soil.soil.clay import UndrainedClay
+from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, StressUpdate
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from riser_soil.core.arrays import Array, IntArray
+    from riser_soil.soil import mandel
+else:
+    np, mandel = LazyModule("numpy"), LazyModule("riser_soil.soil.mandel")
+
+BACKSTRESS = tuple(f"backstress_{component}" for component in ("xx", "yy", "zz", "xy", "xz", "yz"))
+MOST_ITERATIONS, CONVERGED = 50, 1e-14  # of Δp; change over the largest that Δp may be
+
+
+class KinematicHardening(UndrainedClay):
+    """Undrained clay under cyclic load: it yields early, hardens up to su, and remembers in which direction."""
+
+    kind: Literal["kinematic-hardening"] = Field(description="the law's name")
+    elastic_share: Share = Field(
+        default=0.1, description="share of su up to which undisturbed clay is elastic, below 1 [-]"
+    )
+
+    def at_points(self, depth: Array, initial: Array) -> CyclicClay:
+        bulk, shear, limit = self._constants(depth)
+        hardening = 9.0 * bulk * shear / (3.0 * bulk + shear)  # Young's modulus
+        return CyclicClay(bulk, shear, limit, self.elastic_share * limit, hardening, initial)
+
+
+class _Step(NamedTuple):
+    """Of points that yield: direction n and η (m, 6), Δp and θ (m,)."""
+
+    n: Array
+    eta: Array
+    slip: Array
+    theta: Array
+
+
+@dataclass(frozen=True, eq=False)
+class CyclicClay:
+    """Elastic moduli, largest equivalent stress, equivalent stress q0 at first yield, hardening modulus C, each (n,),
+    and initial stress (n, 6) [Pa].
+
+    History (n, 13): stress, equivalent plastic strain, backstress. The backstress stores 3/(4 C) α:α, which comes back
+    or stays in the soil.
+    """
+
+    bulk: Array
+    shear: Array
+    limit: Array
+    elastic_limit: Array
+    hardening: Array
+    initial: Array
+    columns: ClassVar[tuple[str, ...]] = (*STRESS, PLASTIC_STRAIN, *BACKSTRESS)
+    symmetric: ClassVar[bool] = False
+
+    def start(self) -> Array:
+        return np.column_stack((self.initial, np.zeros(len(self.limit)), self._first_backstress))
+
+    @property
+    def _first_backstress(self) -> Array:
+        """As if the clay had been loaded to its initial stress: the elastic range lies around it."""
+        s = mandel.deviator(self.initial)
+        q = np.sqrt(1.5 * mandel.product(s, s))
+        most = (self.limit - self.elastic_limit) / np.maximum(q, self.limit - self.elastic_limit)
+        return most[:, None] * s
+
+    @property
+    def _recall(self) -> Array:
+        """γ (n,) [-]."""
+        return self.hardening / (self.limit - self.elastic_limit)
+
+    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
+        stress = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
+        backstress, slip = history[:, 7:].copy(), np.zeros(len(stress))
+        tangent = mandel.stiffness(self.bulk, self.shear)
+        relative = mandel.deviator(stress) - backstress
+        at = np.flatnonzero(np.sqrt(1.5 * mandel.product(relative, relative)) > self.elastic_limit)
+        if at.size:
+            step = self._yielding(mandel.deviator(stress[at]), backstress[at], at)
+            tangent[at] = self._tangent(step, backstress[at], at)
+            moved = step.slip[:, None] * step.n
+            stress[at] -= np.sqrt(6.0) * self.shear[at, None] * moved
+            hardened = backstress[at] + np.sqrt(2.0 / 3.0) * self.hardening[at, None] * moved
+            backstress[at] = step.theta[:, None] * hardened
+            slip[at] = step.slip
+        after = np.column_stack((stress, history[:, 6] + slip, backstress))
+        elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
+        stored = 0.5 * mandel.product(stress - self.initial, elastic) + self._locked_in(backstress)
+        return StressUpdate(stress, tangent, after, stored - self._locked_in(self._first_backstress), elastic)
+
+    def _locked_in(self, backstress: Array) -> Array:
+        """Energy of the backstress (n,) [J/m3]."""
+        return 0.75 / self.hardening * mandel.product(backstress, backstress)
+
+    def _yielding(self, trial: Array, backstress: Array, at: IntArray) -> _Step:
+        """Δp by Newton's method, kept where the root is known to lie."""
+        C, recall, stiff = self.hardening[at], self._recall[at], np.sqrt(6.0) * self.shear[at]
+        root = np.sqrt(2.0 / 3.0)
+
+        def excess(slip: Array) -> tuple[Array, Array, Array, Array]:
+            theta = 1.0 / (1.0 + recall * slip)
+            eta = trial - theta[:, None] * backstress
+            size = np.sqrt(mandel.product(eta, eta))
+            return size - root * (self.elastic_limit[at] + C * theta * slip) - stiff * slip, theta, eta, size
+
+        slip = np.zeros(len(at))
+        found, theta, eta, size = excess(slip)
+        low, high = np.zeros(len(at)), found / stiff
+        most = high.copy()
+        for _ in range(MOST_ITERATIONS):
+            along = mandel.product(eta, backstress) / size
+            falls = stiff + theta**2 * (root * C - recall * along)
+            better = slip + found / falls
+            better = np.where((better < low) | (better > high), 0.5 * (low + high), better)
+            done = np.abs(better - slip) <= CONVERGED * most
+            slip = better
+            found, theta, eta, size = excess(slip)
+            low, high = np.where(found > 0.0, slip, low), np.where(found < 0.0, slip, high)
+            if done.all():
+                break
+        return _Step(eta / size[:, None], eta, slip, theta)
+
+    def _tangent(self, step: _Step, backstress: Array, at: IntArray) -> Array:
+        """Consistent: dΔp = 2G n:dε/h; the direction turns with the strain and with what the backstress recalls."""
+        G, C, recall = self.shear[at], self.hardening[at], self._recall[at]
+        n, theta = step.n, step.theta
+        recalled = (recall * theta**2)[:, None] * backstress
+        h = np.sqrt(6.0) * G + np.sqrt(2.0 / 3.0) * C * theta**2 - mandel.product(n, recalled)
+        by_strain = (2.0 * G / h)[:, None] * n
+        eta = 2.0 * G[:, None, None] * mandel.DEVIATOR + recalled[:, :, None] * by_strain[:, None, :]
+        turn = np.eye(6) - n[:, :, None] * n[:, None, :]
+        share = step.slip / np.sqrt(mandel.product(step.eta, step.eta))
+        flow = n[:, :, None] * by_strain[:, None, :] + share[:, None, None] * (turn @ eta)
+        return mandel.stiffness(self.bulk[at], G) - (np.sqrt(6.0) * G)[:, None, None] * flow
+
+    def overstress(self, stress: Array) -> Array:
+        return mandel.von_mises(stress) / self.limit

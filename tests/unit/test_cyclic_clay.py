@@ -1,0 +1,207 @@
+"""Clay under cyclic strain: backbones, Masing loops and damping against closed forms, tangents, dissipation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from riser_soil.core.arrays import Array
+from riser_soil.errors import SceneError
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.soil import mandel
+from riser_soil.soil.iwan import IwanOverlay, Overlay
+from riser_soil.soil.kinematic_hardening import CyclicClay, KinematicHardening
+from riser_soil.soil.law import PLASTIC_STRAIN, Formula
+from tests.support.coupled_scenes import touchdown
+
+SU, OVER_SU, NU = 4.0e3, 300.0, 0.45
+G0 = OVER_SU * SU / (2.0 * (1.0 + NU))
+CURVE = ((1e-4, 0.98), (1e-3, 0.8), (5e-3, 0.45), (2e-2, 0.2))
+
+
+def kinematic(n: int = 1, K0: float = 1.0, share: float = 0.1, gradient: float = 0.0) -> CyclicClay:
+    law = KinematicHardening(
+        kind="kinematic-hardening", su=SU, su_gradient=gradient, E_over_su=OVER_SU, nu=NU, elastic_share=share
+    )
+    return law.at_points(np.linspace(0.0, 2.0, n), initial(n, K0))
+
+
+def iwan(
+    n: int = 1, K0: float = 1.0, gradient: float = 0.0, curve: tuple[tuple[float, float], ...] | None = None
+) -> Overlay:
+    law = IwanOverlay(kind="iwan", su=SU, su_gradient=gradient, E_over_su=OVER_SU, nu=NU, curve=curve)
+    return law.at_points(np.linspace(0.0, 2.0, n), initial(n, K0))
+
+
+def initial(n: int, K0: float) -> Array:
+    pressure = np.linspace(2000.0, 6000.0, n)
+    return np.column_stack([-K0 * pressure, -K0 * pressure, -pressure, *np.zeros((3, n))])
+
+
+LAWS = pytest.mark.parametrize("make", [kinematic, iwan])
+
+
+def shear(gamma: float, n: int = 1) -> Array:
+    strain = np.zeros((n, 6))
+    strain[:, 4] = gamma / np.sqrt(2.0)
+    return strain
+
+
+def drive(law: Formula, strains: Array) -> tuple[Array, Array]:
+    """Shear stress at the ends of increments from one shear strain to the next, and the dissipation in each [J/m3]."""
+    history, before, stress, lost = law.start(), 0.0, list[float](), list[float]()
+    for strain in strains:
+        found, old = law.update(shear(strain - before), history), history
+        lost.append(float(dissipation(law, shear(strain - before), old, found.stored, found.elastic)[0]))
+        stress.append(float(found.stress[0, 4]) / np.sqrt(2.0))
+        history, before = found.history, float(strain)
+    return np.array(stress), np.array(lost)
+
+
+def dissipation(law: Formula, increment: Array, history: Array, stored: Array, elastic: Array) -> Array:
+    """Work of the stress at the increment's end less what is stored of it, per volume (n,)."""
+    rest = law.update(np.zeros_like(increment), history)
+    found = law.update(increment, history)
+    by_initial = mandel.product(law.initial, elastic - rest.elastic)  # type: ignore[attr-defined]
+    return np.asarray(mandel.product(found.stress, increment) - (stored - rest.stored) - by_initial)
+
+
+@LAWS
+@pytest.mark.parametrize("K0", [1.0, 0.8])
+def test_the_tangent_is_that_of_the_stress(make: type, K0: float) -> None:
+    law, rng = make(30, K0, gradient=800.0), np.random.default_rng(3)
+    history = law.update(4e-3 * rng.standard_normal((30, 6)), law.start()).history
+    for size in (1e-5, 1e-3, 2e-2):
+        increment = size * rng.standard_normal((30, 6))
+        found, h = law.update(increment, history), 1e-7
+        for j in range(6):
+            step = h * np.eye(6)[j]
+            ahead, behind = (law.update(increment + sign * step, history).stress for sign in (1.0, -1.0))
+            off = np.abs(found.tangent[:, :, j] - (ahead - behind) / (2.0 * h)) / G0
+            assert np.median(off) < 1e-7
+            assert np.quantile(off, 0.9) < 1e-4  # elements that start to yield within the difference
+        elastic = mandel.stiffness(law.bulk, law.shear)
+        assert np.abs(found.tangent - elastic).max() > 0.1 * G0
+        symmetric = np.abs(found.tangent - np.swapaxes(found.tangent, 1, 2)).max() < 1e-10 * G0
+        assert symmetric or not law.symmetric
+
+
+@LAWS
+def test_the_strength_is_su_in_all_directions(make: type) -> None:
+    law, rng = make(200, 0.9), np.random.default_rng(1)
+    direction = mandel.deviator(rng.standard_normal((200, 6)))
+    history = law.start()
+    for _ in range(400):
+        found = law.update(2e-2 * direction, history)
+        history = found.history
+    np.testing.assert_allclose(mandel.von_mises(found.stress), law.limit, rtol=1e-6)
+    assert law.overstress(found.stress).max() <= 1.0 + 1e-10
+    assert np.all(history[:, law.columns.index(PLASTIC_STRAIN)] > 0.1)
+
+
+@LAWS
+def test_random_paths_stay_inside_and_only_take_work(make: type) -> None:
+    law, rng = make(500, 0.9), np.random.default_rng(2)
+    history = law.start()
+    for step in range(60):
+        increment = 10.0 ** rng.uniform(-7.0, -0.5, (500, 1)) * rng.standard_normal((500, 6))
+        found = law.update(increment, history)
+        assert np.isfinite(found.history).all()
+        assert np.isfinite(found.tangent).all()
+        assert law.overstress(found.stress).max() <= 1.0 + 1e-10, step
+        lost = dissipation(law, increment, history, found.stored, found.elastic)
+        scale = np.abs(found.stored) + mandel.product(np.abs(found.stress), np.abs(increment)) + 1e-9
+        assert np.min(lost / scale) > -1e-10, step
+        history = found.history
+
+
+@LAWS
+def test_a_start_under_stress_is_at_rest(make: type) -> None:
+    law = make(5, 0.8)
+    found = law.update(np.zeros((5, 6)), law.start())
+    np.testing.assert_allclose(found.stress, law.initial, atol=1e-9)
+    np.testing.assert_allclose(found.stored, 0.0, atol=1e-9)
+    assert not found.elastic.any()
+    np.testing.assert_allclose(law.start(), found.history, atol=1e-9)
+
+
+def test_kinematic_hardening_in_shear_follows_its_closed_form() -> None:
+    """q = q0 + (C/γ)(1 - exp(-γ p)) and shear strain τ/G + √3 p; backward Euler's error falls with the step."""
+    law, last = kinematic(), 0.02
+    recall = float(law.hardening[0] / (law.limit - law.elastic_limit)[0])
+    p = np.linspace(0.0, last / np.sqrt(3.0), 20001)
+    q = law.elastic_limit + law.hardening / recall * (1.0 - np.exp(-recall * p))
+    tau = q / np.sqrt(3.0)
+    exact = float(np.interp(last, tau / law.shear + np.sqrt(3.0) * p, tau))
+    errors = [abs(drive(law, np.linspace(0.0, last, n + 1)[1:])[0][-1] / exact - 1.0) for n in (50, 100, 200)]
+    assert errors[-1] < 2e-3
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(1.0, abs=0.15)
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(1.0, abs=0.15)
+
+
+def backbone(gamma: Array, curve: tuple[tuple[float, float], ...]) -> Array:
+    """Polygon through the curve's points, its last side on to su."""
+    strain = np.array([0.0, *(g for g, _ in curve)])
+    stress = G0 * strain * np.array([1.0, *(ratio for _, ratio in curve)])
+    slope = (stress[-1] - stress[-2]) / (strain[-1] - strain[-2])
+    end = strain[-1] + (SU - stress[-1]) / slope
+    return np.interp(gamma, [*strain, end], [*stress, SU])
+
+
+def test_the_overlay_follows_its_curve() -> None:
+    gamma = np.linspace(0.0, 0.12, 301)[1:]
+    np.testing.assert_allclose(drive(iwan(curve=CURVE), gamma)[0], backbone(gamma, CURVE), rtol=1e-12)
+
+
+def test_the_hyperbola_is_met_at_its_corners() -> None:
+    reference = SU / G0
+    gamma = reference * np.geomspace(0.05, 200.0, 12)
+    stress, _ = drive(iwan(), gamma)
+    np.testing.assert_allclose(stress[:-1], (SU * gamma / (reference + gamma))[:-1], rtol=1e-12)
+    assert stress[-1] == pytest.approx(SU, rel=1e-12)
+
+
+@pytest.mark.parametrize("amplitude", [3e-4, 3e-3, 3e-2])
+def test_loops_are_masings(amplitude: float) -> None:
+    """τ = τa - 2 f((γa - γ)/2) on the way down, the same turned on the way up; damping from the loop's area."""
+    law, up = iwan(curve=CURVE), np.linspace(0.0, amplitude, 401)[1:]
+    down = np.linspace(amplitude, -amplitude, 801)[1:]
+    stress, lost = drive(law, np.concatenate([up, down, -down]))
+    tau = backbone(np.array([amplitude]), CURVE)[0]
+    np.testing.assert_allclose(
+        stress[400:1200], tau - 2.0 * backbone(0.5 * (amplitude - down), CURVE), rtol=1e-9, atol=1e-9 * SU
+    )
+    np.testing.assert_allclose(stress[1200:], -stress[400:1200], rtol=1e-9, atol=1e-9 * SU)
+    middles = amplitude * (np.arange(200000) + 0.5) / 200000
+    area = 8.0 * amplitude * np.mean(backbone(middles, CURVE)) - 4.0 * tau * amplitude
+    by_steps = lost[400:].sum()  # backward Euler books half a step's stress more than the loop has
+    assert by_steps == pytest.approx(area, rel=0.03)
+    closed = drive(law, np.concatenate([up, np.linspace(amplitude, -amplitude, 4001)[1:]]))[1][400:].sum()
+    assert abs(2.0 * closed - area) < 0.3 * abs(by_steps - area) + 1e-9 * area
+
+
+def test_closed_loops_of_kinematic_hardening_are_stable() -> None:
+    """Cycles of the same strain come to the same stress: no ratcheting in shear."""
+    cycle = 0.004 * np.sin(np.linspace(0.0, 2.0 * np.pi, 201)[1:])
+    stress, lost = drive(kinematic(), np.tile(cycle, 6))
+    change = np.abs(np.diff(stress.reshape(6, 200), axis=0)).max(axis=1)
+    assert np.all(change[1:] < change[:-1])
+    assert change[-1] < 1e-3 * SU
+    assert np.all(lost >= -1e-12 * SU)
+    assert lost[-200:].sum() > 0.1 * SU * 0.004
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "told"),
+    [
+        ("curve", [[1e-3, 0.5], [2e-3, 0.8]], "ever less steeply"),
+        ("curve", [[1e-3, 0.5], [4e-3, 0.1]], "must rise"),
+        ("elements", 0, "must be at least 1"),
+        ("elastic_share", 1.0, "no such key"),
+    ],
+)
+def test_wrong_constants_are_told(key: str, value: object, told: str) -> None:
+    scene = touchdown()
+    scene["soil"]["law"] = {"kind": "iwan", "su": 600.0, "E_over_su": 300.0, key: value}
+    with pytest.raises(SceneError, match=told):
+        scene_from_mapping(scene)
