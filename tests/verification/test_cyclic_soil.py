@@ -1,0 +1,59 @@
+"""Riser on cyclic clay: the whole system's matrix, Newton's iterations, energy, memory of the clay."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from riser_soil.core.system import System
+from riser_soil.solve.time_stepper import AcceptedStep
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.driven_stage import FirstStep, built, take
+
+LAWS: dict[str, Mapping] = {
+    "kinematic-hardening": {"elastic_share": 0.2},
+    "iwan": {"elements": 8},
+}
+KINDS = pytest.mark.parametrize("kind", LAWS)
+
+
+def on_clay(kind: str, *stages: Mapping, su: float = 1000.0, **options: object) -> Mapping:
+    scene = touchdown(LAY, *stages, su=su, **options)  # type: ignore[arg-type]
+    constants = {key: scene["soil"]["law"][key] for key in ("su", "su_gradient", "E_over_su", "nu")}
+    scene["soil"]["law"] = {"kind": kind} | constants | LAWS[kind]
+    return scene
+
+
+@KINDS
+def test_the_matrix_is_the_slope_of_the_residual(kind: str) -> None:
+    assembly = built(on_clay(kind, heave(1.0, time_step=0.01)))
+    step = FirstStep(assembly)
+    rng = np.random.default_rng(5)
+    x = 2e-3 * rng.normal(size=step.free)
+    matrix, h = step.matrix(x), 1e-5
+    for _ in range(3):
+        direction = 2e-3 * rng.normal(size=step.free)
+        at = {k: step.residual(x + k * h * direction) for k in (-2, -1, 1, 2)}
+        wanted = (8.0 * (at[1] - at[-1]) - (at[2] - at[-2])) / (12.0 * h)
+        assert np.linalg.norm(matrix @ direction - wanted) < 1e-5 * np.linalg.norm(wanted)
+
+
+@KINDS
+def test_heave_takes_energy_in_every_cycle(kind: str) -> None:
+    """Three cycles of the same motion: the clay takes work each time, Newton converges in few iterations."""
+    assembly = built(on_clay(kind, heave(9.0, 0.15)))
+    assert assembly.soil is not None
+    before = take(assembly, assembly.scene.stages[0])
+    lost, iterations, times = list[float](), list[int](), list[float]()
+
+    def watch(system: System, step: AcceptedStep) -> None:
+        lost.append(step.turned["soil"].dissipated)
+        iterations.append(step.solution.iterations)
+        times.append(step.t)
+
+    take(assembly, assembly.scene.stages[1], before, watch)
+    cycles = [sum(w for w, t in zip(lost, times, strict=True) if a < t <= a + 3.0 + 1e-9) for a in (0.0, 3.0, 6.0)]
+    assert min(lost) > -1e-9 * max(cycles)
+    assert min(cycles) > 0.0
+    assert np.mean(iterations) < 6.0
+    assert assembly.soil.output_fields().plastic_strain.max() > 1e-4
