@@ -35,6 +35,7 @@ def ground_warnings(assembly: Assembly) -> Iterator[str]:
     if assembly.soil is not None:
         yield from _nothing_below(assembly)
         yield from _no_friction_on_soil(assembly)
+        yield from _nodes_on_soil(assembly)
         yield from _cells_against_contact(assembly)
         yield from _top_off_the_seabed(assembly)
         yield from _out_of_reach(assembly)
@@ -59,6 +60,20 @@ def _no_friction_on_soil(assembly: Assembly) -> Iterator[str]:
             f"contact.friction acts on the seabed only: on the soil, {_extent(assembly)}, the riser slides without "
             "friction; leave the soil out where friction matters"
         )
+
+
+def _nodes_on_soil(assembly: Assembly) -> Iterator[str]:
+    """Contact at nodes, whose settlement converges to nothing as cells and elements are refined."""
+    scene = assembly.scene
+    if scene.contact is None or scene.contact.method == "surface" or scene.soil is None:
+        return
+    mesh = scene.soil.mesh
+    cells = f"cells of {mesh.size_at_riser:.4g} m" if isinstance(mesh, GeneratedMesh) else "the mesh's cells"
+    yield (
+        f"the pipe, D = {_diameter(assembly):.4g} m, touches the soil at its nodes only, "
+        f"{assembly.line.length.min():.4g} m apart, on {cells}: its settlement, the soil's stress and whether it "
+        "yields depend on these two sizes; contact.method: surface lets it touch all along"
+    )
 
 
 def _cells_against_contact(assembly: Assembly) -> Iterator[str]:
