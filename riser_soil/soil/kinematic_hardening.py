@@ -4,8 +4,9 @@
 
 with α bounded by √(3/2) |α| = C/γ, so that q = q0 + C/γ = √3·su at failure. Parameters from su, the modulus and the
 share of the strength that is elastic as in Anastasopoulos et al., Simplified constitutive model for simulation of
-cyclic response of shallow foundations, J. Geotech. Geoenviron. Eng. 137 (2011): C = E, γ = C/(√3·su - q0). Backward
-Euler: with θ = 1/(1 + γ Δp) and η = s_trial - θ α, the direction n is that of η, and Δp solves
+cyclic response of shallow foundations, J. Geotech. Geoenviron. Eng. 137 (2011), from memory, as the source could not
+be read: C = E, γ = C/(√3·su - q0). Backward Euler: with θ = 1/(1 + γ Δp) and η = s_trial - θ α, the direction n is that
+of η, and Δp solves
 
     |η| = √(2/3) (q0 + C θ Δp) + √6 G Δp.
 

@@ -205,6 +205,17 @@ def test_no_node_leaves_a_print(kind: str) -> None:
         assert np.ptp(same) < 1e-3 * np.abs(same).max()
 
 
+def test_the_stretch_is_that_of_the_facets_that_press() -> None:
+    surface = top("quad4")
+    made = case(sagging(angle=0.0), surface)
+    assert made.contact.stretch(made.state()) == pytest.approx(1.0)
+    surface.committed[:, 1] = 0.5 * surface.points[:, 1]
+    surface.committed[np.abs(surface.points[:, 1]) > 0.6, 1] *= 3.0  # these facets the pipe doesn't touch
+    assert made.contact.stretch(made.state()) == pytest.approx(1.5)
+    above = case(sagging(depth=-0.17), surface)
+    assert above.contact.stretch(above.state()) == 1.0
+
+
 def test_nothing_touches_above_the_soil() -> None:
     made = case(sagging(depth=-0.17), top("quad4"))
     state = made.state()

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +13,8 @@ from riser_soil.assembly import Assembly
 from riser_soil.checks.ground_plausibility import LIKE_CONTACT, ground_warnings
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.core.system import System
+from riser_soil.run import run
+from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import FirstStep, built, take
@@ -132,6 +136,19 @@ def test_contact_at_nodes_has_no_limit() -> None:
     """What surface contact is for: at nodes the force hangs on the cells, and on whether a node meets one at all."""
     with_nodes = np.array([pushed(cells, "node").q for cells in (4, 8)])
     assert np.ptp(with_nodes) > 0.1 * with_nodes.max()
+
+
+def test_soil_that_flows_from_under_the_pipe_is_told(tmp_path: Path) -> None:
+    """Pushed in by D/10, plastic clay moves aside: the resistance is no figure any more."""
+    scene = slice_of_soil(4)
+    scene["soil"]["law"] = {"kind": "von-mises", "su": 4.0e3, "E_over_su": 300.0, "nu": NU}
+    for end in ("start", "end"):
+        scene["stages"][0]["move"][end][2] = 0.4 * D
+    run(scene_from_mapping(scene), tmp_path)
+    (stage,) = json.loads((tmp_path / "summary.json").read_text())["stages"]
+    (warning,) = stage["warnings"]
+    assert warning.startswith("the soil's surface under the riser is stretched to 1.")
+    assert "small strain" in warning
 
 
 def laid(kind: str, dimension: int, *more: Mapping, su: float = 1000.0) -> Assembly:
