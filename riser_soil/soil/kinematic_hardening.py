@@ -128,9 +128,10 @@ class CyclicClay:
             size = np.sqrt(mandel.product(eta, eta))
             return size - root * (self.elastic_limit[at] + C * theta * slip) - stiff * slip, theta, eta, size
 
-        slip = np.zeros(len(at))
+        slip: Array = np.zeros(len(at))
         found, theta, eta, size = excess(slip)
-        low, high = np.zeros(len(at)), found / stiff
+        low: Array = np.zeros(len(at))
+        high: Array = found / stiff
         most = high.copy()
         for _ in range(MOST_ITERATIONS):
             along = mandel.product(eta, backstress) / size
