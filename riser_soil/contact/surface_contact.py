@@ -208,9 +208,6 @@ class SurfaceContact(SoilContact):
         taken = float(np.sum(pressed.gradient * np.hstack([moved_q, moved])))
         return Work(dissipated=taken - self.energy(after).potential + self.energy(before).potential)
 
-    def commit(self, state: State) -> None:
-        """Nothing is kept but the pattern."""
-
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m], >= 0: the size of the sum of the points' forces, shared
         linearly by two nodes.

@@ -11,13 +11,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
 from riser_soil.core.lazy import LazyModule
-from riser_soil.core.quantities import ElementCount, Positive, Share, wrong
+from riser_soil.core.quantities import Positive, Share, wrong
 from riser_soil.soil.clay import UndrainedClay
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, StressUpdate
 
@@ -30,15 +31,15 @@ else:
     np, mandel = LazyModule("numpy"), LazyModule("riser_soil.soil.mandel")
 
 SMALLEST, LARGEST = 0.05, 200.0  # corners of the hyperbola, over su/G0
+STRAIGHT = 1e-12  # change of slope over G0 that is none
 
 
 class IwanOverlay(UndrainedClay):
     """Undrained clay under cyclic load: Masing loops from a curve of G/G0 by shear strain, up to su."""
 
     kind: Literal["iwan"] = Field(description="the law's name")
-    elements: ElementCount = Field(
+    elements: Annotated[int, Field(strict=True, ge=2, le=100)] = Field(
         default=12,
-        le=100,
         description="without curve: elements in parallel, as many as corners of a hyperbola with the asymptote su",
     )
     curve: tuple[tuple[Positive, Share], ...] | None = Field(
@@ -52,7 +53,7 @@ class IwanOverlay(UndrainedClay):
         points = [(0.0, 0.0), *((strain, strain * ratio) for strain, ratio in self.curve or ())]
         sides = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(points)]
         slopes = [1.0, *(rise / run if run > 0.0 else math.inf for run, rise in sides)]
-        if slopes[-1] <= 0.0 or any(after > before for before, after in pairwise(slopes)):
+        if slopes[-1] <= 0.0 or any(after > before + STRAIGHT for before, after in pairwise(slopes)):
             raise wrong(
                 "curve",
                 "stress, γ times G/G0, must rise with γ, ever less steeply from the slope 1 on",
@@ -63,8 +64,10 @@ class IwanOverlay(UndrainedClay):
     def at_points(self, depth: Array, initial: Array) -> Overlay:
         bulk, shear, limit = self._constants(depth)
         strain, slope = self._backbone()
-        parts = (slope - np.append(slope[1:], 0.0)) * shear[:, None]
-        return Overlay(bulk, shear, parts, np.sqrt(3.0) * parts * strain, limit, initial)
+        share = slope - np.append(slope[1:], 0.0)
+        bends = share > STRAIGHT  # points in one line with their neighbours are no corners
+        moduli = share[bends] * shear[:, None]
+        return Overlay(bulk, moduli, np.sqrt(3.0) * moduli * strain[bends], limit, initial)
 
     def _backbone(self) -> tuple[Array, Array]:
         """Shear strains of the corners, the last one where the stress is su, and slopes before them over G0, (N,)."""
@@ -85,19 +88,23 @@ class IwanOverlay(UndrainedClay):
 
 @dataclass(frozen=True, eq=False)
 class Overlay:
-    """Bulk and shear modulus (n,); shear moduli and largest equivalent stresses of the elements (n, N), which sum up to
-    the shear modulus and to `limit` (n,); initial stress (n, 6) [Pa].
+    """Bulk modulus (n,); shear moduli and largest equivalent stresses of the elements (n, N), the latter of the sum
+    `limit` (n,); initial stress (n, 6) [Pa].
 
     History (n, 7 + 6 N): stress, equivalent plastic strain, deviators of the elements.
     """
 
     bulk: Array
-    shear: Array
     moduli: Array
     limits: Array
     limit: Array
     initial: Array
     symmetric: ClassVar[bool] = True
+
+    @cached_property
+    def shear(self) -> Array:
+        """Shear modulus (n,) of clay in which no element yields [Pa]: that of the backbone's first side."""
+        return self.moduli.sum(axis=1)
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -107,7 +114,7 @@ class Overlay:
     def start(self) -> Array:
         return np.column_stack((self.initial, np.zeros(len(self.limit)), self._first.reshape(len(self.limit), -1)))
 
-    @property
+    @cached_property
     def _first(self) -> Array:
         """Deviators (n, N, 6) of elements as loaded in proportion to the initial stress: the backbone at its q."""
         s = mandel.deviator(self.initial)
@@ -135,10 +142,13 @@ class Overlay:
         plastic = e - change / (2.0 * self.shear)[:, None]
         slip = history[:, 6] + np.sqrt(2.0 / 3.0 * mandel.product(plastic, plastic))
         elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
-        stored = self._stored(stress, s) - self._stored(self.initial, self._first)
-        stored -= mandel.product(self.initial, elastic)
+        stored = self._stored(stress, s) - self._stored_first - mandel.product(self.initial, elastic)
         after = np.column_stack((stress, slip, s.reshape(n, -1)))
         return StressUpdate(stress, self._tangent(trial, q, shrink), after, stored, elastic)
+
+    @cached_property
+    def _stored_first(self) -> Array:
+        return self._stored(self.initial, self._first)
 
     def _stored(self, stress: Array, s: Array) -> Array:
         """Elastic energy of all elements and of the volume (n,) [J/m3]."""

@@ -16,6 +16,7 @@ Its left side less the right falls with Δp, by √6 G at least, so that the roo
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 from pydantic import Field
@@ -81,7 +82,7 @@ class CyclicClay:
     def start(self) -> Array:
         return np.column_stack((self.initial, np.zeros(len(self.limit)), self._first_backstress))
 
-    @property
+    @cached_property
     def _first_backstress(self) -> Array:
         """As if the clay had been loaded to its initial stress: the elastic range lies around it."""
         s = mandel.deviator(self.initial)
@@ -89,7 +90,7 @@ class CyclicClay:
         most = (self.limit - self.elastic_limit) / np.maximum(q, self.limit - self.elastic_limit)
         return most[:, None] * s
 
-    @property
+    @cached_property
     def _recall(self) -> Array:
         """γ (n,) [-]."""
         return self.hardening / (self.limit - self.elastic_limit)
@@ -111,7 +112,11 @@ class CyclicClay:
         after = np.column_stack((stress, history[:, 6] + slip, backstress))
         elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
         stored = 0.5 * mandel.product(stress - self.initial, elastic) + self._locked_in(backstress)
-        return StressUpdate(stress, tangent, after, stored - self._locked_in(self._first_backstress), elastic)
+        return StressUpdate(stress, tangent, after, stored - self._locked_in_first, elastic)
+
+    @cached_property
+    def _locked_in_first(self) -> Array:
+        return self._locked_in(self._first_backstress)
 
     def _locked_in(self, backstress: Array) -> Array:
         """Energy of the backstress (n,) [J/m3]."""

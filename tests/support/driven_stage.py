@@ -113,6 +113,11 @@ class FirstStep:
         index = self.system.numbering.index
         return np.asarray(np.bincount(index[index >= 0], local[index >= 0], minlength=self.free), dtype=float)
 
+    def slope(self, x: Array, direction: Array, h: float) -> Array:
+        """Derivative of the residual at x along a direction, by differences of fourth order in the step h."""
+        at = {k: self.residual(x + k * h * direction) for k in (-2, -1, 1, 2)}
+        return np.asarray((8.0 * (at[1] - at[-1]) - (at[2] - at[-2])) / (12.0 * h))
+
     def matrix(self, x: Array) -> csr_matrix:
         self.system.assemble(self.state(x), self.scheme.weights(self._dt))
         indptr, indices, values = self.system.matrix.mat.getValuesCSR()

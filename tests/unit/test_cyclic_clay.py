@@ -11,7 +11,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.soil import mandel
 from riser_soil.soil.iwan import IwanOverlay, Overlay
 from riser_soil.soil.kinematic_hardening import CyclicClay, KinematicHardening
-from riser_soil.soil.law import PLASTIC_STRAIN, Formula
+from riser_soil.soil.law import PLASTIC_STRAIN
 from tests.support.coupled_scenes import touchdown
 
 SU, OVER_SU, NU = 4.0e3, 300.0, 0.45
@@ -47,7 +47,7 @@ def shear(gamma: float, n: int = 1) -> Array:
     return strain
 
 
-def drive(law: Formula, strains: Array) -> tuple[Array, Array]:
+def drive(law: CyclicClay | Overlay, strains: Array) -> tuple[Array, Array]:
     """Shear stress at the ends of increments from one shear strain to the next, and the dissipation in each [J/m3]."""
     history, before, stress, lost = law.start(), 0.0, list[float](), list[float]()
     for strain in strains:
@@ -58,11 +58,11 @@ def drive(law: Formula, strains: Array) -> tuple[Array, Array]:
     return np.array(stress), np.array(lost)
 
 
-def dissipation(law: Formula, increment: Array, history: Array, stored: Array, elastic: Array) -> Array:
+def dissipation(law: CyclicClay | Overlay, increment: Array, history: Array, stored: Array, elastic: Array) -> Array:
     """Work of the stress at the increment's end less what is stored of it, per volume (n,)."""
     rest = law.update(np.zeros_like(increment), history)
     found = law.update(increment, history)
-    by_initial = mandel.product(law.initial, elastic - rest.elastic)  # type: ignore[attr-defined]
+    by_initial = mandel.product(law.initial, elastic - rest.elastic)
     return np.asarray(mandel.product(found.stress, increment) - (stored - rest.stored) - by_initial)
 
 
@@ -161,6 +161,24 @@ def test_the_hyperbola_is_met_at_its_corners() -> None:
     assert stress[-1] == pytest.approx(SU, rel=1e-12)
 
 
+def test_points_in_one_line_are_no_corners() -> None:
+    """A point on a side of the polygon adds no element, and changes nothing."""
+    middle = 0.5 * (1e-3 + 5e-3)
+    ratio = 0.5 * (1e-3 * 0.8 + 5e-3 * 0.45) / middle
+    more = iwan(curve=(*CURVE[:2], (middle, ratio), *CURVE[2:]))
+    assert more.moduli.shape == iwan(curve=CURVE).moduli.shape
+    gamma = np.linspace(0.0, 0.05, 101)[1:]
+    np.testing.assert_allclose(drive(more, gamma)[0], backbone(gamma, CURVE), rtol=1e-12)
+
+
+@LAWS
+def test_small_strain_leaves_no_plastic_strain(make: type) -> None:
+    law = make()
+    found = law.update(shear(0.02 * SU / G0), law.start())
+    assert not found.history[:, law.columns.index(PLASTIC_STRAIN)].max() > 1e-18
+    np.testing.assert_allclose(found.tangent, mandel.stiffness(law.bulk, law.shear), rtol=1e-12, atol=1e-9 * G0)
+
+
 @pytest.mark.parametrize("amplitude", [3e-4, 3e-3, 3e-2])
 def test_loops_are_masings(amplitude: float) -> None:
     """τ = τa - 2 f((γa - γ)/2) on the way down, the same turned on the way up; damping from the loop's area."""
@@ -196,7 +214,8 @@ def test_closed_loops_of_kinematic_hardening_are_stable() -> None:
     [
         ("curve", [[1e-3, 0.5], [2e-3, 0.8]], "ever less steeply"),
         ("curve", [[1e-3, 0.5], [4e-3, 0.1]], "must rise"),
-        ("elements", 0, "must be at least 1"),
+        ("elements", 1, "must be at least 2"),
+        ("elements", 101, "must be at most 100"),
         ("elastic_share", 1.0, "no such key"),
     ],
 )
