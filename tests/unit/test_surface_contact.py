@@ -152,9 +152,14 @@ def test_an_end_of_the_riser_presses_as_a_sphere(kind: str) -> None:
 
 def test_soil_that_has_come_through_is_pushed_down() -> None:
     """A pipe that a guess has put too deep still presses on the soil above its axis, not on its way up."""
-    made = case(sagging(depth=RADIUS + 0.02), top("quad4"))
-    on_soil = made.contact.force_on_soil(made.state())
-    assert on_soil[2] < -0.5 * np.linalg.norm(on_soil)
+    deep, along = 0.02, np.linspace(-0.5, 3.5, 6)
+    made = case(np.stack([along, np.zeros(6), np.full(6, -deep)], axis=1), top("quad4"), spacing=0.005)
+    beside = RADIUS * (np.arange(10000) + 0.5) / 10000
+    rho = np.hypot(beside, deep)
+    pushed_up = np.where(beside < 0.5 * RADIUS, -(rho + RADIUS), np.maximum(RADIUS - rho, 0.0)) * deep / rho
+    expected = 2.0 * RADIUS * 3.0 * STIFFNESS * float(pushed_up.mean())
+    assert made.contact.force_on_soil(made.state())[2] == pytest.approx(expected, rel=0.05)
+    assert expected < 0.0
 
 
 @KINDS
