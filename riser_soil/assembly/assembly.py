@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
+    from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.riser.catenary import Catenary
     from riser_soil.riser.wall_tension import Pressures
@@ -64,7 +65,7 @@ class Assembly:
     soil: Soil | None = None
     soil_contact: SoilContact | None = None
     seabed: SeabedContact | None = None
-    friction: CoulombFriction | None = None
+    frictions: list[CoulombFriction | SoilFriction] = field(default_factory=list)
     contact_stiffness: dict[str, float] = field(default_factory=dict)
     vessels: Vessels | None = None
     begun: dict[str, Array] = field(default_factory=dict)
@@ -168,8 +169,7 @@ class Assembly:
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
         soil = [self.soil] if self.soil is not None else []
-        friction = [self.friction] if self.friction is not None else []
-        return Model([self.line], [*parts, *soil, *self.contacts, *friction], self.ground_fields)
+        return Model([self.line], [*parts, *soil, *self.contacts, *self.frictions], self.ground_fields)
 
 
 def build(scene: Scene, comm: MPI.Intracomm) -> Assembly:
@@ -194,8 +194,10 @@ def _add_ground(assembly: Assembly) -> None:
     line, elements, assembly.contact_stiffness = assembly.line, assembly.elements, stiffness
     if scene.soil is not None:
         assembly.soil = soil = ground.soil_of(scene, scene.soil, line, assembly.comm)
-        assembly.soil_contact = ground.soil_contact_of(scene, settings, line, elements, soil.surface, stiffness["soil"])
+        contact = ground.soil_contact_of(scene, settings, line, elements, soil.surface, stiffness["soil"])
+        assembly.soil_contact = contact
+        assembly.frictions += ground.soil_friction_of(scene, settings, contact, elements)
     if scene.seabed is not None:
         law = ground.seabed_law(scene.seabed, settings, elements, stiffness)
         assembly.seabed = ground.seabed_contact_of(scene, settings, line, elements, law, assembly.soil_contact)
-        assembly.friction = ground.friction_of(settings, assembly.seabed, elements)
+        assembly.frictions += ground.friction_of(settings, assembly.seabed, elements)

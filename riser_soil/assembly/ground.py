@@ -13,6 +13,7 @@ from riser_soil.interruption import restoring_signal_handlers
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements, larger_beside
 from riser_soil.scene.contact import Contact as ContactScene
+from riser_soil.scene.contact import Friction, Suction
 from riser_soil.scene.plane import vertical_plane
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed, Seabed, SpringSeabed
@@ -20,8 +21,11 @@ from riser_soil.scene.soil import GeneratedMesh, MeshFile, SoilScene
 
 if TYPE_CHECKING:
     from riser_soil.contact.friction import CoulombFriction
+    from riser_soil.contact.law import Penalty
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
+    from riser_soil.contact.soil_friction import SoilFriction
+    from riser_soil.contact.suction import SuctionLaw
     from riser_soil.contact.surface_contact import SurfaceContact
     from riser_soil.seabed.grounds import Ground
     from riser_soil.seabed.law import NormalLaw
@@ -69,7 +73,7 @@ def soil_contact_of(
     scene: Scene, settings: ContactScene, line: Line, elements: Elements, surface: SoilTop, stiffness: float
 ) -> SoilContact:
     """Contact of the riser with the soil; evaluated on the first rank. stiffness: of the penalty [N/m2]."""
-    if settings.method == "surface":
+    if not settings.at_nodes:
         return _surface_contact_of(scene, settings, line, elements, surface, stiffness)
     from riser_soil.contact.law import Penalty
     from riser_soil.contact.node_contact import FOOTPRINT, NodeContact
@@ -96,12 +100,14 @@ def _surface_contact_of(
     assert scene.soil is not None
     scales = scales_of(elements)
     width = contact_width(scales, scene.soil.law.surface_modulus)
+    penalty = Penalty(stiffness / width, smoothing(settings, scales, "soil", stiffness))
+    suction = settings.suction
     across = float(np.clip(width / POINTS_ACROSS, FINEST * scales.diameter, COARSEST * scales.diameter))
     return SurfaceContact(
         line,
         contact_radius(scene, elements),
         surface,
-        Penalty(stiffness / width, smoothing(settings, scales, "soil", stiffness)),
+        penalty if suction is None else _with_suction(penalty, suction, "soil", scales.diameter),
         (ALONG * across, across),
         along=line.direction[:2],
     )
@@ -130,21 +136,43 @@ def seabed_contact_of(
         contact_radius(scene, elements),
         _ground(scene, scene.seabed),
         law,
-        ENDS if settings.method == "node" else gauss(GAUSS_POINTS),
+        ENDS if settings.at_nodes else gauss(GAUSS_POINTS),
         covered=beside.covers if beside is not None else None,
     )
 
 
-def friction_of(settings: ContactScene, seabed: SeabedContact, elements: Elements) -> CoulombFriction | None:
+def friction_of(settings: ContactScene, seabed: SeabedContact, elements: Elements) -> list[CoulombFriction]:
     """Friction on the seabed, where the scene asks for it."""
-    given = settings.friction
-    if given is None:
-        return None
+    if settings.friction is None:
+        return []
     from riser_soil.contact.friction import CoulombFriction, mobilised_within
 
+    mu, slide = _coefficients(settings.friction, scales_of(elements))
+    return [CoulombFriction(seabed, *mu, mobilised_within(slide, *mu, np.abs(elements.weight)))]
+
+
+def soil_friction_of(
+    scene: Scene, settings: ContactScene, contact: SoilContact, elements: Elements
+) -> list[SoilFriction]:
+    """Friction on the soil, where the scene asks for it and the pipe's surface touches."""
+    if settings.friction is None or settings.at_nodes:
+        return []
+    from riser_soil.contact.friction import mobilised_within
+    from riser_soil.contact.soil_friction import SoilFriction
+    from riser_soil.contact.surface_contact import SurfaceContact
+
+    assert isinstance(contact, SurfaceContact)
+    assert scene.soil is not None
+    scales = scales_of(elements)
+    mu, slide = _coefficients(settings.friction, scales)
+    width = contact_width(scales, scene.soil.law.surface_modulus)
+    return [SoilFriction(contact, *mu, float(mobilised_within(slide, *mu, np.array(scales.weight))) / width)]
+
+
+def _coefficients(given: Friction, scales: Scales) -> tuple[tuple[float, float], float]:
+    """Axial and lateral coefficient of friction, and the slide that mobilises it [m]."""
     mu = given.axial, given.axial if given.lateral is None else given.lateral
-    slide = MOBILISATION * scales_of(elements).diameter if given.mobilisation == "auto" else float(given.mobilisation)
-    return CoulombFriction(seabed, *mu, mobilised_within(slide, *mu, np.abs(elements.weight)))
+    return mu, MOBILISATION * scales.diameter if given.mobilisation == "auto" else float(given.mobilisation)
 
 
 def seabed_law(seabed: Seabed, settings: ContactScene, elements: Elements, stiffness: dict[str, float]) -> NormalLaw:
@@ -162,15 +190,18 @@ def _penalty(settings: ContactScene, scales: Scales, stiffness: float) -> Normal
     from riser_soil.contact.law import Penalty
 
     penalty = Penalty(stiffness, smoothing(settings, scales, "seabed", stiffness))
-    if settings.suction is None:
-        return penalty
+    return penalty if settings.suction is None else _with_suction(penalty, settings.suction, "seabed")
+
+
+def _with_suction(penalty: Penalty, given: Suction, ground: str, width: float = 1.0) -> SuctionLaw:
+    """A penalty with suction; on the soil both are pressures, the cap over that width [m]."""
     from riser_soil.contact.suction import SuctionLaw
 
-    cap, reach, peak = settings.suction.cap, settings.suction.reach, settings.suction.cap / penalty.stiffness
+    cap, reach, peak = given.cap / width, given.reach, given.cap / width / penalty.stiffness
     if reach <= peak:
         raise SceneError(
-            f"contact.suction.reach = {reach:g} m: suction has its cap of {cap:g} N/m at {peak:g} m on a seabed of "
-            f"{penalty.stiffness:g} N/m2, and must reach farther; raise reach or lower cap"
+            f"contact.suction.reach = {reach:g} m: suction has its cap of {given.cap:g} N/m at {peak:g} m on the "
+            f"{ground}, and must reach farther; raise reach or lower cap"
         )
     return SuctionLaw(penalty, cap, reach)
 
@@ -198,7 +229,7 @@ def smoothing(settings: ContactScene, scales: Scales, ground: str, stiffness: fl
     if settings.smoothing != "auto":
         return float(settings.smoothing)
     if ground == "soil":  # integrated over a width, the force has no corner
-        return 0.0 if settings.method == "surface" else WIDEST_CORNER * scales.diameter
+        return WIDEST_CORNER * scales.diameter if settings.at_nodes else 0.0
     at_rest = scales.weight / stiffness
     return float(np.clip(at_rest, NARROWEST_CORNER * scales.diameter, WIDEST_CORNER * scales.diameter))
 
@@ -207,7 +238,7 @@ def stiffnesses(scene: Scene, settings: ContactScene, scales: Scales) -> dict[st
     """Force per length and penetration [N/m2] by ground: the scene's own, else the automatic choice."""
     from riser_soil.contact.law import STIFFNESS_OVER_SOIL, SURFACE_STIFFNESS_OVER_SOIL, automatic_stiffness
 
-    over_soil = SURFACE_STIFFNESS_OVER_SOIL if settings.method == "surface" else STIFFNESS_OVER_SOIL
+    over_soil = STIFFNESS_OVER_SOIL if settings.at_nodes else SURFACE_STIFFNESS_OVER_SOIL
 
     def penalty(E: float | None) -> float:
         """Where the pipe must not enter; E: Young's modulus [Pa], None of a rigid ground."""

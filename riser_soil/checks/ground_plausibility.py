@@ -1,4 +1,4 @@
-"""Plausibility of seabed and soil: penalty stiffness, friction without effect, soil out of reach or off the seabed."""
+"""Plausibility of seabed and soil: penalty stiffness, contact at nodes, soil out of reach or off the seabed."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def ground_warnings(assembly: Assembly) -> Iterator[str]:
     yield from _corner_against_weight(assembly)
     if assembly.soil is not None:
         yield from _nothing_below(assembly)
-        yield from _no_friction_on_soil(assembly)
+        yield from _nodes_without_friction(assembly)
         yield from _nodes_on_soil(assembly)
         yield from _cells_against_contact(assembly)
         yield from _top_off_the_seabed(assembly)
@@ -54,18 +54,22 @@ def _nothing_below(assembly: Assembly) -> Iterator[str]:
         )
 
 
-def _no_friction_on_soil(assembly: Assembly) -> Iterator[str]:
-    if assembly.friction is not None:
-        yield (
-            f"contact.friction acts on the seabed only: on the soil, {_extent(assembly)}, the riser slides without "
-            "friction; leave the soil out where friction matters"
-        )
+def _nodes_without_friction(assembly: Assembly) -> Iterator[str]:
+    settings = assembly.scene.contact
+    if settings is None or not settings.at_nodes:
+        return
+    for key in ("friction", "suction"):
+        if getattr(settings, key) is not None:
+            yield (
+                f"contact.{key} acts on the seabed only: on the soil, {_extent(assembly)}, the riser's nodes have no "
+                f"{key}; leave out contact.method: node"
+            )
 
 
 def _nodes_on_soil(assembly: Assembly) -> Iterator[str]:
     """Contact at nodes, whose settlement converges to nothing as cells and elements are refined."""
     scene = assembly.scene
-    if scene.contact is None or scene.contact.method == "surface" or scene.soil is None:
+    if scene.contact is None or not scene.contact.at_nodes or scene.soil is None:
         return
     mesh = scene.soil.mesh
     cells = f"cells of {mesh.size_at_riser:.4g} m" if isinstance(mesh, GeneratedMesh) else "the mesh's cells"
@@ -79,7 +83,7 @@ def _nodes_on_soil(assembly: Assembly) -> Iterator[str]:
 def _cells_against_contact(assembly: Assembly) -> Iterator[str]:
     """Cells wider than what touches: they bear the pipe as a strip of their own width would."""
     scene, scales = assembly.scene, assembly.scales
-    if scene.contact is None or scene.contact.method != "surface" or scene.soil is None:
+    if scene.contact is None or scene.contact.at_nodes or scene.soil is None:
         return
     E, mesh = scene.soil.law.surface_modulus, scene.soil.mesh
     if not isinstance(mesh, GeneratedMesh) or E <= 0.0:

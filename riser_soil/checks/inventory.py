@@ -39,13 +39,14 @@ def _reasons(scene: Scene) -> dict[str, str]:
         "morison": _no_morison(scene),
         "buoyancy": _no_buoyancy(scene),
         "seabed": "" if scene.seabed is not None else "the scene has no seabed",
-        "friction": "" if scene.contact and scene.contact.friction else "no friction is asked for",
+        "friction": _no_friction(scene, "seabed"),
+        "soil friction": _no_friction(scene, "soil"),
         "soil": "" if scene.soil is not None else "the scene has no soil",
         "contact": "" if ground else "the scene has neither seabed nor soil",
     }
 
 
-DISSIPATING = ("morison", "structural damping", "contact", "seabed", "friction", "soil")
+DISSIPATING = ("morison", "structural damping", "contact", "seabed", "friction", "soil friction", "soil")
 WORKING = ("loads", "morison", "buoyancy")
 
 
@@ -66,6 +67,14 @@ def _in_ledger(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
 
 def has_dynamics(scene: Scene) -> bool:
     return any(s.kind == "dynamic" for s in scene.stages)
+
+
+def _no_friction(scene: Scene, ground: str) -> str:
+    if scene.contact is None or scene.contact.friction is None:
+        return "no friction is asked for"
+    if getattr(scene, ground) is None:
+        return f"the scene has no {ground}"
+    return "contact at nodes has none on soil" if ground == "soil" and scene.contact.at_nodes else ""
 
 
 def _no_rotary_inertia(scene: Scene) -> str:

@@ -21,7 +21,7 @@ import numpy as np
 
 from riser_soil.contact.facets import fill_shape
 from riser_soil.contact.integration_points import area, place
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser.hermite import Four, bend, slope
 from riser_soil.riser.hermite import shape as axis_shape
@@ -43,25 +43,35 @@ class Axis(NamedTuple):
 
 
 class Surface(NamedTuple):
-    """facets (nf, nv); their divisions (nf, 2); undeformed and deformed points (np, 3) [m]."""
+    """facets (nf, nv); their divisions (nf, 2) and the numbers (nf,) of their first integration points; undeformed and
+    deformed points (np, 3) [m].
+    """
 
     facets: IntArray
     parts: IntArray
+    first: IntArray
     at_first: Array
     deformed: Array
 
 
 class NearPoints(NamedTuple):
-    """Integration points near the pipe (n,): element and facet; place on the element's axis, 0 to 1; (xi, eta) (n, 2)
-    on the facet; area [m2] and gap [m].
+    """Integration points near the pipe (n,): element, facet and number; place on the element's axis, 0 to 1; (xi, eta)
+    (n, 2) on the facet; area [m2] and gap [m].
     """
 
     element: IntArray
     facet: IntArray
+    number: IntArray
     along: Array
     xi: Array
     area: Array
     gap: Array
+
+    def of(self, chosen: BoolArray) -> NearPoints:
+        """Those points that are marked (n,)."""
+        c = chosen
+        whose = self.element[c], self.facet[c], self.number[c]
+        return NearPoints(*whose, self.along[c], self.xi[c], self.area[c], self.gap[c])
 
 
 def near_points(axis: Axis, surface: Surface, elements: IntArray, facets: IntArray, within: float) -> NearPoints:
@@ -77,11 +87,11 @@ def near_points(axis: Axis, surface: Surface, elements: IntArray, facets: IntArr
 @njit
 def _near_points(
     axis: Axis, bow: Array, surface: Surface, elements: IntArray, facets: IntArray, begin: IntArray, within: float
-) -> tuple[IntArray, IntArray, Array, Array, Array, Array]:
+) -> tuple[IntArray, IntArray, IntArray, Array, Array, Array, Array]:
     room = 0
     for f in facets:
         room += surface.parts[f, 0] * surface.parts[f, 1]
-    element, facet = np.empty(room, np.int64), np.empty(room, np.int64)
+    element, facet, number = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
     numbers, n, nv = np.empty((room, 5)), 0, surface.facets.shape[1]
     N, dN = np.empty(nv), np.empty((nv, 2))
     for i, f in enumerate(facets):
@@ -91,12 +101,13 @@ def _near_points(
             p = _point(surface.deformed, nodes, xi, eta, N, dN)
             e, along, gap = _nearest(axis, bow, elements[begin[i] : begin[i + 1]], p, within)
             if gap < within:
-                element[n], facet[n] = e, f
+                element[n], facet[n], number[n] = e, f, surface.first[f] + k
                 numbers[n, 0], numbers[n, 1], numbers[n, 2], numbers[n, 3] = along, gap, xi, eta
                 numbers[n, 4] = share * area(surface.at_first, nodes, dN)
                 n += 1
     values = numbers[:n]
-    return element[:n], facet[:n], values[:, 0].copy(), values[:, 2:4].copy(), values[:, 4].copy(), values[:, 1].copy()
+    along, xi, size, gap = values[:, 0].copy(), values[:, 2:4].copy(), values[:, 4].copy(), values[:, 1].copy()
+    return element[:n], facet[:n], number[:n], along, xi, size, gap
 
 
 @njit
@@ -125,7 +136,7 @@ def _nearest(
         if _from_chord(axis.q[e], p) - bow[e] - axis.radius[e] >= within:
             continue
         along = _closest(axis.q[e], axis.length[e], p)
-        c = _combined(axis.q[e], axis_shape(along, axis.length[e]))
+        c = combined(axis.q[e], axis_shape(along, axis.length[e]))
         rho = _signed(c, p, axis.radius[e])
         if abs(rho) < distance:
             nearest, place_on, gap, distance = e, along, rho - axis.radius[e], abs(rho)
@@ -168,8 +179,8 @@ def _closest(q: Array, L: float, p: tuple[float, float, float]) -> float:
     """Place xi in 0..1 on an element's axis that is closest to a point."""
     xi = 0.5
     for _ in range(MAX_ITERATIONS):
-        c, c1 = _combined(q, axis_shape(xi, L)), _combined(q, slope(xi, L))
-        c2 = _combined(q, bend(xi, L))
+        c, c1 = combined(q, axis_shape(xi, L)), combined(q, slope(xi, L))
+        c2 = combined(q, bend(xi, L))
         against = ahead = turning = 0.0
         for i in range(3):
             against += (p[i] - c[i]) * c1[i]
@@ -186,7 +197,8 @@ def _closest(q: Array, L: float, p: tuple[float, float, float]) -> float:
 
 
 @njit
-def _combined(q: Array, N: Four) -> tuple[float, float, float]:
+def combined(q: Array, N: Four) -> tuple[float, float, float]:
+    """Sum of the q (4, 3) of an element by their shape functions."""
     x = N[0] * q[0, 0] + N[1] * q[1, 0] + N[2] * q[2, 0] + N[3] * q[3, 0]
     y = N[0] * q[0, 1] + N[1] * q[1, 1] + N[2] * q[2, 1] + N[3] * q[3, 1]
     z = N[0] * q[0, 2] + N[1] * q[1, 2] + N[2] * q[2, 2] + N[3] * q[3, 2]
@@ -240,7 +252,7 @@ def _frame(q: Array, L: float, radius: float, xi: float, p: tuple[float, float, 
 
     At an end of the element the third form is along the other direction square to n.
     """
-    c, c1, c2 = _combined(q, axis_shape(xi, L)), _combined(q, slope(xi, L)), _combined(q, bend(xi, L))
+    c, c1, c2 = combined(q, axis_shape(xi, L)), combined(q, slope(xi, L)), combined(q, bend(xi, L))
     rho = _signed(c, p, radius)
     vectors = np.zeros((FORMS, 2, 3))
     n = ((p[0] - c[0]) / rho, (p[1] - c[1]) / rho, (p[2] - c[2]) / rho)

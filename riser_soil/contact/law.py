@@ -59,6 +59,11 @@ class Penalty:
     def start(self) -> float:
         return self.smoothing
 
+    @property
+    def reach(self) -> float:
+        """Gap [m] from which on there is no force."""
+        return self.smoothing
+
     def initial_history(self, shape: tuple[int, ...]) -> Array:
         return np.empty((*shape, 0))
 

@@ -11,6 +11,7 @@ from riser_soil.contact.candidates import CandidatePairs
 from riser_soil.contact.ground import DeformedSurface
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.line_contact import ContactAlongLine, LineContact
+from riser_soil.contact.suction import SuctionLaw
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Forces, MatrixBlock, State, Traits, Weights
 from riser_soil.core.roles import Adaptive, Predictor
@@ -42,7 +43,7 @@ class SoilContact(LineContact):
     name = "contact"
     traits = Traits("E", symmetric=True, roles=(Adaptive, Predictor, Stateful))
 
-    def __init__(self, line: Line, law: Penalty, surface: SoilTop) -> None:
+    def __init__(self, line: Line, law: Penalty | SuctionLaw, surface: SoilTop) -> None:
         super().__init__(line, law)
         self.outgrown = False
         if not self.active:

@@ -3,67 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
+from riser_soil.contact.active_pairs import ActivePairs
 from riser_soil.contact.candidates import CandidatePairs, touching_boxes
 from riser_soil.contact.cylinder_gap import Axis, NearPoints, Surface, gap_forms, near_points
 from riser_soil.contact.detection import add_blocks, add_shares
 from riser_soil.contact.gap import heights
 from riser_soil.contact.integration_points import divisions
 from riser_soil.contact.law import Penalty
+from riser_soil.contact.point_memory import PointMemory
 from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
+from riser_soil.contact.suction import SuctionLaw
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.compiled import njit
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Weights, Work
+from riser_soil.core.saved_state import Saved, gathered, within
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.trial import Trial
 from riser_soil.soil.surface import SoilTop
-
-
-@dataclass(frozen=True, eq=False)
-class ActivePairs:
-    """What touches at a trial: n points in m pairs of an element and a facet.
-
-    points: the n points. pair (n,): of each point; element, facet (m,): of each pair. forms, C: see `gap_forms`.
-    force (n,) [N] = area times pressure, slope (n,) [N/m]: derivative by the penetration;
-    potential [J] of all. dimension: d of the line.
-    """
-
-    points: NearPoints
-    pair: IntArray
-    element: IntArray
-    facet: IntArray
-    forms: Array
-    C: Array
-    force: Array
-    slope: Array
-    potential: float
-    dimension: int
-
-    @property
-    def on_line(self) -> Array:
-        """Force of each point on the line (n, d) [N]: against the normal, which the positions' share in δg has."""
-        d = self.dimension
-        return np.asarray(self.force[:, None] * (self.forms[:, 0, :d] + self.forms[:, 0, 2 * d : 3 * d]))
-
-    @cached_property
-    def gradient(self) -> Array:
-        """dψ/dz (m, nz) of the pairs by z: q of the element, then the facet's nodes [N, N.m]."""
-        out = np.zeros((len(self.element), self.forms.shape[2]))
-        _add_gradients(out, self.pair, self.force, self.forms)
-        return out
-
-    def hessian(self) -> Array:
-        """d²ψ/dz² (m, nz, nz) of the pairs."""
-        nz = self.forms.shape[2]
-        out = np.zeros((len(self.element), nz, nz))
-        core = -self.force[:, None, None] * self.C
-        core[:, 0, 0] += self.slope
-        _add_hessians(out, self.pair, core, self.forms)
-        return out
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +42,8 @@ class SurfaceContact(SoilContact):
     riser's nodes nor those of the soil are special. All forces derive from the potential ∫ ψ(−gap) dA: the tangent is
     symmetric, and the forces on riser and soil sum to zero in all directions.
 
-    radius (ne,): of the pipe [m]. pressure: its law of the penetration, [N/m2] where other contacts have [N/m].
+    radius (ne,): of the pipe [m]. pressure: its law of the penetration, [N/m2] where other contacts have [N/m]; with a
+    history, such as suction has, for each point of the soil.
     spacing: of the integration points along and across the riser [m]. along (2,): horizontal unit vector of the riser
     on the ground; by default its first axis. reach: by default half a facet to all sides of the pipe.
     """
@@ -93,19 +53,21 @@ class SurfaceContact(SoilContact):
         line: Line,
         radius: Array,
         surface: SoilTop,
-        pressure: Penalty,
+        pressure: Penalty | SuctionLaw,
         spacing: tuple[float, float],
         *,
         along: Array | None = None,
         reach: CandidateRange | None = None,
     ) -> None:
         super().__init__(line, pressure, surface)
-        self._radius = radius
+        self._radius, self._pressure = radius, pressure
         if not self.active:
             return
         self._reach = reach or CandidateRange(0.5 * self._soil.facet_size, 0.5 * self._soil.facet_size)
         axis = line.basis[:2, 0] if along is None else along
         self._parts = divisions(surface.points, self._soil.facets, axis, spacing)
+        self._first = np.append(0, np.cumsum(self._parts.prod(axis=1)))[:-1]
+        self._memory = PointMemory(pressure.initial_history(()))
 
     def evaluate(self, state: State) -> SurfaceState:
         """Riser and soil at a state."""
@@ -114,19 +76,28 @@ class SurfaceContact(SoilContact):
 
     def _evaluate(self, trial: Trial) -> SurfaceState:
         deformed = self._soil.deformed(trial.state)
-        axis = self._axis(trial)
-        surface = Surface(self._soil.facets, self._parts, self._soil.at_first, deformed)
-        elements, facets = self._pairs(axis, deformed, CandidateRange(self.law.start, self.law.start))
-        near = near_points(axis, surface, elements, facets, self.law.start)
+        axis, surface = self.axis(trial), self.surface(deformed)
+        reach = self._pressure.reach if len(self._memory.numbers) else self.law.start
+        elements, facets = self._pairs(axis, deformed, CandidateRange(reach, reach))
+        near = near_points(axis, surface, elements, facets, reach)
+        acting = self.law.active(-near.gap, self._memory.at(near.number))
+        return SurfaceState(trial, deformed, self._pressed(axis, surface, near.of(acting)))
+
+    def _pressed(self, axis: Axis, surface: Surface, near: NearPoints) -> ActivePairs:
+        """Forces at points near enough to have any."""
         forms, C = gap_forms(axis, surface, near, self.line.basis)
         pairs, pair = np.unique(near.element * len(self._soil.facets) + near.facet, return_inverse=True)
         element, facet = np.divmod(pairs, len(self._soil.facets))
-        answer = self.law.update(-near.gap, self.law.initial_history(near.gap.shape))
+        answer = self.law.update(-near.gap, self._memory.at(near.number))
         weighed = near.area * answer.force, near.area * answer.slope, float(near.area @ answer.stored)
-        pressed = ActivePairs(near, pair, element, facet, forms, C, *weighed, self.line.dimension)
-        return SurfaceState(trial, deformed, pressed)
+        return ActivePairs(near, pair, element, facet, forms, C, *weighed, answer.history, self.line.dimension)
 
-    def _axis(self, trial: Trial) -> Axis:
+    def surface(self, deformed: Array) -> Surface:
+        """The soil's surface with its points at (np, 3) [m]."""
+        return Surface(self._soil.facets, self._parts, self._first, self._soil.at_first, deformed)
+
+    def axis(self, trial: Trial) -> Axis:
+        """The riser's axis at a trial."""
         q = trial.q @ self.line.basis.T
         q[:, ::2] += self.line.origin
         return Axis(q, self.line.length, self._radius)
@@ -147,40 +118,52 @@ class SurfaceContact(SoilContact):
         return np.hstack([self.line.element_block().rows[on_line], self._soil.facet_dofs(facet)])
 
     def candidates(self, state: State) -> CandidatePairs:
-        axis = self._axis(self.line.trial(state))
+        axis = self.axis(self.line.trial(state))
         pairs = self._pairs(axis, self._soil.deformed(state), self._reach)
         return CandidatePairs.of(len(self._soil.facets), *pairs)
 
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
         found = self.evaluate(state)
-        return None, found.trial.pull_back(self._on_line(found))
+        return None, self.in_elements(found, found.pressed.gradient)
+
+    def in_elements(self, found: SurfaceState, gradient: Array) -> Array:
+        """Element residuals (ne, 2 ndof) of forces on the pairs, minus `gradient` (m, nz)."""
+        return found.trial.pull_back(self._on_line(found.pressed, gradient))
 
     def residual(self, state: State, forces: Forces) -> None:
         """Add dψ/du: minus the force on the riser, minus the force on the soil."""
-        pressed = self.evaluate(state).pressed
+        found = self.evaluate(state)
         self.line.scatter(self.element_forces(state)[1], forces.end)
-        add_shares(forces.end, self._soil.facet_dofs(pressed.facet), self._on_facets(pressed))
+        self.add_to_soil(forces, found.pressed, found.pressed.gradient)
 
-    def _on_line(self, found: SurfaceState) -> Array:
+    def add_to_soil(self, forces: Forces, pressed: ActivePairs, gradient: Array) -> None:
+        """Add the facets' share of forces on the pairs, minus `gradient` (m, nz)."""
+        add_shares(forces.end, self._soil.facet_dofs(pressed.facet), self._on_facets(gradient))
+
+    def _on_line(self, pressed: ActivePairs, gradient: Array) -> Array:
         """Residual conjugate to q (ne, 4, d)."""
         d = self.line.dimension
         F = np.zeros((self.line.length.size, 4, d))
-        np.add.at(F, found.pressed.element, found.pressed.gradient[:, : 4 * d].reshape(-1, 4, d))
+        np.add.at(F, pressed.element, gradient[:, : 4 * d].reshape(-1, 4, d))
         return F
 
-    def _on_facets(self, pressed: ActivePairs) -> Array:
+    def _on_facets(self, gradient: Array) -> Array:
         """Residual (m, 3 nv) of the pairs' facets [N]."""
-        return pressed.gradient[:, 4 * self.line.dimension :]
+        return gradient[:, 4 * self.line.dimension :]
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         """Add d²ψ/du², unweighted: contact stands at the end of the step."""
         found = self.evaluate(state)
+        self.add_tangent(values, found, found.pressed.hessian(), found.pressed.gradient)
+
+    def add_tangent(self, values: dict[str, Array], found: SurfaceState, by_z: Array, gradient: Array) -> None:
+        """Add the derivative of the pairs' forces, minus `gradient` (m, nz), which is `by_z` (m, nz, nz)."""
         pressed = found.pressed
         by_dofs = self._by_dofs(found.trial, pressed)
         places = self.places(pressed.element, pressed.facet)
-        add_blocks(values[SOIL], places, np.swapaxes(by_dofs, 1, 2) @ pressed.hessian() @ by_dofs)
-        found.trial.add_turning(values[self.line.name], 1.0, self._on_line(found))
+        add_blocks(values[SOIL], places, np.swapaxes(by_dofs, 1, 2) @ by_z @ by_dofs)
+        found.trial.add_turning(values[self.line.name], 1.0, self._on_line(pressed, gradient))
 
     def _by_dofs(self, trial: Trial, pressed: ActivePairs) -> Array:
         """Derivative (m, nz, nr) of the pairs' q and facet nodes by their dofs."""
@@ -200,17 +183,28 @@ class SurfaceContact(SoilContact):
 
     def work(self, before: State, after: State) -> Work:
         """What the force at the end of the step took out beyond the change of its potential."""
+        last = self.evaluate(after)
+        taken = float(np.sum(last.pressed.gradient * self.moved(before, after)))
+        return Work(dissipated=taken - self.energy(after).potential + self.energy(before).potential)
+
+    def moved(self, before: State, after: State) -> Array:
+        """Movement (m, nz) in a step of what touches at its end: q of the elements, then the facets' nodes [m]."""
         first, last = self.evaluate(before), self.evaluate(after)
         pressed, d = last.pressed, self.line.dimension
         moved_q = (last.trial.q - first.trial.q)[pressed.element].reshape(len(pressed.element), 4 * d)
         facets = self._soil.facets[pressed.facet]
-        moved = (last.deformed - first.deformed)[facets].reshape(len(facets), -1)
-        taken = float(np.sum(pressed.gradient * np.hstack([moved_q, moved])))
-        return Work(dissipated=taken - self.energy(after).potential + self.energy(before).potential)
+        moved = (last.deformed - first.deformed)[facets].reshape(len(facets), 3 * facets.shape[1])
+        return np.hstack([moved_q, moved])
+
+    def commit(self, state: State) -> None:
+        """Keep the history of the points."""
+        if self.law.columns:
+            pressed = self.evaluate(state).pressed
+            self._memory.keep(pressed.points.number, pressed.history)
 
     def force_per_length(self, state: State) -> Array:
-        """Contact force per length at the nodes (nn,) [N/m], >= 0: the size of the sum of the points' forces, shared
-        linearly by two nodes.
+        """Contact force per length at the nodes (nn,) [N/m]: the size of the sum of the points' forces, shared linearly
+        by two nodes; < 0 where it pulls the riser down.
         """
         total = np.zeros((self.line.nodes, self.line.dimension))
         if self.active:
@@ -218,7 +212,8 @@ class SurfaceContact(SoilContact):
             element, along = pressed.points.element, pressed.points.along[:, None]
             np.add.at(total, element, (1.0 - along) * pressed.on_line)
             np.add.at(total, element + 1, along * pressed.on_line)
-        return np.asarray(np.linalg.norm(total, axis=1) / self.line.tributary_length)
+        size = np.linalg.norm(total, axis=1) / self.line.tributary_length
+        return np.asarray(np.where(total[:, -1] < 0.0, -size, size))
 
     def max_penetration(self, state: State) -> float:
         """Deepest penetration of the soil's surface into the pipe [m], >= 0: an error."""
@@ -234,13 +229,18 @@ class SurfaceContact(SoilContact):
         """Sum of the contact forces on the riser (3,) [N], global axes."""
         if not self.active:
             return np.zeros(3)
-        return np.asarray(-self.line.basis @ self._on_line(self.evaluate(state))[:, ::2].sum(axis=(0, 1)))
+        pressed = self.evaluate(state).pressed
+        return self.sum_on_riser(pressed, pressed.gradient)
+
+    def sum_on_riser(self, pressed: ActivePairs, gradient: Array) -> Array:
+        """Sum of forces on the riser (3,) [N], global axes, of those on the pairs, minus `gradient` (m, nz)."""
+        return np.asarray(-self.line.basis @ self._on_line(pressed, gradient)[:, ::2].sum(axis=(0, 1)))
 
     def force_on_soil(self, state: State) -> Array:
         """Sum of the contact forces on the soil (3,) [N], global axes."""
         if not self.active:
             return np.zeros(3)
-        return np.asarray(-self._on_facets(self.evaluate(state).pressed).reshape(-1, 3).sum(axis=0))
+        return np.asarray(-self._on_facets(self.evaluate(state).pressed.gradient).reshape(-1, 3).sum(axis=0))
 
     def stretch(self, state: State) -> float:
         if not self.active:
@@ -258,31 +258,11 @@ class SurfaceContact(SoilContact):
         facet, xi = self._soil.locate(x[:, :2], surface)
         return np.asarray(x[:, 2] - larger_beside(self._radius) - heights(facet, xi, self._soil.facets, surface))
 
+    def state(self) -> Saved:
+        """That of the pattern, and the history of the points."""
+        return super().state() | (gathered({"points": self._memory}) if self.active else {})
 
-@njit
-def _add_gradients(out: Array, pair: IntArray, force: Array, forms: Array) -> None:
-    for i in range(len(pair)):
-        for c in range(forms.shape[2]):
-            out[pair[i], c] -= force[i] * forms[i, 0, c]
-
-
-@njit
-def _add_hessians(out: Array, pair: IntArray, core: Array, forms: Array) -> None:
-    nz, k = forms.shape[2], forms.shape[1]
-    row = np.empty((k, nz))
-    for i in range(len(pair)):
-        row[:] = 0.0
-        for a in range(k):
-            for b in range(k):
-                if core[i, a, b] != 0.0:
-                    for c in range(nz):
-                        row[a, c] += core[i, a, b] * forms[i, b, c]
-        _add_products(out[pair[i]], row, forms[i])
-
-
-@njit
-def _add_products(out: Array, row: Array, form: Array) -> None:
-    for a in range(form.shape[0]):
-        for r in range(form.shape[1]):
-            for c in range(form.shape[1]):
-                out[r, c] += form[a, r] * row[a, c]
+    def restore(self, saved: Saved) -> None:
+        super().restore(saved)
+        if self.active:
+            self._memory.restore(within(saved, "points"))

@@ -62,7 +62,7 @@ class ContactSnapshot:
     contact_force: Array  # (3,) N, the sum over the riser, exerted on the riser
     penetration: Array | None = None  # (nn,) m, of the underside into the ground as it is now; None where not wanted
     embedment: Array | None = None  # (nn,) m, greatest depth yet below the ground as it lay at first; the same
-    slip: Array | None = None  # (nn,) m, way slid over the seabed so far; None without friction, or not wanted
+    slip: Array | None = None  # (nn,) m, way slid over seabed and soil so far; None without friction, or not wanted
 
 
 @dataclass(frozen=True, eq=False)

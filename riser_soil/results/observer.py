@@ -197,7 +197,7 @@ def _known_fields(assembly: Assembly) -> tuple[str, ...]:
         "pressures": assembly.pressures is not None,
         "min_bend_radius": bool(assembly.elements.min_bend_radius.any()),
         "ground": bool(assembly.contacts),
-        "friction": assembly.friction is not None,
+        "friction": bool(assembly.frictions),
     }
     return outputs.known(assembly.scene.output.fields, [need for need, there in has.items() if there])
 

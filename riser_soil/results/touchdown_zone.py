@@ -40,12 +40,15 @@ class TouchdownZone:
             contact_force=np.asarray(sum((contact.force_on_riser(state) for contact in contacts), np.zeros(3))),
             penetration=self._penetration(state) if "penetration" in self._fields else None,
             embedment=self._embedded(state) if "embedment" in self._fields else None,
-            slip=self._assembly.friction.slip() if self._assembly.friction and "slip" in self._fields else None,
+            slip=self._slip() if "slip" in self._fields else None,
         )
 
     def _penetration(self, state: State) -> Array:
         found = [contact.penetration(state) for contact in self._assembly.contacts]
         return np.asarray(np.max(found, axis=0))
+
+    def _slip(self) -> Array:
+        return np.asarray(np.sum([friction.slip() for friction in self._assembly.frictions], axis=0))
 
     def _embedded(self, state: State) -> Array:
         self._embedment = np.max([self._embedment, *(c.depth(state) for c in self._assembly.contacts)], axis=0)

@@ -5,6 +5,7 @@ allocates nothing per element. `vector` and `matrix` read them from arrays, `sto
 `np.array(A)` works too, also in compiled code.
 """
 
+import math
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
@@ -61,6 +62,12 @@ def dot(a: Vec, b: Vec) -> float:
 def cross(a: Vec, b: Vec) -> Vec:
     """a x b."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+@njit
+def norm(a: Vec) -> float:
+    """Length of a."""
+    return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
 @njit

@@ -16,7 +16,7 @@ from riser_soil.core.quantities import (
 
 
 class Friction(BaseModel):
-    """Coulomb friction on the seabed."""
+    """Coulomb friction on the seabed, and on the soil where the pipe's surface touches it."""
 
     model_config = FROZEN
 
@@ -32,11 +32,14 @@ class Friction(BaseModel):
 
 
 class Suction(BaseModel):
-    """Tension of a penalty seabed on a pipe that lifts; once broken it is gone until the pipe touches again."""
+    """Tension of the ground on a pipe that lifts; once broken it is gone until the pipe touches again."""
 
     model_config = FROZEN
 
-    cap: PositiveWeightPerLength = Field(description="greatest tension per length of pipe [N/m]")
+    cap: PositiveWeightPerLength = Field(
+        description="greatest tension per length of pipe [N/m]; on soil spread over what has touched of the "
+        "outer diameter",
+    )
     reach: Length = Field(description="opening over which it breaks away [m]; more than cap/stiffness")
 
 
@@ -45,27 +48,31 @@ class Contact(BaseModel):
 
     model_config = FROZEN
 
-    method: Literal["line", "node", "surface"] = Field(
-        default="line",
-        description="where contact is evaluated. With a seabed: node (at the riser's nodes) or else along the "
-        "elements, at five Gauss points each. With soil: surface (all over the soil's surface, with the pipe's "
-        "cylinder) or else at the riser's nodes",
+    method: Literal["auto", "line", "node", "surface"] = Field(
+        default="auto",
+        description="where contact is evaluated: node, at the riser's nodes; or else on soil all over its surface, "
+        "with the pipe's cylinder (surface), and on a seabed along the elements (line), at five Gauss points each",
     )
     stiffness: AutoOrBedStiffness = Field(
         default="auto",
         description="force per length of pipe and penetration [N/m2], or auto: the larger of 10 times the "
-        "soil's Young's modulus at the surface, 20 times with method: surface, and (submerged weight)/(0.001 outer "
-        "diameter); a spring seabed has its own. With method: surface it is spread over the width by which the pipe "
+        "soil's Young's modulus at the surface, 20 times on its surface, and (submerged weight)/(0.001 outer "
+        "diameter); a spring seabed has its own. On the soil's surface it is spread over the width by which the pipe "
         "touches elastic soil under its weight",
     )
     smoothing: AutoOrLengthOrNone = Field(
         default="auto",
         description="contact sets in smoothly between this gap and this penetration [m], or auto: 1/300 of the outer "
-        "diameter on soil, 0 there with method: surface; on a seabed what the riser sinks in by its weight, within "
+        "diameter at nodes on soil, 0 on its surface; on a seabed what the riser sinks in by its weight, within "
         "1/3000 and 1/300 of the diameter",
     )
-    friction: Friction | None = Field(default=None, description="friction on the seabed; none by default")
+    friction: Friction | None = Field(default=None, description="friction on seabed and soil; none by default")
     suction: Suction | None = Field(
         default=None,
-        description="suction of a rigid or spring seabed; none by default, and a hysteretic one has its own",
+        description="suction of a rigid or spring seabed and of soil; none by default, a hysteretic one has its own",
     )
+
+    @property
+    def at_nodes(self) -> bool:
+        """Whether the riser touches at its nodes only."""
+        return self.method == "node"

@@ -155,22 +155,27 @@ def _seabed_has_one_shape(scene: Scene) -> Iterator[Problem]:
         yield Problem(("seabed", key), "the soil's top is level, and so must be the seabed beside it", "leave it out")
 
 
-def _seabed_can_do_so(scene: Scene) -> Iterator[Problem]:
+def _ground_can_do_so(scene: Scene) -> Iterator[Problem]:
+    if scene.contact is None:
+        return
+    on_soil = scene.soil is not None and not scene.contact.at_nodes
     for key in ("friction", "suction"):
-        if scene.contact and getattr(scene.contact, key) and scene.seabed is None:
-            yield Problem(("contact", key), "acts on a seabed, and the scene has none", "add seabed, or leave it out")
-    if scene.contact and scene.contact.suction and isinstance(scene.seabed, HystereticSeabed):
+        if getattr(scene.contact, key) and scene.seabed is None and not on_soil:
+            text = "acts on a seabed or on the soil's surface, and there is neither"
+            yield Problem(("contact", key), text, "add seabed, or leave out contact.method: node, or leave it out")
+    if scene.contact.suction and isinstance(scene.seabed, HystereticSeabed) and not on_soil:
         yield Problem(("contact", "suction"), "a hysteretic seabed has its own, in seabed.law", "leave it out")
 
 
 def _surface_of_a_pipe_and_soil(scene: Scene) -> Iterator[Problem]:
-    if scene.contact is None or scene.contact.method != "surface":
+    if scene.contact is None:
         return
-    if scene.soil is None:
+    if scene.contact.method == "surface" and scene.soil is None:
         remedy = "add soil, or take line or node"
         yield Problem(("contact", "method"), "surface is contact with soil, and the scene has none", remedy)
-    if scene.contact_at == "axis":
-        yield Problem(("seabed", "contact_at"), "the axis has no surface to touch with", "write outer")
+    if scene.soil is not None and scene.contact_at == "axis" and not scene.contact.at_nodes:
+        remedy = "write outer, or contact.method: node"
+        yield Problem(("seabed", "contact_at"), "the axis has no surface to touch the soil with", remedy)
 
 
 def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
@@ -286,7 +291,7 @@ _CHECKS: tuple[_Check, ...] = (
     _stays_in_plane,
     _contact_with_something,
     _seabed_has_one_shape,
-    _seabed_can_do_so,
+    _ground_can_do_so,
     _surface_of_a_pipe_and_soil,
     _ends_above_seabed,
     _initial_shape_possible,

@@ -46,7 +46,7 @@ CASES: list[tuple[Changes, str, str]] = [
     (
         (("method: node", "method: surface"), ("stiffness: 1.0e5}", "stiffness: 1.0e5, contact_at: axis}")),
         "seabed.contact_at",
-        "the axis has no surface to touch with",
+        "the axis has no surface to touch the soil with",
     ),
     ((("    mass: 120.0\n", ""), STATIC_ALONE), "line_types.pipe.mass: missing", "the weight follows from the mass"),
     ((NO_DIAMETER, GIVEN_WEIGHT), "line_types.pipe.outer_diameter: missing", "drag and added mass follow"),

@@ -15,6 +15,9 @@ from riser_soil.scene.reader import scene_from_mapping
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.riser_scenes import prescribed, riser_scene
 
+# Of the small scenes, whose cells are wider than what touches them.
+COARSE = "touches the soil at its nodes only", "by which the riser touches elastic soil"
+
 
 def report(mapping: Mapping) -> str:
     return describe(scene_from_mapping(mapping))
@@ -23,7 +26,7 @@ def report(mapping: Mapping) -> str:
 def warnings(mapping: Mapping) -> list[str]:
     """But for that of contact with soil at nodes, which these scenes have."""
     told = [line for line in report(mapping).splitlines() if line.startswith("warning: ")]
-    return [line for line in told if "touches the soil at its nodes only" not in line]
+    return [line for line in told if not any(known in line for known in COARSE)]
 
 
 def without_soil(*stages: Mapping) -> Mapping:
@@ -48,8 +51,10 @@ def test_a_whole_scene() -> None:
     ]
     assert "riser: 36 elements of 0.5 to 1.5 m, 107 unknowns" in lines  # 37 nodes of 3, less two prescribed positions
     assert "contact stiffness on the seabed: 1e+05 N/m2" in lines
-    assert "touches the soil at its nodes only, 0.5 m apart, on cells of 0.5 m" in lines[-2]
+    assert "soil.mesh.size_at_riser 0.5 m is 10 times the 0.0482 m by which the riser touches" in lines[-2]
     assert lines[-1] == "1 warning"
+    at_nodes = report({**touchdown(LAY, heave(1.0)), "contact": {"method": "node"}}).splitlines()
+    assert "touches the soil at its nodes only, 0.5 m apart, on cells of 0.5 m" in at_nodes[-2]
 
 
 def test_a_scene_without_doubts() -> None:
@@ -211,10 +216,13 @@ def test_long_elements_in_a_bend_are_told_with_the_error_of_the_moment() -> None
     assert not warnings(long_riser(int(1.0e4 / longest) + 1))
 
 
-def test_friction_on_soil_is_none_and_told() -> None:
-    rough = {**touchdown(), "contact": {"friction": {"axial": 0.3}}}
+@pytest.mark.parametrize(("key", "given"), [("friction", {"axial": 0.3}), ("suction", {"cap": 50.0, "reach": 0.1})])
+def test_nodes_without_friction_or_suction_on_soil_are_told(key: str, given: Mapping) -> None:
+    rough = {**touchdown(), "contact": {"method": "node", key: given}}
     (found,) = warnings(rough)
-    assert "contact.friction acts on the seabed only: on the soil, x from 2 to 9 m and y from -1 to 1 m" in found
+    assert f"contact.{key} acts on the seabed only: on the soil, x from 2 to 9 m and y from -1 to 1 m" in found
+    rough["contact"]["method"] = "auto"
+    assert not warnings(rough)
     del rough["soil"]
     assert not warnings(rough)
 

@@ -89,7 +89,8 @@ def test_supports_and_contact_bear_the_weight(kind: str, dimension: int) -> None
 @pytest.mark.parametrize(("kind", "dimension"), KINDS)
 def test_soil_hands_the_contact_force_on_to_its_supports(kind: str, dimension: int) -> None:
     case = laid(kind, dimension)
-    assert np.abs(case.soil_reactions + case.on_soil).max() < 1e-9 * np.linalg.norm(case.on_soil)
+    round_off = 10.0 * case.assembly.scales.force_floor  # where Newton's method ends
+    assert np.abs(case.soil_reactions + case.on_soil).max() < round_off < 1e-8 * np.linalg.norm(case.on_soil)
     assert case.on_soil[2] < -0.15 * case.weight
 
 
@@ -104,6 +105,7 @@ def test_the_axis_lies_on_the_soil_as_the_outer_surface_does() -> None:
     """The pipe's width spreads the force either way: a single point finds no balance where facets meet in a kink."""
     outer = touchdown(LAY, su=1000.0)
     outer["riser"]["segments"][0]["elements"] = 12
+    outer["contact"] = {"method": "node"}
     axis = deepcopy(outer)
     axis["seabed"]["contact_at"] = "axis"
     for end in ("start", "end"):

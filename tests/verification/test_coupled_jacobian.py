@@ -9,20 +9,31 @@ import numpy as np
 import pytest
 
 from riser_soil.contact.node_contact import NodeContact
+from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.core.arrays import Array, IntArray
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import FirstStep, built
 
 LIFT: Mapping = {"name": "lift", "kind": "static", "move": {"end": [22.5, 0.0, 15.1]}}
 NEXT = {"static": LIFT, "dynamic": heave(1.0, time_step=0.01)}
+CONTACT: dict[str, Mapping] = {
+    "node": {},
+    "surface": {
+        "smoothing": 1e-3,
+        "friction": {"axial": 0.4, "lateral": 0.7},
+        "suction": {"cap": 300.0, "reach": 0.02},
+    },
+}
 STEP = 1e-5  # of the finite differences, times perturbations of millimetres: no point starts or stops yielding
 
 
 class Case:
     """The first step after laying, looked at in a state away from balance; x the unknowns there."""
 
-    def __init__(self, kind: str, dimension: int, stage: str) -> None:
-        assembly = built(touchdown(LAY, NEXT[stage], kind=kind, dimension=dimension, su=1000.0))
+    def __init__(self, kind: str, dimension: int, stage: str, method: str = "node") -> None:
+        scene = touchdown(LAY, NEXT[stage], kind=kind, dimension=dimension, su=1000.0)
+        scene["contact"] = {"method": method} | CONTACT[method]
+        assembly = built(scene)
         self.step = FirstStep(assembly)
         self.assembly = assembly
         self._random = np.random.default_rng(5)
@@ -47,8 +58,14 @@ class Case:
     @property
     def active(self) -> dict[str, IntArray]:
         """Rows of the riser's and of the soil's dofs on which contact acts at x."""
-        assert isinstance(self.assembly.soil_contact, NodeContact)
-        rows = self.step.rows(self.assembly.soil_contact.detect(self.step.state(self.x)).touching.rows.ravel())
+        contact, state = self.assembly.soil_contact, self.step.state(self.x)
+        if isinstance(contact, NodeContact):
+            touched = contact.detect(state).touching.rows
+        else:
+            assert isinstance(contact, SurfaceContact)
+            pressed = contact.evaluate(state).pressed
+            touched = contact.pair_dofs(pressed.element, pressed.facet)
+        rows = self.step.rows(touched.ravel())
         return {
             "touched riser": np.intersect1d(rows, self.riser),
             "touched soil": np.intersect1d(rows, self.soil),
@@ -81,22 +98,23 @@ class Case:
         return float(np.mean(soil.output_fields().plastic_strain > before))
 
 
-CASES = [(k, d, s) for k in ("hex", "tet") for d in (2, 3) for s in ("static", "dynamic")]
+CASES = [(k, d, s, "node") for k in ("hex", "tet") for d in (2, 3) for s in ("static", "dynamic")]
+CASES += [("hex", 2, "static", "surface"), ("hex", 3, "dynamic", "surface"), ("tet", 3, "static", "surface")]
 
 
-@pytest.mark.parametrize(("kind", "dimension", "stage"), CASES)
-def test_jacobian_equals_finite_differences(kind: str, dimension: int, stage: str) -> None:
-    case = Case(kind, dimension, stage)
+@pytest.mark.parametrize(("kind", "dimension", "stage", "method"), CASES)
+def test_jacobian_equals_finite_differences(kind: str, dimension: int, stage: str, method: str) -> None:
+    case = Case(kind, dimension, stage, method)
     errors = case.errors()
     assert max(errors.values()) < 1e-7, errors
     assert all(len(rows) > 10 for rows in case.groups().values())
     assert case.plastic_share() > 0.3
 
 
-@pytest.mark.parametrize("kind", ["hex", "tet"])
-def test_every_part_matters_in_the_jacobian(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("kind", "method"), [("hex", "node"), ("tet", "node"), ("hex", "surface")])
+def test_every_part_matters_in_the_jacobian(kind: str, method: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Left out of the matrix, each part shows in the rows that it acts on."""
-    case = Case(kind, 3, "dynamic")
+    case = Case(kind, 3, "dynamic", method)
     for part in case.step.system.model.parts:
         with monkeypatch.context() as without:
             without.setattr(part, "tangent", lambda *_: None)

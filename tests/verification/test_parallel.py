@@ -28,10 +28,12 @@ COUNTED = {"newton_iterations", "most_newton_iterations", "seconds", "ranks", "e
 def scene(name: str) -> Mapping:
     """Scenes short enough to compute three times, solved to 1e-10 of their forces."""
     if name in ("hex", "tet"):
-        return touchdown(LAY, heave(1.0), kind=name, su=1000.0, dimension=3, tolerance=1e-10)
+        at_nodes = touchdown(LAY, heave(1.0), kind=name, su=1000.0, dimension=3, tolerance=1e-10)
+        return at_nodes | {"contact": {"method": "node"}}
     if name == "surface":
         pressed = touchdown(LAY, heave(0.5), su=6000.0, dimension=3, tolerance=1e-10)
-        return pressed | {"contact": {"method": "surface", "smoothing": 1e-3}}
+        held = {"friction": {"axial": 0.4, "lateral": 0.7}, "suction": {"cap": 100.0, "reach": 0.03}}
+        return pressed | {"contact": {"method": "surface", "smoothing": 1e-3} | held}
     if name == "sea":
         return in_waves(0.1, 21.0) | {"output": {"interval": 0.1}}
     given: Mapping = YAML(typ="safe").load({"demo": DEMO, "riser": CATENARY, "clay": CLAY}[name])

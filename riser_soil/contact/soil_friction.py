@@ -1,0 +1,181 @@
+"""Coulomb friction between the pipe's cylinder and the soil's surface, point by point: the part "soil friction"."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from riser_soil.contact.active_pairs import add_products, add_rows
+from riser_soil.contact.coulomb import traction
+from riser_soil.contact.cylinder_gap import Axis, Surface
+from riser_soil.contact.point_memory import PointMemory
+from riser_soil.contact.sliding import Slide, slide
+from riser_soil.contact.surface_contact import SurfaceContact, SurfaceState
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
+from riser_soil.core.saved_state import Saved, Stateful, gathered, within
+from riser_soil.riser.line_part import LinePart
+
+AREA = 3  # column of the memory, behind the traction
+
+
+@dataclass(frozen=True, eq=False)
+class SlidingState:
+    """Friction at a state: traction (n, 3) on the riser [Pa] of the n points that press, their plastic slip (n,) [m];
+    residual (m, nz) of the pairs by z [N, N.m], see `ActivePairs`.
+    """
+
+    found: SurfaceState
+    moved: Slide
+    elastic: Array
+    components: Array
+    traction: Array
+    slip: Array
+    gradient: Array
+
+
+class SoilFriction(LinePart):
+    """Part "soil friction": Coulomb friction at the integration points of a `SurfaceContact`; group E.
+
+    axial, lateral: coefficients, > 0, along the pipe and around it. stiffness: of the soil's surface along itself
+    [N/m3], see `coulomb`. The slide is that of the axis over the soil, and the force acts on the axis. Directions are
+    those of the start of the step; the traction is kept in global axes.
+    """
+
+    name = "soil friction"
+    traits = Traits("E", symmetric=False, keeps_way=True, roles=(Stateful,))
+
+    def __init__(self, contact: SurfaceContact, axial: float, lateral: float, stiffness: float) -> None:
+        super().__init__(contact.line)
+        self.contact = contact
+        self._mu, self._stiffness = np.array([axial, lateral]), stiffness
+        self._memory = PointMemory(np.zeros(AREA + 1))
+        self._begun: tuple[Axis, Surface] | None = None
+        self._slid: Array = np.zeros(self.line.nodes)
+
+    def blocks(self) -> dict[str, MatrixBlock]:
+        """Those of contact."""
+        return self.contact.blocks()
+
+    def evaluate(self, state: State) -> SlidingState:
+        """Tractions of the points that press."""
+        found: SlidingState = self.line.trial(state).once((self, "sliding"), lambda _: self._evaluate(state))
+        return found
+
+    def _evaluate(self, state: State) -> SlidingState:
+        found = self.contact.evaluate(state)
+        pressed, now = found.pressed, (self.contact.axis(found.trial), self.contact.surface(found.deformed))
+        moved = slide(pressed.points, self._start(state), now, self.line.basis)
+        before = self._memory.at(pressed.points.number)[:, :AREA]
+        elastic = before - self._stiffness * moved.moved
+        kept, slope = _along(moved.along, before), _along(moved.along, elastic)
+        t, _, _ = traction(slope, self._pressure(found), self._mu)
+        slip = np.linalg.norm(_along(moved.along, moved.moved) - (kept - t) / self._stiffness, axis=1)
+        on_riser = np.einsum("nri,nr->ni", moved.along, t)
+        gradient = np.zeros_like(pressed.gradient)
+        force = -pressed.points.area[:, None] * on_riser
+        add_rows(gradient, pressed.pair, np.ones(len(force)), np.einsum("ni,niz->nz", force, moved.by_z))
+        return SlidingState(found, moved, elastic, t, on_riser, slip, gradient)
+
+    def _pressure(self, found: SurfaceState) -> Array:
+        """Pressure (n,) of the points [Pa], 0 where they pull."""
+        return np.asarray(np.maximum(found.pressed.force, 0.0) / found.pressed.points.area)
+
+    def _start(self, state: State) -> tuple[Axis, Surface]:
+        """The pipe's axis and the soil's surface at the start of the step."""
+        if self._begun is None:
+            rest = State.at_rest(state.t, state.u.size)
+            found = self.contact.evaluate(rest)
+            self._begun = self.contact.axis(found.trial), self.contact.surface(found.deformed)
+        return self._begun
+
+    def element_forces(self, state: State) -> tuple[None, Array]:
+        """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
+        sliding = self.evaluate(state)
+        return None, self.contact.in_elements(sliding.found, sliding.gradient)
+
+    def residual(self, state: State, forces: Forces) -> None:
+        sliding = self.evaluate(state)
+        self.line.scatter(self.element_forces(state)[1], forces.end)
+        self.contact.add_to_soil(forces, sliding.found.pressed, sliding.gradient)
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        """Unweighted: friction stands at the end of the step."""
+        sliding = self.evaluate(state)
+        pressed = sliding.found.pressed
+        nz, area = pressed.forms.shape[2], pressed.points.area[:, None, None]
+        by_z = np.zeros((len(pressed.element), nz, nz))
+        turning = np.einsum("ni,niz->nz", sliding.traction, sliding.moved.by_s_z)
+        left = np.concatenate([sliding.moved.by_z, turning[:, None]], axis=1)
+        right = np.concatenate([self._traction_by_z(sliding), pressed.forms[:, 3:]], axis=1)
+        add_products(by_z, pressed.pair, -area * left, right)
+        self.contact.add_tangent(values, sliding.found, by_z, sliding.gradient)
+
+    def _traction_by_z(self, sliding: SlidingState) -> Array:
+        """Derivative (n, 3, nz) of the traction."""
+        moved, pressed, k = sliding.moved, sliding.found.pressed, self._stiffness
+        at, by_place = _along(moved.along, sliding.elastic), pressed.forms[:, 3]
+        t, by_elastic, by_N = traction(at, self._pressure(sliding.found), self._mu)
+        elastic = -k * np.einsum("nri,niz->nrz", moved.along, moved.by_z)
+        turned = _along(moved.along_by_s, sliding.elastic) - k * _along(moved.along, moved.moved_by_s)
+        elastic += turned[:, :, None] * by_place[:, None]
+        pushed = np.where(pressed.force > 0.0, -pressed.slope / pressed.points.area, 0.0)[:, None] * pressed.forms[:, 0]
+        components = by_elastic @ elastic + by_N[:, :, None] * pushed[:, None]
+        out = np.einsum("nri,nrz->niz", moved.along, components)
+        return np.asarray(out + np.einsum("nri,nr->ni", moved.along_by_s, t)[:, :, None] * by_place[:, None])
+
+    def energy(self, state: State) -> Energy:
+        """Stored in what the surface gives elastically along itself."""
+        sliding = self.evaluate(state)
+        return Energy(potential=self._stored(sliding.traction, sliding.found.pressed.points.area))
+
+    def _stored(self, traction: Array, area: Array) -> float:
+        return float(0.5 / self._stiffness * np.sum(area * np.sum(traction**2, axis=1)))
+
+    def work(self, before: State, after: State) -> Work:
+        """Energy dissipated by friction: its work less the change of the energy stored; never negative."""
+        sliding, kept = self.evaluate(after), self._memory.rows
+        area = sliding.found.pressed.points.area
+        taken = -float(np.sum(area[:, None] * sliding.traction * sliding.moved.moved))
+        return Work(dissipated=taken - self.energy(after).potential + self._stored(kept[:, :AREA], kept[:, AREA]))
+
+    def commit(self, state: State) -> None:
+        """Keep the tractions."""
+        sliding = self.evaluate(state)
+        points = sliding.found.pressed.points
+        self._slid = self._slid + self._nodal_slip(sliding)
+        self._memory.keep(points.number, np.column_stack([sliding.traction, points.area]))
+        self._begun = None
+
+    def _nodal_slip(self, sliding: SlidingState) -> Array:
+        """Plastic slip in the step at the nodes (nn,) [m]: the mean over the points that press, shared by two nodes."""
+        points, slid, pressing = sliding.found.pressed.points, np.zeros(self.line.nodes), np.zeros(self.line.nodes)
+        for node, share in ((points.element, 1.0 - points.along), (points.element + 1, points.along)):
+            weight = share * points.area * (sliding.found.pressed.force > 0.0)
+            np.add.at(slid, node, weight * sliding.slip)
+            np.add.at(pressing, node, weight)
+        return slid / np.where(pressing > 0.0, pressing, 1.0)
+
+    def slip(self) -> Array:
+        """Accumulated slip of the riser over the soil at its nodes (nn,) [m], >= 0."""
+        return self._slid
+
+    def force_on_riser(self, state: State) -> Array:
+        """Sum of the friction on the riser (3,) [N], global axes."""
+        if not self.line.active:
+            return np.zeros(3)
+        sliding = self.evaluate(state)
+        return self.contact.sum_on_riser(sliding.found.pressed, sliding.gradient)
+
+    def state(self) -> Saved:
+        return {"slid": self._slid} | gathered({"points": self._memory})
+
+    def restore(self, saved: Saved) -> None:
+        self._slid, self._begun = saved["slid"], None
+        self._memory.restore(within(saved, "points"))
+
+
+def _along(directions: Array, vectors: Array) -> Array:
+    """Components (n, r) of vectors (n, 3) by directions (n, r, 3)."""
+    return np.asarray(np.einsum("nri,ni->nr", directions, vectors))
