@@ -15,9 +15,11 @@ def block_of(scene: Scene, soil: SoilScene, riser: tuple[Point, Point]) -> Block
         x=soil.block.x,
         y=soil.block.y,
         depth=soil.block.depth,
-        size_at_riser=soil.mesh.size_at_riser,
+        size_at_riser=soil.mesh.across,
         size_far=soil.mesh.size_far,
         level=scene.seabed_level,
         kind=soil.mesh.kind,
         riser=riser,
+        along=soil.mesh.along,
+        strip=soil.mesh.strip,
     )

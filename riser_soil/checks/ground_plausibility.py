@@ -12,7 +12,7 @@ from riser_soil.assembly.scales import contact_radius
 from riser_soil.checks.bending_plausibility import nodes_on_ground
 from riser_soil.checks.motion_plausibility import farthest_move
 from riser_soil.core.arrays import Array
-from riser_soil.scene.soil import GeneratedMesh
+from riser_soil.scene.soil import CellSizes, GeneratedMesh
 
 # Bounds of the penalty stiffness over the soil's Young's modulus: below it hides the soil, above it costs iterations.
 SOFT, STIFF = 1.0, 1e4
@@ -68,7 +68,7 @@ def _nodes_on_soil(assembly: Assembly) -> Iterator[str]:
     if scene.contact is None or scene.contact.method == "surface" or scene.soil is None:
         return
     mesh = scene.soil.mesh
-    cells = f"cells of {mesh.size_at_riser:.4g} m" if isinstance(mesh, GeneratedMesh) else "the mesh's cells"
+    cells = f"cells of {_told_size(mesh)}" if isinstance(mesh, GeneratedMesh) else "the mesh's cells"
     yield (
         f"the pipe, D = {_diameter(assembly):.4g} m, touches the soil at its nodes only, "
         f"{assembly.line.length.min():.4g} m apart, on {cells}: its settlement, the soil's stress and whether it "
@@ -84,15 +84,25 @@ def _cells_against_contact(assembly: Assembly) -> Iterator[str]:
     E, mesh = scene.soil.law.surface_modulus, scene.soil.mesh
     if not isinstance(mesh, GeneratedMesh) or E <= 0.0:
         return
-    width, size = contact_width(scales, E), mesh.size_at_riser
+    width, size = contact_width(scales, E), mesh.across
     finest = width / LIKE_CONTACT
     if size > WIDE_CELLS * finest:
         missing = 2.0 * scales.weight / (np.pi * 4.0 / 3.0 * E) * np.log(size / finest)
         yield (
-            f"soil.mesh.size_at_riser {size:.4g} m is {size / width:.2g} times the {width:.3g} m by which the riser "
+            f"soil.mesh.{_key(mesh)} {size:.4g} m is {size / width:.2g} times the {width:.3g} m by which the riser "
             f"touches elastic soil under its weight: it settles by about {1000.0 * missing:.2g} mm less than on a fine "
             f"mesh; take at most {0.5 * width:.2g} m where settlement or stress in the soil matters"
         )
+
+
+def _key(mesh: GeneratedMesh) -> str:
+    """The key of the cells' size across the riser."""
+    return "size_at_riser.across" if isinstance(mesh.size_at_riser, CellSizes) else "size_at_riser"
+
+
+def _told_size(mesh: GeneratedMesh) -> str:
+    one = f"{mesh.across:.4g} m"
+    return f"{mesh.along:.4g} m along and {one} across" if isinstance(mesh.size_at_riser, CellSizes) else one
 
 
 def _top_off_the_seabed(assembly: Assembly) -> Iterator[str]:
