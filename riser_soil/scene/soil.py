@@ -12,6 +12,7 @@ from riser_soil.core.quantities import (
     Length,
     Ratio,
     UnitWeight,
+    word_or,
     wrong,
 )
 from riser_soil.scene.files import NamedFile
@@ -123,17 +124,28 @@ class MeshFile(BaseModel):
 
 
 def _pick_mesh(value: object) -> str | None:
+    if isinstance(value, str):
+        return "<word>"
     if isinstance(value, MeshFile) or (isinstance(value, dict) and "file" in value):
         return "<MeshFile>"
     return "<GeneratedMesh>" if isinstance(value, dict | GeneratedMesh) else None
 
 
 Mesh = Annotated[
-    Annotated[GeneratedMesh, Tag("<GeneratedMesh>")] | Annotated[MeshFile, Tag("<MeshFile>")],
+    Annotated[Literal["auto"], Tag("<word>")]
+    | Annotated[GeneratedMesh, Tag("<GeneratedMesh>")] | Annotated[MeshFile, Tag("<MeshFile>")],
     Discriminator(
         _pick_mesh,
         custom_error_type="choice",
-        custom_error_message="must be a mapping: {kind, size_at_riser, size_far} or {file: mesh.msh}",
+        custom_error_message="must be auto or a mapping: {kind, size_at_riser, size_far} or {file: mesh.msh}",
+    ),
+]
+
+
+AutoOrBlock = Annotated[
+    Annotated[Literal["auto"], Tag("<word>")] | Annotated[Block, Tag("<Block>")],
+    Discriminator(
+        word_or(Block), custom_error_type="choice", custom_error_message="must be auto or a mapping: {x, y, depth}"
     ),
 ]
 
@@ -146,8 +158,13 @@ class SoilScene(BaseModel):
 
     model_config = FROZEN
 
-    block: Block | None = Field(default=None, description="the box of soil to mesh; not with mesh.file")
-    mesh: Mesh = Field(description="{kind, size_at_riser, size_far} for a block, or {file: mesh.msh}")
+    block: AutoOrBlock | None = Field(
+        default=None, description="the box of soil to mesh, or auto: around the touchdown points; not with mesh.file"
+    )
+    mesh: Mesh = Field(
+        description="{kind, size_at_riser, size_far} for a block, auto: sizes that resolve what touches, or "
+        "{file: mesh.msh}"
+    )
     law: Annotated[SoilLaw, LAW] = Field(description=f"constitutive law: {LAW.words}, with its constants")
     submerged_unit_weight: UnitWeight = Field(
         default=0.0, description="submerged unit weight, source of the initial stress [N/m3]"
@@ -161,7 +178,7 @@ class SoilScene(BaseModel):
     def _meshed_once(self) -> Self:
         if isinstance(self.mesh, MeshFile) and self.block is not None:
             raise wrong("block", "a mesh file replaces the block", "leave out either block or mesh.file")
-        if isinstance(self.mesh, GeneratedMesh) and self.block is None:
+        if not isinstance(self.mesh, MeshFile) and self.block is None:
             raise wrong(
                 "block", "the box of soil is missing", "give block: {x, y, depth}, or mesh: {file: ...}"
             )
@@ -169,7 +186,7 @@ class SoilScene(BaseModel):
 
     @model_validator(mode="after")
     def _strong_to_the_bottom(self) -> Self:
-        found = self.law.wrong_within(self.block.depth) if self.block else None
+        found = self.law.wrong_within(self.block.depth) if isinstance(self.block, Block) else None
         if found:
             raise wrong("law", *found)
         return self
