@@ -110,10 +110,14 @@ class SoilSizes:
     @property
     def along(self) -> float:
         """Length of the cells along the riser [m]."""
-        EI = float(np.maximum(self.elements.EI_y, self.elements.EI_z).max())
-        on_soil = float((4.0 * EI / self.soil.law.surface_modulus) ** 0.25)
-        shortest = min(on_soil, self.bending_length or np.inf)
+        shortest = min(bending_on_soil(self.elements, self.soil.law), self.bending_length or np.inf)
         return min(ALONG * shortest, LONGEST * self.scales.diameter)
+
+
+def bending_on_soil(elements: Elements, law: SoilLaw) -> float:
+    """Length over which the soil bends the pipe [m]: of a beam on springs as stiff as E at the surface."""
+    EI = float(np.maximum(elements.EI_y, elements.EI_z).max())
+    return float((4.0 * EI / law.surface_modulus) ** 0.25)
 
 
 def touching_width(scales: Scales, law: SoilLaw) -> float:
