@@ -19,7 +19,7 @@ from riser_soil.soil.grid import silent_gmsh
 
 def main(arguments: list[str] | None = None) -> None:
     asked = _parser().parse_args(arguments)
-    along = ((asked.x[0], asked.riser_y), (asked.x[1], asked.riser_y))
+    riser = ((asked.x[0], asked.riser_y), (asked.x[1], asked.riser_y))
     spec = BlockSpec(
         tuple(asked.x),
         tuple(asked.y),
@@ -28,7 +28,9 @@ def main(arguments: list[str] | None = None) -> None:
         asked.size_far,
         asked.level,
         asked.kind,
-        along,
+        riser,
+        asked.along,
+        asked.strip,
     )
     with silent_gmsh():
         make_block(spec)
@@ -43,6 +45,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--depth", type=float, default=2.5, help="thickness [m]")
     parser.add_argument("--level", type=float, default=0.0, help="z of the top face [m]")
     parser.add_argument("--size", type=float, default=0.5, help="cell size under the riser [m]")
+    parser.add_argument("--along", type=float, help="of hexahedra, length along the riser [m]; --size by default")
+    parser.add_argument("--strip", type=float, default=0.0, help="width across the riser without growth [m]")
     parser.add_argument("--size-far", type=float, default=1.5, help="cell size at the far faces [m]")
     parser.add_argument("--riser-y", type=float, default=0.0, help="y of the riser, which lies along x [m]")
     parser.add_argument("--kind", choices=("hex", "tet"), default="hex")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from riser_soil.assembly import Assembly, build
+from riser_soil.assembly import Assembly, build, sized
 from riser_soil.checks.limits import size_that_fits, tell, too_long
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.core.system import Timer
@@ -30,6 +30,7 @@ def run(scene: Scene, folder: Path | str, force: bool = False) -> None:
     with handling_signals():
         comm, clock, since = MPI.COMM_WORLD, Timer.new(), time.perf_counter()
         refuse_together(folder, force, comm)
+        scene = sized(scene)
         size = size_that_fits(scene, folder, comm)
         tell(size, comm)
         assembly = build(scene, comm)

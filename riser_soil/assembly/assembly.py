@@ -172,8 +172,18 @@ class Assembly:
         return Model([self.line], [*parts, *soil, *self.contacts, *self.frictions], self.ground_fields)
 
 
+def sized(scene: Scene) -> Scene:
+    """The scene with the sizes of its soil in numbers; SceneError where none can be chosen."""
+    if scene.soil is None or "auto" not in (scene.soil.block, scene.soil.mesh):
+        return scene
+    from riser_soil.assembly.soil_sizes import with_sizes
+
+    return with_sizes(scene, scene.soil)
+
+
 def build(scene: Scene, comm: MPI.Intracomm) -> Assembly:
     """Build the parts of a scene; collective. Raises SceneError or MeshError."""
+    scene = sized(scene)
     elements = elements_of(scene)
     attachments = attachments_of(scene)
     line, catenary = line_of(scene, elements, attachments, active=comm.rank == 0)

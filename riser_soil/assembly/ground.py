@@ -61,7 +61,7 @@ def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Di
     match given.mesh:
         case MeshFile():
             return file_grid(comm, given.mesh.file)
-        case GeneratedMesh():
+        case GeneratedMesh() | "auto":  # sizes are chosen
             pass
         case _:
             assert_never(given.mesh)

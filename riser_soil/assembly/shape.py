@@ -56,7 +56,10 @@ def initial_shape(
     given = scene.riser.initial
     match given:
         case "catenary":
-            catenary = _catenary(scene, elements, attachments)
+            start, end = _ends(scene.riser)
+            assert start is not None, "the scene's checks let no catenary start without two prescribed ends"
+            assert end is not None
+            catenary = catenary_between(scene, elements, attachments, start, end)
             return catenary, catenary.curve
         case PointsShape(points=points):
             return None, shapes.through(elements.arc, points)
@@ -76,25 +79,25 @@ def _laid_straight(riser: Riser, arc: Array) -> shapes.Curve:
     return shapes.straight(arc, np.zeros(3) if start is None else start)
 
 
-def _catenary(scene: Scene, elements: sections.Elements, attachments: Sequence[PointAttachment]) -> Catenary:
+def catenary_between(
+    scene: Scene, elements: sections.Elements, attachments: Sequence[PointAttachment], start: Array, end: Array
+) -> Catenary:
+    """The riser as a catenary between two points (3,) [m], on the ground where there is one."""
     from riser_soil.riser.catenary import catenary
 
-    start, end = _ends(scene.riser)
-    assert start is not None, "the scene's checks let no catenary start without two prescribed ends"
-    assert end is not None
     return catenary(
         elements.arc,
         start,
         end,
         elements.weight,
         elements.EA,
-        level=_resting_level(scene, elements),
+        level=resting_level(scene, elements),
         points=np.array([(attachment.arc, attachment.net_weight) for attachment in attachments]).reshape(-1, 2),
         least_H=_least_tension(elements),
     )
 
 
-def _resting_level(scene: Scene, elements: sections.Elements) -> float:
+def resting_level(scene: Scene, elements: sections.Elements) -> float:
     """Height z [m] of the axis where the thinnest of the riser rests; -inf where there is nothing to rest on."""
     if scene.contact is None:
         return -np.inf

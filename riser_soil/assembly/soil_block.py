@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.soil import GeneratedMesh, SoilScene
+from riser_soil.scene.soil import Block, GeneratedMesh, SoilScene
 from riser_soil.soil.grading import BlockSpec, Point
 
 
 def block_of(scene: Scene, soil: SoilScene, riser: tuple[Point, Point]) -> BlockSpec:
     """A block that is fine under a line; riser: two points of it in plan [m]."""
-    assert soil.block is not None  # the scene's checks have seen to it
+    assert isinstance(soil.block, Block)  # the scene's checks have seen to it, and `with_sizes`
     assert isinstance(soil.mesh, GeneratedMesh)
     return BlockSpec(
         x=soil.block.x,
         y=soil.block.y,
         depth=soil.block.depth,
-        size_at_riser=soil.mesh.size_at_riser,
+        size_at_riser=soil.mesh.across,
         size_far=soil.mesh.size_far,
         level=scene.seabed_level,
         kind=soil.mesh.kind,
         riser=riser,
+        along=soil.mesh.along,
+        strip=soil.mesh.strip,
     )

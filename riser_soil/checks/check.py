@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from riser_soil.assembly import Assembly, build
+from riser_soil.assembly import Assembly, build, sized
 from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_memory
 from riser_soil.checks.inventory import built, left_out, unknowns
 from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tell, too_long
@@ -17,6 +17,7 @@ from riser_soil.scene.scene import Scene
 
 def describe(scene: Scene) -> str:
     """The report of `riser-soil check`; collective. Raises SceneError or MeshError."""
+    scene = sized(scene)
     size = size_that_fits(scene, Path(), MPI.COMM_WORLD)
     tell(size, MPI.COMM_WORLD)
     assembly = build(scene, MPI.COMM_WORLD)

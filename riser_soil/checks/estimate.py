@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from riser_soil.assembly import sized
 from riser_soil.core.outputs import ALONG_RISER, OF_SOIL
 from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.plane import resolved_dimension
@@ -97,6 +98,7 @@ def soil_memory(ranks: int, cells: float, entries: int, unknowns: float) -> floa
 
 def size_of(scene: Scene) -> ProblemSize:
     """The size of a scene."""
+    scene = sized(scene)
     elements = scene.riser.element_count
     cells, unknowns, entries = _soil(scene, scene.soil) if scene.soil is not None else (0.0, 0.0, 0)
     stages = [_stage(scene, stage) for stage in scene.stages]

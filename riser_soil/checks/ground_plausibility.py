@@ -7,9 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from riser_soil.assembly import Assembly
-from riser_soil.assembly.ground import contact_width, smoothing
+from riser_soil.assembly.ground import smoothing
 from riser_soil.assembly.scales import contact_radius
 from riser_soil.checks.bending_plausibility import nodes_on_ground
+from riser_soil.checks.mesh_plausibility import mesh_warnings, told_size
 from riser_soil.checks.motion_plausibility import farthest_move
 from riser_soil.core.arrays import Array
 from riser_soil.scene.soil import GeneratedMesh
@@ -21,9 +22,6 @@ CORNER = 20.0
 # How far the riser may come down for each metre that an end moves, and for each of its length under loads or in moving
 # water.
 LOWERED, DRIVEN = 5.0, 0.1
-# Cells of this part of the width that touches bear the pipe as the width itself does; how much wider ones are told.
-# (From 10 slices of elastic soil: 1.4 to 2.1, see test_surface_contact.)
-LIKE_CONTACT, WIDE_CELLS = 1.75, 1.5
 # Points of each element that are looked at, and the part of a mesh's height by which its top may miss the seabed.
 POINTS, OFF_LEVEL = 20, 1e-3
 
@@ -36,7 +34,7 @@ def ground_warnings(assembly: Assembly) -> Iterator[str]:
         yield from _nothing_below(assembly)
         yield from _nodes_without_friction(assembly)
         yield from _nodes_on_soil(assembly)
-        yield from _cells_against_contact(assembly)
+        yield from mesh_warnings(assembly)
         yield from _top_off_the_seabed(assembly)
         yield from _out_of_reach(assembly)
 
@@ -72,31 +70,12 @@ def _nodes_on_soil(assembly: Assembly) -> Iterator[str]:
     if scene.contact is None or not scene.contact.at_nodes or scene.soil is None:
         return
     mesh = scene.soil.mesh
-    cells = f"cells of {mesh.size_at_riser:.4g} m" if isinstance(mesh, GeneratedMesh) else "the mesh's cells"
+    cells = f"cells of {told_size(mesh)}" if isinstance(mesh, GeneratedMesh) else "the mesh's cells"
     yield (
         f"the pipe, D = {_diameter(assembly):.4g} m, touches the soil at its nodes only, "
         f"{assembly.line.length.min():.4g} m apart, on {cells}: its settlement, the soil's stress and whether it "
         "yields depend on these two sizes; contact.method: surface lets it touch all along"
     )
-
-
-def _cells_against_contact(assembly: Assembly) -> Iterator[str]:
-    """Cells wider than what touches: they bear the pipe as a strip of their own width would."""
-    scene, scales = assembly.scene, assembly.scales
-    if scene.contact is None or scene.contact.at_nodes or scene.soil is None:
-        return
-    E, mesh = scene.soil.law.surface_modulus, scene.soil.mesh
-    if not isinstance(mesh, GeneratedMesh) or E <= 0.0:
-        return
-    width, size = contact_width(scales, E), mesh.size_at_riser
-    finest = width / LIKE_CONTACT
-    if size > WIDE_CELLS * finest:
-        missing = 2.0 * scales.weight / (np.pi * 4.0 / 3.0 * E) * np.log(size / finest)
-        yield (
-            f"soil.mesh.size_at_riser {size:.4g} m is {size / width:.2g} times the {width:.3g} m by which the riser "
-            f"touches elastic soil under its weight: it settles by about {1000.0 * missing:.2g} mm less than on a fine "
-            f"mesh; take at most {0.5 * width:.2g} m where settlement or stress in the soil matters"
-        )
 
 
 def _top_off_the_seabed(assembly: Assembly) -> Iterator[str]:

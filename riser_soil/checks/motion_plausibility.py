@@ -4,28 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import NamedTuple, assert_never
+from typing import NamedTuple
 
 import numpy as np
 
+from riser_soil.assembly.end_places import LOOKS, end_places, instants, periods_of
 from riser_soil.assembly.motions import set_motion, vessels_of
 from riser_soil.core.arrays import Array
 from riser_soil.riser.ends import End
-from riser_soil.scene.motions import ArcMotion, EndMotion, Harmonic, Rotation, Table, Vessel
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
+from riser_soil.scene.stages import DynamicStage, StaticStage
 
 # Part of the top speed by which an end's velocity may jump.
 JUMP = 0.02
-# Times at which speeds are looked up: a prime number of intervals, as whole periods would always find the same.
-LOOKS = 98
 # Longest time step over the shortest period.
 LONGEST_STEP = 0.1
 # Strain of a riser pulled straight between its ends from which they are too far apart for most pipes.
 STRETCHED = 0.01
-# Instants of a period, and at most of a stage, at which the ends' places are looked up.
-PER_PERIOD, MOST_LOOKS = 24, 20000
 
 
 class EndVelocities(NamedTuple):
@@ -55,7 +51,7 @@ def motion_warnings(scene: Scene) -> Iterator[str]:
 
 def farthest_move(scene: Scene) -> float:
     """The largest distance [m] of an end from where it was at first, in all stages."""
-    places = list(_places(scene))
+    places = list(end_places(scene))
     found = [np.linalg.norm(x - places[0][name][0], axis=1).max() for place in places for name, x in place.items()]
     return float(max(found, default=0.0))
 
@@ -63,7 +59,7 @@ def farthest_move(scene: Scene) -> float:
 def _stretched(scene: Scene) -> Iterator[str]:
     """Ends that go farther apart than the riser is long."""
     length = scene.riser.length
-    for n, (stage, place) in enumerate(zip(scene.stages, _places(scene), strict=True)):
+    for n, (stage, place) in enumerate(zip(scene.stages, end_places(scene), strict=True)):
         moves = stage.move if isinstance(stage, StaticStage) else stage.motion
         if moves is None or len(place) < 2:
             continue
@@ -71,41 +67,13 @@ def _stretched(scene: Scene) -> Iterator[str]:
         at = int(apart.argmax())
         strain = float(apart[at]) / length - 1.0
         if strain > STRETCHED:
-            when = f" at {_times(scene, stage)[at]:.4g} s" if isinstance(stage, DynamicStage) else ""
+            when = f" at {instants(scene, stage)[at]:.4g} s" if isinstance(stage, DynamicStage) else ""
             key = "move" if isinstance(stage, StaticStage) else "motion"
             yield (
                 f"stages.{n}.{key}: the ends come to be {apart[at]:.6g} m apart{when}, but the riser is only "
                 f"{length:.6g} m long: it is stretched by {strain:.2%} and more; lengthen the segments, bring the ends "
                 "together or make their motions smaller"
             )
-
-
-def _places(scene: Scene) -> Iterator[dict[str, Array]]:
-    """Positions of the prescribed ends (nt, 3) [m] at the times of each stage."""
-    ends = {name: getattr(scene.riser, name) for name in ("start", "end")}
-    last = {name: np.array(given.position) for name, given in ends.items() if isinstance(given, Support)}
-    end, vessels = End(prescribed=True), vessels_of(scene)
-    for stage in scene.stages:
-        place = {}
-        for name, origin in last.items():
-            set_motion(end, name, origin, stage, vessels)
-            motion = end.motion
-            place[name] = np.array([origin if motion is None else motion(t)[0] for t in _times(scene, stage)])
-        last = {name: x[-1] for name, x in place.items()}
-        yield place
-
-
-def _times(scene: Scene, stage: Stage) -> Array:
-    """Times [s] of a stage at which its ends are looked up: often in each period, and at the rows of tables."""
-    if isinstance(stage, StaticStage):
-        return np.array([0.0, 1.0])
-    periods = [period for _, period in _periods(scene, stage)]
-    count = PER_PERIOD * stage.duration / min(periods, default=stage.duration)
-    even = np.linspace(0.0, stage.duration, int(np.clip(count, LOOKS, MOST_LOOKS)))
-    motions = stage.motion.by_end.values() if stage.motion is not None else ()
-    rows = [np.array(motion.table.columns.values["t"]) for motion in motions if motion.table is not None]
-    times = np.unique(np.concatenate([even, *rows]))
-    return np.asarray(times[times <= stage.duration])
 
 
 def _shocks(scene: Scene, name: str, support: Support) -> Iterator[str]:
@@ -162,7 +130,7 @@ def _told(velocities: Array | None) -> EndVelocities:
 
 
 def _long_steps(scene: Scene, path: str, stage: DynamicStage) -> Iterator[str]:
-    periods = dict(_periods(scene, stage))
+    periods = dict(periods_of(scene, stage))
     if not periods:
         return
     what = min(periods, key=lambda name: periods[name])
@@ -172,23 +140,3 @@ def _long_steps(scene: Scene, path: str, stage: DynamicStage) -> Iterator[str]:
             f"{path}: steps of {stage.time_step:g} s are long beside the period of {what}, {periods[what]:g} s: take "
             f"at most a tenth of it, {longest:.3g} s"
         )
-
-
-def _periods(scene: Scene, stage: DynamicStage) -> Iterator[tuple[str, float]]:
-    """Periods [s] of what moves in a stage."""
-    if scene.water is not None and scene.water.waves is not None:
-        yield "the waves", scene.water.waves.period
-    if stage.motion is not None:
-        for name, motion in stage.motion.by_end.items():
-            yield from ((f"the {name}'s {key}", period) for key, period in _own_periods(motion))
-
-
-def _own_periods(motion: EndMotion) -> Iterator[tuple[str, float]]:
-    for key, way in motion.ways.items():
-        match way:
-            case Harmonic() | ArcMotion() | Rotation():
-                yield key, way.period
-            case Table() | Vessel():  # as fast as its file, or as the waves
-                pass
-            case _:
-                assert_never(way)

@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from mpi4py import MPI
@@ -41,6 +42,9 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
+
+if TYPE_CHECKING:
+    from riser_soil.soil.boundary_stress import BoundaryStress
 
 
 class Observer:
@@ -103,6 +107,8 @@ class Observer:
         soil = self._soil() if due.pictures or isinstance(self._stage, StaticStage) else None
         change = self._balance.add(stepper.energy, step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
+        if last:
+            self._plausibility.look_around(self._boundary())
         if self._recorder is not None:
             health = StepStatistics(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
             riser, touching = riser_snapshot(self._assembly, stepper), self._zone.look(stepper.now)
@@ -134,6 +140,14 @@ class Observer:
     def _soil(self) -> SoilSnapshot | None:
         """Collective where there is soil."""
         return None if self._assembly.soil is None else self._assembly.soil.output_fields()
+
+    def _boundary(self) -> BoundaryStress | None:
+        """Collective where there is soil."""
+        if self._assembly.soil is None:
+            return None
+        from riser_soil.soil.boundary_stress import boundary_stress
+
+        return boundary_stress(self._assembly.soil, int(np.abs(self._assembly.line.direction[:2]).argmin()))
 
     def laid(self, slack: float, steps: int, relaxations: int) -> None:
         """Before the stages, the end of a slack or steep riser was brought to its place from `slack` [m] beyond it."""

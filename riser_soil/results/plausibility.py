@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import astuple, dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,11 +18,16 @@ from riser_soil.riser.resolution import misfit
 from riser_soil.riser.section_forces import at_most
 from riser_soil.scene.stages import Stage
 
+if TYPE_CHECKING:
+    from riser_soil.soil.boundary_stress import BoundaryStress
+
 # Strain from which EA and EI would be no constants, and a section would not keep its shape.
 LARGE_STRAIN = 0.1
 # Stretch in plan of the soil's surface under the riser from which small strain no longer holds: a pipe pushed into a
 # slice of plastic clay, with 8 cells across its diameter, is borne less and less from between 1.3 and 1.6 on.
 LARGE_STRETCH = 1.2
+# Stress at the block's bottom or sides, over the largest, from which the block is too small to stand for the ground.
+NEAR_STRESS = 0.1
 # Shares of the largest moment by which turn and end moments of an element may differ, see riser/resolution.py.
 # Of 48 catenaries, hanging, clamped and on the seabed, those whose largest moment is off by less than 2 % stay below.
 SMOOTH_MISFIT, STEEP_MISFIT = 0.1, 0.2
@@ -62,7 +68,8 @@ class Plausibility:
         self._last_stage = stage.name == self._assembly.scene.stages[-1].name
         self._unit = "s" if stage.kind == "dynamic" else "of the load"
         self._largest = 0.0  # moment [N.m]
-        self._axial = self._bending = self._smooth = self._steep = self._stretch = LargestValue()
+        self._boundary: BoundaryStress | None = None
+        self._axial = self._bending = self._smooth = self._steep = self._stretch = self._beyond = LargestValue()
 
     def look(self, t: float, state: State, riser: RiserSnapshot, touch: ContactSnapshot) -> None:
         """t: s of the run (static stages: load factor)."""
@@ -73,10 +80,22 @@ class Plausibility:
         contact = self._assembly.soil_contact
         if contact is not None:
             self._touched = self._touched or bool(contact.force_per_length(state).any())
+            self._beyond = self._beyond.or_larger(self._past_the_block(touch), np.array([touch.touchdown_arc]), t)
             self._stretch = self._stretch.or_larger(np.array([contact.stretch(state)]), np.full(1, np.nan), t)
         down = not math.isnan(touch.touchdown_arc)
         self._where = "touches down at" if down else "hangs with its lowest point at"
         self._lowest = touch.touchdown_position if down else riser.position[riser.position[:, 2].argmin()]
+
+    def look_around(self, boundary: BoundaryStress | None) -> None:
+        """At the stage's end; None without soil."""
+        self._boundary = boundary
+
+    def _past_the_block(self, touch: ContactSnapshot) -> Array:
+        """How far the touchdown point lies beyond the soil in plan (1,) [m]; 0 where there is none."""
+        assert self._assembly.soil is not None
+        grid, at = self._assembly.soil.grid, touch.touchdown_position[:2]
+        outside = np.maximum(grid.low[:2] - at, at - grid.high[:2]).max()
+        return np.array([max(0.0, float(np.nan_to_num(outside, nan=0.0)))])
 
     def look_closely(self, t: float, state: State, elastic: Array) -> None:
         """elastic: residual of the elements less its viscous share (ne, 2 ndof)."""
@@ -97,6 +116,8 @@ class Plausibility:
         yield from self._strains()
         yield from self._blurred()
         yield from self._stretched()
+        yield from self._left()
+        yield from self._too_small()
         if self._last_stage and not self._touched:
             yield self._never()
 
@@ -135,6 +156,29 @@ class Plausibility:
                 "to for no figure, or raise su"
             )
 
+    def _left(self) -> Iterator[str]:
+        if self._touched and self._beyond.value > self._assembly.scales.diameter:
+            yield (
+                f"the touchdown point left the soil's block: it was {self._beyond.value:.3g} m beyond at "
+                f"{self._beyond.t:.5g} {self._unit}, arc {self._beyond.arc:.5g} m, where the seabed bears the riser, "
+                "if there is one; enlarge soil.block, or take block: auto"
+            )
+
+    def _too_small(self) -> Iterator[str]:
+        found = self._boundary
+        if found is None:
+            return
+        for stress, where, remedy in (
+            (found.bottom, "bottom", "deeper"),
+            (found.sides, "sides along the riser", "wider"),
+        ):
+            if NEAR_STRESS * found.largest < stress < found.largest:  # a cell from top to bottom tells nothing
+                yield (
+                    f"the riser changes the soil's stress at the block's {where} by {stress:.3g} Pa, "
+                    f"{stress / found.largest:.0%} of the largest change in it (told above {NEAR_STRESS:.0%}): the "
+                    f"block holds the soil where the ground would give; take a {remedy} one"
+                )
+
     def _at(self, worst: LargestValue) -> str:
         return f"{worst.value:.3g} at arc {worst.arc:.5g} m and {worst.t:.5g} {self._unit}"
 
@@ -149,7 +193,7 @@ class Plausibility:
 
     @property
     def _largest_values(self) -> tuple[LargestValue, ...]:
-        return self._axial, self._bending, self._smooth, self._steep, self._stretch
+        return self._axial, self._bending, self._smooth, self._steep, self._stretch, self._beyond
 
     def state(self) -> Saved:
         worst = [astuple(found) for found in self._largest_values]
@@ -160,5 +204,5 @@ class Plausibility:
         """In the stage that has begun."""
         self._largest, self._touched = float(saved["largest"]), bool(saved["touched"])
         found = (LargestValue(*row) for row in saved["worst"].tolist())
-        self._axial, self._bending, self._smooth, self._steep, self._stretch = found
+        self._axial, self._bending, self._smooth, self._steep, self._stretch, self._beyond = found
         self._where, self._lowest = unpacked(saved["where"]), saved["lowest"]

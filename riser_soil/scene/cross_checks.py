@@ -261,7 +261,7 @@ def _initial_shape_meets_the_supports(scene: Scene) -> Iterator[Problem]:
 def _passes_over_block(scene: Scene) -> Iterator[Problem]:
     start, end = scene.riser.start, scene.riser.end
     block = scene.soil.block if scene.soil else None
-    if block is None or not isinstance(start, Support) or not isinstance(end, Support):
+    if not isinstance(block, Block) or not isinstance(start, Support) or not isinstance(end, Support):
         return
     if scene.riser.initial == "catenary" and not _crosses(block, start.position, end.position):
         remedy = "move the block under the touchdown zone"

@@ -12,11 +12,14 @@ from riser_soil.core.quantities import (
     Length,
     Ratio,
     UnitWeight,
+    word_or,
     wrong,
 )
 from riser_soil.scene.files import NamedFile
 from riser_soil.soil.law import SoilLaw
 from riser_soil.soil.laws import LAWS
+
+STRIP = 8.0  # cells across the riser that do not grow yet, where the scene doesn't say how wide they lie
 
 
 class Block(BaseModel):
@@ -38,22 +41,76 @@ class Block(BaseModel):
         return self
 
 
+class CellSizes(BaseModel):
+    """Sizes of the hexahedra under a riser that runs along x or y: fine across it, long along it."""
+
+    model_config = FROZEN
+
+    along: Length = Field(description="length of the cells along the riser [m]")
+    across: Length = Field(description="size of the cells across the riser and downwards, under it [m]")
+    strip: Length | None = Field(
+        default=None,
+        description="width across the riser, and half of it downwards, within which cells do not grow yet [m]; "
+        "eight cells by default",
+    )
+
+
+def _number_or_sizes(value: object) -> str:
+    return "<CellSizes>" if isinstance(value, dict | CellSizes) else "<number>"
+
+
+SizeAtRiser = Annotated[
+    Annotated[Length, Tag("<number>")] | Annotated[CellSizes, Tag("<CellSizes>")], Discriminator(_number_or_sizes)
+]
+
+
 class GeneratedMesh(BaseModel):
     """A mesh of the block, fine under the riser and coarse away from it."""
 
     model_config = FROZEN
 
     kind: Literal["hex", "tet"] = Field(default="hex", description="hex (hexahedra) or tet (tetrahedra)")
-    size_at_riser: Length = Field(description="size of the cells under the riser [m]")
+    size_at_riser: SizeAtRiser = Field(
+        description="size of the cells under the riser [m], or {along, across, strip} of hexahedra under a riser that "
+        "runs along x or y"
+    )
     size_far: Length = Field(description="size of the cells at the block's far sides and bottom [m]")
+
+    @property
+    def across(self) -> float:
+        """Size of the cells across the riser [m]."""
+        return self.size_at_riser.across if isinstance(self.size_at_riser, CellSizes) else self.size_at_riser
+
+    @property
+    def along(self) -> float:
+        """Size of the cells along the riser [m]."""
+        return self.size_at_riser.along if isinstance(self.size_at_riser, CellSizes) else self.size_at_riser
+
+    @property
+    def strip(self) -> float:
+        """Width across the riser within which the cells do not grow yet [m]; 0: one cell."""
+        sizes = self.size_at_riser
+        if not isinstance(sizes, CellSizes):
+            return 0.0
+        return STRIP * sizes.across if sizes.strip is None else sizes.strip
 
     @model_validator(mode="after")
     def _grows_away_from_the_riser(self) -> Self:
-        if self.size_far < self.size_at_riser:
+        if self.size_far < self.across:
             raise wrong(
                 "size_far",
-                f"must not be smaller than size_at_riser ({self.size_at_riser:g} m)",
+                f"must not be smaller than size_at_riser ({self.across:g} m)",
                 "cells grow away from the riser: swap the two sizes",
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _long_as_hexahedra_only(self) -> Self:
+        if self.kind == "tet" and isinstance(self.size_at_riser, CellSizes):
+            raise wrong(
+                "size_at_riser",
+                "tetrahedra have one size under the riser",
+                "give a number, or choose kind: hex, whose cells are long along the riser",
             )
         return self
 
@@ -67,17 +124,28 @@ class MeshFile(BaseModel):
 
 
 def _pick_mesh(value: object) -> str | None:
+    if isinstance(value, str):
+        return "<word>"
     if isinstance(value, MeshFile) or (isinstance(value, dict) and "file" in value):
         return "<MeshFile>"
     return "<GeneratedMesh>" if isinstance(value, dict | GeneratedMesh) else None
 
 
 Mesh = Annotated[
-    Annotated[GeneratedMesh, Tag("<GeneratedMesh>")] | Annotated[MeshFile, Tag("<MeshFile>")],
+    Annotated[Literal["auto"], Tag("<word>")]
+    | Annotated[GeneratedMesh, Tag("<GeneratedMesh>")] | Annotated[MeshFile, Tag("<MeshFile>")],
     Discriminator(
         _pick_mesh,
         custom_error_type="choice",
-        custom_error_message="must be a mapping: {kind, size_at_riser, size_far} or {file: mesh.msh}",
+        custom_error_message="must be auto or a mapping: {kind, size_at_riser, size_far} or {file: mesh.msh}",
+    ),
+]
+
+
+AutoOrBlock = Annotated[
+    Annotated[Literal["auto"], Tag("<word>")] | Annotated[Block, Tag("<Block>")],
+    Discriminator(
+        word_or(Block), custom_error_type="choice", custom_error_message="must be auto or a mapping: {x, y, depth}"
     ),
 ]
 
@@ -90,8 +158,13 @@ class SoilScene(BaseModel):
 
     model_config = FROZEN
 
-    block: Block | None = Field(default=None, description="the box of soil to mesh; not with mesh.file")
-    mesh: Mesh = Field(description="{kind, size_at_riser, size_far} for a block, or {file: mesh.msh}")
+    block: AutoOrBlock | None = Field(
+        default=None, description="the box of soil to mesh, or auto: around the touchdown points; not with mesh.file"
+    )
+    mesh: Mesh = Field(
+        description="{kind, size_at_riser, size_far} for a block, auto: sizes that resolve what touches, or "
+        "{file: mesh.msh}"
+    )
     law: Annotated[SoilLaw, LAW] = Field(description=f"constitutive law: {LAW.words}, with its constants")
     submerged_unit_weight: UnitWeight = Field(
         default=0.0, description="submerged unit weight, source of the initial stress [N/m3]"
@@ -105,7 +178,7 @@ class SoilScene(BaseModel):
     def _meshed_once(self) -> Self:
         if isinstance(self.mesh, MeshFile) and self.block is not None:
             raise wrong("block", "a mesh file replaces the block", "leave out either block or mesh.file")
-        if isinstance(self.mesh, GeneratedMesh) and self.block is None:
+        if not isinstance(self.mesh, MeshFile) and self.block is None:
             raise wrong(
                 "block", "the box of soil is missing", "give block: {x, y, depth}, or mesh: {file: ...}"
             )
@@ -113,7 +186,7 @@ class SoilScene(BaseModel):
 
     @model_validator(mode="after")
     def _strong_to_the_bottom(self) -> Self:
-        found = self.law.wrong_within(self.block.depth) if self.block else None
+        found = self.law.wrong_within(self.block.depth) if isinstance(self.block, Block) else None
         if found:
             raise wrong("law", *found)
         return self

@@ -10,7 +10,7 @@ from typing import assert_never
 import gmsh
 import numpy as np
 
-from riser_soil.soil.grading import BlockSpec, graded, growing
+from riser_soil.soil.grading import BlockSpec
 
 
 def make_block(spec: BlockSpec) -> None:
@@ -29,9 +29,7 @@ def make_block(spec: BlockSpec) -> None:
 
 def _extrude_layers(spec: BlockSpec) -> None:
     """Extrude a corner along x, y and z with given layers: hexahedra in a tensor-product grid."""
-    x = graded(*spec.x, spec.fine_range(0), spec.size_at_riser, spec.size_far)
-    y = graded(*spec.y, spec.fine_range(1), spec.size_at_riser, spec.size_far)
-    z = spec.level - growing(spec.depth, spec.size_at_riser, spec.size_far)[::-1]
+    x, y, z = (spec.coordinates(axis) for axis in range(3))
     shape = [(0, gmsh.model.geo.addPoint(x[0], y[0], z[0]))]
     for axis, levels in enumerate((x, y, z)):
         step = np.zeros(3)

@@ -12,6 +12,7 @@ from riser_soil.core.arrays import Array
 
 _PIECES = 16  # on either side of the riser, to count cells by
 _EQUAL = 1e-9  # difference of two sizes, over either, that is none
+PARALLEL = 1e-6  # slope in plan of a riser that runs along an axis
 
 Point = tuple[float, float]
 
@@ -24,6 +25,8 @@ class BlockSpec:
     size under the riser; size_far: the size that it grows to at the block's far faces. riser: two points of
     the riser's straight line in plan; a cell's middle, not its edge, lies under a line along x or y, so that
     the surface under the riser is smooth. None: fine in the whole plan.
+    along: of hexahedra, length of the cells along a riser that runs along x or y, where it is another than their size
+    across it; strip: width across the riser, and half of it downwards, within which they do not grow yet.
     """
 
     x: Point
@@ -34,24 +37,49 @@ class BlockSpec:
     level: float = 0.0
     kind: Literal["hex", "tet"] = "hex"
     riser: tuple[Point, Point] | None = None
+    along: float | None = None
+    strip: float = 0.0
 
     def fine_range(self, axis: int) -> Point:
-        """Range of x (axis 0) or y (axis 1) that the riser covers in plan, with half a cell around."""
+        """Range of x (axis 0) or y (axis 1) that the riser covers in plan, with half a cell, or strip, around."""
         low, high = (self.x, self.y)[axis]
         if self.riser is None:
             return low, high
         ends = sorted(point[axis] for point in self.riser)
-        half = 0.5 * self.size_at_riser
+        size = self.size(axis)
+        half = 0.5 * size if self.lies_along(axis) else 0.5 * size * _odd(self.strip / size)
         first, last = np.clip((ends[0] - half, ends[1] + half), low, high)
         return float(first), float(last)
 
+    def lies_along(self, axis: int) -> bool:
+        """Whether the riser runs along x (axis 0) or y (axis 1)."""
+        if self.riser is None:
+            return False
+        run = [abs(b - a) for a, b in zip(*self.riser, strict=True)]
+        return run[axis] > 0.0 and run[1 - axis] <= PARALLEL * run[axis]
+
+    def size(self, axis: int) -> float:
+        """Size of the cells under the riser along x, y or z (axis 2)."""
+        lengthened = self.along is not None and axis < 2 and self.lies_along(axis)
+        return self.along if lengthened and self.along is not None else self.size_at_riser
+
     def layers(self) -> tuple[int, int, int]:
         """How many layers of hexahedra there are along x, y and z."""
-        x, y = (
-            cells_along(*(self.x, self.y)[axis], self.fine_range(axis), self.size_at_riser, self.size_far)
-            for axis in (0, 1)
-        )
-        return x, y, steps(self.depth, self.size_at_riser, self.size_far)
+        x, y, z = (cells_along(*self._grading(axis)) for axis in range(3))
+        return x, y, z
+
+    def coordinates(self, axis: int) -> Array:
+        """Where the layers of hexahedra meet along x, y or z (axis 2), rising."""
+        return graded(*self._grading(axis))
+
+    def _grading(self, axis: int) -> tuple[float, float, Point, float, float]:
+        """Low and high end, fine range, size in it and size at the ends."""
+        size = self.size(axis)
+        far = max(size, self.size_far)
+        if axis < 2:
+            return *(self.x, self.y)[axis], self.fine_range(axis), size, far
+        fine = min(self.depth, size * round(0.5 * self.strip / size))
+        return self.level - self.depth, self.level, (self.level - fine, self.level), size, far
 
     @property
     def reach(self) -> float:
@@ -71,6 +99,11 @@ class BlockSpec:
         (low, high), (first, last) = (self.x, self.y)[axis], self.fine_range(axis)
         below, above = (_outwards(length, self.size_at_riser) for length in (first - low, high - last))
         return np.concatenate((below[0], [0.0], above[0])), np.concatenate((below[1], [last - first], above[1]))
+
+
+def _odd(cells: float) -> int:
+    """The odd number nearest to a number of cells."""
+    return max(1, 2 * round(0.5 * (cells - 1.0)) + 1)
 
 
 def graded(low: float, high: float, fine: Point, size: float, size_far: float) -> Array:

@@ -119,6 +119,10 @@ class Soil:
             gather_rows(self.grid, self._cell_mean(self._plastic_strain())),
         )
 
+    def stress_change(self) -> Array:
+        """Equivalent stress of the change since the start, mean of each of this rank's cells [Pa]."""
+        return self._cell_mean(mandel.von_mises(self._found.stress - self._initial))
+
     def _answer(self, state: State) -> tuple[Array, StressUpdate]:
         """Strain increment (n, 6) of a trial state and the law's answer; kept for the last state, whose arrays
         must not change then.

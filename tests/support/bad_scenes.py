@@ -153,6 +153,16 @@ VALUES = [
         "size_far: 1.5", "size_far: 0.1", 23, "soil.mesh.size_far", "0.1", "must not be smaller than size_at"
     ),
     Bad(
+        "{kind: hex, size_at_riser: 0.5",
+        "{kind: tet, size_at_riser: {along: 0.5, across: 0.1}",
+        23,
+        "soil.mesh.size_at_riser",
+        '{"along"',
+        "tetrahedra have one size",
+    ),
+    Bad("riser: 0.5", "riser: {along: 0.5}", 23, "soil.mesh.size_at_riser.across", "missing", "required"),
+    Bad("size_at_riser: 0.5", "size_at_riser: fine", 23, "soil.mesh.size_at_riser", '"fine"', "must be a number"),
+    Bad(
         "x: [10.0, 50.0]",
         "x: [50.0, 10.0]",
         22,

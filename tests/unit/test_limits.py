@@ -34,6 +34,7 @@ def with_mesh(**mesh: object) -> Mapping:
     [
         (touchdown(LAY), 0.0),
         (with_mesh(kind="hex", size_at_riser=0.2, size_far=0.7), 0.0),
+        (with_mesh(kind="hex", size_at_riser={"along": 0.5, "across": 0.05}, size_far=0.5), 0.0),
         (with_mesh(kind="tet", size_at_riser=0.4, size_far=0.4), 0.5),
         (with_mesh(kind="tet", size_at_riser=0.2, size_far=0.9), 0.5),
     ],

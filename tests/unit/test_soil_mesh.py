@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import gmsh
@@ -12,8 +13,8 @@ from mpi4py import MPI
 from meshes.block import main as write_block
 from riser_soil.core.part import State
 from riser_soil.errors import MeshError, SceneError
-from riser_soil.soil.block import BlockSpec, graded
 from riser_soil.soil.element import cell_gradients
+from riser_soil.soil.grading import BlockSpec, graded
 from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid, silent_gmsh
 from riser_soil.soil.soil import Soil
 from tests.support.soil_cases import CLAY, ELASTIC, KINDS, clay_block, small_block
@@ -44,6 +45,43 @@ def test_block_of_hexahedra_is_a_graded_grid_with_a_cell_centred_under_the_riser
     np.testing.assert_allclose(np.diff(x), 0.5)
     assert {-0.25, 0.25} <= set(y)
     assert z[-1] - z[-2] < 0.6 < z[1] - z[0]
+
+
+LONG = BlockSpec((0.0, 4.0), (-2.5, 2.5), 2.5, 0.02, 1.0, riser=((0.0, 0.3), (80.0, 0.3)), along=0.5, strip=0.16)
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_cells_are_long_along_the_riser_and_fine_across(axis: int) -> None:
+    """Nine of them across a strip of eight, and four downwards, before they grow."""
+    spec = LONG
+    if axis == 1:
+        spec = replace(LONG, x=LONG.y, y=LONG.x, riser=((0.3, 0.0), (0.3, 80.0)))
+    along, across, down = (np.diff(spec.coordinates(k)) for k in (axis, 1 - axis, 2))
+    np.testing.assert_allclose(along, 0.5)
+    assert np.count_nonzero(np.isclose(across, 0.02)) == 9
+    assert np.count_nonzero(np.isclose(down, 0.02)) == 4
+    assert across.max() == pytest.approx(1.0, rel=0.4)
+    assert down[0] == pytest.approx(1.0, rel=0.4)
+    assert -2.5 == spec.coordinates(2)[0] < spec.coordinates(2)[-1] == 0.0
+    middle = 0.5 * (spec.coordinates(1 - axis)[1:] + spec.coordinates(1 - axis)[:-1])
+    assert np.abs(middle - 0.3).min() < 1e-12
+    assert spec.layers() == tuple(len(spec.coordinates(k)) - 1 for k in range(3))
+
+
+def test_under_a_riser_across_the_axes_cells_are_fine_both_ways() -> None:
+    spec = replace(LONG, riser=((0.0, 0.0), (80.0, 8.0)))
+    assert np.diff(spec.coordinates(0)) == pytest.approx(0.02)
+    assert np.diff(spec.coordinates(1)).min() == pytest.approx(0.02, rel=0.1)
+
+
+def test_cells_that_grow_a_thousandfold_fill_the_block() -> None:
+    spec = replace(LONG, size_at_riser=0.002, size_far=2.0, strip=0.016, y=(-4.0, 4.0), depth=4.0)
+    grid = block_grid(COMM, spec)
+    g = cell_gradients(grid.family, grid.nodes.points, grid.nodes.cells)
+    assert g.weights.min() > 0.0
+    assert g.weights.sum() == pytest.approx(4.0 * 8.0 * 4.0, rel=1e-12)
+    assert len(grid.nodes.cells) == np.prod(spec.layers())
+    assert 500.0 < np.ptp(np.diff(spec.coordinates(1))) / 0.002 < 1000.0
 
 
 def test_block_of_tetrahedra_grows_away_from_the_riser() -> None:

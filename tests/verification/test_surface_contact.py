@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from riser_soil.assembly import Assembly, ground
-from riser_soil.checks.ground_plausibility import LIKE_CONTACT, ground_warnings
+from riser_soil.checks.ground_plausibility import ground_warnings
+from riser_soil.checks.mesh_plausibility import LIKE_CONTACT
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.core.system import System
 from riser_soil.run import run

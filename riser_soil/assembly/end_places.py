@@ -1,0 +1,70 @@
+"""Places of the prescribed ends in time, looked up in their motions before anything is solved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import assert_never
+
+import numpy as np
+
+from riser_soil.assembly.motions import set_motion, vessels_of
+from riser_soil.core.arrays import Array
+from riser_soil.riser.ends import End
+from riser_soil.scene.motions import ArcMotion, EndMotion, Harmonic, Rotation, Table, Vessel
+from riser_soil.scene.riser import Support
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
+
+# Times at which a stage is looked at, at least: a prime number of intervals, as whole periods would always find the
+# same.
+LOOKS = 98
+# Instants of a period, and at most of a stage.
+PER_PERIOD, MOST_LOOKS = 24, 20000
+
+
+def end_places(scene: Scene) -> Iterator[dict[str, Array]]:
+    """Positions of the prescribed ends (nt, 3) [m] at the times of each stage."""
+    ends = {name: getattr(scene.riser, name) for name in ("start", "end")}
+    last = {name: np.array(given.position) for name, given in ends.items() if isinstance(given, Support)}
+    end, vessels = End(prescribed=True), vessels_of(scene)
+    for stage in scene.stages:
+        place = {}
+        for name, origin in last.items():
+            set_motion(end, name, origin, stage, vessels)
+            motion = end.motion
+            place[name] = np.array([origin if motion is None else motion(t)[0] for t in instants(scene, stage)])
+        last = {name: x[-1] for name, x in place.items()}
+        yield place
+
+
+def instants(scene: Scene, stage: Stage) -> Array:
+    """Times [s] of a stage at which its ends are looked up: often in each period, and at the rows of tables."""
+    if isinstance(stage, StaticStage):
+        return np.array([0.0, 1.0])
+    periods = [period for _, period in periods_of(scene, stage)]
+    count = PER_PERIOD * stage.duration / min(periods, default=stage.duration)
+    even = np.linspace(0.0, stage.duration, int(np.clip(count, LOOKS, MOST_LOOKS)))
+    motions = stage.motion.by_end.values() if stage.motion is not None else ()
+    rows = [np.array(motion.table.columns.values["t"]) for motion in motions if motion.table is not None]
+    times = np.unique(np.concatenate([even, *rows]))
+    return np.asarray(times[times <= stage.duration])
+
+
+def periods_of(scene: Scene, stage: DynamicStage) -> Iterator[tuple[str, float]]:
+    """Periods [s] of what moves in a stage."""
+    if scene.water is not None and scene.water.waves is not None:
+        yield "the waves", scene.water.waves.period
+    if stage.motion is not None:
+        for name, motion in stage.motion.by_end.items():
+            yield from ((f"the {name}'s {key}", period) for key, period in _own_periods(motion))
+
+
+def _own_periods(motion: EndMotion) -> Iterator[tuple[str, float]]:
+    for key, way in motion.ways.items():
+        match way:
+            case Harmonic() | ArcMotion() | Rotation():
+                yield key, way.period
+            case Table() | Vessel():  # as fast as its file, or as the waves
+                pass
+            case _:
+                assert_never(way)
