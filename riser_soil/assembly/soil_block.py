@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import GeneratedMesh, SoilScene
+from riser_soil.scene.soil_layers import boundaries
 from riser_soil.soil.grading import BlockSpec, Point
 
 
@@ -20,4 +21,5 @@ def block_of(scene: Scene, soil: SoilScene, riser: tuple[Point, Point]) -> Block
         level=scene.seabed_level,
         kind=soil.mesh.kind,
         riser=riser,
+        boundaries=boundaries(soil.layers or ()),
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -23,7 +24,8 @@ class BlockSpec:
     x, y: range in plan. level: z of the top face. depth: thickness. kind: element family. size_at_riser: cell
     size under the riser; size_far: the size that it grows to at the block's far faces. riser: two points of
     the riser's straight line in plan; a cell's middle, not its edge, lies under a line along x or y, so that
-    the surface under the riser is smooth. None: fine in the whole plan.
+    the surface under the riser is smooth. None: fine in the whole plan. boundaries: depths below the level at which
+    layers of soil meet, increasing; cells end there.
     """
 
     x: Point
@@ -34,6 +36,7 @@ class BlockSpec:
     level: float = 0.0
     kind: Literal["hex", "tet"] = "hex"
     riser: tuple[Point, Point] | None = None
+    boundaries: tuple[float, ...] = ()
 
     def fine_range(self, axis: int) -> Point:
         """Range of x (axis 0) or y (axis 1) that the riser covers in plan, with half a cell around."""
@@ -51,7 +54,12 @@ class BlockSpec:
             cells_along(*(self.x, self.y)[axis], self.fine_range(axis), self.size_at_riser, self.size_far)
             for axis in (0, 1)
         )
-        return x, y, steps(self.depth, self.size_at_riser, self.size_far)
+        return x, y, len(self.heights()) - 1
+
+    def heights(self) -> Array:
+        """Where the layers of hexahedra meet in z, rising; also where layers of soil do."""
+        z = self.level - growing(self.depth, self.size_at_riser, self.size_far)[::-1]
+        return landing(z, [self.level - depth for depth in self.boundaries[::-1]])
 
     @property
     def reach(self) -> float:
@@ -80,6 +88,17 @@ def graded(low: float, high: float, fine: Point, size: float, size_far: float) -
     below = fine[0] - growing(fine[0] - low, size, size_far)[:0:-1]
     above = fine[1] + growing(high - fine[1], size, size_far)[1:]
     return np.concatenate((below, middle, above))
+
+
+def landing(x: Array, places: Sequence[float]) -> Array:
+    """Coordinates that grow like x (n,) and have all of the places, increasing and within x, among them."""
+    number = np.arange(len(x), dtype=float)
+    at = np.interp(np.array([x[0], *places, x[-1]]), x, number)
+    cells = np.maximum(1, np.round(np.diff(at))).astype(int)
+    pieces = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(at, at[1:], cells, strict=False)]
+    out: Array = np.interp(np.append(np.concatenate(pieces), at[-1]), number, x)
+    out[np.cumsum(cells[:-1])] = places
+    return out
 
 
 def _outwards(length: float, size: float) -> tuple[Array, Array]:
