@@ -8,6 +8,7 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.assembly.scales import Scales, contact_radius, scales_of
+from riser_soil.assembly.soil_law import law_of, volumes, weight_of
 from riser_soil.errors import SceneError
 from riser_soil.interruption import restoring_signal_handlers
 from riser_soil.riser.line import Line
@@ -45,11 +46,12 @@ def soil_of(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> 
     with restoring_signal_handlers():  # imports gmsh
         from riser_soil.soil.soil import Soil
 
+    grid = _grid(scene, given, line, comm)
     return Soil(
-        _grid(scene, given, line, comm),
-        given.law.at_points,
+        grid,
+        law_of(given, grid),
         level=scene.seabed_level,
-        unit_weight=given.submerged_unit_weight,
+        unit_weight=weight_of(given),
         K0=given.K0,
     )
 
@@ -60,7 +62,7 @@ def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Di
 
     match given.mesh:
         case MeshFile():
-            return file_grid(comm, given.mesh.file)
+            return file_grid(comm, given.mesh.file, volumes(given))
         case GeneratedMesh() | "auto":  # sizes are chosen
             pass
         case _:
@@ -99,7 +101,7 @@ def _surface_contact_of(
 
     assert scene.soil is not None
     scales = scales_of(elements)
-    width = contact_width(scales, scene.soil.law.surface_modulus)
+    width = contact_width(scales, scene.soil.top_law.surface_modulus)
     penalty = Penalty(stiffness / width, smoothing(settings, scales, "soil", stiffness))
     suction = settings.suction
     across = float(np.clip(width / POINTS_ACROSS, FINEST * scales.diameter, COARSEST * scales.diameter))
@@ -165,7 +167,7 @@ def soil_friction_of(
     assert scene.soil is not None
     scales = scales_of(elements)
     mu, slide = _coefficients(settings.friction, scales)
-    width = contact_width(scales, scene.soil.law.surface_modulus)
+    width = contact_width(scales, scene.soil.top_law.surface_modulus)
     return [SoilFriction(contact, *mu, float(mobilised_within(slide, *mu, np.array(scales.weight))) / width)]
 
 
@@ -246,7 +248,7 @@ def stiffnesses(scene: Scene, settings: ContactScene, scales: Scales) -> dict[st
             return float(settings.stiffness)
         return automatic_stiffness(E, scales.weight, scales.diameter, over_soil)
 
-    out = {"soil": penalty(scene.soil.law.surface_modulus)} if scene.soil is not None else {}
+    out = {"soil": penalty(scene.soil.top_law.surface_modulus)} if scene.soil is not None else {}
     match scene.seabed:
         case RigidSeabed():
             out["seabed"] = penalty(None)

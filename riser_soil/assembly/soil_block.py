@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import Block, GeneratedMesh, SoilScene
+from riser_soil.scene.soil_layers import boundaries
 from riser_soil.soil.grading import BlockSpec, Point
 
 
@@ -22,4 +23,5 @@ def block_of(scene: Scene, soil: SoilScene, riser: tuple[Point, Point]) -> Block
         riser=riser,
         along=soil.mesh.along,
         strip=soil.mesh.strip,
+        boundaries=boundaries(soil.layers or ()),
     )

@@ -39,7 +39,7 @@ def with_sizes(scene: Scene, soil: SoilScene) -> Scene:
     block = chosen.block if soil.block == "auto" else soil.block
     assert isinstance(block, Block)
     mesh = chosen.mesh(block) if soil.mesh == "auto" else soil.mesh
-    _check_strength(soil.law, block)
+    _check_strength(soil.top_law, block)
     return scene.model_copy(update={"soil": soil.model_copy(update={"block": block, "mesh": mesh})})
 
 
@@ -65,7 +65,7 @@ class SoilSizes:
     @cached_property
     def width(self) -> float:
         """Width over which the pipe touches at rest [m]."""
-        return touching_width(self.scales, self.soil.law)
+        return touching_width(self.scales, self.soil.top_law)
 
     @cached_property
     def bending_length(self) -> float:
@@ -110,7 +110,7 @@ class SoilSizes:
     @property
     def along(self) -> float:
         """Length of the cells along the riser [m]."""
-        shortest = min(bending_on_soil(self.elements, self.soil.law), self.bending_length or np.inf)
+        shortest = min(bending_on_soil(self.elements, self.soil.top_law), self.bending_length or np.inf)
         return min(ALONG * shortest, LONGEST * self.scales.diameter)
 
 

@@ -51,9 +51,9 @@ def _generated(assembly: Assembly) -> GeneratedMesh | None:
 def _cells_against_contact(assembly: Assembly) -> Iterator[str]:
     """Cells wider than what touches: they bear the pipe as a strip of their own width would."""
     mesh, scales, soil = _generated(assembly), assembly.scales, assembly.scene.soil
-    if mesh is None or soil is None or soil.law.surface_modulus <= 0.0:
+    if mesh is None or soil is None or soil.top_law.surface_modulus <= 0.0:
         return
-    E, size = soil.law.surface_modulus, mesh.across
+    E, size = soil.top_law.surface_modulus, mesh.across
     width = contact_width(scales, E)
     finest = width / LIKE_CONTACT
     if size > WIDE_CELLS * finest:
@@ -70,7 +70,7 @@ def _lengths_against_bending(assembly: Assembly) -> Iterator[str]:
     mesh, soil = _generated(assembly), assembly.scene.soil
     if mesh is None or soil is None:
         return
-    bending = bending_on_soil(assembly.elements, soil.law)
+    bending = bending_on_soil(assembly.elements, soil.top_law)
     above = _elements_above(assembly)
     element = float(assembly.line.length[above].max(initial=0.0))
     for what, length in (("elements of the riser over the soil", element), ("soil.mesh cells along it", mesh.along)):

@@ -4,7 +4,6 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 
-from riser_soil.core.kinds import OneOf
 from riser_soil.core.quantities import (
     FROZEN,
     SHORTEST,
@@ -16,8 +15,8 @@ from riser_soil.core.quantities import (
     wrong,
 )
 from riser_soil.scene.files import NamedFile
+from riser_soil.scene.soil_layers import LAW, Layer, wrong_layers
 from riser_soil.soil.law import SoilLaw
-from riser_soil.soil.laws import LAWS
 
 STRIP = 8.0  # cells across the riser that do not grow yet, where the scene doesn't say how wide they lie
 
@@ -150,9 +149,6 @@ AutoOrBlock = Annotated[
 ]
 
 
-LAW = OneOf(LAWS)
-
-
 class SoilScene(BaseModel):
     """A continuum of soil under the touchdown zone; quasi-static."""
 
@@ -165,7 +161,12 @@ class SoilScene(BaseModel):
         description="{kind, size_at_riser, size_far} for a block, auto: sizes that resolve what touches, or "
         "{file: mesh.msh}"
     )
-    law: Annotated[SoilLaw, LAW] = Field(description=f"constitutive law: {LAW.words}, with its constants")
+    law: Annotated[SoilLaw | None, LAW] = Field(
+        default=None, description=f"constitutive law: {LAW.words}, with its constants; layers instead give several"
+    )
+    layers: tuple[Layer, ...] | None = Field(
+        default=None, min_length=1, description="layers from the seabed downwards, each {to, law}, instead of one law"
+    )
     submerged_unit_weight: UnitWeight = Field(
         default=0.0, description="submerged unit weight, source of the initial stress [N/m3]"
     )
@@ -186,7 +187,26 @@ class SoilScene(BaseModel):
 
     @model_validator(mode="after")
     def _strong_to_the_bottom(self) -> Self:
-        found = self.law.wrong_within(self.block.depth) if isinstance(self.block, Block) else None
+        found = self.law.wrong_within(self.block.depth) if isinstance(self.block, Block) and self.law else None
         if found:
             raise wrong("law", *found)
         return self
+
+    @model_validator(mode="after")
+    def _of_one_law_or_layered(self) -> Self:
+        if self.law is None and self.layers is None:
+            raise wrong("law", "the key is required here", "add law, or layers: [{to, law}, ...]")
+        if self.law is not None and self.layers is not None:
+            raise wrong("layers", "is given beside law", "give either")
+        depth = self.block.depth if isinstance(self.block, Block) else None
+        found = wrong_layers(self.layers, depth) if self.layers else None
+        if found:
+            raise found
+        return self
+
+    @property
+    def top_law(self) -> SoilLaw:
+        """The law at the seabed: the only one, or the first layer's."""
+        law = self.layers[0].law if self.layers else self.law
+        assert law is not None
+        return law

@@ -23,7 +23,7 @@ def make_block(spec: BlockSpec) -> None:
         case _:
             assert_never(spec.kind)
     volumes = [tag for _, tag in gmsh.model.getEntities(3)]
-    gmsh.model.addPhysicalGroup(3, volumes)
+    gmsh.model.addPhysicalGroup(3, volumes, 1)
     gmsh.model.mesh.generate(3)
 
 
@@ -46,9 +46,11 @@ def _tetrahedra(spec: BlockSpec) -> None:
     (x0, x1), (y0, y1) = spec.x, spec.y
     corner = gmsh.model.geo.addPoint(x0, y0, spec.level - spec.depth)
     shape = [(0, corner)]
-    for axis, length in enumerate((x1 - x0, y1 - y0, spec.depth)):
+    depths = np.array([0.0, *spec.boundaries, spec.depth])
+    for axis, length in [(0, x1 - x0), (1, y1 - y0), *((2, thickness) for thickness in np.diff(depths)[::-1])]:
         step = [length if i == axis else 0.0 for i in range(3)]
-        shape = [entity for entity in gmsh.model.geo.extrude(shape, *step) if entity[0] == axis + 1]
+        made = gmsh.model.geo.extrude(shape, *step)
+        shape = made[:1] if axis == 2 else [entity for entity in made if entity[0] == axis + 1]
     gmsh.model.geo.synchronize()
     _size_field(spec)
 

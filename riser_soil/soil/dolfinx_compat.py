@@ -40,10 +40,16 @@ class Nodes:
     owned: int
 
 
-def mesh_from_gmsh(model: Any, comm: MPI.Intracomm) -> Any:
-    """dolfinx mesh of the gmsh model that lives on rank 0, distributed over the ranks (collective)."""
+def mesh_from_gmsh(model: Any, comm: MPI.Intracomm) -> tuple[Any, IntArray]:
+    """dolfinx mesh of the gmsh model that lives on rank 0, distributed over the ranks, and the physical group of each
+    cell that this rank owns (nc,); collective.
+    """
     made = _gmsh_module().model_to_mesh(model, comm, 0, gdim=3)
-    return made.mesh if hasattr(made, "mesh") else made[0]
+    mesh, tags = (made.mesh, made.cell_tags) if hasattr(made, "mesh") else made[:2]
+    group = np.zeros(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int64)
+    owned = tags.indices < len(group)
+    group[tags.indices[owned]] = tags.values[owned]
+    return mesh, group
 
 
 def lagrange_nodes(mesh: Any, degree: int, comm: MPI.Intracomm) -> Nodes:

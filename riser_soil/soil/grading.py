@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -26,7 +27,8 @@ class BlockSpec:
     the riser's straight line in plan; a cell's middle, not its edge, lies under a line along x or y, so that
     the surface under the riser is smooth. None: fine in the whole plan.
     along: of hexahedra, length of the cells along a riser that runs along x or y, where it is another than their size
-    across it; strip: width across the riser, and half of it downwards, within which they do not grow yet.
+    across it; strip: width across the riser, and half of it downwards, within which they do not grow yet. boundaries:
+    depths below the level at which layers of soil meet, increasing; cells end there.
     """
 
     x: Point
@@ -39,6 +41,7 @@ class BlockSpec:
     riser: tuple[Point, Point] | None = None
     along: float | None = None
     strip: float = 0.0
+    boundaries: tuple[float, ...] = ()
 
     def fine_range(self, axis: int) -> Point:
         """Range of x (axis 0) or y (axis 1) that the riser covers in plan, with half a cell, or strip, around."""
@@ -65,12 +68,13 @@ class BlockSpec:
 
     def layers(self) -> tuple[int, int, int]:
         """How many layers of hexahedra there are along x, y and z."""
-        x, y, z = (cells_along(*self._grading(axis)) for axis in range(3))
+        x, y, z = (len(self.coordinates(axis)) - 1 for axis in range(3))
         return x, y, z
 
     def coordinates(self, axis: int) -> Array:
-        """Where the layers of hexahedra meet along x, y or z (axis 2), rising."""
-        return graded(*self._grading(axis))
+        """Where the layers of hexahedra meet along x, y or z (axis 2), rising; in z also where layers of soil do."""
+        found = graded(*self._grading(axis))
+        return found if axis < 2 else landing(found, [self.level - depth for depth in self.boundaries[::-1]])
 
     def _grading(self, axis: int) -> tuple[float, float, Point, float, float]:
         """Low and high end, fine range, size in it and size at the ends."""
@@ -115,6 +119,17 @@ def graded(low: float, high: float, fine: Point, size: float, size_far: float) -
     return np.concatenate((below, middle, above))
 
 
+def landing(x: Array, places: Sequence[float]) -> Array:
+    """Coordinates that grow like x (n,) and have all of the places, increasing and within x, among them."""
+    number = np.arange(len(x), dtype=float)
+    at = np.interp(np.array([x[0], *places, x[-1]]), x, number)
+    cells = np.maximum(1, np.round(np.diff(at))).astype(int)
+    pieces = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(at, at[1:], cells, strict=False)]
+    out: Array = np.interp(np.append(np.concatenate(pieces), at[-1]), number, x)
+    out[np.cumsum(cells[:-1])] = places
+    return out
+
+
 def _outwards(length: float, size: float) -> tuple[Array, Array]:
     """Middles and lengths of pieces from 0 to `length`, the longer the farther out."""
     if length <= 0.0:
@@ -141,9 +156,3 @@ def steps(length: float, size: float, size_far: float) -> int:
     if abs(size_far / size - 1.0) < _EQUAL:
         return max(1, round(length / size))
     return max(1, math.ceil(length * math.log(size_far / size) / (size_far - size) - 1e-9))
-
-
-def cells_along(low: float, high: float, fine: Point, size: float, size_far: float) -> int:
-    """How many cells `graded` has between its coordinates."""
-    middle = max(1, round((fine[1] - fine[0]) / size)) if fine[1] > fine[0] else 0
-    return steps(fine[0] - low, size, size_far) + middle + steps(high - fine[1], size, size_far)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +12,7 @@ import gmsh
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.errors import MeshError
 from riser_soil.interruption import restoring_signal_handlers
 from riser_soil.soil import dolfinx_compat
@@ -26,12 +26,16 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, eq=False)
 class DistributedMesh:
-    """This rank's nodes and cells, their element family, and the corners of the whole mesh's box [m]."""
+    """This rank's nodes and cells, their element family, and the corners of the whole mesh's box [m].
+
+    volume (nc,): of this rank's cells, number of the named volume that each lies in.
+    """
 
     family: Family
     nodes: Nodes
     low: Array
     high: Array
+    volume: IntArray
 
     def supported(self, points: Array) -> BoolArray:
         """Held directions (n, 3) of points: all on the bottom, the normal one on the box' sides."""
@@ -47,9 +51,12 @@ def block_grid(comm: MPI.Intracomm, spec: BlockSpec) -> DistributedMesh:
     return _grid(comm, lambda: make_block(spec))
 
 
-def file_grid(comm: MPI.Intracomm, path: Path) -> DistributedMesh:
-    """Read a gmsh .msh file of first-order tetrahedra or hexahedra (collective); MeshError if it won't do."""
-    return _grid(comm, lambda: read_mesh(path))
+def file_grid(comm: MPI.Intracomm, path: Path, volumes: Sequence[str] = ()) -> DistributedMesh:
+    """Read a gmsh .msh file of first-order tetrahedra or hexahedra (collective); MeshError if it won't do.
+
+    volumes: names of its physical groups by which the cells are numbered; each cell must lie in one of them.
+    """
+    return _grid(comm, lambda: read_mesh(path, volumes))
 
 
 def on_all_ranks(comm: MPI.Intracomm, make: Callable[[], T]) -> T:
@@ -91,11 +98,11 @@ def _distribute(comm: MPI.Intracomm, make: Callable[[], None]) -> DistributedMes
     if failure:
         raise MeshError(failure)
     family = HEX8 if hexahedra else TET10
-    mesh = dolfinx_compat.mesh_from_gmsh(gmsh.model, comm)
+    mesh, group = dolfinx_compat.mesh_from_gmsh(gmsh.model, comm)
     nodes = dolfinx_compat.lagrange_nodes(mesh, family.degree, comm)
     low = np.array([comm.allreduce(x, MPI.MIN) for x in nodes.points.min(axis=0, initial=np.inf)])
     high = np.array([comm.allreduce(x, MPI.MAX) for x in nodes.points.max(axis=0, initial=-np.inf)])
-    grid = DistributedMesh(family, nodes, low, high)
+    grid = DistributedMesh(family, nodes, low, high, group - 1)
     _check_box(grid)
     return grid
 

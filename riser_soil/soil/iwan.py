@@ -112,7 +112,8 @@ class Overlay:
         return (*STRESS, PLASTIC_STRAIN, *own)
 
     def start(self) -> Array:
-        return np.column_stack((self.initial, np.zeros(len(self.limit)), self._first.reshape(len(self.limit), -1)))
+        of_elements = self._first.reshape(len(self.limit), 6 * self.moduli.shape[1])
+        return np.column_stack((self.initial, np.zeros(len(self.limit)), of_elements))
 
     @cached_property
     def _first(self) -> Array:
@@ -120,7 +121,7 @@ class Overlay:
         s = mandel.deviator(self.initial)
         q = np.sqrt(1.5 * mandel.product(s, s))
         corners = self.limits / (3.0 * self.moduli)  # equivalent strains
-        strain = np.array([self._strain_at(*point) for point in zip(q, corners, self.moduli, strict=True)])
+        strain = np.array([self._strain_at(*point) for point in zip(q, corners, self.moduli, strict=True)], dtype=float)
         of_each = np.minimum(3.0 * self.moduli * strain[:, None], self.limits)
         return of_each[:, :, None] * (s / np.where(q > 0.0, q, 1.0)[:, None])[:, None, :]
 
@@ -131,7 +132,7 @@ class Overlay:
 
     def update(self, strain_increment: Array, history: Array) -> StressUpdate:
         n, e = len(self.limit), mandel.deviator(strain_increment)
-        trial = history[:, 7:].reshape(n, -1, 6) + 2.0 * self.moduli[:, :, None] * e[:, None, :]
+        trial = history[:, 7:].reshape(n, self.moduli.shape[1], 6) + 2.0 * self.moduli[:, :, None] * e[:, None, :]
         q = np.sqrt(1.5 * np.einsum("nki,nki->nk", trial, trial))
         shrink = self.limits / np.maximum(q, self.limits)
         s = shrink[:, :, None] * trial
@@ -143,7 +144,7 @@ class Overlay:
         slip = history[:, 6] + np.sqrt(2.0 / 3.0 * mandel.product(plastic, plastic))
         elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
         stored = self._stored(stress, s) - self._stored_first - mandel.product(self.initial, elastic)
-        after = np.column_stack((stress, slip, s.reshape(n, -1)))
+        after = np.column_stack((stress, slip, s.reshape(n, history.shape[1] - 7)))
         return StressUpdate(stress, self._tangent(trial, q, shrink), after, stored, elastic)
 
     @cached_property

@@ -8,7 +8,8 @@ Needs a running gmsh.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import gmsh
@@ -32,17 +33,21 @@ _FARTHEST = 1e12  # m
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Nodes (n, 3) [m] and cells (nc, nv) of them, of one of gmsh's kinds."""
+    """Nodes (n, 3) [m] and cells (nc, nv) of them, of one of gmsh's kinds; number (nc,) of the volume of each."""
 
     kind: int
     points: Array
     cells: IntArray
+    volume: IntArray
 
 
-def read_mesh(path: Path) -> None:
-    """Leave a file's mesh in gmsh's current model; MeshError if it won't do."""
+def read_mesh(path: Path, volumes: Sequence[str] = ()) -> None:
+    """Leave a file's mesh in gmsh's current model; MeshError if it won't do.
+
+    volumes: names of physical groups, one physical group each from 1 on in the model; without them there is one.
+    """
     _merge(path)
-    mesh = _mesh(cell_type())
+    mesh = _mesh(cell_type(), volumes)
     _check_nodes(mesh)
     _check_faces(mesh)
     _replace_model(mesh)
@@ -71,7 +76,7 @@ def _merge(path: Path) -> None:
         raise MeshError(f"soil mesh {path}: no volume in it; save a 3-dimensional mesh as .msh")
 
 
-def _mesh(kind: int) -> Mesh:
+def _mesh(kind: int, volumes: Sequence[str]) -> Mesh:
     """The cells, each once, with the nodes that they use, in the order of their numbers."""
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     _, connected = gmsh.model.mesh.getElementsByType(kind)
@@ -82,7 +87,39 @@ def _mesh(kind: int) -> Mesh:
         raise MeshError(f"soil mesh: cells have {int((~np.isin(used, known)).sum())} nodes that it doesn't hold")
     points = np.asarray(coordinates).reshape(-1, 3)[first[np.searchsorted(known, used)]]
     _, once = np.unique(np.sort(cells, axis=1), axis=0, return_index=True)
-    return Mesh(kind, points, np.searchsorted(used, cells[np.sort(once)]))
+    once = np.sort(once)
+    found = Mesh(kind, points, np.searchsorted(used, cells[once]), np.zeros(len(once), dtype=np.int64))
+    return replace(found, volume=_volumes(found, cells, once, volumes)) if volumes else found
+
+
+def _volumes(mesh: Mesh, cells: IntArray, once: IntArray, names: Sequence[str]) -> IntArray:
+    """Number of the named volume that each of the mesh's cells lies in."""
+    groups = {gmsh.model.getPhysicalName(3, tag): tag for _, tag in gmsh.model.getPhysicalGroups(3)}
+    missing = [name for name in names if name not in groups]
+    if missing:
+        known = ", ".join(name for name in groups if name) or "none"
+        raise MeshError(f"soil mesh: it has no volume named {missing[0]}; named volumes (physical groups): {known}")
+    _, same = np.unique(np.sort(cells, axis=1), axis=0, return_inverse=True)
+    same, inside = same.ravel(), np.zeros((len(names), len(once)), dtype=bool)
+    for k, name in enumerate(names):
+        held = np.isin(same, same[_cells_of(mesh.kind, groups[name])])
+        inside[k] = held[once]
+    wrong = np.flatnonzero(inside.sum(axis=0) != 1)
+    if len(wrong):
+        place = _place(mesh.points[mesh.cells[wrong[0]]].mean(axis=0))
+        raise MeshError(
+            f"soil mesh: the cell at {place} lies in {inside[:, wrong[0]].sum()} of the volumes "
+            f"{', '.join(names)} ({len(wrong)} such cells); each must lie in one"
+        )
+    return np.asarray(inside.argmax(axis=0), dtype=np.int64)
+
+
+def _cells_of(kind: int, group: int) -> IntArray:
+    """Places of a physical group's cells among all cells of this kind."""
+    everything, _ = gmsh.model.mesh.getElementsByType(kind)
+    entities = gmsh.model.getEntitiesForPhysicalGroup(3, group)
+    own = np.concatenate([gmsh.model.mesh.getElementsByType(kind, int(entity))[0] for entity in entities])
+    return np.flatnonzero(np.isin(everything, own))
 
 
 def _check_nodes(mesh: Mesh) -> None:
@@ -159,13 +196,16 @@ def _inside(points: Array, corners: Array) -> BoolArray:
 
 
 def _replace_model(mesh: Mesh) -> None:
-    """One volume with nodes and cells numbered from 1."""
+    """Nodes and cells numbered from 1, and a physical group for each volume, from 1 on."""
     gmsh.model.add("soil")
-    volume = gmsh.model.addDiscreteEntity(3)
-    numbers = np.arange(1, len(mesh.points) + 1)
-    gmsh.model.mesh.addNodes(3, volume, numbers, mesh.points.ravel())
-    gmsh.model.mesh.addElementsByType(volume, mesh.kind, [], (mesh.cells + 1).ravel())
-    gmsh.model.addPhysicalGroup(3, [volume])
+    for k in range(int(mesh.volume.max()) + 1):
+        volume = gmsh.model.addDiscreteEntity(3)
+        if k == 0:
+            numbers = np.arange(1, len(mesh.points) + 1)
+            gmsh.model.mesh.addNodes(3, volume, numbers, mesh.points.ravel())
+        cells = mesh.cells[mesh.volume == k]
+        gmsh.model.mesh.addElementsByType(volume, mesh.kind, [], (cells + 1).ravel())
+        gmsh.model.addPhysicalGroup(3, [volume], k + 1)
 
 
 def _place(point: Array) -> str:

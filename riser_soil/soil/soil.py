@@ -19,14 +19,15 @@ from riser_soil.soil.field import SoilField, components
 from riser_soil.soil.gathered import GatheredMesh, gather, gather_rows, top_of
 from riser_soil.soil.grid import DistributedMesh, on_all_ranks
 from riser_soil.soil.law import PLASTIC_STRAIN, Formula, StressUpdate
+from riser_soil.soil.layered import LayeredWeight
 
 
 class Soil:
     """Part "soil": internal force of the soil minus its weight, in group E (taken at the end of the step).
 
-    law: makes the law's formula from depths (n,) below `level` [m] and initial stress. unit_weight: submerged [N/m3].
-    start: "geostatic": vertical stress −unit_weight·depth, horizontal K0 times that, in equilibrium with the
-    weight, so that displacement and strain count from there; "unstressed": no initial stress, the weight acts
+    law: makes the law's formula from depths (n,) below `level` [m] and initial stress. unit_weight: submerged [N/m3],
+    or by layers. start: "geostatic": vertical stress the weight above, horizontal K0 times that, in equilibrium with
+    the weight, so that displacement and strain count from there; "unstressed": no initial stress, the weight acts
     at once. MeshError if the level misses the mesh or a cell is inverted, SceneError if the initial stress is
     beyond the law's limit. Construction is collective.
     """
@@ -40,7 +41,7 @@ class Soil:
         law: Callable[[Array, Array], Formula],
         *,
         level: float,
-        unit_weight: float,
+        unit_weight: float | LayeredWeight,
         K0: float = 1.0,
         start: Literal["geostatic", "unstressed"] = "geostatic",
     ) -> None:
@@ -55,13 +56,14 @@ class Soil:
         )
         self._shape = self._gradients.weights.shape
         depth = np.maximum(level - self._gradients.points[..., 2], 0.0).ravel()
-        initial = _geostatic(depth, unit_weight, K0) if start == "geostatic" else np.zeros((depth.size, 6))
+        weight = LayeredWeight((), (unit_weight,)) if isinstance(unit_weight, int | float) else unit_weight
+        initial = _geostatic(weight.stress(depth), K0) if start == "geostatic" else np.zeros((depth.size, 6))
         self.law = law(depth, initial)
         self.traits = Traits("E", self.law.symmetric, roles=(Stateful,))
         self._check_start(initial, depth, K0)
         self._initial, self._found = initial, _at_rest(self.law, initial)
         self._answers = IdentityCache[State, tuple[Array, StressUpdate]]()
-        self._load = self._internal(initial) if start == "geostatic" else self._weight(unit_weight)
+        self._load = self._internal(initial) if start == "geostatic" else self._weight(weight.at(depth))
 
     def blocks(self) -> dict[str, MatrixBlock]:
         rows = self.field.offset + components(self._cells)
@@ -149,10 +151,10 @@ class Soil:
         kernels.add_internal_force(g.full, g.volume, g.weights, self._cells, points, out)
         return out
 
-    def _weight(self, unit_weight: float) -> Array:
-        """Nodal forces [N] of the submerged weight, this rank's cells."""
+    def _weight(self, unit_weight: Array) -> Array:
+        """Nodal forces [N] of the submerged weight (n,) [N/m3], this rank's cells."""
         shape = self.grid.family.values(self.grid.family.quadrature()[0])
-        down = -unit_weight * np.einsum("cq,qa->ca", self._gradients.weights, shape)
+        down = -np.einsum("cq,cq,qa->ca", unit_weight.reshape(self._shape), self._gradients.weights, shape)
         out = np.zeros(self.field.size)
         out[2::3] = np.bincount(self._cells.ravel(), down.ravel(), minlength=self.field.size // 3)
         return out
@@ -203,7 +205,7 @@ def _check_level(grid: DistributedMesh, level: float) -> None:
         )
 
 
-def _geostatic(depth: Array, unit_weight: float, K0: float) -> Array:
-    vertical = -unit_weight * depth
-    none = np.zeros_like(depth)
+def _geostatic(above: Array, K0: float) -> Array:
+    """Stress (n, 6) under a weight above (n,) [Pa]."""
+    vertical, none = -above, np.zeros_like(above)
     return np.column_stack((K0 * vertical, K0 * vertical, vertical, none, none, none))

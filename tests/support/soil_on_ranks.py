@@ -6,6 +6,7 @@ import json
 import sys
 import tempfile
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -16,11 +17,17 @@ from riser_soil.core.part import Forces, State, Weights
 from riser_soil.errors import MeshError
 from riser_soil.soil.block import BlockSpec
 from riser_soil.soil.grid import block_grid, file_grid
+from riser_soil.soil.iwan import IwanOverlay
+from riser_soil.soil.law import Formula
+from riser_soil.soil.layered import LayeredWeight, law_by_depth
 from riser_soil.soil.soil import Soil
+from riser_soil.soil.von_mises import VonMises
 from tests.support.mesh_drawings import LEFT, RIGHT, Drawing, msh
 from tests.support.soil_cases import CLAY
 
 COMM = MPI.COMM_WORLD
+SOFT = VonMises(kind="von-mises", su=4.0e3, E_over_su=300.0)
+IWAN = IwanOverlay(kind="iwan", su=4.0e3, su_gradient=1.5e3, E_over_su=300.0, elements=3)
 
 
 def assembled(soil: Soil, local: Array) -> Array:
@@ -48,9 +55,16 @@ def tangent_times(soil: Soil, state: State, u: Array) -> Array:
     return out
 
 
+def layered_clay(depth: Array, initial: Array) -> Formula:
+    return law_by_depth((SOFT, IWAN), (0.4,), depth, initial)
+
+
 def figures(kind: str, size: float) -> dict[str, float]:
-    spec = BlockSpec((0.0, 4.0), (-1.0, 1.0), 1.0, size, 1.5 * size, kind="tet" if kind == "tet" else "hex")
-    soil = Soil(block_grid(COMM, spec), CLAY, level=0.0, unit_weight=5.0e3, K0=0.9)
+    layers = (0.4,) if kind == "layers" else ()
+    element: Literal["hex", "tet"] = "tet" if kind == "tet" else "hex"
+    spec = BlockSpec((0.0, 4.0), (-1.0, 1.0), 1.0, size, 1.5 * size, kind=element, boundaries=layers)
+    weight = LayeredWeight((0.4,), (4.0e3, 6.0e3)) if layers else 5.0e3
+    soil = Soil(block_grid(COMM, spec), layered_clay if layers else CLAY, level=0.0, unit_weight=weight, K0=0.9)
     start = State.at_rest(1.0, soil.field.size)
     first, second = pushed(soil, 4e-3), pushed(soil, -3e-3)
     out: dict[str, float] = {"work": COMM.allreduce(soil.work(start, first).dissipated)}

@@ -121,8 +121,8 @@ def assert_quadratic(norms: list[float]) -> None:
 
 @pytest.mark.parametrize(
     ("ranks", "kind", "size"),
-    [(2, "hex", 0.4), (2, "tet", 0.4), (3, "hex", 9.0)],
-    ids=["hex", "tet", "one cell"],
+    [(2, "hex", 0.4), (2, "tet", 0.4), (2, "layers", 0.4), (3, "layers", 9.0)],
+    ids=["hex", "tet", "layers", "two cells"],
 )
 def test_any_number_of_ranks_agrees(ranks: int, kind: str, size: float) -> None:
     """Also where some ranks have no cell."""

@@ -1,0 +1,46 @@
+"""Assembly of the soil's law and weight, of one kind or by layers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.scene.soil import SoilScene
+from riser_soil.scene.soil_layers import boundaries
+
+if TYPE_CHECKING:
+    from riser_soil.soil.grid import DistributedMesh
+    from riser_soil.soil.law import Formula
+    from riser_soil.soil.layered import LayeredWeight
+
+
+def law_of(given: SoilScene, grid: DistributedMesh) -> Callable[[Array, Array], Formula]:
+    """What makes the formula of depths (n,) [m] and initial stress (n, 6) [Pa] of the grid's quadrature points."""
+    if given.layers is None:
+        return given.top_law.at_points
+    from riser_soil.soil.layered import law_by_depth, of_layers
+
+    laws, bottoms = [layer.law for layer in given.layers], boundaries(given.layers)
+    if volumes(given):
+        return lambda depth, initial: of_layers(
+            laws, np.repeat(grid.volume, len(depth) // max(1, len(grid.volume))), depth, initial
+        )
+    return lambda depth, initial: law_by_depth(laws, bottoms, depth, initial)
+
+
+def weight_of(given: SoilScene) -> float | LayeredWeight:
+    """Submerged unit weight [N/m3]."""
+    if given.layers is None or volumes(given):
+        return given.submerged_unit_weight
+    from riser_soil.soil.layered import LayeredWeight
+
+    own = [layer.submerged_unit_weight for layer in given.layers]
+    return LayeredWeight(boundaries(given.layers), tuple(given.submerged_unit_weight if w is None else w for w in own))
+
+
+def volumes(given: SoilScene) -> tuple[str, ...]:
+    """Names of the mesh's volumes that are layers; none of layers by depth."""
+    return tuple(layer.volume for layer in given.layers or () if layer.volume is not None)
