@@ -25,7 +25,6 @@ else:
 class UndrainedClay(SoilLaw, ABC):
     """Clay that fails at q = √3·su: su is the strength in simple shear and plane strain."""
 
-    kind: str
     su: Stress = Field(description="undrained shear strength at the seabed [Pa]")
     su_gradient: StrengthGradient = Field(default=0.0, description="growth of su with depth [Pa/m]")
     E_over_su: Ratio = Field(description="Young's modulus over su, the same at every depth [-]")
