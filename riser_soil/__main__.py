@@ -1,4 +1,4 @@
-"""Command line interface: riser-soil run | check | schema.
+"""Command line interface: riser-soil run | check | material | schema.
 
 Exit status 0 done, 2 bad input, 3 the solve failed, 4 the disk or standard output took no more, 128 + n for signal n.
 """
@@ -89,6 +89,39 @@ def check(scene: SceneFile, overrides: Overrides = None) -> None:
             text = describe(checked)
         if _rank() == 0:
             typer.echo(text)
+
+
+@app.command()
+def material(
+    scene: SceneFile,
+    path: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="CSV",
+            help="strains or stresses by rows, e.g. columns gamma_xz [-], sigma_zz [kPa]; else cycles of shear",
+        ),
+    ] = None,
+    depth: Annotated[
+        float | None,
+        typer.Option(metavar="METRES", help="of the point below the seabed; else 1 m, at most half the block's"),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FOLDER", help="result folder; else the scene's name and _material"),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="replace the files of an earlier call")] = False,
+    overrides: Overrides = None,
+) -> None:
+    """Drive one point of the scene's soil along a path: stress by strain, secant modulus, damping."""
+    with _expected_errors():
+        checked = _read(scene, overrides)
+        if _rank() > 0:
+            return
+        from riser_soil.material.study import study
+
+        with _placed(scene, overrides):
+            told = study(checked, output or Path(f"{Path(scene).stem}_material"), path, depth, force)
+        typer.echo(told)
 
 
 @app.command()

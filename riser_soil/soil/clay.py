@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from abc import ABC
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
 from pydantic import Field
@@ -10,7 +10,8 @@ from pydantic import Field
 from riser_soil.core.lazy import LazyModule
 from riser_soil.core.quantities import PoissonRatio, Ratio, StrengthGradient, Stress
 from riser_soil.seabed.bearing import Number, Strength, strip_capacity
-from riser_soil.soil.law import Bearing, SoilLaw
+from riser_soil.soil.law import Bearing, Formula, SoilLaw
+from riser_soil.soil.remoulding import RemouldedClay, Remoulding, WeakeningFormula
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,11 +25,21 @@ else:
 class UndrainedClay(SoilLaw, ABC):
     """Clay that fails at q = √3·su: su is the strength in simple shear and plane strain."""
 
-    kind: str
     su: Stress = Field(description="undrained shear strength at the seabed [Pa]")
     su_gradient: StrengthGradient = Field(default=0.0, description="growth of su with depth [Pa/m]")
     E_over_su: Ratio = Field(description="Young's modulus over su, the same at every depth [-]")
     nu: PoissonRatio = Field(default=0.49, description="Poisson's ratio [-]")
+    remoulding: Remoulding | None = Field(
+        default=None, description="{sensitivity, xi_95}: loss of strength with plastic strain; none by default"
+    )
+
+    @abstractmethod
+    def intact(self, depth: Array, initial: Array) -> WeakeningFormula:
+        """The formula of clay that keeps its strength; arguments as of `at_points`."""
+
+    def at_points(self, depth: Array, initial: Array) -> Formula:
+        intact = self.intact(depth, initial)
+        return intact if self.remoulding is None else RemouldedClay(intact, self.remoulding)
 
     @property
     def surface_modulus(self) -> float:

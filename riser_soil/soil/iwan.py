@@ -61,7 +61,7 @@ class IwanOverlay(UndrainedClay):
             )
         return self
 
-    def at_points(self, depth: Array, initial: Array) -> Overlay:
+    def intact(self, depth: Array, initial: Array) -> Overlay:
         bulk, shear, limit = self._constants(depth)
         strain, slope = self._backbone()
         share = slope - np.append(slope[1:], 0.0)
@@ -130,11 +130,12 @@ class Overlay:
         stress = np.minimum(corners[:, None], corners) @ (3.0 * moduli)
         return float(np.interp(q, np.append(0.0, stress), np.append(0.0, corners)))
 
-    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
+    def update(self, strain_increment: Array, history: Array, strength: Array | float = 1.0) -> StressUpdate:
+        limits = np.reshape(strength, (-1, 1)) * self.limits
         n, e = len(self.limit), mandel.deviator(strain_increment)
         trial = history[:, 7:].reshape(n, self.moduli.shape[1], 6) + 2.0 * self.moduli[:, :, None] * e[:, None, :]
         q = np.sqrt(1.5 * np.einsum("nki,nki->nk", trial, trial))
-        shrink = self.limits / np.maximum(q, self.limits)
+        shrink = limits / np.maximum(q, limits)
         s = shrink[:, :, None] * trial
         before = history[:, :6]
         change = s.sum(axis=1) - mandel.deviator(before)
@@ -160,7 +161,7 @@ class Overlay:
         """K 1⊗1 + Σ 2 Gi θi (P - n⊗n where it yields)."""
         moduli = mandel.stiffness(self.bulk, np.einsum("nk,nk->n", self.moduli, shrink))
         yields = shrink < 1.0
-        weight = np.where(yields, 3.0 * self.moduli * shrink / np.maximum(q, self.limits) ** 2, 0.0)
+        weight = np.where(yields, 3.0 * self.moduli * shrink / np.where(yields, q, 1.0) ** 2, 0.0)
         moduli -= np.einsum("nk,nki,nkj->nij", weight, trial, trial, optimize=True)
         return moduli
 

@@ -15,7 +15,7 @@ Its left side less the right falls with Δp, by √6 G at least, so that the roo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
@@ -46,7 +46,7 @@ class KinematicHardening(UndrainedClay):
         default=0.1, description="share of su up to which undisturbed clay is elastic, below 1 [-]"
     )
 
-    def at_points(self, depth: Array, initial: Array) -> CyclicClay:
+    def intact(self, depth: Array, initial: Array) -> CyclicClay:
         bulk, shear, limit = self._constants(depth)
         hardening = 9.0 * bulk * shear / (3.0 * bulk + shear)  # Young's modulus
         return CyclicClay(bulk, shear, limit, self.elastic_share * limit, hardening, initial)
@@ -85,25 +85,28 @@ class CyclicClay:
     @cached_property
     def _first_backstress(self) -> Array:
         """As if the clay had been loaded to its initial stress: the elastic range lies around it."""
-        s = mandel.deviator(self.initial)
-        q = np.sqrt(1.5 * mandel.product(s, s))
-        most = (self.limit - self.elastic_limit) / np.maximum(q, self.limit - self.elastic_limit)
-        return most[:, None] * s
+        return self._bounded(mandel.deviator(self.initial))
+
+    def _bounded(self, s: Array) -> Array:
+        """Deviators (n, 6), those beyond the backstress's bound brought back to it: it may have fallen."""
+        bound = self.limit - self.elastic_limit
+        return (bound / np.maximum(np.sqrt(1.5 * mandel.product(s, s)), bound))[:, None] * s
 
     @cached_property
     def _recall(self) -> Array:
         """γ (n,) [-]."""
         return self.hardening / (self.limit - self.elastic_limit)
 
-    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
+    def update(self, strain_increment: Array, history: Array, strength: Array | float = 1.0) -> StressUpdate:
+        now = replace(self, limit=strength * self.limit, elastic_limit=strength * self.elastic_limit)
         stress = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
-        backstress, slip = history[:, 7:].copy(), np.zeros(len(stress))
+        backstress, slip = now._bounded(history[:, 7:]), np.zeros(len(stress))
         tangent = mandel.stiffness(self.bulk, self.shear)
         relative = mandel.deviator(stress) - backstress
-        at = np.flatnonzero(np.sqrt(1.5 * mandel.product(relative, relative)) > self.elastic_limit)
+        at = np.flatnonzero(np.sqrt(1.5 * mandel.product(relative, relative)) > now.elastic_limit)
         if at.size:
-            step = self._yielding(mandel.deviator(stress[at]), backstress[at], at)
-            tangent[at] = self._tangent(step, backstress[at], at)
+            step = now._yielding(mandel.deviator(stress[at]), backstress[at], at)
+            tangent[at] = now._tangent(step, backstress[at], at)
             moved = step.slip[:, None] * step.n
             stress[at] -= np.sqrt(6.0) * self.shear[at, None] * moved
             hardened = backstress[at] + np.sqrt(2.0 / 3.0) * self.hardening[at, None] * moved

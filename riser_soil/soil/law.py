@@ -73,6 +73,7 @@ class SoilLaw(BaseModel, ABC):
     """The model of a soil law in the scene: `kind`, a Literal of one word, and its constants."""
 
     model_config = FROZEN
+    kind: str
 
     @property
     @abstractmethod

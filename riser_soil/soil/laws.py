@@ -1,6 +1,7 @@
 """Registry of the constitutive laws of the soil: one entry each."""
 
 from riser_soil.core.kinds import registry
+from riser_soil.soil.drucker_prager import DruckerPrager
 from riser_soil.soil.iwan import IwanOverlay
 from riser_soil.soil.kinematic_hardening import KinematicHardening
 from riser_soil.soil.law import SoilLaw
@@ -12,4 +13,5 @@ LAWS: dict[str, type[SoilLaw]] = registry(
     VonMises,
     KinematicHardening,
     IwanOverlay,
+    DruckerPrager,
 )

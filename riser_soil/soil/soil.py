@@ -178,7 +178,7 @@ class Soil:
         if ratio > 1.0:
             raise SceneError(
                 f"soil.K0 = {K0}: at depth {at:.3g} m the geostatic stress is {ratio:.3g} times "
-                "what the soil bears; bring K0 nearer to 1 or raise su"
+                "what the soil bears; bring K0 nearer to 1 or raise the strength"
             )
 
     def state(self) -> Saved:

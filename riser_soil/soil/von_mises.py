@@ -30,7 +30,7 @@ class VonMises(UndrainedClay):
 
     kind: Literal["von-mises"] = Field(description="the law's name")
 
-    def at_points(self, depth: Array, initial: Array) -> PerfectlyPlastic:
+    def intact(self, depth: Array, initial: Array) -> PerfectlyPlastic:
         return PerfectlyPlastic(*self._constants(depth), initial)
 
 
@@ -51,11 +51,12 @@ class PerfectlyPlastic:
     def start(self) -> Array:
         return np.column_stack((self.initial, np.zeros(len(self.limit))))
 
-    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
+    def update(self, strain_increment: Array, history: Array, strength: Array | float = 1.0) -> StressUpdate:
+        limit = strength * self.limit
         trial = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
         s = mandel.deviator(trial)
         q = np.sqrt(1.5 * mandel.product(s, s))
-        shrink = self.limit / np.maximum(q, self.limit)
+        shrink = limit / np.maximum(q, limit)
         slip = q * (1.0 - shrink) / (3.0 * self.shear)
         stress = trial - (1.0 - shrink)[:, None] * s
         elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)

@@ -23,14 +23,14 @@ def kinematic(n: int = 1, K0: float = 1.0, share: float = 0.1, gradient: float =
     law = KinematicHardening(
         kind="kinematic-hardening", su=SU, su_gradient=gradient, E_over_su=OVER_SU, nu=NU, elastic_share=share
     )
-    return law.at_points(np.linspace(0.0, 2.0, n), initial(n, K0))
+    return law.intact(np.linspace(0.0, 2.0, n), initial(n, K0))
 
 
 def iwan(
     n: int = 1, K0: float = 1.0, gradient: float = 0.0, curve: tuple[tuple[float, float], ...] | None = None
 ) -> Overlay:
     law = IwanOverlay(kind="iwan", su=SU, su_gradient=gradient, E_over_su=OVER_SU, nu=NU, curve=curve)
-    return law.at_points(np.linspace(0.0, 2.0, n), initial(n, K0))
+    return law.intact(np.linspace(0.0, 2.0, n), initial(n, K0))
 
 
 def initial(n: int, K0: float) -> Array:

@@ -27,7 +27,7 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("checks",),
     ("results",),
     ("stages", "plots"),
-    ("run",),
+    ("run", "material"),
     ("__main__",),
 ]
 RANK = {name: rank for rank, layer in enumerate(LAYERS) for name in layer}

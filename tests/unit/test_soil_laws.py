@@ -16,7 +16,7 @@ SU, E, NU = 4.0e3, 1.2e6, 0.49
 
 def clay(depth: Array, nu: float = NU) -> PerfectlyPlastic:
     law = VonMises(kind="von-mises", su=SU, su_gradient=1.5e3, E_over_su=300.0, nu=nu)
-    return law.at_points(depth, np.zeros((len(depth), 6)))
+    return law.intact(depth, np.zeros((len(depth), 6)))
 
 
 def rock(depth: Array, nu: float) -> Elastic:

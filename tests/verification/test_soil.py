@@ -3,26 +3,20 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 
-from riser_soil.core.arrays import Array
-from riser_soil.soil.block import BlockSpec
-from riser_soil.soil.families import Family
-from riser_soil.soil.grid import DistributedMesh, block_grid
 from riser_soil.soil.soil import Soil
-from riser_soil.soil.von_mises import VonMises
 from tests.support.on_ranks import mpirun
 from tests.support.soil_bench import Bench
 from tests.support.soil_cases import ELASTIC, KINDS, small_block
+from tests.support.strip import press_strip
 
 ROOT = Path(__file__).parents[2]
 PRANDTL = 2.0 + np.pi
-SU = 1.0e3
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -52,42 +46,6 @@ def settled(kind: str) -> Soil:
     soil = Soil(small_block(kind), ELASTIC, level=0.0, unit_weight=5.0e3, start="unstressed")
     Bench(soil, np.zeros(soil.field.size, dtype=bool)).step(np.zeros(soil.field.size))
     return soil
-
-
-@dataclass(frozen=True, eq=False)
-class Strip:
-    """Load of a rough rigid strip of half width 1 m, over su, and residual norms, step by step."""
-
-    load: Array
-    norms: list[list[float]]
-
-
-def press_strip(kind: str, cells: int, family: Family | None = None, far: float = 0.5) -> Strip:
-    """Press half of a strip 0.15 m into a plane-strain block 5 m wide, 3 m deep; `cells` under the strip."""
-    soil, under = strip_soil(kind, cells, family, far)
-    driven = np.zeros((len(under), 3), dtype=bool)
-    driven[under] = True
-    bench = Bench(soil, driven.ravel())
-    given = np.where(under, -0.01, 0.0)[:, None] * np.array([0.0, 0.0, 1.0])
-    loads, norms = [], []
-    for _ in range(15):
-        bench.step(given.ravel())
-        norms.append(bench.norms)
-        reaction = bench.force(np.zeros(soil.field.size)).reshape(-1, 3)[under, 2].sum()
-        loads.append(-reaction * cells / SU)
-    return Strip(np.array(loads), norms)
-
-
-def strip_soil(kind: str, cells: int, family: Family | None, far: float) -> tuple[Soil, Array]:
-    """A slice one cell thick, and which nodes lie under the strip."""
-    h = 1.0 / cells
-    fine = ((-1.0, 0.0), (1.25 - 0.5 * h, 0.0))  # cells of size h from the symmetry plane to x = 1.25
-    spec = BlockSpec((0.0, 5.0), (0.0, h), 3.0, h, far, kind="tet" if kind == "tet" else "hex", riser=fine)
-    grid: DistributedMesh = block_grid(MPI.COMM_SELF, spec)
-    law = VonMises(kind="von-mises", su=SU, su_gradient=0.0, E_over_su=300.0, nu=0.49).at_points
-    soil = Soil(replace(grid, family=family or grid.family), law, level=0.0, unit_weight=0.0)
-    x, _, z = grid.nodes.points.T
-    return soil, (z > -1e-9) & (x < 1.0 + 1e-9)
 
 
 @pytest.mark.parametrize(("kind", "cells", "far"), [("hex", 16, 0.25), ("tet", 8, 0.5)])

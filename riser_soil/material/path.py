@@ -1,0 +1,82 @@
+"""Paths of a material point: strains, or changes of stress, row by row; from a CSV file or automatic cycles of shear.
+
+Columns eps_xx, eps_yy, eps_zz (extension positive), gamma_xy, gamma_xz, gamma_yz (engineering shear strain); or in the
+place of any of these sigma_xx, … or tau_xy, … (tension positive). All count from the geostatic start. A component that
+has no column keeps its strain.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from pydantic_core import PydanticCustomError
+
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.errors import SceneError
+from riser_soil.scene.columns import CsvColumns, Known, Units, read_columns
+
+STRAINS = ("eps_xx", "eps_yy", "eps_zz", "gamma_xy", "gamma_xz", "gamma_yz")
+STRESSES = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")
+# Of a strain or stress as an engineer gives it, in the components of mandel.py.
+STRAIN_FACTOR: Array = np.array([1.0, 1.0, 1.0, *[math.sqrt(0.5)] * 3])
+STRESS_FACTOR: Array = 1.0 / STRAIN_FACTOR
+
+_STRAIN: Units = {"-": 1.0, "%": 0.01}
+_STRESS: Units = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6}
+_KNOWN: Known = {**dict.fromkeys(STRAINS, _STRAIN), **dict.fromkeys(STRESSES, _STRESS)}
+AMPLITUDES: tuple[float, ...] = tuple(10.0 ** (0.5 * k) for k in range(-10, -2))
+ROWS, TURNS = 40, 4  # of the automatic cycles: rows from turn to turn, turns at each amplitude
+
+
+@dataclass(frozen=True, eq=False)
+class MaterialPath:
+    """values (nr, 6): strain, or change of stress [Pa] where `stress` (6,) says so, since the start, in the engineer's
+    components. names: of the components that are given. source: the file, or what else it comes from.
+    """
+
+    values: Array
+    stress: BoolArray
+    names: tuple[str, ...]
+    source: str
+
+    @property
+    def driven(self) -> int:
+        """The component whose given values vary, by strain rather than by stress, and most."""
+        span = np.ptp(self.values, axis=0)
+        return int(np.argmax(np.where(self.stress, 0.0, span) if (span * ~self.stress).any() else span))
+
+
+def read_path(file: Path) -> MaterialPath:
+    """Raises SceneError, with file and line, for what is wrong."""
+    try:
+        columns = read_columns(file, _KNOWN, ())
+    except PydanticCustomError as err:
+        raise SceneError(err.message()) from err
+    for strain, stress in zip(STRAINS, STRESSES, strict=True):
+        if strain in columns.values and stress in columns.values:
+            raise SceneError(f"{file}:{columns.header}: {strain} and {stress} exclude each other; remove one of them")
+    if columns.rows == 0:
+        raise SceneError(f"{file}:{columns.header}: there are no rows below the header; add the path, row by row")
+    return _path_of(columns, str(file))
+
+
+def _path_of(columns: CsvColumns, source: str) -> MaterialPath:
+    stress = np.array([name in columns.values for name in STRESSES])
+    names = np.where(stress, STRESSES, STRAINS)
+    values = np.column_stack([columns.get(str(name)) for name in names])
+    return MaterialPath(values, stress, tuple(str(n) for n in names if n in columns.values), source)
+
+
+def shear_cycles(amplitudes: Sequence[float] = AMPLITUDES, rows: int = ROWS) -> MaterialPath:
+    """Symmetric cycles of gamma_xz that grow, two at each amplitude, under a vertical stress that stays as it is."""
+    turns = [0.0, *(sign * amplitude for amplitude in amplitudes for sign in (1.0, -1.0) * (TURNS // 2))]
+    gamma = np.concatenate([np.linspace(a, b, rows + 1)[1:] for a, b in pairwise(turns)])
+    values = np.zeros((gamma.size, 6))
+    values[:, 4] = gamma
+    stress = np.array([name == "sigma_zz" for name in STRESSES])
+    return MaterialPath(values, stress, ("gamma_xz", "sigma_zz"), "cycles of simple shear")

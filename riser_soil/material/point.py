@@ -1,0 +1,109 @@
+"""A material point of the soil: its law at a depth under geostatic stress, and its answer along a path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.errors import SceneError, SolveError
+from riser_soil.material.path import STRAIN_FACTOR, STRESS_FACTOR, STRESSES, MaterialPath
+from riser_soil.scene.soil import SoilScene
+from riser_soil.soil import mandel
+from riser_soil.soil.law import PLASTIC_STRAIN, Formula, StressUpdate
+
+MOST_ITERATIONS, CONVERGED = 40, 1e-10  # where stress is given: Newton's; what may be missing over the largest stress
+
+
+@dataclass(frozen=True, eq=False)
+class MaterialPoint:
+    """A law at one point and the initial stress there (1, 6) [Pa], in the components of mandel.py."""
+
+    law: Formula
+    initial: Array
+
+
+@dataclass(frozen=True, eq=False)
+class MaterialCurve:
+    """What a point did, the start first: strain since then (n, 6) and stress (n, 6) [Pa] in the engineer's components,
+    equivalent plastic strain (n,), and what was dissipated since the start (n,) [J/m3].
+    """
+
+    strain: Array
+    stress: Array
+    plastic_strain: Array
+    dissipated: Array
+
+
+def point_at(soil: SoilScene, depth: float) -> MaterialPoint:
+    """The soil's law at a depth below the seabed [m]; SceneError where it can't be, or starts beyond its limit."""
+    found = soil.law.wrong_within(depth)
+    if found:
+        raise SceneError(f"soil.law: at a depth of {depth:g} m {found[0]}; {found[1]}, or a smaller --depth")
+    vertical = -soil.submerged_unit_weight * depth
+    initial = np.array([[soil.K0 * vertical, soil.K0 * vertical, vertical, 0.0, 0.0, 0.0]])
+    law = soil.law.at_points(np.array([depth]), initial)
+    over = float(law.overstress(initial)[0])
+    if over > 1.0 + 1e-12:
+        raise SceneError(
+            f"soil.K0 = {soil.K0}: at depth {depth:.3g} m the geostatic stress is {over:.3g} times "
+            "what the soil bears; bring K0 nearer to 1 or raise the strength"
+        )
+    return MaterialPoint(law, initial)
+
+
+def drive(point: MaterialPoint, path: MaterialPath) -> MaterialCurve:
+    """Take a point along a path; SolveError where it can't bear a stress that the path asks for."""
+    law = point.law
+    before = law.update(np.zeros((1, 6)), law.start())
+    wanted = path.values * np.where(path.stress, STRESS_FACTOR, STRAIN_FACTOR)
+    strain, lost = np.zeros(6), 0.0
+    rows = [(strain, before, lost)]
+    for number, values in enumerate(wanted, start=1):
+        increment = np.where(path.stress, 0.0, values - strain)
+        increment, found = _answer(point, increment, values, path, before.history, number)
+        lost += _dissipated(point, increment, before, found)
+        strain, before = strain + increment, found
+        rows.append((strain, found, lost))
+    return _curve(law, rows)
+
+
+def _answer(
+    point: MaterialPoint, increment: Array, wanted: Array, path: MaterialPath, history: Array, number: int
+) -> tuple[Array, StressUpdate]:
+    """The increment (6,) that brings the given components of stress to their change, by Newton's method, and its
+    answer.
+    """
+    free: BoolArray = path.stress
+    found = point.law.update(increment[None], history)
+    for _ in range(MOST_ITERATIONS):
+        missing = (wanted - found.stress[0] + point.initial[0])[free]
+        if not np.abs(missing).max(initial=0.0) > CONVERGED * np.abs(found.stress).max():
+            return increment, found
+        moduli = found.tangent[0][np.ix_(free, free)]
+        increment = increment.copy()
+        increment[free] += np.linalg.lstsq(moduli, missing, rcond=1e-12)[0]
+        found = point.law.update(increment[None], history)
+    names = ", ".join(np.array(STRESSES)[free])
+    raise SolveError(
+        f"{path.source}, row {number}: no strain brings {names} to what is asked: the soil has no such strength, or "
+        "the row is too far from the one before; lower the stress, or put rows in between"
+    )
+
+
+def _dissipated(point: MaterialPoint, increment: Array, before: StressUpdate, after: StressUpdate) -> float:
+    """Work of the mean stress of a step less the change of what is stored [J/m3]."""
+    work = 0.5 * (before.stress + after.stress) @ increment
+    by_initial = mandel.product(point.initial, after.elastic - before.elastic)
+    return float((work - by_initial - after.stored + before.stored)[0])
+
+
+def _curve(law: Formula, rows: list[tuple[Array, StressUpdate, float]]) -> MaterialCurve:
+    plastic = law.columns.index(PLASTIC_STRAIN) if PLASTIC_STRAIN in law.columns else None
+    return MaterialCurve(
+        np.array([strain for strain, _, _ in rows]) / STRAIN_FACTOR,
+        np.array([found.stress[0] for _, found, _ in rows]) / STRESS_FACTOR,
+        np.array([0.0 if plastic is None else found.history[0, plastic] for _, found, _ in rows]),
+        np.array([lost for _, _, lost in rows]),
+    )

@@ -1,0 +1,135 @@
+"""The story of `riser-soil material`: a point of the scene's soil along a path, its curve, cycles and picture."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.errors import SceneError, WriteError, is_full
+from riser_soil.material.loops import ClosedCycle, closed_cycles
+from riser_soil.material.path import STRAINS, STRESS_FACTOR, STRESSES, MaterialPath, read_path, shear_cycles
+from riser_soil.material.point import MaterialCurve, drive, point_at
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.soil import SoilScene
+from riser_soil.soil import mandel
+
+CURVE, CYCLES, PICTURE = "material.csv", "material_cycles.csv", "material.png"
+USUAL_DEPTH = 1.0  # m, at most half of the block's depth
+SIGNED = "# riser_soil material: "  # the first line's beginning, by which the program knows its files
+
+
+def study(scene: Scene, folder: Path, path: Path | None = None, depth: float | None = None, force: bool = False) -> str:
+    """Drive a point and leave curve, cycles and picture in a folder; what to tell of it.
+
+    path: CSV file, or None for growing cycles of shear. depth: below the seabed [m]. force: replace files that this
+    program has written. Raises SceneError or SolveError before anything is written.
+    """
+    soil = _soil_of(scene)
+    z = _depth(soil, depth)
+    _refuse(folder, force)
+    taken = read_path(path) if path is not None else shear_cycles()
+    curve = drive(point_at(soil, z), taken)
+    k = taken.driven
+    given = curve.stress if taken.stress[k] else curve.strain
+    cycles = closed_cycles(given[:, k], curve.strain[:, k], curve.stress[:, k])
+    heading = f"{SIGNED}{soil.law.kind} at a depth of {z:g} m, {taken.source}; {STRAINS[k]} and {STRESSES[k]} are drawn"
+    _leave(folder, heading, curve, cycles)
+    return _told(soil, z, taken, curve, cycles, folder)
+
+
+def _soil_of(scene: Scene) -> SoilScene:
+    if scene.soil is None:
+        raise SceneError("soil: the scene has none, so there is no material to drive; add soil: {block, mesh, law}")
+    return scene.soil
+
+
+def _depth(soil: SoilScene, wanted: float | None) -> float:
+    block = soil.block.depth if soil.block is not None else np.inf
+    if wanted is None:
+        return min(USUAL_DEPTH, 0.5 * block)
+    if not 0.0 <= wanted <= block:
+        raise SceneError(f"--depth {wanted:g}: must lie in the soil, from 0 to {block:g} m below the seabed")
+    return wanted
+
+
+def _refuse(folder: Path, force: bool) -> None:
+    """Raises SceneError where files would be replaced that may not be."""
+    if os.path.lexists(folder) and not folder.is_dir():
+        raise SceneError(f"{folder}: is a file, not a folder; choose another result folder with -o FOLDER")
+    for name in (CURVE, CYCLES, PICTURE):
+        if not os.path.lexists(folder / name):
+            continue
+        if not force:
+            raise SceneError(f"{folder / name}: is there already; choose another folder (-o) or add --force")
+        if not _own(folder / name):
+            raise SceneError(f"{folder / name}: was not written by riser_soil; move it away, or choose another folder")
+
+
+def _own(file: Path) -> bool:
+    if file.is_symlink() or not file.is_file():
+        return False
+    with file.open("rb") as opened:
+        return SIGNED.strip("# ").encode() in opened.read(2000)
+
+
+def _leave(folder: Path, heading: str, curve: MaterialCurve, cycles: list[ClosedCycle]) -> None:
+    """Write all files beside their places, then rename them: none is left half written."""
+    from riser_soil.plots.material import draw
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=folder, prefix=".riser_soil_") as workshop:
+            drafts = Path(workshop)
+            _write(drafts / CURVE, heading, _curve_columns(curve))
+            _write(drafts / CYCLES, heading, _cycle_columns(cycles))
+            draw(drafts / CURVE, drafts / CYCLES, drafts / PICTURE)
+            for name in (CURVE, CYCLES, PICTURE):
+                (drafts / name).replace(folder / name)
+    except OSError as err:
+        if is_full(err):
+            raise WriteError(f"{folder}: cannot be written: {err.strerror}") from err
+        raise SceneError(f"{folder}: cannot be used as the output folder: {err.strerror or err}") from err
+
+
+def _write(file: Path, heading: str, columns: dict[str, Array]) -> None:
+    rows = np.column_stack(list(columns.values()))
+    lines = [heading, ", ".join(columns), *(", ".join(f"{value:.12g}" for value in row) for row in rows)]
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _curve_columns(curve: MaterialCurve) -> dict[str, Array]:
+    return {
+        "row [-]": np.arange(len(curve.strain), dtype=float),
+        **{f"{name} [-]": curve.strain[:, k] for k, name in enumerate(STRAINS)},
+        **{f"{name} [Pa]": curve.stress[:, k] for k, name in enumerate(STRESSES)},
+        "mean_stress [Pa]": mandel.mean(curve.stress),
+        "von_mises_stress [Pa]": mandel.von_mises(curve.stress * STRESS_FACTOR),
+        "equivalent_plastic_strain [-]": curve.plastic_strain,
+        "dissipated [J/m3]": curve.dissipated,
+    }
+
+
+def _cycle_columns(cycles: list[ClosedCycle]) -> dict[str, Array]:
+    names = "first_row [-]", "last_row [-]", "strain_amplitude [-]", "mean_strain [-]", "secant_modulus [Pa]"
+    columns = np.array(cycles, dtype=float).reshape(-1, 6).T
+    return dict(zip((*names, "damping_ratio [-]"), columns, strict=True))
+
+
+def _told(
+    soil: SoilScene, z: float, path: MaterialPath, curve: MaterialCurve, cycles: list[ClosedCycle], folder: Path
+) -> str:
+    k = path.driven
+    stress = np.abs(curve.stress[:, k] - curve.stress[0, k]).max()
+    lines = [
+        f"{soil.law.kind} at a depth of {z:g} m, {len(path.values)} rows of {', '.join(path.names)} from {path.source}",
+        f"largest change of {STRESSES[k]} {1e-3 * stress:.4g} kPa; dissipated {curve.dissipated[-1]:.4g} J/m3",
+    ]
+    if cycles:
+        lines.append(f"{'amplitude [-]':>15} {'secant [kPa]':>14} {'damping [%]':>12}")
+        last = {f"{c.amplitude:.6g}": c for c in cycles}.values()
+        lines += [f"{c.amplitude:15.4g} {1e-3 * c.secant_modulus:14.5g} {100.0 * c.damping_ratio:12.3f}" for c in last]
+    return "\n".join([*lines, f"written: {CURVE}, {CYCLES} and {PICTURE} in {folder}"])

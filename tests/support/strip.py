@@ -1,0 +1,57 @@
+"""A rough rigid strip on a plane-strain block of soil without weight: its load as it is pressed in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.core.arrays import Array
+from riser_soil.soil.block import BlockSpec
+from riser_soil.soil.families import Family
+from riser_soil.soil.grid import DistributedMesh, block_grid
+from riser_soil.soil.law import SoilLaw
+from riser_soil.soil.soil import Soil
+from riser_soil.soil.von_mises import VonMises
+from tests.support.soil_bench import Bench
+
+SU = 1.0e3
+CLAY = VonMises(kind="von-mises", su=SU, su_gradient=0.0, E_over_su=300.0, nu=0.49)
+
+
+@dataclass(frozen=True, eq=False)
+class Strip:
+    """Load of a rough rigid strip of half width 1 m, over the strength, and residual norms, step by step."""
+
+    load: Array
+    norms: list[list[float]]
+
+
+def press_strip(
+    kind: str, cells: int, family: Family | None = None, far: float = 0.5, law: SoilLaw = CLAY, strength: float = SU
+) -> Strip:
+    """Press half of a strip 0.15 m into a plane-strain block 5 m wide, 3 m deep; `cells` under the strip."""
+    soil, under = strip_soil(kind, cells, family, far, law)
+    driven = np.zeros((len(under), 3), dtype=bool)
+    driven[under] = True
+    bench = Bench(soil, driven.ravel())
+    given = np.where(under, -0.01, 0.0)[:, None] * np.array([0.0, 0.0, 1.0])
+    loads, norms = [], []
+    for _ in range(15):
+        bench.step(given.ravel())
+        norms.append(bench.norms)
+        reaction = bench.force(np.zeros(soil.field.size)).reshape(-1, 3)[under, 2].sum()
+        loads.append(-reaction * cells / strength)
+    return Strip(np.array(loads), norms)
+
+
+def strip_soil(kind: str, cells: int, family: Family | None, far: float, law: SoilLaw) -> tuple[Soil, Array]:
+    """A slice one cell thick, and which nodes lie under the strip."""
+    h = 1.0 / cells
+    fine = ((-1.0, 0.0), (1.25 - 0.5 * h, 0.0))  # cells of size h from the symmetry plane to x = 1.25
+    spec = BlockSpec((0.0, 5.0), (0.0, h), 3.0, h, far, kind="tet" if kind == "tet" else "hex", riser=fine)
+    grid: DistributedMesh = block_grid(MPI.COMM_SELF, spec)
+    soil = Soil(replace(grid, family=family or grid.family), law.at_points, level=0.0, unit_weight=0.0)
+    x, _, z = grid.nodes.points.T
+    return soil, (z > -1e-9) & (x < 1.0 + 1e-9)
