@@ -29,7 +29,8 @@ class Figure:
     """A number or vector of the summary, whose extremes over a stage are kept as well.
 
     name: key in the summary, dotted where it is nested. of: the figure by the output's value. size: 1 or 3. node: index
-    by the output's value of the node that it sits on, None where it sits on none. row: on the screen, None for none.
+    by the output's value of the node that it sits on, of the soil's point or cell, None where it sits on none; figures
+    of the soil are largest values and have one. row: on the screen, None for none.
     """
 
     name: str

@@ -161,11 +161,32 @@ OF_SOIL: tuple[OutputQuantity[SoilSnapshot], ...] = (
     OutputQuantity(
         "displacement", "u", "m", "displacement since the geostatic start", "soil points",
         lambda soil: soil.displacement, "global axes, z up", vector=True,
+        figures=(
+            Figure(
+                "max_settlement",
+                lambda u: -u[:, 2].min(),
+                node=lambda u: u[:, 2].argmin(),
+                row=Row("soil: deepest settlement", "mm", 1e3),
+            ),
+        ),
     ),
-    OutputQuantity("von_mises_stress", "q", "Pa", "von Mises stress", "soil cells", lambda s: s.von_mises, ">= 0"),
+    OutputQuantity(
+        "mean_effective_stress", "p", "Pa", "mean stress beyond the water pressure at rest", "soil cells",
+        lambda soil: soil.mean_stress, "positive in compression",
+    ),
+    OutputQuantity(
+        "von_mises_stress", "q", "Pa", "von Mises stress", "soil cells", lambda soil: soil.von_mises, ">= 0",
+        figures=(greatest("max_von_mises_stress", Row("soil: largest von Mises stress", "kPa", 1e-3)),),
+    ),
+    OutputQuantity(
+        "strength_used", "", "1", "equivalent stress over its limit", "soil cells",
+        lambda soil: soil.strength_used, ">= 0; 0 where the soil has no limit",
+        figures=(greatest("max_strength_used", Row("soil: most of its strength used")),),
+    ),
     OutputQuantity(
         "equivalent_plastic_strain", "", "1", "equivalent plastic strain", "soil cells",
         lambda soil: soil.plastic_strain, ">= 0",
+        figures=(greatest("max_equivalent_plastic_strain", Row("soil: largest plastic strain")),),
     ),
 )  # fmt: skip
 

@@ -39,7 +39,9 @@ class SoilSnapshot:
     """The soil at one instant; displacement relative to the geostatic start."""
 
     displacement: Array  # (nv, 3) m
+    mean_stress: Array  # (nc,) Pa, cell averages, positive in compression, beyond the water pressure at rest
     von_mises: Array  # (nc,) Pa, cell averages
+    strength_used: Array  # (nc,) equivalent stress over its limit, cell averages; 0 where there is no limit
     plastic_strain: Array  # (nc,) equivalent plastic strain, cell averages
 
 

@@ -158,7 +158,7 @@ class Observer:
         if self._recorder is not None:
             self._recorder.add_seconds(self._clock.seconds)
             self._recorder.finish()
-            print_summary(self._recorder.summary.as_dict(), self._recorder.settlement)
+            print_summary(self._recorder.summary.as_dict())
 
     def state(self) -> Saved:
         stage = self._assembly.scene.stages.index(self._stage)

@@ -115,9 +115,14 @@ class Soil:
         owned = self.field.total[: 3 * self.grid.nodes.owned].reshape(-1, 3)
         return SoilSnapshot(
             gather_rows(self.grid, owned),
-            gather_rows(self.grid, self._cell_mean(mandel.von_mises(self._found.stress))),
-            gather_rows(self.grid, self._cell_mean(self._plastic_strain())),
+            *(gather_rows(self.grid, self._cell_mean(values)) for values in self._invariants()),
         )
+
+    def _invariants(self) -> tuple[Array, Array, Array, Array]:
+        """Of the committed stress, (n,) each, in the order of `SoilSnapshot`."""
+        stress = self._found.stress
+        strength_used = self.law.overstress(stress)
+        return -mandel.mean(stress), mandel.von_mises(stress), strength_used, self._plastic_strain()
 
     def _answer(self, state: State) -> tuple[Array, StressUpdate]:
         """Strain increment (n, 6) of a trial state and the law's answer; kept for the last state, whose arrays

@@ -97,7 +97,8 @@ def soil(mesh: SoilMesh, s0: float) -> SoilSnapshot:
     settlement, stress = _bowl(mesh.points, s0), _bowl(mesh.points[mesh.cells].mean(axis=1), s0)
     displacement = np.zeros_like(mesh.points)
     displacement[:, 2] = -0.04 * settlement
-    return SoilSnapshot(displacement, 6.9e3 * stress, 0.02 * np.maximum(0.0, stress - 0.5))
+    plastic_strain = 0.02 * np.maximum(0.0, stress - 0.5)
+    return SoilSnapshot(displacement, 2.0e3 * stress, 6.9e3 * stress, stress, plastic_strain)
 
 
 def _bowl(points: Array, s0: float) -> Array:
