@@ -75,9 +75,12 @@ class Recorder:
         self._lock, self._folder = lock, folder
         self._arc = arc
         self._fields = fields
-        left_out = set(outputs.choices()) - set(fields)
+        left_out = outputs.left_out(fields)
         self._ledger = ledger_variables(facts.dissipating, facts.working)
-        self._series = SeriesFile(folder / run_folder.SERIES, arc, facts.title, facts.version, left_out, self._ledger)
+        self._series = SeriesFile(
+            *(folder / run_folder.SERIES, arc, facts.title, facts.version, left_out, self._ledger),
+            *(facts.sections, facts.offsets),
+        )
         self._riser_frames = XdmfFile(
             folder / run_folder.RISER_XDMF, "riser", polyline(arc.size), polyline=True
         )

@@ -40,8 +40,8 @@ def toys(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
 def test_a_new_entry_is_a_choice_of_the_scene(toys: tuple[Path, str]) -> None:
     schema = json.loads((toys[0] / "schema.json").read_text(encoding="utf-8"))
     fields = schema["$defs"]["Output"]["properties"]["fields"]
-    of_soil = len(outputs.OF_SOIL)
-    names = [*outputs.choices()[:-of_soil], HEIGHT.name, *outputs.choices()[-of_soil:], SETTLEMENT.name]
+    behind = 1 + len(outputs.OF_SOIL)  # across the riser, and of the soil
+    names = [*outputs.choices()[:-behind], HEIGHT.name, *outputs.choices()[-behind:], SETTLEMENT.name]
     assert fields["items"]["enum"] == fields["default"] == names
     assert "fields: [height]" in (toys[0] / "solved" / "scene.yaml").read_text(encoding="utf-8")
 
