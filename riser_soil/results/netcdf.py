@@ -28,6 +28,8 @@ _SPOKEN = {  # parts whose names don't tell what dissipates or works
     "morison": "drag and other forces of the water's motion",
     "buoyancy": "buoyancy in waves",
     "contact": "contact of the riser with the soil",
+    "soil_plasticity": "plastic flow of the soil",
+    "soil_time_scheme": "the time scheme, which takes the soil's stress at the end of a step for all of it",
     "supports": "moving ends",
 }
 
