@@ -1,4 +1,4 @@
-"""Command line interface: riser-soil run | check | material | schema.
+"""Command line interface: riser-soil run | check | material | schema | stiffness.
 
 Exit status 0 done, 2 bad input, 3 the solve failed, 4 the disk or standard output took no more, 128 + n for signal n.
 """
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from riser_soil import __version__
-from riser_soil.errors import Interruption, MeshError, RiserSoilError, SceneError, WriteError, is_full
+from riser_soil.errors import Interruption, MeshError, ResultsError, RiserSoilError, SceneError, WriteError, is_full
 from riser_soil.interruption import default_signal_handlers, handling_signals, latest
 from riser_soil.standard_output import failsafe_output
 
@@ -44,6 +44,12 @@ Overrides = Annotated[
         help="override a value of the scene, e.g. riser.segments.0.elements=70; may be repeated; "
         "list items are counted from 0",
     ),
+]
+
+
+RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="folder of a run's results")]
+StageName = Annotated[
+    str | None, typer.Option("--stage", metavar="NAME", help="a dynamic stage; by default the last one")
 ]
 
 
@@ -130,6 +136,46 @@ def schema() -> None:
     from riser_soil.scene.schema import schema_text
 
     typer.echo(schema_text())
+
+
+@app.command()
+def stiffness(
+    folder: RunFolder,
+    arc: Annotated[list[float], typer.Option("--arc", metavar="S", help="arc length [m]; may be repeated")],
+    stage: StageName = None,
+    period: Annotated[
+        float | None, typer.Option("--period", help="length of a cycle [s]; by default that of the stage's motion")
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FILE", help="CSV file; by default standard output")
+    ] = None,
+) -> None:
+    """Print the ground's secant stiffness at arc lengths of a run, cycle by cycle, also over su, as CSV."""
+    with _expected_errors():
+        from riser_soil.results.read import Run
+        from riser_soil.results.secant_stiffness import secant_stiffness, write_csv
+
+        if period is not None and not period > 0.0:
+            raise ResultsError(f"--period {period:g}: must be greater than 0; give the length of a cycle in s")
+        found = secant_stiffness(Run(folder), arc, stage, period)
+        if output is None:
+            write_csv(found, sys.stdout)
+        else:
+            with _writing(output) as part, part.open("w", encoding="utf-8") as file:
+                write_csv(found, file)
+
+
+@contextmanager
+def _writing(file: Path) -> Iterator[Path]:
+    """A file beside the wanted one, which takes its place when it is whole and vanishes otherwise."""
+    part = file.with_name(f".{file.stem}.part{file.suffix}")
+    try:
+        yield part
+        part.replace(file)
+    except OSError as err:
+        raise WriteError(f"{file}: cannot be written: {err.strerror or err}; choose another file with -o") from err
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def _read(scene: str, overrides: list[str] | None) -> "Scene":

@@ -47,12 +47,14 @@ def _reasons(scene: Scene) -> dict[str, str]:
 
 
 DISSIPATING = ("morison", "structural damping", "contact", "seabed", "friction", "soil friction", "soil")
+#: Accounts of a part that tells what is its own and what is the time scheme's.
+SPLIT = {"soil": ("soil_plasticity", "soil_time_scheme")}
 WORKING = ("loads", "morison", "buoyancy")
 
 
 def dissipating(scene: Scene) -> tuple[str, ...]:
     """Parts of the energy ledger that may dissipate."""
-    return _in_ledger(scene, DISSIPATING)
+    return tuple(account for name in _in_ledger(scene, DISSIPATING) for account in SPLIT.get(name, (name,)))
 
 
 def working(scene: Scene) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from riser_soil.contact.gap import heights
 from riser_soil.contact.pairing import FacetSearch
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import State
@@ -82,6 +83,11 @@ class DeformedSurface:
         """Largest area in plan of some facets of a deformed surface (np, 3), over that at first; 1 of none."""
         now, before = (_plan_area(points[self.facets[facets]]) for points in (deformed, self.at_first))
         return float(np.max(now / before, initial=1.0))
+
+    def height(self, xy: Array, points: Array) -> Array:
+        """Height (n,) [m] of the surface of some points at horizontal positions (n, 2) [m]; nan beside it."""
+        found = heights(*self.locate(xy, points), self.facets, points)
+        return np.where(np.isfinite(found), found, np.nan)
 
     def locate(self, xy: Array, points: Array) -> tuple[IntArray, Array]:
         """Facet (n,), −1 outside, and place on it (n, 2) below positions xy (n, 2), at deformed points."""

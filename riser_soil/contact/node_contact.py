@@ -144,6 +144,15 @@ class NodeContact(SoilContact):
         d = self.line.basis.shape[1]
         return np.asarray(-self.detect(state).touching.gradient[:, d:].reshape(-1, 3).sum(axis=0))
 
+    def force_on_soil_per_length(self, state: State) -> Array:
+        """Forces on the nodes of the facets under the riser's nodes (nn, 3) [N/m]."""
+        total = np.zeros((self.line.nodes, 3))
+        if self.active:
+            touching, d = self.detect(state).touching, self.line.basis.shape[1]
+            on_nodes = -touching.gradient[:, d:].reshape(len(touching.node), -1, 3)
+            np.add.at(total, touching.node, on_nodes.sum(axis=1))
+        return np.asarray(total / self.line.tributary_length[:, None])
+
     def stretch(self, state: State) -> float:
         if not self.active:
             return 1.0

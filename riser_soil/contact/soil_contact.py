@@ -87,6 +87,12 @@ class SoilContact(LineContact):
         """Sum of the contact forces on the soil (3,) [N], global axes."""
 
     @abstractmethod
+    def force_on_soil_per_length(self, state: State) -> Array:
+        """Contact force on the soil by length of the riser at its nodes (nn, 3) [N/m], global axes: what the nodes of
+        the soil get, counted where the riser presses.
+        """
+
+    @abstractmethod
     def stretch(self, state: State) -> float:
         """Largest area in plan of a facet that presses, over its area before the riser came; 1 where none does."""
 
@@ -123,6 +129,14 @@ class SoilContact(LineContact):
         """Which horizontal positions (n, 2) [m] lie over the soil as it is now."""
         facet, _ = self._soil.locate(xy, self._soil.settled)
         return np.asarray(facet >= 0)
+
+    def settlement(self, xy: Array, state: State) -> Array:
+        """Settlement (n,) [m] of the soil's surface at horizontal positions (n, 2) [m] since before the riser came.
+
+        Positive downwards, nan beside the soil. Called only on the rank that evaluates contact.
+        """
+        soil = self._soil
+        return soil.height(xy, soil.at_first) - soil.height(xy, soil.deformed(state))
 
     def contact_along_line(self, state: State) -> ContactAlongLine:
         """At the nodes."""

@@ -242,6 +242,18 @@ class SurfaceContact(SoilContact):
             return np.zeros(3)
         return np.asarray(-self._on_facets(self.evaluate(state).pressed.gradient).reshape(-1, 3).sum(axis=0))
 
+    def force_on_soil_per_length(self, state: State) -> Array:
+        """The points' forces on the nodes of their facets (nn, 3) [N/m], shared linearly by two nodes of the riser."""
+        total = np.zeros((self.line.nodes, 3))
+        if self.active:
+            pressed = self.evaluate(state).pressed
+            element, along = pressed.points.element, pressed.points.along[:, None]
+            on_nodes = pressed.force[:, None] * pressed.forms[:, 0, 4 * self.line.dimension :]
+            on_soil = on_nodes.reshape(len(element), -1, 3).sum(axis=1)
+            np.add.at(total, element, (1.0 - along) * on_soil)
+            np.add.at(total, element + 1, along * on_soil)
+        return np.asarray(total / self.line.tributary_length[:, None])
+
     def stretch(self, state: State) -> float:
         if not self.active:
             return 1.0

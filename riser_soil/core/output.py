@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from riser_soil.core.arrays import Array
 
 Seen = TypeVar("Seen")
-Where = Literal["nodes", "model", "summary", "soil points", "soil cells", "step"]
-Need = Literal["", "pressures", "min_bend_radius", "ground", "friction"]
+Where = Literal["nodes", "model", "summary", "sections", "across", "soil points", "soil cells", "step"]
+Need = Literal["", "pressures", "min_bend_radius", "ground", "friction", "soil"]
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,8 @@ class Figure:
     """A number or vector of the summary, whose extremes over a stage are kept as well.
 
     name: key in the summary, dotted where it is nested. of: the figure by the output's value. size: 1 or 3. node: index
-    by the output's value of the node that it sits on, None where it sits on none. row: on the screen, None for none.
+    by the output's value of the node that it sits on, of the soil's point or cell, None where it sits on none; figures
+    of the soil are largest values and have one. row: on the screen, None for none.
     """
 
     name: str
@@ -49,7 +50,8 @@ class OutputQuantity(Generic[Seen]):
 
     units, text and sign (what its sign means, where it has one) go into results.nc, with units as UDUNITS writes them.
     get: the value by what is seen, `Instant`, `SoilSnapshot` or `StepRecord`; (nn,) at nodes, (nv,) at points of the
-    soil, (nc,) in its cells, one number in the rest; by three where it is a vector, in global axes.
+    soil, (nc,) in its cells, (ns,) of sections, (ns, m) across them, one number in the rest; by three where it is a
+    vector, in global axes.
     needs: what must be known for it. always: recorded along the riser even where the scene does not request it.
     """
 
@@ -69,7 +71,7 @@ class OutputQuantity(Generic[Seen]):
     @property
     def chosen(self) -> bool:
         """Whether the scene says if it is recorded."""
-        return self.where in ("nodes", "soil points", "soil cells") and not self.always
+        return self.where in ("nodes", "across", "soil points", "soil cells") and not self.always
 
     @property
     def numbers(self) -> int:

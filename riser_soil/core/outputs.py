@@ -79,9 +79,40 @@ ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
         lambda i: i.touch.slip, ">= 0", needs="friction",
     ),
     OutputQuantity(
+        "soil_settlement", "", "m",
+        "settlement of the soil's surface under the riser since before it came; nan beside the soil", "nodes",
+        lambda i: i.touch.settlement, "positive downwards", needs="soil",
+    ),
+    OutputQuantity(
+        "force_on_soil", "", "N m-1", "force per length of riser, from the forces at the soil's nodes", "nodes",
+        lambda i: i.touch.force_on_soil, "exerted by the riser on the soil; global axes, z up", vector=True,
+        needs="soil",
+    ),
+    OutputQuantity(
         "moment_vector", "", "N m", "section moment", "nodes",
         lambda i: i.riser.moment_vector,
         "right-hand rule, global axes; exerted by the part towards the end on the part towards the start", vector=True,
+    ),
+)  # fmt: skip
+
+ACROSS_RISER: tuple[OutputQuantity[Instant], ...] = (
+    OutputQuantity(
+        "section_arc", "", "m", "arc length of the riser where it lay over the section", "sections",
+        lambda i: i.touch.sections and i.touch.sections.arc, needs="soil",
+    ),
+    OutputQuantity(
+        "section_position", "", "m", "place of the section: position of the riser's axis there", "sections",
+        lambda i: i.touch.sections and i.touch.sections.position, "global axes, z up", vector=True, needs="soil",
+    ),
+    OutputQuantity(
+        "section_direction", "", "1", "horizontal unit vector across the riser", "sections",
+        lambda i: i.touch.sections and i.touch.sections.direction,
+        "to the left, seen from above along growing arc length", vector=True, needs="soil",
+    ),
+    OutputQuantity(
+        "settlement_across", "", "m",
+        "settlement of the soil's surface in sections across the riser; nan beside the soil", "across",
+        lambda i: i.touch.sections and i.touch.sections.settlement, "positive downwards", needs="soil",
     ),
 )  # fmt: skip
 
@@ -161,24 +192,52 @@ OF_SOIL: tuple[OutputQuantity[SoilSnapshot], ...] = (
     OutputQuantity(
         "displacement", "u", "m", "displacement since the geostatic start", "soil points",
         lambda soil: soil.displacement, "global axes, z up", vector=True,
+        figures=(
+            Figure(
+                "max_settlement",
+                lambda u: -u[:, 2].min(),
+                node=lambda u: u[:, 2].argmin(),
+                row=Row("soil: deepest settlement", "mm", 1e3),
+            ),
+        ),
     ),
-    OutputQuantity("von_mises_stress", "q", "Pa", "von Mises stress", "soil cells", lambda s: s.von_mises, ">= 0"),
+    OutputQuantity(
+        "mean_effective_stress", "p", "Pa", "mean stress beyond the water pressure at rest", "soil cells",
+        lambda soil: soil.mean_stress, "positive in compression",
+    ),
+    OutputQuantity(
+        "von_mises_stress", "q", "Pa", "von Mises stress", "soil cells", lambda soil: soil.von_mises, ">= 0",
+        figures=(greatest("max_von_mises_stress", Row("soil: largest von Mises stress", "kPa", 1e-3)),),
+    ),
+    OutputQuantity(
+        "strength_used", "", "1", "equivalent stress over its limit", "soil cells",
+        lambda soil: soil.strength_used, ">= 0; 0 where the soil has no limit",
+        figures=(greatest("max_strength_used", Row("soil: most of its strength used")),),
+    ),
     OutputQuantity(
         "equivalent_plastic_strain", "", "1", "equivalent plastic strain", "soil cells",
         lambda soil: soil.plastic_strain, ">= 0",
+        figures=(greatest("max_equivalent_plastic_strain", Row("soil: largest plastic strain")),),
     ),
 )  # fmt: skip
 
 
 def of_instant() -> tuple[OutputQuantity[Instant], ...]:
     """All that follows from the riser and its contact."""
-    return (*ALONG_RISER, *OF_MODEL)
+    return (*ALONG_RISER, *ACROSS_RISER, *OF_MODEL)
 
 
 def choices() -> tuple[str, ...]:
     """Names of the outputs among which a scene may choose."""
     outputs: tuple[OutputQuantity[Any], ...] = (*of_instant(), *OF_SOIL)
     return tuple(output.name for output in outputs if output.chosen)
+
+
+def left_out(fields: Collection[str]) -> set[str]:
+    """Names of the outputs that are not recorded where these are: what tells of sections goes with what is in them."""
+    unwanted = {name for name in choices() if name not in fields}
+    of_sections = {output.name for output in ACROSS_RISER}
+    return unwanted | (of_sections if of_sections & unwanted else set())
 
 
 def known(names: Iterable[str], has: Collection[str]) -> tuple[str, ...]:

@@ -105,15 +105,21 @@ class Work:
     """Energy turned over in one accepted step [J]: dissipated, and put in by external non-conservative loads.
 
     inertial: the share of `external` that a mass gains as it changes, beyond the work of its force m a.
+    by_scheme: the share of `dissipated` that is the time scheme's, which takes a force at the end of the step for all
+    of it; only of parts that know it.
     """
 
     dissipated: float = 0.0
     external: float = 0.0
     inertial: float = 0.0
+    by_scheme: float = 0.0
 
     def __add__(self, other: Work) -> Work:
         return Work(
-            self.dissipated + other.dissipated, self.external + other.external, self.inertial + other.inertial
+            self.dissipated + other.dissipated,
+            self.external + other.external,
+            self.inertial + other.inertial,
+            self.by_scheme + other.by_scheme,
         )
 
 

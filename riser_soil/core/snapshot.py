@@ -39,7 +39,9 @@ class SoilSnapshot:
     """The soil at one instant; displacement relative to the geostatic start."""
 
     displacement: Array  # (nv, 3) m
+    mean_stress: Array  # (nc,) Pa, cell averages, positive in compression, beyond the water pressure at rest
     von_mises: Array  # (nc,) Pa, cell averages
+    strength_used: Array  # (nc,) equivalent stress over its limit, cell averages; 0 where there is no limit
     plastic_strain: Array  # (nc,) equivalent plastic strain, cell averages
 
 
@@ -49,6 +51,16 @@ class SoilMesh:
 
     points: Array  # (nv, 3) m
     cells: IntArray  # (nc, 8), (nc, 4) or (nc, 10)
+
+
+@dataclass(frozen=True, eq=False)
+class SectionSnapshot:
+    """The soil's settlement at m offsets across the riser, in ns sections; nan where no section is laid yet."""
+
+    arc: Array  # (ns,) m, of the riser where it lay over the section
+    position: Array  # (ns, 3) m, of the riser's axis there
+    direction: Array  # (ns, 3) horizontal unit vector of growing offset
+    settlement: Array  # (ns, m) m, positive downwards; nan beside the soil
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +75,9 @@ class ContactSnapshot:
     penetration: Array | None = None  # (nn,) m, of the underside into the ground as it is now; None where not wanted
     embedment: Array | None = None  # (nn,) m, greatest depth yet below the ground as it lay at first; the same
     slip: Array | None = None  # (nn,) m, way slid over seabed and soil so far; None without friction, or not wanted
+    settlement: Array | None = None  # (nn,) m, of the soil's surface below the nodes, nan beside it; None not wanted
+    force_on_soil: Array | None = None  # (nn, 3) N/m, exerted by the riser on the soil; None where not wanted
+    sections: SectionSnapshot | None = None  # None without soil, or where not wanted
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,3 +153,5 @@ class RunFacts:
     working: tuple[str, ...] = ()  # names that may stand in the ledger's work_by
     riser_dofs: int = 0
     soil_dofs: int = 0
+    sections: int = 0  # across the riser in which the soil's settlement is recorded
+    offsets: tuple[float, ...] = ()  # m, places along the sections

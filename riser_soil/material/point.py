@@ -6,12 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from riser_soil.assembly.soil_law import volumes, weight_of
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.errors import SceneError, SolveError
 from riser_soil.material.path import STRAIN_FACTOR, STRESS_FACTOR, STRESSES, MaterialPath
 from riser_soil.scene.soil import SoilScene
+from riser_soil.scene.soil_layers import boundaries
 from riser_soil.soil import mandel
-from riser_soil.soil.law import PLASTIC_STRAIN, Formula, StressUpdate
+from riser_soil.soil.law import PLASTIC_STRAIN, Formula, SoilLaw, StressUpdate
+from riser_soil.soil.layered import layer_at
 
 MOST_ITERATIONS, CONVERGED = 40, 1e-10  # where stress is given: Newton's; what may be missing over the largest stress
 
@@ -38,12 +41,14 @@ class MaterialCurve:
 
 def point_at(soil: SoilScene, depth: float) -> MaterialPoint:
     """The soil's law at a depth below the seabed [m]; SceneError where it can't be, or starts beyond its limit."""
-    found = soil.law.wrong_within(depth)
+    given, within = law_at(soil, depth)
+    found = given.wrong_within(within)
     if found:
         raise SceneError(f"soil.law: at a depth of {depth:g} m {found[0]}; {found[1]}, or a smaller --depth")
-    vertical = -soil.submerged_unit_weight * depth
-    initial = np.array([[soil.K0 * vertical, soil.K0 * vertical, vertical, 0.0, 0.0, 0.0]])
-    law = soil.law.at_points(np.array([depth]), initial)
+    weight = weight_of(soil)
+    borne = weight * depth if isinstance(weight, float) else float(weight.stress(np.array([depth]))[0])
+    initial = np.array([[-soil.K0 * borne, -soil.K0 * borne, -borne, 0.0, 0.0, 0.0]])
+    law = given.at_points(np.array([within]), initial)
     over = float(law.overstress(initial)[0])
     if over > 1.0 + 1e-12:
         raise SceneError(
@@ -51,6 +56,17 @@ def point_at(soil: SoilScene, depth: float) -> MaterialPoint:
             "what the soil bears; bring K0 nearer to 1 or raise the strength"
         )
     return MaterialPoint(law, initial)
+
+
+def law_at(soil: SoilScene, depth: float) -> tuple[SoilLaw, float]:
+    """The law at a depth below the seabed, and the depth as it counts [m]; SceneError of layers by volume."""
+    if soil.layers is None:
+        return soil.top_law, depth
+    if volumes(soil):
+        raise SceneError("soil.layers: volumes of a mesh file have no depth: drive a scene with that one law")
+    edges = boundaries(soil.layers)
+    layer = int(layer_at(edges, np.array([depth]))[0])
+    return soil.layers[layer].law, depth - (0.0, *edges)[layer]
 
 
 def drive(point: MaterialPoint, path: MaterialPath) -> MaterialCurve:

@@ -12,9 +12,9 @@ from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError, WriteError, is_full
 from riser_soil.material.loops import ClosedCycle, closed_cycles
 from riser_soil.material.path import STRAINS, STRESS_FACTOR, STRESSES, MaterialPath, read_path, shear_cycles
-from riser_soil.material.point import MaterialCurve, drive, point_at
+from riser_soil.material.point import MaterialCurve, drive, law_at, point_at
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.soil import SoilScene
+from riser_soil.scene.soil import Block, SoilScene
 from riser_soil.soil import mandel
 
 CURVE, CYCLES, PICTURE = "material.csv", "material_cycles.csv", "material.png"
@@ -36,7 +36,7 @@ def study(scene: Scene, folder: Path, path: Path | None = None, depth: float | N
     k = taken.driven
     given = curve.stress if taken.stress[k] else curve.strain
     cycles = closed_cycles(given[:, k], curve.strain[:, k], curve.stress[:, k])
-    heading = f"{SIGNED}{soil.law.kind} at a depth of {z:g} m, {taken.source}; {STRAINS[k]} and {STRESSES[k]} are drawn"
+    heading = f"{SIGNED}{law_at(soil, z)[0].kind} at a depth of {z:g} m, {taken.source}; {STRAINS[k]} and {STRESSES[k]} are drawn"
     _leave(folder, heading, curve, cycles)
     return _told(soil, z, taken, curve, cycles, folder)
 
@@ -48,7 +48,7 @@ def _soil_of(scene: Scene) -> SoilScene:
 
 
 def _depth(soil: SoilScene, wanted: float | None) -> float:
-    block = soil.block.depth if soil.block is not None else np.inf
+    block = soil.block.depth if isinstance(soil.block, Block) else np.inf
     if wanted is None:
         return min(USUAL_DEPTH, 0.5 * block)
     if not 0.0 <= wanted <= block:
@@ -125,7 +125,7 @@ def _told(
     k = path.driven
     stress = np.abs(curve.stress[:, k] - curve.stress[0, k]).max()
     lines = [
-        f"{soil.law.kind} at a depth of {z:g} m, {len(path.values)} rows of {', '.join(path.names)} from {path.source}",
+        f"{law_at(soil, z)[0].kind} at a depth of {z:g} m, {len(path.values)} rows of {', '.join(path.names)} from {path.source}",
         f"largest change of {STRESSES[k]} {1e-3 * stress:.4g} kPa; dissipated {curve.dissipated[-1]:.4g} J/m3",
     ]
     if cycles:

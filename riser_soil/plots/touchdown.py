@@ -10,14 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import pyvista as pv
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
 
 from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError
 from riser_soil.plots.scales import colour_scale, magnification
 from riser_soil.results import Run, SoilFrame
-from riser_soil.results.folder import SCENE
 
 _SIZE = (1600, 900)
 _CELL_TYPES = {4: pv.CellType.TETRA, 8: pv.CellType.HEXAHEDRON, 10: pv.CellType.QUADRATIC_TETRA}
@@ -108,9 +105,8 @@ def _read(run: Run) -> _Frame:
 def _radius(run: Run) -> float:
     """m, half the largest outer diameter in the scene; a thin line's where the scene cannot be read."""
     try:
-        scene = YAML(typ="safe").load((run.folder / SCENE).read_text(encoding="utf-8"))
-        return 0.5 * max(float(line["outer_diameter"]) for line in scene["line_types"].values())
-    except (OSError, YAMLError, KeyError, TypeError, AttributeError, ValueError):
+        return 0.5 * max(float(line["outer_diameter"]) for line in run.scene["line_types"].values())
+    except (ResultsError, KeyError, TypeError, AttributeError, ValueError):
         return 1e-3 * float(run.arc[-1])
 
 

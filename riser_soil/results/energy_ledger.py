@@ -20,6 +20,7 @@ from dataclasses import asdict
 
 import numpy as np
 
+from riser_soil.checks.inventory import SPLIT
 from riser_soil.core.part import Energy, Work
 from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.snapshot import Ledger
@@ -46,7 +47,7 @@ class EnergyLedger:
     def add(self, energy: Energy, step: AcceptedStep) -> float:
         """Book a step; energy: stored after it. The step's own residual [J]."""
         before, turned = self.ledger, _by_kind(step.turned)
-        dissipated_by = _added(before.dissipated_by, ((name, work.dissipated) for name, work in turned))
+        dissipated_by = _added(before.dissipated_by, (lost for name, work in turned for lost in _losses(name, work)))
         work_by = _added(before.work_by, ((name, work.external) for name, work in turned))
         dissipated, work = (math.fsum(accounts.values()) for accounts in (dissipated_by, work_by))
         numerical = 0.0 if self._static else before.numerical + before.kinetic - energy.kinetic - step.braking
@@ -71,6 +72,14 @@ class EnergyLedger:
 
 def _by_kind(turned: Mapping[str, Work]) -> list[tuple[str, Work]]:
     return [("supports" if name in SPRINGS else name.replace(" ", "_"), work) for name, work in turned.items()]
+
+
+def _losses(name: str, work: Work) -> list[tuple[str, float]]:
+    """What a part has dissipated, by account."""
+    if name not in SPLIT:
+        return [(name, work.dissipated)]
+    own, of_scheme = SPLIT[name]
+    return [(own, work.dissipated - work.by_scheme), (of_scheme, work.by_scheme)]
 
 
 def _added(before: Mapping[str, float], more: Iterable[tuple[str, float]]) -> dict[str, float]:

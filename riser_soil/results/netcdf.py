@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 from collections import defaultdict
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,8 @@ _SPOKEN = {  # parts whose names don't tell what dissipates or works
     "morison": "drag and other forces of the water's motion",
     "buoyancy": "buoyancy in waves",
     "contact": "contact of the riser with the soil",
+    "soil_plasticity": "plastic flow of the soil",
+    "soil_time_scheme": "the time scheme, which takes the soil's stress at the end of a step for all of it",
     "supports": "moving ends",
 }
 
@@ -43,12 +45,20 @@ class Variable:
     dtype: str = "f8"
 
 
+_DIMS = {
+    "nodes": ("time", "arc"),
+    "sections": ("time", "section"),
+    "across": ("time", "section", "offset"),
+    "model": ("time",),
+    "step": ("step",),
+}
+_OFFSET = Variable(("offset",), "m", "horizontal distance from the riser's axis", "positive along section_direction")
 _ARC = Variable(("arc",), "m", "unstressed arc length from the start")
 
 
 def variable(output: OutputQuantity[Any]) -> Variable:
     """Of results.nc, where an output is written along the riser, by instants or by steps."""
-    along = {"nodes": ("time", "arc"), "model": ("time",), "step": ("step",)}[output.where]
+    along = _DIMS[output.where]
     dims = (*along, "component") if output.vector else along
     return Variable(dims, output.units, output.text, output.sign, output.dtype)
 
@@ -87,7 +97,7 @@ class SeriesFile:
     """Writer of results.nc.
 
     arc: (nn,) m, arc lengths of the nodes. left_out: names of SERIES that are not wanted. ledger: of
-    `ledger_variables`.
+    `ledger_variables`. sections: number of those across the riser, offsets (m,) [m] in them.
     Rows given to `record` and `step` live in memory until `flush`.
     """
 
@@ -99,9 +109,14 @@ class SeriesFile:
         version: str,
         left_out: Collection[str] = (),
         ledger: Mapping[str, Variable] | None = None,
+        sections: int = 0,
+        offsets: Sequence[float] = (),
     ) -> None:
         self._of_step = HEALTH | dict(ledger or {})
-        self._variables = {name: v for name, v in SERIES.items() if name not in left_out} | self._of_step
+        wanted = {name: v for name, v in SERIES.items() if name not in left_out}
+        self._variables = {name: v for name, v in wanted.items() if sections or "section" not in v.dims} | self._of_step
+        self._sizes = {"arc": arc.size, "component": 3, "section": sections, "offset": len(offsets)}
+        self._offsets = np.array(offsets)
         self._rows: defaultdict[str, list[object]] = defaultdict(list)
         self._steps = 0
         self._stages: list[str] = []
@@ -138,18 +153,20 @@ class SeriesFile:
     def _layout(self, arc: Array, title: str, version: str) -> bytes:
         content = io.BytesIO()
         with h5netcdf.File(content, "w") as file:
-            file.dimensions = {"time": None, "step": None, "arc": arc.size, "component": 3}
+            file.dimensions = {"time": None, "step": None} | {name: n for name, n in self._sizes.items() if n}
             file.attrs["title"] = title
             file.attrs["version"] = version
             file.attrs["source"] = f"riser_soil {version}"
             file.attrs["Conventions"] = "CF-1.11"
             file.attrs["finished"] = np.int8(0)
             _describe(file, "arc", _ARC)[...] = arc
+            if self._offsets.size:
+                _describe(file, "offset", _OFFSET)[...] = self._offsets
             component = file.create_variable("component", ("component",), h5py.string_dtype())
             component[...] = np.array(["x", "y", "z"], dtype=object)
             component.attrs["long_name"] = "global axis"
             for name, variable in self._variables.items():
-                _describe(file, name, variable, arc.size)
+                _describe(file, name, variable, self._sizes)
         return content.getvalue()
 
     def state(self) -> Saved:
@@ -165,8 +182,10 @@ def _kept(value: object) -> object:
     return value.copy() if isinstance(value, np.ndarray) else value
 
 
-def _describe(file: h5netcdf.File, name: str, variable: Variable, nodes: int = 0) -> h5netcdf.Variable:
-    made = file.create_variable(name, variable.dims, variable.dtype, chunks=_chunks(variable, nodes))
+def _describe(
+    file: h5netcdf.File, name: str, variable: Variable, sizes: Mapping[str, int] | None = None
+) -> h5netcdf.Variable:
+    made = file.create_variable(name, variable.dims, variable.dtype, chunks=_chunks(variable, sizes or {}))
     made.attrs["units"] = variable.units
     made.attrs["long_name"] = variable.long_name
     if variable.sign:
@@ -174,10 +193,10 @@ def _describe(file: h5netcdf.File, name: str, variable: Variable, nodes: int = 0
     return made
 
 
-def _chunks(variable: Variable, nodes: int) -> tuple[int, ...] | None:
+def _chunks(variable: Variable, sizes: Mapping[str, int]) -> tuple[int, ...] | None:
     if variable.dims[0] not in ("time", "step"):
         return None
-    row = tuple({"arc": nodes, "component": 3}[d] for d in variable.dims[1:])
+    row = tuple(sizes[d] for d in variable.dims[1:])
     rows = _CHUNK_BYTES // (8 * max(1, int(np.prod(row))))
     return (min(1024, max(1, rows)), *row)
 

@@ -28,6 +28,7 @@ from riser_soil.results.progress import Progress
 from riser_soil.results.record import Recorder
 from riser_soil.results.schedule import Schedule
 from riser_soil.results.screen import print_summary
+from riser_soil.results.settlement_trough import count_of, offsets_of
 from riser_soil.results.touchdown_zone import TouchdownZone
 from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import (
@@ -111,7 +112,8 @@ class Observer:
             self._plausibility.look_around(self._boundary())
         if self._recorder is not None:
             health = StepStatistics(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
-            riser, touching = riser_snapshot(self._assembly, stepper), self._zone.look(stepper.now)
+            at_rest = due.series and isinstance(self._stage, StaticStage)
+            riser, touching = riser_snapshot(self._assembly, stepper), self._zone.look(stepper.now, at_rest)
             self._recorder.accept(step.t, due, riser, touching, health, self._balance.ledger, soil)
             if due.series:
                 self._judge(self._recorder, stepper, riser, touching, closely=due.pictures)
@@ -172,7 +174,7 @@ class Observer:
         if self._recorder is not None:
             self._recorder.add_seconds(self._clock.seconds)
             self._recorder.finish()
-            print_summary(self._recorder.summary.as_dict(), self._recorder.settlement)
+            print_summary(self._recorder.summary.as_dict())
 
     def state(self) -> Saved:
         stage = self._assembly.scene.stages.index(self._stage)
@@ -212,6 +214,7 @@ def _known_fields(assembly: Assembly) -> tuple[str, ...]:
         "min_bend_radius": bool(assembly.elements.min_bend_radius.any()),
         "ground": bool(assembly.contacts),
         "friction": bool(assembly.frictions),
+        "soil": assembly.soil_contact is not None,
     }
     return outputs.known(assembly.scene.output.fields, [need for need, there in has.items() if there])
 
@@ -268,6 +271,7 @@ def _contact_force(assembly: Assembly, state: State) -> Array:
 
 def facts(assembly: Assembly) -> RunFacts:
     """Facts about a run before its first step; collective."""
+    across = assembly.soil_contact is not None and "settlement_across" in assembly.scene.output.fields
     return RunFacts(
         title=assembly.scene.title,
         version=__version__,
@@ -278,4 +282,6 @@ def facts(assembly: Assembly) -> RunFacts:
         working=working(assembly.scene),
         riser_dofs=unknowns(assembly.comm, assembly.line),
         soil_dofs=unknowns(assembly.comm, assembly.soil.field) if assembly.soil is not None else 0,
+        sections=count_of(assembly) if across else 0,
+        offsets=offsets_of(assembly) if across else (),
     )

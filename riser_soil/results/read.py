@@ -11,6 +11,8 @@ from xml.etree import ElementTree
 
 import h5py
 import numpy as np
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import ResultsError
@@ -57,6 +59,16 @@ class Run:
         except (OSError, ValueError) as err:
             raise ResultsError(f"{path}: cannot be read: {err}") from err
         return summary
+
+    @cached_property
+    def scene(self) -> dict[str, Any]:
+        """The resolved scene, scene.yaml, as plain data."""
+        path = self.folder / run_folder.SCENE
+        try:
+            scene: dict[str, Any] = YAML(typ="safe").load(path.read_text(encoding="utf-8"))
+        except (OSError, YAMLError) as err:
+            raise ResultsError(f"{path}: cannot be read: {err}") from err
+        return scene
 
     @property
     def finished(self) -> bool:

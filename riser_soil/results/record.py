@@ -35,6 +35,7 @@ from riser_soil.results.ownership import prepare, sealed
 from riser_soil.results.record_rows import series_row, soil_frame, step_row
 from riser_soil.results.schedule import DueOutputs
 from riser_soil.results.simulated_time import SimulatedTime
+from riser_soil.results.soil_extremes import places, with_largest
 from riser_soil.results.summary import StageTally, Summary
 from riser_soil.results.xdmf import Frame, XdmfFile, polyline
 
@@ -74,18 +75,21 @@ class Recorder:
         self._lock, self._folder = lock, folder
         self._arc = arc
         self._fields = fields
-        left_out = set(outputs.choices()) - set(fields)
+        left_out = outputs.left_out(fields)
         self._ledger = ledger_variables(facts.dissipating, facts.working)
-        self._series = SeriesFile(folder / run_folder.SERIES, arc, facts.title, facts.version, left_out, self._ledger)
+        self._series = SeriesFile(
+            *(folder / run_folder.SERIES, arc, facts.title, facts.version, left_out, self._ledger),
+            *(facts.sections, facts.offsets),
+        )
         self._riser_frames = XdmfFile(
             folder / run_folder.RISER_XDMF, "riser", polyline(arc.size), polyline=True
         )
         self._soil_frames = _soil_file(folder, soil_mesh)
+        self._soil_places = None if soil_mesh is None else places(soil_mesh)
         self._time = SimulatedTime()
         self.now = 0.0  # s of the run at the last step; in a static stage its load factor
         self._latest: Array | None = None
         self._last: LastState | None = None
-        self._settlement: float | None = None
         self._next_flush = 0.0
         self._waiting = 0
         self._closed = False
@@ -129,11 +133,6 @@ class Recorder:
         last = stages[-1]
         time = f" at t = {last.time:.6g} s" if last.kind == "dynamic" else f" after {last.steps} load step(s)"
         return f"in stage {last.name}{time}; {self._folder} has the results up to there, marked unfinished"
-
-    @property
-    def settlement(self) -> float | None:
-        """m, deepest settlement of the soil when it was last pictured; None without soil."""
-        return self._settlement
 
     def __enter__(self) -> Self:
         return self
@@ -280,18 +279,18 @@ class Recorder:
                 )
             self._waiting += _size(vars(soil))
             self._soil_frames.add(soil_frame(stamp, soil, self._fields))
-            self._settlement = max(0.0, -float(soil.displacement[:, 2].min()))
+            if self._soil_places is not None and self.summary.stages:
+                stage = self.summary.stages[-1]
+                stage.soil = with_largest(stage.soil, self._soil_places, self.now, soil)
 
     def state(self) -> Saved:
         """What is gathered on the way; what is written stays in the folder."""
         latest = {} if self._latest is None else {"latest": self._latest}
-        settlement = {} if self._settlement is None else {"settlement": np.array(self._settlement)}
-        return gathered(self._owners) | latest | settlement | {"now": np.array(self.now)}
+        return gathered(self._owners) | latest | {"now": np.array(self.now)}
 
     def restore(self, saved: Saved) -> None:
         restore_all(self._owners, saved)
         self.now, self._latest = float(saved["now"]), saved.get("latest")
-        self._settlement = float(saved["settlement"]) if "settlement" in saved else None
 
     @property
     def _owners(self) -> dict[str, Stateful]:

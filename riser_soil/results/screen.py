@@ -32,12 +32,10 @@ _ORDER = (
 _NOTHING = object()
 
 
-def print_summary(
-    summary: dict[str, Any], settlement: float | None = None, console: Console | None = None
-) -> None:
+def print_summary(summary: dict[str, Any], console: Console | None = None) -> None:
     """Prints one table of results for each stage, and the seconds by part.
 
-    summary: what goes into summary.json. settlement: m, deepest of the soil at the end; None without soil.
+    summary: what goes into summary.json.
     """
     console = console or Console()
     for stage in summary["stages"]:
@@ -45,7 +43,7 @@ def print_summary(
             console.print(_table(_stage_title(stage), _stage_rows(stage)))
         for warning in stage["warnings"]:
             console.print(f"warning: {stage['name']}: {warning}", soft_wrap=True, markup=False)
-    console.print(_table(_title(summary), [*_run_rows(summary, settlement)]))
+    console.print(_table(_title(summary), [*_run_rows(summary)]))
 
 
 def _table(title: str, rows: list[Row]) -> Table:
@@ -69,6 +67,7 @@ def _title(summary: dict[str, Any]) -> str:
 def _stage_rows(stage: dict[str, Any]) -> list[Row]:
     return [
         *_figure_rows(stage),
+        *_soil_rows(stage),
         ("steps, cut", f"{stage['steps']}, {stage['step_cuts']}"),
         ("Newton iterations per step", _newton(stage)),
         *([("found by", stage["method"])] if stage["method"] not in (None, "newton") else []),
@@ -91,6 +90,19 @@ def _figure_rows(stage: dict[str, Any]) -> Iterator[Row]:
             yield figure.row.words, _span(final, extremes, unit, scale)
 
 
+def _soil_rows(stage: dict[str, Any]) -> Iterator[Row]:
+    """Largest values in the soil, with place and time."""
+    found = stage.get("soil", {})
+    for figure in (figure for output in outputs.OF_SOIL for figure in output.figures):
+        largest = found.get(figure.name, {"value": 0.0})
+        if figure.row is None or not largest["value"]:
+            continue
+        place = ", ".join(f"{round(x, 3) + 0.0:.4g}" for x in largest["position"])
+        when = f", {largest['time']:.4g} s" if stage["kind"] == "dynamic" else ""
+        value = _number(largest["value"], figure.row.unit, figure.row.scale)
+        yield figure.row.words, f"{value} at ({place}) m{when}"
+
+
 def _found(nested: dict[str, Any], path: tuple[str, ...]) -> Any:
     """The summary's entry at a place, or _NOTHING."""
     value: Any = nested
@@ -103,9 +115,7 @@ def _place(vector: list[float], unit: str, scale: float) -> str:
     return "-" if np.isnan(vector[0]) else f"{', '.join(f'{x * scale:.5g}' for x in vector)} {unit}".rstrip()
 
 
-def _run_rows(summary: dict[str, Any], settlement: float | None) -> Iterator[Row]:
-    if settlement is not None:
-        yield "deepest soil settlement", f"{settlement * 1e3:.4g} mm"
+def _run_rows(summary: dict[str, Any]) -> Iterator[Row]:
     yield "unknowns, riser and soil", f"{summary['dofs']['riser']} and {summary['dofs']['soil']}"
     for part, seconds in summary["seconds"].items():
         yield f"time in {part}", f"{seconds:.2f} s"

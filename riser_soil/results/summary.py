@@ -19,7 +19,7 @@ from riser_soil.core.snapshot import Ledger, RiserSnapshot, RunFacts, StepStatis
 from riser_soil.results.figures import Extremes
 from riser_soil.results.folder import write_atomically
 
-_NOT_PLAIN = ("extremes", "energy", "worst_residual", "tightest", "implausible")
+_NOT_PLAIN = ("extremes", "energy", "worst_residual", "tightest", "implausible", "soil")
 DOUBTFUL = 0.01  # share of the energy turned over above which what is wrong in its balance is a warning
 
 
@@ -75,6 +75,7 @@ class StageTally:
     tightest: TightestBend = TightestBend()
     worst_residual: tuple[float, float] = (0.0, math.nan)  # of the energy balance [J], and its time [s]
     implausible: tuple[str, ...] = ()  # what is not plausible about the riser's shape, forces and surroundings
+    soil: dict[str, Any] = field(default_factory=dict)  # largest values in the soil, see `soil_extremes`
 
     def balance(self, t: float, ledger: Ledger) -> None:
         """t: s, total simulated time."""
@@ -107,7 +108,8 @@ class StageTally:
     def as_dict(self) -> dict[str, Any]:
         plain = {k: v for k, v in vars(self).items() if k not in _NOT_PLAIN}
         extremes = self.extremes.nested() if self.steps else None
-        return plain | {"method": self.method, "extremes": extremes, "energy": self._energy, "warnings": self.warnings}
+        told = {"method": self.method, "extremes": extremes, "energy": self._energy, "warnings": self.warnings}
+        return plain | told | ({"soil": self.soil} if self.soil else {})
 
     @property
     def _energy(self) -> dict[str, Any]:

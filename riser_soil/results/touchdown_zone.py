@@ -10,10 +10,11 @@ import numpy as np
 from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.saved_state import Saved
+from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import ContactSnapshot
-from riser_soil.riser import stations
+from riser_soil.results.settlement_trough import sections_of
 from riser_soil.riser.line import Line
+from riser_soil.riser.place import axis_at
 
 if TYPE_CHECKING:
     from riser_soil.contact.touchdown import ContactInterval
@@ -25,13 +26,20 @@ class TouchdownZone:
     def __init__(self, assembly: Assembly, fields: Sequence[str] = ()) -> None:
         self._assembly, self._fields = assembly, fields
         self._embedment: Array = np.zeros(assembly.line.nodes)
+        self._sections = sections_of(assembly) if "settlement_across" in self._fields else None
 
-    def look(self, state: State) -> ContactSnapshot:
-        """At each accepted state in turn: the embedment is the greatest depth yet."""
+    def look(self, state: State, lay_sections: bool = False) -> ContactSnapshot:
+        """At each accepted state in turn: the embedment is the greatest depth yet.
+
+        lay_sections: where the riser lies now; they are laid anyway as long as they are nowhere.
+        """
         contacts, line = self._assembly.contacts, self._assembly.line
         of_each = [interval for contact in contacts for interval in contact.contact_intervals(state)]
         intervals = joined(of_each, float(line.length.max()))
         arc = touchdown_arc(intervals, line)
+        if self._sections is not None and (lay_sections or not self._sections.laid):
+            self._sections.lay(state, arc)
+        soil_contact = self._assembly.soil_contact
         return ContactSnapshot(
             touchdown_arc=arc,
             touchdown_position=position_at(line, state, arc),
@@ -41,7 +49,18 @@ class TouchdownZone:
             penetration=self._penetration(state) if "penetration" in self._fields else None,
             embedment=self._embedded(state) if "embedment" in self._fields else None,
             slip=self._slip() if "slip" in self._fields else None,
+            settlement=self._settlement(state) if "soil_settlement" in self._fields else None,
+            force_on_soil=(
+                soil_contact.force_on_soil_per_length(state)
+                if soil_contact is not None and "force_on_soil" in self._fields
+                else None
+            ),
+            sections=self._sections.look(state) if self._sections is not None else None,
         )
+
+    def _settlement(self, state: State) -> Array | None:
+        contact, xy = self._assembly.soil_contact, self._assembly.line.positions3(state)[:, :2]
+        return None if contact is None else contact.settlement(xy, state)
 
     def _penetration(self, state: State) -> Array:
         found = [contact.penetration(state) for contact in self._assembly.contacts]
@@ -55,10 +74,15 @@ class TouchdownZone:
         return self._embedment
 
     def state(self) -> Saved:
-        return {"embedment": self._embedment}
+        return {"embedment": self._embedment} | gathered(self._owners)
 
     def restore(self, saved: Saved) -> None:
         self._embedment = saved["embedment"]
+        restore_all(self._owners, saved)
+
+    @property
+    def _owners(self) -> dict[str, Stateful]:
+        return {} if self._sections is None else {"sections": self._sections}
 
 
 def joined(intervals: Sequence[ContactInterval], near: float) -> list[ContactInterval]:
@@ -84,7 +108,4 @@ def position_at(line: Line, state: State, arc: float) -> Array:
     """Position of the riser's axis (3,) [m], global axes, at an arc length [m]; nan where that is."""
     if np.isnan(arc):
         return np.full(3, np.nan)
-    e = int(np.clip(np.searchsorted(line.arc, arc) - 1, 0, line.length.size - 1))
-    length = line.length[e : e + 1]
-    at = stations.points(length, (arc - line.arc[e]) / length)
-    return line.to_global(stations.interpolate(at, line.trial(state).q[e : e + 1])[0, 0])
+    return axis_at(line, state, arc)[0]

@@ -282,6 +282,18 @@ def _crosses(block: Block, a: Vector, b: Vector) -> bool:
     return low <= high
 
 
+def _sections_across_soil(scene: Scene) -> Iterator[Problem]:
+    sections, length = scene.output.sections, scene.riser.length
+    path: Path = ("output", "sections")
+    if scene.soil is None and sections.model_fields_set:
+        yield Problem(path, "settlement is that of soil, and the scene has none", "add soil, or leave it out")
+        return
+    for n, arc in enumerate(sections.arcs or ()):
+        if arc > length * (1.0 + 1e-9):
+            allowed = f"must not exceed the riser's length ({length:.6g} m)"
+            yield Problem((*path, "arcs", n), allowed, "correct the arc length")
+
+
 _CHECKS: tuple[_Check, ...] = (
     _line_types_suffice,
     _no_weight_without_gravity,
@@ -300,6 +312,7 @@ _CHECKS: tuple[_Check, ...] = (
     _unstressed_shape_fits,
     _initial_shape_meets_the_supports,
     _passes_over_block,
+    _sections_across_soil,
     water_conflicts,
     stage_conflicts,
 )

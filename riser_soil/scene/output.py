@@ -1,17 +1,35 @@
 """Scene language: what a run writes, and at which intervals."""
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import BaseModel, Field
 
 from riser_soil.core import outputs
-from riser_soil.core.quantities import FROZEN, Text, Time
+from riser_soil.core.quantities import FROZEN, ArcLength, Length, Text, Time
 
 ALL_FIELDS = outputs.choices()
 if TYPE_CHECKING:
     FieldName = str
 else:
     FieldName = Literal[ALL_FIELDS]
+
+
+class SettlementSections(BaseModel):
+    """Sections across the riser in which the settlement of the soil's surface is recorded."""
+
+    model_config = FROZEN
+
+    arcs: Annotated[tuple[ArcLength, ...], Field(min_length=1)] | None = Field(
+        default=None,
+        description="arc lengths of the riser where it lies over the sections at the end of the static stages [m]; by "
+        "default one section, at the touchdown point",
+    )
+    half_width: Length | None = Field(
+        default=None, description="length of a section to either side [m]; by default three outer diameters"
+    )
+    points: Annotated[int, Field(strict=True, ge=3, le=10_000)] = Field(
+        default=61, description="points of a section, at equal distances"
+    )
 
 
 class Output(BaseModel):
@@ -28,6 +46,9 @@ class Output(BaseModel):
     )
     fields: tuple[FieldName, ...] = Field(
         default=ALL_FIELDS, description="fields to record beside the positions; all by default"
+    )
+    sections: SettlementSections = Field(
+        default=SettlementSections(), description="where settlement_across is recorded, with soil"
     )
     directory: Text | None = Field(
         default=None,

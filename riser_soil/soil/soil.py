@@ -94,14 +94,17 @@ class Soil:
     def work(self, before: State, after: State) -> Work:
         """Dissipation: the work ∫ σ:Δε of the stress at the end of the step less the change of what is stored.
 
-        That is the law's own, ∫ σ:Δεp where only elastic strain stores energy, and the scheme's, ∫ ½ Δσ:C⁻¹:Δσ: group
-        E acts with its end value over the whole step, so the riser gives up that much more than the soil stores;
-        counting it closes the energy balance exactly.
+        That is the law's own, ∫ σ:Δεp less what plastic strain stores, and the scheme's, ∫ ½ Δσ:Δεe: group E acts with
+        its end value over the whole step, so the riser gives up that much more than the soil stores; counting it
+        closes the energy balance exactly. The law's own is that of its backward Euler step: exact where the stress
+        stays at its limit, nothing where no plastic strain grows; backstress and elements in parallel add half the
+        product of the changes of their own stress and strain.
         """
         strain, found = self._answer(after)
-        stored = found.stored - self._found.stored
-        by_initial = self._integral(self._initial, found.elastic - self._found.elastic)
-        return Work(dissipated=self._integral(found.stress, strain) - self._sum(stored) - by_initial)
+        stored, elastic = found.stored - self._found.stored, found.elastic - self._found.elastic
+        taken = self._integral(found.stress, strain) - self._integral(self._initial, elastic)
+        by_scheme = 0.5 * self._integral(found.stress - self._found.stress, elastic)
+        return Work(dissipated=taken - self._sum(stored), by_scheme=by_scheme)
 
     def commit(self, state: State) -> None:
         _, found = self._answer(state)
@@ -117,13 +120,18 @@ class Soil:
         owned = self.field.total[: 3 * self.grid.nodes.owned].reshape(-1, 3)
         return SoilSnapshot(
             gather_rows(self.grid, owned),
-            gather_rows(self.grid, self._cell_mean(mandel.von_mises(self._found.stress))),
-            gather_rows(self.grid, self._cell_mean(self._plastic_strain())),
+            *(gather_rows(self.grid, self._cell_mean(values)) for values in self._invariants()),
         )
 
     def stress_change(self) -> Array:
         """Equivalent stress of the change since the start, mean of each of this rank's cells [Pa]."""
         return self._cell_mean(mandel.von_mises(self._found.stress - self._initial))
+
+    def _invariants(self) -> tuple[Array, Array, Array, Array]:
+        """Of the committed stress, (n,) each, in the order of `SoilSnapshot`."""
+        stress = self._found.stress
+        strength_used = self.law.overstress(stress)
+        return -mandel.mean(stress), mandel.von_mises(stress), strength_used, self._plastic_strain()
 
     def _answer(self, state: State) -> tuple[Array, StressUpdate]:
         """Strain increment (n, 6) of a trial state and the law's answer; kept for the last state, whose arrays

@@ -19,6 +19,7 @@ GIVEN_WEIGHT = ("    GJ", "    submerged_weight: 500.0\n    GJ")
 NO_SEABED = ("seabed: {kind: spring, level: 0.0, stiffness: 1.0e5}\n", "")
 NO_SOIL = (GOOD[GOOD.index("soil:") : GOOD.index("contact:")], "")
 STATIC_ALONE = (GOOD[GOOD.index("  - name: heave") : GOOD.index("solver:")], "")
+SECTIONS = ("{interval: 0.1}", "{interval: 0.1, sections: {arcs: [20.0, 900.0]}}")
 NO_WATER = ("water: {density: 1025.0}\n", "")
 
 
@@ -86,6 +87,8 @@ CASES: list[tuple[Changes, str, str]] = [
         "stages.1.scheme: value {",
         "the midpoint rule can't turn a fixed end, and the riser's end turns",
     ),
+    ((NO_SOIL, SECTIONS), "output.sections: value {", "settlement is that of soil"),
+    ((SECTIONS,), "output.sections.arcs.1: value 900", "must not exceed the riser's length (148 m)"),
     ((NO_SEABED, NO_SOIL), "contact: value {", "there is nothing to touch"),
     (
         (("initial: catenary", "initial: straight"), ("length: 148.0", "length: 100.0")),

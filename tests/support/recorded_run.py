@@ -16,6 +16,7 @@ from riser_soil.core.snapshot import (
     Ledger,
     RiserSnapshot,
     RunFacts,
+    SectionSnapshot,
     SoilMesh,
     SoilSnapshot,
     StepStatistics,
@@ -32,6 +33,8 @@ FACTS = RunFacts(
     left_out={"waves": "the scene has none"},
     riser_dofs=900,
     soil_dofs=9000,
+    sections=1,
+    offsets=(-1.0, -0.5, 0.0, 0.5, 1.0),
 )
 SCENE = "title: Touchdown on soft clay\nline_types: {flexible: {outer_diameter: 0.3}}\n"
 
@@ -72,7 +75,19 @@ class Catenary:
     def touch(self, arc: Array) -> ContactSnapshot:
         place, force = np.array([self.s0, 0.0, RADIUS]), np.array([0.0, 0.0, WEIGHT * self.s0])
         depth = np.where(arc < self.s0, 0.002, 0.0)
-        return ContactSnapshot(self.s0, place, 1, 0.003, force, depth, 1.5 * depth, 0.1 * depth)
+        on_soil = np.stack([0.0 * arc, 0.0 * arc, np.where(arc < self.s0, -WEIGHT, 0.0)], axis=1)
+        return ContactSnapshot(
+            *(self.s0, place, 1, 0.003, force, depth, 1.5 * depth, 0.1 * depth),
+            settlement=0.5 * depth,
+            force_on_soil=on_soil,
+            sections=self.sections(),
+        )
+
+    def sections(self) -> SectionSnapshot:
+        """One, where the riser lies at first."""
+        position, direction = np.array([[30.0, 0.0, RADIUS]]), np.array([[0.0, 1.0, 0.0]])
+        trough = 0.002 * np.exp(-((np.array(FACTS.offsets) / 0.6) ** 2))
+        return SectionSnapshot(np.array([30.0]), position, direction, trough[None] * (self.s0 > 29.0))
 
 
 def block(nx: int = 40, ny: int = 10, nz: int = 5, *, tetrahedra: bool = False) -> SoilMesh:
@@ -97,7 +112,8 @@ def soil(mesh: SoilMesh, s0: float) -> SoilSnapshot:
     settlement, stress = _bowl(mesh.points, s0), _bowl(mesh.points[mesh.cells].mean(axis=1), s0)
     displacement = np.zeros_like(mesh.points)
     displacement[:, 2] = -0.04 * settlement
-    return SoilSnapshot(displacement, 6.9e3 * stress, 0.02 * np.maximum(0.0, stress - 0.5))
+    plastic_strain = 0.02 * np.maximum(0.0, stress - 0.5)
+    return SoilSnapshot(displacement, 2.0e3 * stress, 6.9e3 * stress, stress, plastic_strain)
 
 
 def _bowl(points: Array, s0: float) -> Array:

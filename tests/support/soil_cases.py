@@ -62,3 +62,10 @@ def moved(soil: Soil, size: float, seed: int = 0) -> State:
     u = size * np.random.default_rng(seed).standard_normal(soil.field.size)
     u[soil.field.prescribed] = 0.0
     return State(1.0, u, np.zeros_like(u), np.zeros_like(u))
+
+
+def sheared(soil: Soil, gamma: float) -> State:
+    """An increment of simple shear."""
+    u = np.zeros_like(soil.field.points)
+    u[:, 0] = gamma * soil.field.points[:, 2]
+    return State(1.0, u.ravel(), np.zeros(u.size), np.zeros(u.size))

@@ -107,6 +107,8 @@ def output_figures(soil: Soil) -> dict[str, float]:
         "cells": COMM.allreduce(len(mesh.cells)),
         "displacement": COMM.allreduce(float((fields.displacement * mesh.points[:, ::-1]).sum())),
         "von_mises": COMM.allreduce(float((fields.von_mises * centre[:, 0]).sum())),
+        "mean_stress": COMM.allreduce(float((fields.mean_stress * centre[:, 0]).sum())),
+        "strength_used": COMM.allreduce(float((fields.strength_used * centre[:, 0]).sum())),
         "plastic_strain": COMM.allreduce(float((fields.plastic_strain * centre[:, 2]).sum())),
     }
 

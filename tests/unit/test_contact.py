@@ -168,6 +168,9 @@ def test_forces_balance_to_round_off(kind: str, dimension: int) -> None:
     case.contact = NodeContact(case.riser, np.full(12, RADIUS), case.surface, LAW, footprint=FOOTPRINT)
     state = case.state(small(case))
     on_riser, on_soil = case.contact.force_on_riser(state), case.contact.force_on_soil(state)
+    along = case.contact.force_on_soil_per_length(state)
+    np.testing.assert_allclose(case.riser.tributary_length @ along, on_soil, atol=1e-13 * np.abs(on_soil).max())
+    np.testing.assert_allclose(-along[:, 2], case.contact.force_per_length(state), rtol=1e-12)
     assert on_riser[2] > 100.0
     out_of_plane = np.zeros(3) if dimension == 3 else np.array([-np.sin(0.1), np.cos(0.1), 0.0])
     unbalanced = on_riser + on_soil

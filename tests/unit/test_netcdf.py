@@ -16,7 +16,7 @@ ARC = np.linspace(0.0, 100.0, 11)
 
 
 def a_row(time: float, value: float = 1.0) -> dict[str, object]:
-    sizes = {"arc": ARC.size, "component": 3}
+    sizes = {"arc": ARC.size, "component": 3, "section": 2, "offset": 3}
     row: dict[str, object] = {
         name: np.full([sizes[d] for d in variable.dims[1:]], value) for name, variable in SERIES.items()
     }
@@ -29,7 +29,7 @@ def a_step(iterations: int = 2) -> dict[str, object]:
 
 
 def a_file(folder: Path) -> SeriesFile:
-    file = SeriesFile(folder / "results.nc", ARC, "a title", "0.1.0")
+    file = SeriesFile(folder / "results.nc", ARC, "a title", "0.1.0", sections=2, offsets=(-1.0, 0.0, 1.0))
     file.begin_stage("lay down")
     return file
 
@@ -37,7 +37,7 @@ def a_file(folder: Path) -> SeriesFile:
 def test_xarray_reads_what_was_recorded(tmp_path: Path) -> None:
     arc = record(tmp_path / "run", duration=1.0)
     data = xr.open_dataset(tmp_path / "run" / "results.nc", engine="h5netcdf")
-    assert dict(data.sizes) == {"time": 11, "step": 12, "arc": arc.size, "component": 3}
+    assert dict(data.sizes) == {"time": 11, "step": 12, "arc": arc.size, "component": 3, "section": 1, "offset": 5}
     np.testing.assert_allclose(data["time"], 0.1 * np.arange(11), atol=1e-12)
     first = Catenary(32.0, 30.0).riser(arc)
     np.testing.assert_array_equal(data["position"].sel(time=0.0), first.position)
@@ -51,7 +51,7 @@ def test_xarray_reads_what_was_recorded(tmp_path: Path) -> None:
 def test_every_variable_has_unit_and_long_name(tmp_path: Path) -> None:
     a_file(tmp_path)
     with h5py.File(tmp_path / "results.nc") as file:
-        for name in (*SERIES, *HEALTH, "arc"):
+        for name in (*SERIES, *HEALTH, "arc", "offset"):
             assert file[name].attrs["units"], name
             assert file[name].attrs["long_name"], name
         energies = [name for name in HEALTH if name.startswith(("dissipated", "work")) or name.endswith("_energy")]
@@ -137,3 +137,10 @@ def test_what_is_left_out_takes_no_room(tmp_path: Path) -> None:
         assert "curvature" not in read
         assert "moment_vector" not in read
         assert len(read["bending_moment"]) == 1
+
+
+def test_without_sections_there_is_nothing_of_them(tmp_path: Path) -> None:
+    SeriesFile(tmp_path / "results.nc", ARC, "t", "0")
+    with h5py.File(tmp_path / "results.nc") as file:
+        assert "soil_settlement" in file
+        assert not {"section", "offset", "section_arc", "settlement_across"} & set(file)

@@ -40,7 +40,8 @@ def toys(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
 def test_a_new_entry_is_a_choice_of_the_scene(toys: tuple[Path, str]) -> None:
     schema = json.loads((toys[0] / "schema.json").read_text(encoding="utf-8"))
     fields = schema["$defs"]["Output"]["properties"]["fields"]
-    names = [*outputs.choices()[:-3], HEIGHT.name, *outputs.choices()[-3:], SETTLEMENT.name]
+    behind = 1 + len(outputs.OF_SOIL)  # across the riser, and of the soil
+    names = [*outputs.choices()[:-behind], HEIGHT.name, *outputs.choices()[-behind:], SETTLEMENT.name]
     assert fields["items"]["enum"] == fields["default"] == names
     assert "fields: [height]" in (toys[0] / "solved" / "scene.yaml").read_text(encoding="utf-8")
 
@@ -78,6 +79,7 @@ def test_a_new_entry_is_in_the_summary_with_its_extremes_and_on_the_screen(toys:
 def test_names_of_the_table_are_unique() -> None:
     names = [*(output.name for output in TABLE), *(output.name for output in OF_STEP)]
     figures = [figure.name for _, figure in outputs.figures(())]
+    figures += [figure.name for output in outputs.OF_SOIL for figure in output.figures]
     assert (len(names), len(figures)) == (len(set(names)), len(set(figures)))
 
 

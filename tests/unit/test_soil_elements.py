@@ -12,11 +12,19 @@ from riser_soil.core.part import Forces, State
 from riser_soil.soil import kernels, mandel
 from riser_soil.soil.element import cell_gradients
 from riser_soil.soil.grid import DistributedMesh
+from riser_soil.soil.iwan import IwanOverlay
+from riser_soil.soil.kinematic_hardening import KinematicHardening
+from riser_soil.soil.law import SoilLaw
 from riser_soil.soil.linear_elastic import LinearElastic
 from riser_soil.soil.soil import Soil
+from riser_soil.soil.von_mises import VonMises
 from tests.support.soil_bench import assemble
-from tests.support.soil_cases import CLAY, ELASTIC, KINDS, clay_block, distorted, inner, moved, small_block
+from tests.support.soil_cases import CLAY, ELASTIC, KINDS, clay_block, distorted, inner, moved, sheared, small_block
 
+CYCLIC = (
+    KinematicHardening(kind="kinematic-hardening", su=4.0e3, E_over_su=300.0),
+    IwanOverlay(kind="iwan", su=4.0e3, E_over_su=300.0),
+)
 EPS = np.finfo(float).eps
 GRADIENT = 1e-3 * np.array([[1.0, 0.4, -0.2], [0.7, -0.5, 0.3], [-0.6, 0.1, 0.8]])
 
@@ -151,3 +159,51 @@ def test_committed_state_is_where_the_next_step_starts(kind: str) -> None:
     assert soil.energy(rest).total == pytest.approx(energy, rel=1e-9)
     np.testing.assert_array_equal(soil.output_fields().displacement.ravel(), state.u)
     assert soil.output_fields().plastic_strain.max() > 0.0
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("unit_weight", [0.0, 5.0e3])
+def test_plastic_flow_in_simple_shear_takes_su_times_plastic_strain(kind: str, unit_weight: float) -> None:
+    """Also in the step that meets the limit; the scheme's share is half the product of the elastic changes."""
+    su, G = 4.0e3, 1.2e6 / (2.0 * 1.49)
+    law = VonMises(kind="von-mises", su=su, E_over_su=300.0, nu=0.49).at_points
+    soil = Soil(distorted(small_block(kind)), law, level=0.0, unit_weight=unit_weight)
+    gamma, volume = np.array([0.0, 0.4, 1.3, 2.0, 3.0, 2.5, 0.5, -1.0]) * su / G, 3.0
+    elastic = np.array([0.0, 0.4, 1.0, 1.0, 1.0, 0.5, -1.0, -1.0]) * su / G
+    plastic = np.abs(np.diff(gamma - elastic))
+    start = State.at_rest(1.0, soil.field.size)
+    for n, increment in enumerate(np.diff(gamma)):
+        state = sheared(soil, increment)
+        work = soil.work(start, state)
+        own = work.dissipated - work.by_scheme
+        assert own == pytest.approx(su * plastic[n] * volume, rel=1e-9, abs=1e-9 * su**2 / G)
+        assert work.by_scheme == pytest.approx(0.5 * G * np.diff(elastic)[n] ** 2 * volume, rel=1e-9, abs=1e-9)
+        soil.commit(state)
+        soil.field.commit(state)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_elastic_soil_has_no_plastic_flow(kind: str) -> None:
+    """All that elastic soil seems to take is the scheme's."""
+    soil = Soil(distorted(small_block(kind)), ELASTIC, level=0.0, unit_weight=5.0e3)
+    for seed in range(3):
+        state = moved(soil, 3e-3, seed)
+        work = soil.work(State.at_rest(1.0, soil.field.size), state)
+        assert work.by_scheme > 1.0
+        assert abs(work.dissipated - work.by_scheme) < 1e-11 * work.by_scheme
+        soil.commit(state)
+        soil.field.commit(state)
+
+
+@pytest.mark.parametrize("law", CYCLIC, ids=lambda law: law.kind)
+def test_plastic_flow_of_cyclic_clay_takes_work_in_every_step(law: SoilLaw) -> None:
+    soil = Soil(small_block("hex"), law.at_points, level=0.0, unit_weight=5.0e3)
+    own = []
+    for gamma in 0.002 * np.array([0.001, 1.0, 2.0, 1.0, -1.0, -2.0, -0.5, 1.0]):
+        state = sheared(soil, gamma)
+        work = soil.work(State.at_rest(1.0, soil.field.size), state)
+        own.append(work.dissipated - work.by_scheme)
+        soil.commit(state)
+        soil.field.commit(state)
+    assert abs(own[0]) < 1e-6 * max(own)
+    assert min(own[1:]) > 0.0

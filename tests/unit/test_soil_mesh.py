@@ -211,6 +211,19 @@ def test_geostatic_start_is_in_equilibrium_and_undeformed(kind: str) -> None:
     assert fields.von_mises.max() < 0.1 * 5.0e3 * 1.0
 
 
+def test_invariants_of_a_geostatic_start() -> None:
+    """p = (1 + 2 K0) gamma z/3, q = (1 - K0) gamma z, and of the strength q over √3 su, in the middle of hexahedra."""
+    soil = Soil(small_block("hex"), CLAY, level=0.0, unit_weight=5.0e3, K0=0.7)
+    fields, mesh = soil.output_fields(), soil.output_mesh()
+    depth = -mesh.points[mesh.cells].mean(axis=1)[:, 2]
+    np.testing.assert_allclose(fields.mean_stress, (1.0 + 2.0 * 0.7) * 5.0e3 * depth / 3.0, rtol=1e-12)
+    np.testing.assert_allclose(fields.von_mises, (1.0 - 0.7) * 5.0e3 * depth, rtol=1e-12)
+    z = depth[:, None] + 0.25 / np.sqrt(3.0) * np.array([-1.0, 1.0])  # of the points in cells 0.5 m high
+    used = (0.3 * 5.0e3 * z / (np.sqrt(3.0) * (4.0e3 + 1.5e3 * z))).mean(axis=1)
+    np.testing.assert_allclose(fields.strength_used, used, rtol=1e-12)
+    assert not Soil(small_block("hex"), ELASTIC, level=0.0, unit_weight=5.0e3).output_fields().strength_used.any()
+
+
 def test_initial_stress_beyond_yield_is_refused_with_numbers() -> None:
     with pytest.raises(SceneError, match=r"soil.K0 = 0.1: at depth 0\.\d+ m .* 1\.\d+ times") as caught:
         Soil(small_block("hex"), CLAY, level=0.0, unit_weight=20.0e3, K0=0.1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 from riser_soil.contact.law import Penalty
 from riser_soil.core.arrays import Array
+from riser_soil.results.settlement_trough import TroughSections
 from tests.support.differences import slope as differences
 from tests.support.pipe_on_surface import RADIUS, STIFFNESS, PipeOnSurface, pipe_on_surface, sagging, shaken
 from tests.support.soil_tops import top
@@ -147,3 +149,71 @@ def test_nothing_touches_above_the_soil() -> None:
     assert not made.residual(state.u).any()
     assert made.contact.max_penetration(state) == 0.0
     assert np.isnan(made.contact.touchdown_arc(state))
+
+
+@KINDS
+@DIMENSIONS
+def test_along_the_riser_the_soil_gets_what_the_riser_loses(kind: str, dimension: int) -> None:
+    """From the soil's nodes: in sum what they get, and at each node of the riser the size of what it bears."""
+    surface = top(kind)
+    surface.committed = 0.01 * np.random.default_rng(5).normal(size=surface.points.shape)
+    made = pipe_on_surface(sagging(angle=0.3 * (dimension == 3)), surface, dimension)
+    state, contact = made.state(), made.contact
+    along = contact.force_on_soil_per_length(state)
+    total, on_riser = made.line.tributary_length @ along, contact.force_on_riser(state)
+    assert np.abs(total - contact.force_on_soil(state)).max() < 1e-13 * np.abs(on_riser).max()
+    in_plane = made.line.basis @ made.line.basis.T
+    assert np.abs(in_plane @ total + on_riser).max() < 1e-12 * np.abs(on_riser).max()
+    borne = np.linalg.norm(along @ in_plane, axis=1)
+    np.testing.assert_allclose(borne, contact.force_per_length(state), rtol=1e-12, atol=1e-12 * borne.max())
+    assert np.count_nonzero(borne) >= 3
+
+
+@KINDS
+def test_settlement_is_the_depth_less_the_penetration(kind: str) -> None:
+    surface = top(kind)
+    surface.committed[:, 2] = -0.004 - 0.002 * surface.points[:, 0]
+    made = pipe_on_surface(sagging(), surface)
+    state = made.state()
+    xy = made.line.positions3(state)[:, :2]
+    touching = made.contact.penetration(state) > 0.0
+    settlement = made.contact.settlement(xy, state)
+    sunk = made.contact.depth(state) - made.contact.penetration(state)
+    assert touching.any()
+    np.testing.assert_allclose(settlement, 0.004 + 0.002 * xy[:, 0], rtol=1e-9)
+    np.testing.assert_allclose(settlement[touching], sunk[touching], rtol=1e-9)
+    assert np.isnan(made.contact.settlement(np.array([[90.0, 0.0]]), state)).all()
+
+
+@KINDS
+def test_sections_lie_across_the_riser_and_stay(kind: str) -> None:
+    """Of a surface that settled by a plane; offsets count to the left along growing arc length."""
+    surface = top(kind)
+    surface.committed[:, 2] = -0.01 - 0.003 * surface.points[:, 0] + 0.005 * surface.points[:, 1]
+    made = pipe_on_surface(sagging(angle=0.3), surface)
+    offsets = (-9.0, -0.2, 0.0, 0.3)
+    sections = TroughSections(made.line, made.contact, (made.line.arc[2], made.line.arc[3]), offsets)
+    assert np.isnan(sections.look(made.state()).settlement).all()
+    sections.lay(made.state(), math.nan)
+    assert sections.laid
+    seen = sections.look(made.state())
+    np.testing.assert_array_equal(seen.arc, made.line.arc[[2, 3]])
+    np.testing.assert_allclose(seen.position, made.line.positions3(made.state())[[2, 3]], atol=1e-12)
+    across = np.array([-np.sin(0.3), np.cos(0.3), 0.0])
+    np.testing.assert_allclose(seen.direction, [across, across], atol=1e-12)
+    x, y, _ = np.moveaxis(seen.position[:, None] + np.array(offsets)[None, :, None] * across, 2, 0)
+    expected = 0.01 + 0.003 * x - 0.005 * y
+    np.testing.assert_allclose(seen.settlement[:, 1:], expected[:, 1:], rtol=1e-9)
+    assert np.isnan(seen.settlement[:, 0]).all(), "beside the soil"
+    again = TroughSections(made.line, made.contact, (made.line.arc[0], made.line.arc[1]), offsets)
+    again.restore(sections.state())
+    np.testing.assert_array_equal(again.look(made.state()).settlement, seen.settlement)
+
+
+def test_a_section_waits_for_the_touchdown_point() -> None:
+    made = pipe_on_surface(sagging(), top("quad4"))
+    sections = TroughSections(made.line, made.contact, None, (0.0,))
+    sections.lay(made.state(), math.nan)
+    assert not sections.laid
+    sections.lay(made.state(), 1.0)
+    assert sections.look(made.state()).arc == [1.0]

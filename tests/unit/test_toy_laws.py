@@ -26,7 +26,7 @@ from tests.support.coupled_scenes import LAY, Mapping, touchdown
 from tests.support.driven_stage import Watcher, built
 from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.soil_bench import assemble
-from tests.support.soil_cases import KINDS, distorted, moved, small_block
+from tests.support.soil_cases import KINDS, distorted, moved, sheared, small_block
 from tests.support.soil_loops import after, at, forces, through, work
 from tests.support.toy_laws import Hardening, OtherElastic, PlasticSpring, entered
 
@@ -118,13 +118,6 @@ def test_run_on_hardening_soil() -> None:
     assert 1e-4 < plastic[0] < 0.9 * plastic[1]
 
 
-def sheared(soil: Soil, gamma: float) -> State:
-    """An increment of simple shear."""
-    u = np.zeros_like(soil.field.points)
-    u[:, 0] = gamma * soil.field.points[:, 2]
-    return State(1.0, u.ravel(), np.zeros(u.size), np.zeros(u.size))
-
-
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("unit_weight", [0.0, 5.0e3])
 def test_hardening_soil_dissipates_what_it_does_not_store(kind: str, unit_weight: float) -> None:
@@ -140,8 +133,9 @@ def test_hardening_soil_dissipates_what_it_does_not_store(kind: str, unit_weight
     flow = 4.0e3 * np.diff(kappa)
     for step in range(12):
         state = sheared(soil, gamma[step + 1] - gamma[step])
-        work = soil.work(State.at_rest(1.0, soil.field.size), state).dissipated
-        assert work == pytest.approx(volume * (flow + scheme)[step], rel=1e-9)
+        work = soil.work(State.at_rest(1.0, soil.field.size), state)
+        assert work.dissipated == pytest.approx(volume * (flow + scheme)[step], rel=1e-9)
+        assert work.by_scheme == pytest.approx(volume * np.diff(tau)[step] ** 2 / (2.0 * G), rel=1e-9)
         soil.commit(state)
         soil.field.commit(state)
     stored = soil.energy(State.at_rest(1.0, soil.field.size))

@@ -120,7 +120,7 @@ def test_summary_is_as_documented(demo: WatchedRun) -> None:
     assert summary["dofs"]["riser"] == 3 * 150 - 4
     assert {"riser", "soil", "contact", "linear_solve"} <= set(summary["seconds"])
     documented = {"name", "kind", "time", "steps", "newton_iterations", "step_cuts", "final", "extremes", "energy"}
-    documented |= {"most_newton_iterations", "method", "relaxations", "branch_switches", "warnings"}
+    documented |= {"most_newton_iterations", "method", "relaxations", "branch_switches", "warnings", "soil"}
     for stage in summary["stages"]:
         assert set(stage) == documented
         assert_final(stage["final"])
@@ -131,6 +131,9 @@ def test_summary_is_as_documented(demo: WatchedRun) -> None:
         ("lay", "static", 0.0, 1),
         ("heave", "dynamic", 15.0, 150),
     ]
+    lost = summary["stages"][1]["energy"]["dissipated_by"]
+    assert sum(lost.values()) == pytest.approx(summary["stages"][1]["energy"]["dissipated"])
+    assert abs(lost["soil_plasticity"]) < 1e-6 * lost["soil_time_scheme"], "this clay stays elastic"
 
 
 def assert_final(final: Any) -> None:

@@ -39,6 +39,7 @@ def test_settled_block_carries_the_stress_of_a_column(kind: str) -> None:
     mesh, fields = soil.output_mesh(), soil.output_fields()
     depth = -mesh.points[mesh.cells].mean(axis=1)[:, 2]
     np.testing.assert_allclose(fields.von_mises, 5.0e3 * depth * (1.0 - 0.49 / 0.51), rtol=1e-6)
+    np.testing.assert_allclose(fields.mean_stress, 5.0e3 * depth * (1.0 + 2.0 * 0.49 / 0.51) / 3.0, rtol=1e-6)
 
 
 def settled(kind: str) -> Soil:

@@ -145,6 +145,25 @@ def test_embedment_in_soil_counts_from_where_it_lay(tmp_path: Path) -> None:
     assert penetration.max() < 0.3 * settlement
     assert embedment.max() == pytest.approx(settlement, rel=0.2)
     assert seen["touchdown_points"][-1] == 1
+    tell_of_the_trough(seen)
+
+
+def tell_of_the_trough(seen: Run) -> None:
+    """Along the riser where it touches the soil alone, and in the section at the touchdown point."""
+    sunk = seen["embedment"][-1] - seen["penetration"][-1]
+    alone = (seen["force_on_soil"][-1, :, 2] < 0.0) & (np.abs(seen["position"][-1, :, 0] - 5.0) < 2.5)
+    assert np.count_nonzero(alone) > 5
+    np.testing.assert_allclose(seen["force_on_soil"][-1, alone, 2], -seen["contact_force"][-1, alone], rtol=1e-9)
+    np.testing.assert_allclose(seen["soil_settlement"][-1, alone], sunk[alone], rtol=0.2)
+    assert np.isnan(seen["soil_settlement"][-1, seen["position"][-1, :, 0] > 9.5]).all()
+    assert seen["section_arc"][-1, 0] == seen["touchdown_arc"][-1]
+    np.testing.assert_array_equal(seen["section_position"][-1, 0], seen["touchdown_position"][-1])
+    np.testing.assert_allclose(seen["section_direction"][-1, 0], [0.0, 1.0, 0.0], atol=1e-12)
+    trough, offset = seen["settlement_across"][-1, 0], seen["offset"]
+    assert (offset[0], offset[-1], len(offset)) == pytest.approx((-0.9, 0.9, 61))
+    assert trough[30] == pytest.approx(trough.max(), rel=1e-6)
+    np.testing.assert_allclose(trough, trough[::-1], rtol=1e-6, atol=1e-9)
+    assert trough[30] > 2.0 * trough[0]
 
 
 def test_ground_after_ground_is_one_stretch() -> None:

@@ -1,0 +1,72 @@
+"""Cycles of a run's periodic stage: its period and the records of each cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from riser_soil.core.arrays import IntArray
+from riser_soil.errors import ResultsError
+from riser_soil.results.read import Run
+
+SLACK = 1e-6  # of the period: time is a sum of steps
+
+
+@dataclass(frozen=True, eq=False)
+class Cycle:
+    """A whole cycle: its end [s of the run] and the records (n,) of results.nc from its beginning to its end."""
+
+    end: float
+    records: IntArray
+
+
+def dynamic_stage(run: Run, name: str | None) -> int:
+    """Number of a dynamic stage by its name; the last one by default."""
+    kinds = {stage["name"]: (n, stage["kind"]) for n, stage in enumerate(run.summary["stages"])}
+    dynamic = [key for key, (_, kind) in kinds.items() if kind == "dynamic"]
+    chosen = name if name is not None else (dynamic[-1] if dynamic else "")
+    if chosen not in dynamic:
+        known = f"its dynamic stages: {', '.join(dynamic)}" if dynamic else "it has no dynamic stage"
+        raise ResultsError(f'{run.folder}: "{chosen}" is no dynamic stage of the run; {known}')
+    return kinds[chosen][0]
+
+
+def beginning(run: Run, stage: int) -> float:
+    """Total simulated time [s] at which a stage begins."""
+    return float(sum(before["time"] for before in run.summary["stages"][:stage]))
+
+
+def period_of(run: Run, stage: int) -> float:
+    """Period [s] of a stage's motion, or of regular waves where the ends stay."""
+    found = {*_periods(run.scene["stages"][stage])} or {*_periods((run.scene.get("water") or {}).get("waves"))}
+    if len(found) != 1:
+        told = f"has the periods {', '.join(f'{T:g}' for T in sorted(found))} s" if found else "has no one period"
+        raise ResultsError(f'{run.folder}: stage "{run.stage_names[stage]}" {told}; give the length of a cycle, period')
+    return found.pop()
+
+
+def _periods(piece: Any) -> Iterator[float]:
+    """All that goes by the name period in a piece of a scene."""
+    if isinstance(piece, dict):
+        for key, value in piece.items():
+            if key == "period" and isinstance(value, int | float):
+                yield float(value)
+            else:
+                yield from _periods(value)
+
+
+def cycles(run: Run, stage: int, period: float) -> list[Cycle]:
+    """The whole cycles of a stage, from its beginning on; ResultsError where there is none."""
+    since, of_stage = beginning(run, stage), run["stage"] == stage
+    at_first = np.flatnonzero(run["stage"] < stage)[-1:]
+    records = np.concatenate([at_first, np.flatnonzero(of_stage)])
+    passed = (run.time[records] - since) / period
+    whole = int(np.floor(passed.max(initial=0.0) + SLACK))
+    if whole < 1:
+        raise ResultsError(f'{run.folder}: stage "{run.stage_names[stage]}" has no whole cycle of {period:g} s')
+    return [
+        Cycle(since + (n + 1) * period, records[(passed > n - SLACK) & (passed < n + 1 + SLACK)]) for n in range(whole)
+    ]

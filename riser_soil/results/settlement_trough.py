@@ -1,0 +1,90 @@
+"""Settlement trough: the settlement of the soil's surface in sections across the riser, fixed in space."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from riser_soil.assembly import Assembly
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.part import State
+from riser_soil.core.saved_state import Saved
+from riser_soil.core.snapshot import SectionSnapshot
+from riser_soil.riser.line import Line
+from riser_soil.riser.place import axis_at
+
+if TYPE_CHECKING:
+    from riser_soil.contact.soil_contact import SoilContact
+
+HALF_WIDTH = 3.0  # outer diameters
+UPRIGHT = 1e-6  # horizontal share of the riser's direction below which there is no across
+
+
+def offsets_of(assembly: Assembly) -> tuple[float, ...]:
+    """Places along a section [m], from right to left."""
+    given = assembly.scene.output.sections
+    half = HALF_WIDTH * assembly.scales.diameter if given.half_width is None else given.half_width
+    return tuple(float(x) for x in np.linspace(-half, half, given.points))
+
+
+def count_of(assembly: Assembly) -> int:
+    """Number of sections."""
+    return len(assembly.scene.output.sections.arcs or (0.0,))
+
+
+def sections_of(assembly: Assembly) -> TroughSections | None:
+    """The scene's sections; None where there is no soil, or on a rank that does not evaluate contact."""
+    contact = assembly.soil_contact
+    if contact is None or not contact.active:
+        return None
+    return TroughSections(assembly.line, contact, assembly.scene.output.sections.arcs, offsets_of(assembly))
+
+
+class TroughSections:
+    """Sections across the riser, laid where it lies over its arc lengths `arcs` [m]; None: at the touchdown point."""
+
+    def __init__(
+        self, line: Line, contact: SoilContact, arcs: Sequence[float] | None, offsets: Sequence[float]
+    ) -> None:
+        self._line, self._contact, self._given, self._offsets = line, contact, arcs, np.array(offsets)
+        count = len(arcs or (0.0,))
+        self._arc, self._position = np.full(count, np.nan), np.full((count, 3), np.nan)
+        self._direction = np.full((count, 3), np.nan)
+
+    @property
+    def laid(self) -> bool:
+        """Whether all of them are somewhere."""
+        return not np.isnan(self._direction).any()
+
+    def lay(self, state: State, touchdown_arc: float) -> None:
+        """Lay them across the riser as it lies now; those that have no place stay. touchdown_arc: m, nan without."""
+        for n, arc in enumerate(self._given or (touchdown_arc,)):
+            if np.isnan(arc):
+                continue
+            position, slope = axis_at(self._line, state, arc)
+            level = np.array([slope[0], slope[1], 0.0])
+            size = float(np.linalg.norm(level))
+            if size > UPRIGHT:
+                self._arc[n], self._position[n] = arc, position
+                self._direction[n] = np.cross([0.0, 0.0, 1.0], level / size)
+
+    def look(self, state: State) -> SectionSnapshot:
+        """The settlement in them at a state."""
+        across = self._offsets[None, :, None] * self._direction[:, None, :2]
+        xy = self._position[:, None, :2] + across
+        found, there = np.full(xy.shape[:2], np.nan), self._there
+        found[there] = self._contact.settlement(xy[there].reshape(-1, 2), state).reshape(-1, len(self._offsets))
+        return SectionSnapshot(self._arc.copy(), self._position.copy(), self._direction.copy(), found)
+
+    @property
+    def _there(self) -> BoolArray:
+        return ~np.isnan(self._direction).any(axis=1)
+
+    def state(self) -> Saved:
+        return {"arc": self._arc.copy(), "position": self._position.copy(), "direction": self._direction.copy()}
+
+    def restore(self, saved: Saved) -> None:
+        places: tuple[Array, ...] = tuple(saved[name].copy() for name in ("arc", "position", "direction"))
+        self._arc, self._position, self._direction = places

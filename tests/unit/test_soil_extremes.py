@@ -1,0 +1,48 @@
+"""Largest values in the soil: where and when they were met."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from riser_soil.results import Run
+from riser_soil.results.soil_extremes import places, with_largest
+from tests.support.recorded_run import block, record, soil
+
+MESH = block(4, 3, 2)
+
+
+def test_the_largest_is_kept_with_its_place_and_time() -> None:
+    where, first = places(MESH), soil(MESH, 30.0)
+    cell = 7
+    later = replace(first, strength_used=np.where(np.arange(len(MESH.cells)) == cell, 1.5, 0.0))
+    found = with_largest(with_largest(with_largest({}, where, 0.1, first), where, 0.2, later), where, 0.3, first)
+    centre = MESH.points[MESH.cells[cell]].mean(axis=0).tolist()
+    assert found["max_strength_used"] == {"value": 1.5, "position": centre, "time": 0.2}
+    assert found["max_von_mises_stress"]["value"] == first.von_mises.max()
+    assert found["max_von_mises_stress"]["time"] == 0.1, "the same again is nothing new"
+    assert found["max_settlement"]["position"] == MESH.points[first.displacement[:, 2].argmin()].tolist()
+
+
+def test_the_summary_has_them_for_each_stage(tmp_path: Path) -> None:
+    record(tmp_path, mesh=MESH)
+    run = Run(tmp_path)
+    lay, heave = (stage["soil"] for stage in run.summary["stages"])
+    frames = [run.soil_frame(n).fields for n in range(len(run.soil_times))]
+    assert lay["max_settlement"]["value"] == -frames[0]["displacement"][:, 2].min()
+    assert heave["max_settlement"]["value"] == max(-frame["displacement"][:, 2].min() for frame in frames[1:])
+    assert heave["max_strength_used"]["time"] == pytest.approx(0.1)
+    assert heave.keys() == {
+        "max_settlement",
+        "max_von_mises_stress",
+        "max_strength_used",
+        "max_equivalent_plastic_strain",
+    }
+
+
+def test_without_soil_there_are_none(tmp_path: Path) -> None:
+    record(tmp_path)
+    assert all("soil" not in stage for stage in Run(tmp_path).summary["stages"])
