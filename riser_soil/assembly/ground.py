@@ -103,6 +103,7 @@ def _surface_contact_of(
         surface,
         Penalty(stiffness / width, smoothing(settings, scales, "soil", stiffness)),
         (ALONG * across, across),
+        upright=settings.soil_moves == "upright",
         along=line.direction[:2],
     )
 

@@ -164,7 +164,12 @@ def _seabed_can_do_so(scene: Scene) -> Iterator[Problem]:
 
 
 def _surface_of_a_pipe_and_soil(scene: Scene) -> Iterator[Problem]:
-    if scene.contact is None or scene.contact.method != "surface":
+    if scene.contact is None:
+        return
+    if scene.contact.method != "surface":
+        if scene.contact.soil_moves != "freely":
+            allowed = f"contact by the method {scene.contact.method} has no other way than freely"
+            yield Problem(("contact", "soil_moves"), allowed, "write method: surface, or leave this out")
         return
     if scene.soil is None:
         remedy = "add soil, or take line or node"
