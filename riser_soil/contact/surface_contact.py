@@ -216,7 +216,7 @@ class SurfaceContact(SoilContact):
         pressed, d = last.pressed, self.line.dimension
         moved_q = (last.trial.q - first.trial.q)[pressed.element].reshape(len(pressed.element), 4 * d)
         facets = self._soil.facets[pressed.facet]
-        moved = (last.deformed - first.deformed)[facets].reshape(len(facets), -1)
+        moved = (last.deformed - first.deformed)[facets].reshape(len(facets), 3 * facets.shape[1])
         taken = float(np.sum(pressed.gradient * np.hstack([moved_q, moved])))
         return Work(dissipated=taken - self.energy(after).potential + self.energy(before).potential)
 

@@ -249,5 +249,6 @@ def test_nothing_touches_above_the_soil() -> None:
     made = case(sagging(depth=-0.17), top("quad4"))
     state = made.state()
     assert not made.residual(state.u).any()
+    assert made.contact.work(state, state).dissipated == 0.0
     assert made.contact.max_penetration(state) == 0.0
     assert np.isnan(made.contact.touchdown_arc(state))
