@@ -111,6 +111,7 @@ def _surface_contact_of(
         surface,
         penalty if suction is None else _with_suction(penalty, suction, "soil", scales.diameter),
         (ALONG * across, across),
+        upright=settings.soil_moves == "upright",
         along=line.direction[:2],
     )
 

@@ -43,8 +43,9 @@ class SurfaceContact(SoilContact):
     symmetric, and the forces on riser and soil sum to zero in all directions.
 
     radius (ne,): of the pipe [m]. pressure: its law of the penetration, [N/m2] where other contacts have [N/m]; with a
-    history, such as suction has, for each point of the soil.
-    spacing: of the integration points along and across the riser [m]. along (2,): horizontal unit vector of the riser
+    history, such as suction has, for each point of the soil. spacing: of the integration points along and across the
+    riser [m]. upright: contact sees the soil's surface move up and down alone, and presses on it so; the horizontal
+    forces on the riser are then borne by nothing. along (2,): horizontal unit vector of the riser
     on the ground; by default its first axis. reach: by default half a facet to all sides of the pipe.
     """
 
@@ -56,11 +57,12 @@ class SurfaceContact(SoilContact):
         pressure: Penalty | SuctionLaw,
         spacing: tuple[float, float],
         *,
+        upright: bool = False,
         along: Array | None = None,
         reach: CandidateRange | None = None,
     ) -> None:
         super().__init__(line, pressure, surface)
-        self._radius, self._pressure = radius, pressure
+        self._radius, self._pressure, self._upright = radius, pressure, upright
         if not self.active:
             return
         self._reach = reach or CandidateRange(0.5 * self._soil.facet_size, 0.5 * self._soil.facet_size)
@@ -75,7 +77,7 @@ class SurfaceContact(SoilContact):
         return found
 
     def _evaluate(self, trial: Trial) -> SurfaceState:
-        deformed = self._soil.deformed(trial.state)
+        deformed = self._seen(trial.state)
         axis, surface = self.axis(trial), self.surface(deformed)
         reach = self._pressure.reach if len(self._memory.numbers) else self.law.start
         elements, facets = self._pairs(axis, deformed, CandidateRange(reach, reach))
@@ -86,11 +88,21 @@ class SurfaceContact(SoilContact):
     def _pressed(self, axis: Axis, surface: Surface, near: NearPoints) -> ActivePairs:
         """Forces at points near enough to have any."""
         forms, C = gap_forms(axis, surface, near, self.line.basis)
+        if self._upright:
+            first = 4 * self.line.dimension
+            forms[:, :, first::3] = forms[:, :, first + 1 :: 3] = 0.0
         pairs, pair = np.unique(near.element * len(self._soil.facets) + near.facet, return_inverse=True)
         element, facet = np.divmod(pairs, len(self._soil.facets))
         answer = self.law.update(-near.gap, self._memory.at(near.number))
         weighed = near.area * answer.force, near.area * answer.slope, float(near.area @ answer.stored)
         return ActivePairs(near, pair, element, facet, forms, C, *weighed, answer.history, self.line.dimension)
+
+    def _seen(self, state: State) -> Array:
+        """The surface's points (np, 3) as contact sees them [m]."""
+        deformed = self._soil.deformed(state)
+        if self._upright:
+            deformed[:, :2] = self._soil.at_first[:, :2]
+        return deformed
 
     def surface(self, deformed: Array) -> Surface:
         """The soil's surface with its points at (np, 3) [m]."""
@@ -119,7 +131,7 @@ class SurfaceContact(SoilContact):
 
     def candidates(self, state: State) -> CandidatePairs:
         axis = self.axis(self.line.trial(state))
-        pairs = self._pairs(axis, self._soil.deformed(state), self._reach)
+        pairs = self._pairs(axis, self._seen(state), self._reach)
         return CandidatePairs.of(len(self._soil.facets), *pairs)
 
     def element_forces(self, state: State) -> tuple[None, Array]:
@@ -262,7 +274,7 @@ class SurfaceContact(SoilContact):
 
     def clearance(self, state: State) -> Array:
         """Gap (nn,) under the nodes less that at which the force begins [m]; inf beside the soil."""
-        return self._above(self.line.trial(state), self._soil.deformed(state)) - self.law.start
+        return self._above(self.line.trial(state), self._seen(state)) - self.law.start
 
     def _above(self, trial: Trial, surface: Array) -> Array:
         """Height (nn,) of the nodes' undersides above a surface (np, 3) [m]; inf beside it."""

@@ -36,7 +36,8 @@ def study(scene: Scene, folder: Path, path: Path | None = None, depth: float | N
     k = taken.driven
     given = curve.stress if taken.stress[k] else curve.strain
     cycles = closed_cycles(given[:, k], curve.strain[:, k], curve.stress[:, k])
-    heading = f"{SIGNED}{law_at(soil, z)[0].kind} at a depth of {z:g} m, {taken.source}; {STRAINS[k]} and {STRESSES[k]} are drawn"
+    kind = law_at(soil, z)[0].kind
+    heading = f"{SIGNED}{kind} at a depth of {z:g} m, {taken.source}; {STRAINS[k]} and {STRESSES[k]} are drawn"
     _leave(folder, heading, curve, cycles)
     return _told(soil, z, taken, curve, cycles, folder)
 
@@ -125,7 +126,8 @@ def _told(
     k = path.driven
     stress = np.abs(curve.stress[:, k] - curve.stress[0, k]).max()
     lines = [
-        f"{law_at(soil, z)[0].kind} at a depth of {z:g} m, {len(path.values)} rows of {', '.join(path.names)} from {path.source}",
+        f"{law_at(soil, z)[0].kind} at a depth of {z:g} m, {len(path.values)} rows of {', '.join(path.names)} from "
+        f"{path.source}",
         f"largest change of {STRESSES[k]} {1e-3 * stress:.4g} kPa; dissipated {curve.dissipated[-1]:.4g} J/m3",
     ]
     if cycles:
