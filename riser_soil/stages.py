@@ -15,6 +15,7 @@ from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
 from riser_soil.interruption import check, uninterrupted
 from riser_soil.scene.stages import Stage, StaticStage
+from riser_soil.seating import seat
 from riser_soil.solve.automatic_steps import AutoSteps
 from riser_soil.solve.dynamic_relaxation import RelaxationResult, relax
 from riser_soil.solve.local_error import first_step
@@ -22,6 +23,7 @@ from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import Control, StepControl
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
+LAID_IN = 4  # load steps on soil, at least
 MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
 
 
@@ -112,6 +114,8 @@ def _take(
     checkpoint: Checkpoint | None = None,
 ) -> State:
     """From the state that the stage begins with, or from where it was saved."""
+    if isinstance(begin, State) and assembly.cushion is not None and assembly.is_laid_in(stage):
+        seat(assembly, model, _settings(assembly), clock)
     system = System(assembly.comm, model, clock)
     if not isinstance(begin, State):
         _restore(system, begin)
@@ -226,7 +230,8 @@ def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> StepCont
     """The steps of a stage, from its beginning to its end."""
     solver = assembly.scene.solver
     if isinstance(stage, StaticStage):
-        return StepControl(1.0, 1.0 / solver.load_steps, solver.min_load_step)
+        laid = assembly.cushion is not None and assembly.is_laid_in(stage)
+        return StepControl(1.0, 1.0 / max(solver.load_steps, LAID_IN if laid else 1), solver.min_load_step)
     smallest = assembly.smallest_step(stage)
     if stage.time_step == "auto":
         tolerance = assembly.error_tolerance(stage)

@@ -29,6 +29,7 @@ from riser_soil.scene.stages import DynamicStage, MovedEnds, Stage, StaticStage
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels
     from riser_soil.contact.contact import RiserContact
+    from riser_soil.contact.cushion import Cushion
     from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
@@ -66,9 +67,15 @@ class Assembly:
     soil_contact: SoilContact | None = None
     seabed: SeabedContact | None = None
     frictions: list[CoulombFriction | SoilFriction] = field(default_factory=list)
+    cushion: Cushion | None = None
     contact_stiffness: dict[str, float] = field(default_factory=dict)
     vessels: Vessels | None = None
     begun: dict[str, Array] = field(default_factory=dict)
+
+    @property
+    def soil_friction(self) -> CoulombFriction | SoilFriction | None:
+        """Friction on the soil."""
+        return next((friction for friction in self.frictions if friction.name == "soil friction"), None)
 
     @property
     def ground_fields(self) -> list[Field]:
@@ -169,7 +176,13 @@ class Assembly:
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
         soil = [self.soil] if self.soil is not None else []
-        return Model([self.line], [*parts, *soil, *self.contacts, *self.frictions], self.ground_fields)
+        cushion = [self.cushion] if self.cushion is not None and self.is_laid_in(stage) else []
+        return Model([self.line], [*parts, *soil, *self.contacts, *self.frictions, *cushion], self.ground_fields)
+
+    def is_laid_in(self, stage: Stage) -> bool:
+        """Whether a static stage is the first, in which the riser is laid on the soil."""
+        first = self.laying.name if self.laying is not None else self.scene.stages[0].name
+        return stage.kind == "static" and stage.name == first
 
 
 def sized(scene: Scene) -> Scene:
@@ -207,6 +220,7 @@ def _add_ground(assembly: Assembly) -> None:
         contact = ground.soil_contact_of(scene, settings, line, elements, soil.surface, stiffness["soil"])
         assembly.soil_contact = contact
         assembly.frictions += ground.soil_friction_of(scene, settings, contact, elements)
+        assembly.cushion = ground.cushion_of(scene, settings, contact, elements)
     if scene.seabed is not None:
         law = ground.seabed_law(scene.seabed, settings, elements, stiffness)
         assembly.seabed = ground.seabed_contact_of(scene, settings, line, elements, law, assembly.soil_contact)

@@ -21,6 +21,7 @@ from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed, Seabed, Sprin
 from riser_soil.scene.soil import GeneratedMesh, MeshFile, SoilScene
 
 if TYPE_CHECKING:
+    from riser_soil.contact.cushion import Cushion
     from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.law import Penalty
     from riser_soil.contact.seabed_contact import SeabedContact
@@ -39,6 +40,7 @@ GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within 
 POINTS_ACROSS, FINEST, COARSEST, ALONG = 4.0, 1.0 / 200.0, 1.0 / 16.0, 4.0
 # Of the outer diameter: a penalty's corner, sharper ones cost Newton iterations; the slide that mobilises friction.
 NARROWEST_CORNER, WIDEST_CORNER, MOBILISATION = 1.0 / 3000.0, 1.0 / 300.0, 1.0 / 30.0
+CUSHION = 0.01  # of the diameter: how far it gives under the riser's weight
 
 
 def soil_of(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Soil:
@@ -170,6 +172,23 @@ def soil_friction_of(
     mu, slide = _coefficients(settings.friction, scales)
     width = contact_width(scales, scene.soil.top_law.surface_modulus)
     return [SoilFriction(contact, *mu, float(mobilised_within(slide, *mu, np.array(scales.weight))) / width)]
+
+
+def cushion_of(scene: Scene, settings: ContactScene, contact: SoilContact, elements: Elements) -> Cushion | None:
+    """What holds the riser at first where the pipe's surface is to touch a level soil."""
+    if settings.at_nodes:
+        return None
+    from riser_soil.contact.cushion import Cushion
+
+    scales = scales_of(elements)
+    return Cushion(
+        contact.line,
+        contact_radius(scene, elements),
+        scene.seabed_level,
+        scales.weight,
+        CUSHION * scales.diameter,
+        lambda xy: ~contact.covers(xy),
+    )
 
 
 def _coefficients(given: Friction, scales: Scales) -> tuple[tuple[float, float], float]:

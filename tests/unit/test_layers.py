@@ -26,6 +26,7 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("assembly",),
     ("checks",),
     ("results",),
+    ("seating",),
     ("stages", "plots"),
     ("run", "material"),
     ("__main__",),

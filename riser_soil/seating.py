@@ -1,0 +1,33 @@
+"""Seating: the riser comes to rest on its cushion, before the soil is there to bear it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.assembly import Assembly
+from riser_soil.core.part import Model, State
+from riser_soil.core.system import System, Timer
+from riser_soil.solve.dynamic_relaxation import relax
+from riser_soil.solve.newton import Newton, NewtonSettings, NotConvergedError, Step
+from riser_soil.solve.time_scheme import Static
+
+
+def seat(assembly: Assembly, model: Model, settings: NewtonSettings, clock: Timer) -> None:
+    """Find the riser's equilibrium on the cushion at the load factor 0 and commit it; collective.
+
+    By Newton's method, else by dynamic relaxation: SolveError where that finds none either.
+    """
+    on_soil = {id(part) for part in (assembly.soil, assembly.soil_contact, assembly.soil_friction)}
+    alone = Model(model.lines, [part for part in model.parts if id(part) not in on_soil])
+    system = System(assembly.comm, alone, clock)
+    newton = Newton(system, settings)
+    try:
+        size = system.numbering.size
+        solution = newton.solve(Step(Static(), State.at_rest(0.0, size), 0.0, 1.0, None, np.zeros(size)))
+        newton.require_stable(solution)
+        system.commit(solution.state)
+    except NotConvergedError:
+        relax(assembly.comm, alone, assembly.line, assembly.scales.weight, settings, clock, 0.0)
+    finally:
+        newton.destroy()
+        system.destroy()
