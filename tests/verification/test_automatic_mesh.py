@@ -10,15 +10,26 @@ import pytest
 from mpi4py import MPI
 
 from riser_soil.assembly import build, sized
+from riser_soil.checks.mesh_plausibility import missed
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import CellSizes, GeneratedMesh
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import take
 from tests.support.lifted_pipe import CLAY, ELASTIC, lifted_pipe
-from tests.verification.test_surface_contact import D, slice_of_soil
+from tests.verification.test_surface_contact import D, Pushed, slice_of_soil
 
 EVEN_CLAY = {"kind": "von-mises", "su": 4.0e3, "E_over_su": 300.0, "nu": 0.49}
+
+
+class FineSlice(NamedTuple):
+    """Force per length [N/m] on a pipe pushed in by D/50, and the width that touches [m]."""
+
+    force: float
+    width: float
+
+
+FINE = FineSlice(4986.1, 0.0634)  # cells of D/128 over two diameters, 0.1 m at the sides
 
 
 class Found(NamedTuple):
@@ -75,5 +86,40 @@ def test_a_light_pipe_settles_the_same_on_cells_half_as_large() -> None:
     assert np.abs(changes(ELASTIC, 1070.0, D / 200.0)).max() < 0.05
 
 
-def test_clay_that_yields_bears_the_same_on_cells_half_as_large() -> None:
-    assert abs(changes(EVEN_CLAY, 1350.0, D / 100.0)[0]) < 0.05
+@pytest.mark.verify
+@pytest.mark.parametrize(
+    ("law", "weight", "indentation"),
+    [(ELASTIC, 5000.0, D / 50.0), (EVEN_CLAY, 830.0, D / 200.0), (EVEN_CLAY, 1350.0, D / 100.0)],
+    ids=["elastic", "clay", "clay deeper"],
+)
+def test_halving_all_cells_changes_little(law: Mapping, weight: float, indentation: float) -> None:
+    assert np.abs(changes(law, weight, indentation)).max() < 0.05
+
+
+@pytest.mark.parametrize(("cells", "off"), [(2, 0.66), (4, 0.35), (8, 0.11)])
+def test_what_cells_miss_is_told(cells: int, off: float) -> None:
+    """Force at an indentation of D/50 above that of cells of D/128; the settlement is too small as `check` says."""
+    force = Pushed(cells).q
+    assert force / FINE.force - 1.0 == pytest.approx(off, abs=0.02)
+    assert missed(D / cells, FINE.width, 4.0) == pytest.approx(1.0 - FINE.force / force, abs=0.04)
+
+
+def lifted(law: Mapping, along: float = 1.0, elements: int = 16) -> tuple[float, float]:
+    """Largest settlement of the soil [m] and equivalent stress [Pa] away from the pipe's ends, one end lifted."""
+    scene = scaled(scene_from_mapping(lifted_pipe(law, elements=elements)), across=2.0, along=along)
+    assembly, state = build(scene, MPI.COMM_SELF), None
+    for stage in scene.stages:
+        state = take(assembly, stage, state)
+    assert assembly.soil is not None
+    mesh, fields = assembly.soil.output_mesh(), assembly.soil.output_fields()
+    nodes, cells = mesh.points[:, 0], mesh.points[mesh.cells].mean(axis=1)[:, 0]
+    down = -fields.displacement[(nodes > 1.5) & (nodes < 7.0), 2].min()
+    return float(down), float(fields.von_mises[(cells > 1.5) & (cells < 7.0)].max())
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize("law", [ELASTIC, CLAY], ids=["elastic", "clay"])
+def test_half_the_length_of_cells_and_elements_changes_little(law: Mapping) -> None:
+    base = np.array(lifted(law))
+    for finer in (lifted(law, along=0.5), lifted(law, elements=32)):
+        assert np.abs(np.array(finer) / base - 1.0).max() < 0.03
