@@ -8,7 +8,6 @@ from typing import Any
 from tests.support.coupled_scenes import Mapping
 
 ELASTIC: Mapping = {"kind": "linear-elastic", "E": 1.2e6, "nu": 0.49}
-CLAY: Mapping = {"kind": "von-mises", "su": 4.0e3, "su_gradient": 1.5e3, "E_over_su": 300.0, "nu": 0.49}
 D, LENGTH = 0.3, 8.0
 PRESSED = 2e-3  # m, by which the pipe begins in the soil: Newton's method finds its rest from there
 
