@@ -22,10 +22,10 @@ from riser_soil.soil.law import SoilLaw
 
 # Cells across the width that touches; across the strip where they don't grow; largest size over the block's depth.
 # What they leave of the exact settlement: docs/accuracy.md.
-ACROSS, STRIP, FAR = 4.0, 8.0, 0.5
+ACROSS, STRIP, FAR = 4.0, 8.0, 0.6
 # Length of the cells: this part of the shorter of the lengths over which tension and the soil bend the pipe, and at
 # most so many diameters.
-ALONG, LONGEST = 0.5, 4.0
+ALONG, LONGEST = 0.75, 4.0
 # The block: to the sides and down, in diameters and in widths that touch; beyond the touchdown points, in bending
 # lengths and diameters; how much farther they go than statics say.
 DIAMETERS, WIDTHS = 8.0, 10.0

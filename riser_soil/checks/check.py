@@ -53,8 +53,20 @@ def _unknowns(assembly: Assembly) -> Iterator[str]:
     if assembly.soil is not None:
         cells = assembly.comm.allreduce(assembly.soil.blocks()["soil"].shape[0])
         yield f"soil: {cells} cells, {unknowns(assembly.comm, assembly.soil.field)} unknowns"
+        yield from resolution(assembly)
     for ground, stiffness in assembly.contact_stiffness.items():
         yield f"contact stiffness on the {ground}: {stiffness:.4g} N/m2"
+
+
+def resolution(assembly: Assembly) -> Iterator[str]:
+    """The soil's cells under the riser against what touches, where the scene has them meshed."""
+    if assembly.soil is None:
+        return
+    from riser_soil.checks.mesh_plausibility import told_resolution
+
+    told = told_resolution(assembly)
+    if told is not None:
+        yield told
 
 
 def _memory_line(assembly: Assembly) -> str:
