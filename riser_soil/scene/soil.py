@@ -14,6 +14,7 @@ from riser_soil.core.quantities import (
     wrong,
 )
 from riser_soil.scene.files import NamedFile
+from riser_soil.scene.seabed_features import Groove, SeabedFeature, Trench
 from riser_soil.scene.soil_layers import LAW, Layer, wrong_layers
 from riser_soil.soil.law import SoilLaw
 
@@ -26,6 +27,8 @@ class Block(BaseModel):
     x: Interval = Field(description="from and to along x, [x0, x1] [m]")
     y: Interval = Field(description="from and to along y, [y0, y1] [m]")
     depth: Length = Field(description="depth below the seabed [m]")
+    trench: Trench | None = Field(default=None, description="a trench in the block's top, under the riser")
+    groove: Groove | None = Field(default=None, description="the groove of a pipe that lies embedded in the block")
 
     @model_validator(mode="after")
     def _has_a_size(self) -> Self:
@@ -35,6 +38,19 @@ class Block(BaseModel):
                     key, "the first bound must be smaller than the second", "write [from, to] in metres"
                 )
         return self
+
+    @model_validator(mode="after")
+    def _deeper_than_its_feature(self) -> Self:
+        if self.trench is not None and self.groove is not None:
+            raise wrong("groove", "is given beside trench", "give either")
+        if self.trench is not None and self.trench.depth >= self.depth:
+            raise wrong("trench", f"is as deep as the block, {self.depth:g} m", "take a deeper block")
+        return self
+
+    @property
+    def feature(self) -> SeabedFeature | None:
+        """What the top has beyond being level."""
+        return self.trench or self.groove
 
 
 class GeneratedMesh(BaseModel):
@@ -110,6 +126,13 @@ class SoilScene(BaseModel):
             raise wrong(
                 "block", "the box of soil is missing", "give block: {x, y, depth}, or mesh: {file: ...}"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _features_of_tetrahedra(self) -> Self:
+        feature = self.block.feature if self.block else None
+        if feature is not None and isinstance(self.mesh, GeneratedMesh) and self.mesh.kind != "tet":
+            raise wrong("mesh", "a trench or a groove is meshed in tetrahedra", "write kind: tet")
         return self
 
     @model_validator(mode="after")
