@@ -104,7 +104,7 @@ class SoilScene(BaseModel):
 
     block: Block | None = Field(default=None, description="the box of soil to mesh; not with mesh.file")
     mesh: Mesh = Field(description="{kind, size_at_riser, size_far} for a block, or {file: mesh.msh}")
-    law: Annotated[SoilLaw | None, LAW] = Field(
+    law: Annotated[SoilLaw, LAW] | None = Field(
         default=None, description=f"constitutive law: {LAW.words}, with its constants; layers instead give several"
     )
     layers: tuple[Layer, ...] | None = Field(
