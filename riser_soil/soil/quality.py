@@ -15,8 +15,8 @@ from riser_soil.soil.grid import DistributedMesh
 class MeshQuality:
     """Extremes over all cells. smallest, largest: edges [m]. aspect: worst ratio, 1 is best: of a hexahedron its
     longest over its shortest edge, of a tetrahedron its longest edge over 2√6 radii of its inscribed sphere. jacobian:
-    smallest scaled Jacobian, 1 is best, 0 flat: volume of the edges from a corner over that of a best-shaped corner with edges
-    as long. thin: place of the worst aspect, skewed: of the smallest Jacobian [m]. poor: cells below `POOR`.
+    smallest scaled Jacobian, 1 is best, 0 flat: volume of the edges from a corner over that of a best-shaped corner
+    with edges as long. thin: place of the worst aspect, skewed: of the smallest Jacobian [m]. poor: cells below `POOR`.
     """
 
     smallest: float

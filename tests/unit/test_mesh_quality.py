@@ -38,7 +38,8 @@ def with_cell(grid: DistributedMesh, corners: Any) -> DistributedMesh:
 def test_best_cells_have_ones() -> None:
     for corners in (CUBE, REGULAR, CUBE[::-1], REGULAR[::-1]):
         found = of_one(corners)
-        assert (found.aspect, found.jacobian, found.poor) == (pytest.approx(1.0), pytest.approx(1.0), 0)
+        assert [found.aspect, found.jacobian] == pytest.approx([1.0, 1.0])
+        assert found.poor == 0
     assert of_one(3.0 * CUBE).smallest == of_one(3.0 * CUBE).largest == pytest.approx(3.0)
 
 
@@ -71,7 +72,8 @@ def test_check_tells_the_quality() -> None:
     scene = touchdown()
     scene["soil"]["block"]["y"] = [-1.25, 1.25]
     scene["soil"]["mesh"] = {"kind": "hex", "size_at_riser": 0.5, "size_far": 0.5}
-    assert "soil mesh: edges of 0.5 to 0.5 m, aspect ratios up to 1, scaled Jacobians from 1 (1 is best)" in report(scene)
+    told = "soil mesh: edges of 0.5 to 0.5 m, aspect ratios up to 1, scaled Jacobians from 1 (1 is best)"
+    assert told in report(scene)
 
 
 def drawn(folder: Path, *boxes: Any, **soil: Any) -> dict[str, Any]:
