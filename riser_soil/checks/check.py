@@ -54,6 +54,11 @@ def _unknowns(assembly: Assembly) -> Iterator[str]:
         cells = assembly.comm.allreduce(assembly.soil.blocks()["soil"].shape[0])
         yield f"soil: {cells} cells, {unknowns(assembly.comm, assembly.soil.field)} unknowns"
         yield from resolution(assembly)
+        from riser_soil.checks.soil_edge import edge_report
+        from riser_soil.checks.soil_mesh import mesh_report
+
+        yield from mesh_report(assembly)
+        yield from edge_report(assembly)
     for ground, stiffness in assembly.contact_stiffness.items():
         yield f"contact stiffness on the {ground}: {stiffness:.4g} N/m2"
 

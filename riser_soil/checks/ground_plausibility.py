@@ -31,6 +31,11 @@ def ground_warnings(assembly: Assembly) -> Iterator[str]:
     yield from _penalty_against_soil(assembly)
     yield from _corner_against_weight(assembly)
     if assembly.soil is not None:
+        from riser_soil.checks.soil_edge import edge_warnings
+        from riser_soil.checks.soil_mesh import quality_warnings
+
+        yield from quality_warnings(assembly)
+        yield from edge_warnings(assembly)
         yield from _nothing_below(assembly)
         yield from _nodes_without_friction(assembly)
         yield from _nodes_on_soil(assembly)

@@ -28,7 +28,7 @@ def told_resolution(assembly: Assembly) -> str | None:
     mesh, soil = _generated(assembly), assembly.scene.soil
     if mesh is None or soil is None or assembly.soil is None:
         return None
-    width = touching_width(assembly.scales, soil.law)
+    width = touching_width(assembly.scales, soil.top_law)
     depth = float(assembly.soil.grid.high[2] - assembly.soil.grid.low[2])
     return (
         f"soil under the riser: cells of {told_size(mesh)}, where {width:.3g} m touch at rest: its settlement may be "

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from riser_soil.core.quantities import Vector
 from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.contact import Contact
+from riser_soil.scene.feature_checks import feature_conflicts
 from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
@@ -324,6 +325,7 @@ _CHECKS: tuple[_Check, ...] = (
     _initial_shape_meets_the_supports,
     _passes_over_block,
     _sections_across_soil,
+    feature_conflicts,
     water_conflicts,
     stage_conflicts,
 )

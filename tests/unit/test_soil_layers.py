@@ -9,10 +9,12 @@ import gmsh
 import numpy as np
 import pytest
 from mpi4py import MPI
+from ruamel.yaml import YAML
 
 from riser_soil.assembly.soil_law import law_of, weight_of
 from riser_soil.core.arrays import Array
 from riser_soil.errors import MeshError, SceneError
+from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.soil import SoilScene
 from riser_soil.soil.block import BlockSpec
@@ -177,6 +179,11 @@ def soil_scene(layers: Any, **soil: Any) -> SoilScene:
     found = scene_from_mapping(scene_with(layers, **soil)).soil
     assert found is not None
     return found
+
+
+def test_the_echo_of_a_layered_scene_is_a_scene() -> None:
+    scene = scene_from_mapping(scene_with(CLAYS))
+    assert scene_from_mapping(YAML(typ="safe").load(dump_scene(scene))) == scene
 
 
 def test_scene_gives_strength_and_weight_by_layer() -> None:

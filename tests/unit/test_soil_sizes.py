@@ -63,10 +63,10 @@ def test_cells_follow_from_what_touches_and_from_what_bends() -> None:
     block, mesh, sizes = chosen(scene)
     assert scene.soil is not None
     elements = elements_of(scene)
-    width = touching_width(Scales(float(elements.weight.max()), 0.3, 1.0), scene.soil.law)
+    width = touching_width(Scales(float(elements.weight.max()), 0.3, 1.0), scene.soil.top_law)
     assert sizes.across == pytest.approx(width / ACROSS, rel=1e-3)
     assert sizes.strip == pytest.approx(2.0 * width, rel=1e-3)
-    assert sizes.along == pytest.approx(0.75 * bending_on_soil(elements, scene.soil.law), rel=1e-3)
+    assert sizes.along == pytest.approx(0.75 * bending_on_soil(elements, scene.soil.top_law), rel=1e-3)
     assert mesh.size_far == pytest.approx(0.6 * block.depth, rel=1e-3)
     assert bending_on_soil(elements, SOFT) == pytest.approx((4.0 * 5.0e4 / 1.2e6) ** 0.25)
 
