@@ -95,7 +95,7 @@ def _surface_contact_of(
 
     assert scene.soil is not None
     scales = scales_of(elements)
-    width = contact_width(scales, scene.soil.law.surface_modulus)
+    width = contact_width(scales, scene.soil.law.surface_modulus(scales.diameter))
     across = float(np.clip(width / POINTS_ACROSS, FINEST * scales.diameter, COARSEST * scales.diameter))
     return SurfaceContact(
         line,
@@ -215,7 +215,7 @@ def stiffnesses(scene: Scene, settings: ContactScene, scales: Scales) -> dict[st
             return float(settings.stiffness)
         return automatic_stiffness(E, scales.weight, scales.diameter, over_soil)
 
-    out = {"soil": penalty(scene.soil.law.surface_modulus)} if scene.soil is not None else {}
+    out = {"soil": penalty(scene.soil.law.surface_modulus(scales.diameter))} if scene.soil is not None else {}
     match scene.seabed:
         case RigidSeabed():
             out["seabed"] = penalty(None)

@@ -81,7 +81,7 @@ def _cells_against_contact(assembly: Assembly) -> Iterator[str]:
     scene, scales = assembly.scene, assembly.scales
     if scene.contact is None or scene.contact.method != "surface" or scene.soil is None:
         return
-    E, mesh = scene.soil.law.surface_modulus, scene.soil.mesh
+    E, mesh = scene.soil.law.surface_modulus(scales.diameter), scene.soil.mesh
     if not isinstance(mesh, GeneratedMesh) or E <= 0.0:
         return
     width, size = contact_width(scales, E), mesh.size_at_riser
@@ -149,7 +149,8 @@ def _extent(assembly: Assembly) -> str:
 def _penalty_against_soil(assembly: Assembly) -> Iterator[str]:
     if assembly.scene.soil is None:
         return
-    E, k = assembly.scene.soil.law.surface_modulus, assembly.contact_stiffness["soil"]
+    E = assembly.scene.soil.law.surface_modulus(assembly.scales.diameter)
+    k = assembly.contact_stiffness["soil"]
     if k < SOFT * E:
         yield (
             f"contact.stiffness {k:.4g} N/m2 is below the soil's Young's modulus at the surface, {E:.4g} Pa: the pipe "
