@@ -117,14 +117,14 @@ class SoilSizes:
 def bending_on_soil(elements: Elements, law: SoilLaw) -> float:
     """Length over which the soil bends the pipe [m]: of a beam on springs as stiff as E at the surface."""
     EI = float(np.maximum(elements.EI_y, elements.EI_z).max())
-    return float((4.0 * EI / law.surface_modulus) ** 0.25)
+    return float((4.0 * EI / law.surface_modulus(scales_of(elements).diameter)) ** 0.25)
 
 
 def touching_width(scales: Scales, law: SoilLaw) -> float:
     """Width over which the pipe touches at rest [m], at most D: on elastic soil, or where that is more, as strong as
     the soil bears the pipe's weight on.
     """
-    elastic = contact_width(scales, law.surface_modulus)
+    elastic = contact_width(scales, law.surface_modulus(scales.diameter))
     limit = law.bearing(scales.diameter)
     if limit is None:
         return elastic

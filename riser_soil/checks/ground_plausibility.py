@@ -137,7 +137,8 @@ def _extent(assembly: Assembly) -> str:
 def _penalty_against_soil(assembly: Assembly) -> Iterator[str]:
     if assembly.scene.soil is None:
         return
-    E, k = assembly.scene.soil.top_law.surface_modulus, assembly.contact_stiffness["soil"]
+    E = assembly.scene.soil.top_law.surface_modulus(assembly.scales.diameter)
+    k = assembly.contact_stiffness["soil"]
     if k < SOFT * E:
         yield (
             f"contact.stiffness {k:.4g} N/m2 is below the soil's Young's modulus at the surface, {E:.4g} Pa: the pipe "

@@ -75,9 +75,9 @@ def _generated(assembly: Assembly) -> GeneratedMesh | None:
 def _cells_against_contact(assembly: Assembly) -> Iterator[str]:
     """Cells wider than what touches: they bear the pipe as a strip of their own width would."""
     mesh, scales, soil = _generated(assembly), assembly.scales, assembly.scene.soil
-    if mesh is None or soil is None or soil.top_law.surface_modulus <= 0.0:
+    if mesh is None or soil is None or soil.top_law.surface_modulus(assembly.scales.diameter) <= 0.0:
         return
-    E, size = soil.top_law.surface_modulus, mesh.across
+    E, size = soil.top_law.surface_modulus(scales.diameter), mesh.across
     width = contact_width(scales, E)
     finest = width / LIKE_CONTACT
     if size > WIDE_CELLS * finest:

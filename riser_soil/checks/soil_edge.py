@@ -82,7 +82,8 @@ def settlement(soil: SoilScene, scales: Scales, depth: float) -> float:
     """
     layers = soil.layers or ()
     bottoms = np.array([*(z for z in boundaries(layers) if z < depth), depth])
-    moduli = np.array([layer.law.surface_modulus for layer in layers] or [soil.top_law.surface_modulus])
+    laws = [layer.law for layer in layers] or [soil.top_law]
+    moduli = np.array([law.surface_modulus(scales.diameter) for law in laws])
     if len(moduli) != len(bottoms):  # volumes of any shape
         moduli = np.full(len(bottoms), moduli[0])
     half = 0.5 * contact_width(scales, float(moduli[0]))
