@@ -1,4 +1,4 @@
-"""Command line interface: riser-soil run | check | material | schema | stiffness.
+"""Command line interface: riser-soil run | check | material | calibrate | schema | stiffness | film.
 
 Exit status 0 done, 2 bad input, 3 the solve failed, 4 the disk or standard output took no more, 128 + n for signal n.
 """
@@ -50,6 +50,10 @@ Overrides = Annotated[
 RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="folder of a run's results")]
 StageName = Annotated[
     str | None, typer.Option("--stage", metavar="NAME", help="a dynamic stage; by default the last one")
+]
+
+Period = Annotated[
+    float | None, typer.Option("--period", help="length of a cycle [s]; by default that of the stage's motion")
 ]
 
 
@@ -143,9 +147,7 @@ def stiffness(
     folder: RunFolder,
     arc: Annotated[list[float], typer.Option("--arc", metavar="S", help="arc length [m]; may be repeated")],
     stage: StageName = None,
-    period: Annotated[
-        float | None, typer.Option("--period", help="length of a cycle [s]; by default that of the stage's motion")
-    ] = None,
+    period: Period = None,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="FILE", help="CSV file; by default standard output")
     ] = None,
@@ -154,28 +156,50 @@ def stiffness(
     with _expected_errors():
         from riser_soil.results.read import Run
         from riser_soil.results.secant_stiffness import secant_stiffness, write_csv
+        from riser_soil.results.whole_file import written_whole
 
-        if period is not None and not period > 0.0:
-            raise ResultsError(f"--period {period:g}: must be greater than 0; give the length of a cycle in s")
+        _positive("period", period)
         found = secant_stiffness(Run(folder), arc, stage, period)
         if output is None:
             write_csv(found, sys.stdout)
         else:
-            with _writing(output) as part, part.open("w", encoding="utf-8") as file:
+            with written_whole(output) as part, part.open("w", encoding="utf-8") as file:
                 write_csv(found, file)
 
 
-@contextmanager
-def _writing(file: Path) -> Iterator[Path]:
-    """A file beside the wanted one, which takes its place when it is whole and vanishes otherwise."""
-    part = file.with_name(f".{file.stem}.part{file.suffix}")
-    try:
-        yield part
-        part.replace(file)
-    except OSError as err:
-        raise WriteError(f"{file}: cannot be written: {err.strerror or err}; choose another file with -o") from err
-    finally:
-        part.unlink(missing_ok=True)
+@app.command()
+def film(
+    folder: RunFolder,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE", help="a .gif, or .mp4 where ffmpeg is; by default RUN.gif"),
+    ] = None,
+    stage: StageName = None,
+    period: Period = None,
+    field: Annotated[
+        str | None,
+        typer.Option(
+            "--field",
+            help="what colours the soil: settlement (the default), strength_used, plastic_strain or von_mises_stress",
+        ),
+    ] = None,
+    magnify: Annotated[
+        float | None, typer.Option("--magnify", help="factor on the soil's displacement; visible by default")
+    ] = None,
+) -> None:
+    """Film the last cycle of a run's dynamic stage: the riser over the soil, which a field colours."""
+    with _expected_errors():
+        from riser_soil.plots import film as draw
+
+        for name, value in {"period": period, "magnify": magnify}.items():
+            _positive(name, value)
+        file = output or Path(f"{folder.resolve().name}.gif")
+        typer.echo(draw(folder, file, stage=stage, period=period, field=field, magnify=magnify))
+
+
+def _positive(name: str, value: float | None) -> None:
+    if value is not None and not value > 0.0:
+        raise ResultsError(f"--{name} {value:g}: must be greater than 0")
 
 
 def _read(scene: str, overrides: list[str] | None) -> "Scene":

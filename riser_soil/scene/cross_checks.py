@@ -9,6 +9,7 @@ from riser_soil.scene.contact import Contact
 from riser_soil.scene.feature_checks import feature_conflicts
 from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.line_types import LineType
+from riser_soil.scene.output import SettlementSections
 from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
 from riser_soil.scene.problem import Path, Problem, dotted, hint
 from riser_soil.scene.riser import Support
@@ -297,7 +298,7 @@ def _crosses(block: Block, a: Vector, b: Vector) -> bool:
 def _sections_across_soil(scene: Scene) -> Iterator[Problem]:
     sections, length = scene.output.sections, scene.riser.length
     path: Path = ("output", "sections")
-    if scene.soil is None and sections.model_fields_set:
+    if scene.soil is None and sections != SettlementSections():
         yield Problem(path, "settlement is that of soil, and the scene has none", "add soil, or leave it out")
         return
     for n, arc in enumerate(sections.arcs or ()):
