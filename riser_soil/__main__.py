@@ -1,4 +1,4 @@
-"""Command line interface: riser-soil run | check | schema.
+"""Command line interface: riser-soil run | check | calibrate | schema.
 
 Exit status 0 done, 2 bad input, 3 the solve failed, 4 the disk or standard output took no more, 128 + n for signal n.
 """
@@ -89,6 +89,43 @@ def check(scene: SceneFile, overrides: Overrides = None) -> None:
             text = describe(checked)
         if _rank() == 0:
             typer.echo(text)
+
+
+@app.command()
+def calibrate(
+    data: Annotated[
+        Path, typer.Argument(metavar="DATA.csv", help="what was measured: columns w [m], V [N/m], in the order of time")
+    ],
+    scene: SceneFile,
+    wanted: Annotated[
+        list[str],
+        typer.Option(
+            "--fit",
+            metavar="PATH=LOW:HIGH",
+            help="a number of the scene to find, with its bounds, e.g. soil.law.su=1e3:10e3; may be repeated; the "
+            "scene's own number is the first guess",
+        ),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FOLDER", help="folder; else the scene's name and -calibrated"),
+    ] = None,
+    step: Annotated[
+        float, typer.Option("--step", metavar="PART", help="largest step of the pipe over its diameter")
+    ] = 0.01,
+    force: Annotated[bool, typer.Option("--force", help="overwrite a calibration, which is refused otherwise")] = False,
+    overrides: Overrides = None,
+) -> None:
+    """Find numbers of a pipe segment's scene, such as su, from measured resistance by penetration."""
+    with _expected_errors():
+        from riser_soil.calibration.calibrate import calibrate as find
+        from riser_soil.calibration.report import result_lines
+
+        folder = output or Path(f"{Path(scene).stem}-calibrated")
+        _read(scene, overrides)
+        with _placed(scene, overrides):
+            found = find(data, scene, wanted, folder, overrides=overrides or (), step=step, force=force)
+        typer.echo("\n".join([*result_lines(found), f"calibrated scene, fit and picture are in {folder}"]))
 
 
 @app.command()
