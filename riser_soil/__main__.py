@@ -113,6 +113,9 @@ def calibrate(
     step: Annotated[
         float, typer.Option("--step", metavar="PART", help="largest step of the pipe over its diameter")
     ] = 0.01,
+    relative: Annotated[
+        bool, typer.Option("--relative", help="the errors of V grow with V; else they are taken to be of one size")
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="overwrite a calibration, which is refused otherwise")] = False,
     overrides: Overrides = None,
 ) -> None:
@@ -124,7 +127,8 @@ def calibrate(
         folder = output or Path(f"{Path(scene).stem}-calibrated")
         _read(scene, overrides)
         with _placed(scene, overrides):
-            found = find(data, scene, wanted, folder, overrides=overrides or (), step=step, force=force)
+            also = overrides or ()
+            found = find(data, scene, wanted, folder, overrides=also, step=step, relative=relative, force=force)
         typer.echo("\n".join([*result_lines(found), f"calibrated scene, fit and picture are in {folder}"]))
 
 

@@ -31,13 +31,14 @@ def calibrate(
     *,
     overrides: Sequence[str] = (),
     step: float = LARGEST_STEP,
+    relative: bool = False,
     force: bool = False,
 ) -> Fit:
     """Find numbers of a scene with which its pipe segment meets the measured resistance; leave all in a folder.
 
     data: CSV file with w [m], V [N/m]. wanted: `path=low:high`, the scene's own number being the first guess.
-    step: largest step of the pipe over its diameter. SceneError, before anything is computed, for what is wrong; the
-    folder is only made once all is found.
+    step: largest step of the pipe over its diameter. relative: errors grow with V. SceneError, before anything is
+    computed, for what is wrong; the folder is only made once all is found.
     """
     folder = Path(folder)
     if MPI.COMM_WORLD.size > 1:
@@ -59,7 +60,7 @@ def calibrate(
         def resistance(values: Mapping[str, float]) -> Array:
             return path.at_points(segment.resistance(values, path, table))
 
-        found = fit(resistance, measured.V, parameters, printed)
+        found = fit(resistance, measured.V, parameters, printed, relative=relative)
         write_folder(folder, Path(place), segment, path, measured, found, diameter(at_first))
     return found
 

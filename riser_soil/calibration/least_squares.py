@@ -16,6 +16,7 @@ DIFFERENCE = 0.01  # of a scaled parameter, for derivatives: well above the solv
 CLOSE = 1e-3  # change of a scaled parameter at which the search ends
 FLAT = 1e-4  # relative change of the sum of squares at which it ends
 MOST_STEPS = 30
+LEAST_SHARE = 0.1  # of the largest datum: smaller ones have no smaller errors
 DEPENDENT = 1e-6  # least singular value of the Jacobian over the largest with which all parameters count as found
 
 Model = Callable[[Mapping[str, float]], Array]
@@ -79,15 +80,21 @@ def fit(
     data: Array,
     parameters: tuple[FitParameter, ...],
     told: Callable[[int, float, Mapping[str, float]], None] = lambda *_: None,
+    *,
+    relative: bool = False,
 ) -> Fit:
-    """The parameters whose model is nearest to data (n,). told: of runs so far, misfit and parameters, at each step."""
-    search = _Search(model, data, parameters, told)
+    """The parameters whose model is nearest to data (n,). told: of runs so far, misfit and parameters, at each step.
+
+    relative: errors grow with the data, those below LEAST_SHARE of the largest excepted; else they are of one size.
+    """
+    sizes = error_sizes(data) if relative else np.full(len(data), np.sqrt(np.mean(data**2)))
+    search = _Search(model, data, sizes, parameters, told)
     first = np.array([p.scaled(p.guess) for p in parameters])
     low, high = np.array([p.scaled(p.low) for p in parameters]), np.array([p.scaled(p.high) for p in parameters])
     found = least_squares(
         search.residual, first, search.jacobian, (low, high), xtol=CLOSE, ftol=FLAT, max_nfev=MOST_STEPS
     )
-    values = search.residual(found.x) * search.scale + data
+    values = search.residual(found.x) * sizes + data
     misfit = float(np.sqrt(np.mean((values - data) ** 2)))
     spread = deviations(found.jac, found.fun)
     return Fit(
@@ -99,9 +106,15 @@ def fit(
     )
 
 
+def error_sizes(data: Array) -> Array:
+    """To which the errors of data (n,) are taken to be in proportion (n,)."""
+    size = np.abs(data)
+    return np.asarray(np.maximum(size, LEAST_SHARE * size.max()))
+
+
 def deviations(J: Array, r: Array) -> Array:
     """Standard deviations (p,) of least-squares parameters from the Jacobian (n, p) and the residuals (n,) there:
-    those of independent errors of one size; inf for all where the columns are dependent."""
+    those of independent errors that count alike; inf for all where the columns are dependent."""
     n, p = J.shape
     _, sizes, V = np.linalg.svd(J, full_matrices=False)
     if n <= p or sizes[-1] <= DEPENDENT * sizes[0]:
@@ -122,17 +135,17 @@ def _with_interval(parameter: FitParameter, x: float, deviation: float, freedom:
 
 
 class _Search:
-    """Residuals over the data's size, and their Jacobian by differences into the bounds; keeps the last run."""
+    """Residuals over the sizes of the errors, and their Jacobian by differences into the bounds; keeps the last run."""
 
     def __init__(
         self,
         model: Model,
         data: Array,
+        sizes: Array,
         parameters: tuple[FitParameter, ...],
         told: Callable[[int, float, Mapping[str, float]], None],
     ) -> None:
-        self._model, self._data, self._parameters, self._told = model, data, parameters, told
-        self.scale = float(np.sqrt(np.mean(data**2)))
+        self._model, self._data, self._sizes, self._parameters, self._told = model, data, sizes, parameters, told
         self.runs = 0
         self._last: tuple[Array, Array] | None = None
 
@@ -143,14 +156,14 @@ class _Search:
 
     def _run(self, x: Array) -> Array:
         self.runs += 1
-        return (self._model(self._named(x)) - self._data) / self.scale
+        return (self._model(self._named(x)) - self._data) / self._sizes
 
     def _named(self, x: Array) -> dict[str, float]:
         return {p.name: p.value(value) for p, value in zip(self._parameters, x, strict=True)}
 
     def jacobian(self, x: Array) -> Array:
         here = self.residual(x)
-        self._told(self.runs, self.scale * float(np.sqrt(np.mean(here**2))), self._named(x))
+        self._told(self.runs, float(np.sqrt(np.mean((self._sizes * here) ** 2))), self._named(x))
         columns = []
         for n, p in enumerate(self._parameters):
             inwards = 1.0 if x[n] + DIFFERENCE <= p.scaled(p.high) else -1.0
