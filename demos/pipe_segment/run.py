@@ -43,7 +43,7 @@ FREELY = "contact.soil_moves=freely"
 NOISE, SEED, POINTS = 0.05, 1, 30
 TRUTH = {"soil.law.su": SU, "soil.law.E_over_su": 300.0}  # the scene's
 CLOSED_FORM_SU = 4.0e3  # Pa
-FIRST_GUESS = ("soil.law.su=8.0e3", "soil.law.E_over_su=150.0")
+FIRST_GUESS = ("soil.law.su=7.0e3", "soil.law.E_over_su=200.0")
 WANTED = ("soil.law.su=1e3:20e3", "soil.law.E_over_su=50:1500")
 
 
@@ -79,9 +79,9 @@ def stiffness_page(w: Array, V: Array) -> str:
 
 
 def of_own_curve(results: Path) -> Fit:
-    """Down to D/10, up by D/50 and down again: the segment's own curve with noise; what is true is known."""
+    """Down to D/10, up by D/100 and down again: the segment's own curve with noise; what is true is known."""
     part = POINTS // 3
-    down, up, again = (np.linspace(a, b, part) for a, b in ((0.0, 0.1), (0.098, 0.08), (0.083, 0.11)))
+    down, up, again = (np.linspace(a, b, part) for a, b in ((0.0, 0.1), (0.099, 0.09), (0.091, 0.11)))
     w = D * np.concatenate((down, up, again))
     path = path_through(w, 0.0, 0.01 * D)
     return calibrated(results, "own", w, SU * D * path.at_points(resistance(path)))

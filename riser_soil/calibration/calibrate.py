@@ -76,7 +76,7 @@ def parameter(scene: Scene, wanted: str) -> FitParameter:
     if not colon or not name:
         raise SceneError(f"--fit {wanted}: must be path=low:high; write for example --fit soil.law.su=1e3:10e3")
     if not -1e30 < ends[0] < ends[1] < 1e30:
-        raise SceneError(f"--fit {wanted}: the first bound must be smaller than the second; correct them")
+        raise SceneError(f"--fit {wanted}: must be two numbers below 1e30, the first smaller than the second; correct them")
     words = tuple(int(word) if word.isdecimal() else word for word in name.split("."))
     guess = value_at(scene.model_dump(mode="json", by_alias=True), words)
     if isinstance(guess, bool) or not isinstance(guess, int | float):
