@@ -51,6 +51,7 @@ def calibrate(
     refuse_twice([p.name for p in parameters])
     refuse_too_many(parameters, measured, data)
     start = first_penetration(at_first)
+    refuse_too_deep(measured, diameter(at_first), data)
     path = path_through(measured.w, start, step * diameter(at_first))
     segment = PipeSegment(str(scene), overrides)
     with handling_signals(), tempfile.TemporaryDirectory() as place:
@@ -76,7 +77,7 @@ def parameter(scene: Scene, wanted: str) -> FitParameter:
     if not colon or not name:
         raise SceneError(f"--fit {wanted}: must be path=low:high; write for example --fit soil.law.su=1e3:10e3")
     if not -1e30 < ends[0] < ends[1] < 1e30:
-        raise SceneError(f"--fit {wanted}: must be two numbers below 1e30, the first smaller than the second; correct them")
+        raise SceneError(f"--fit {wanted}: bounds are below 1e30, the first smaller than the second; correct them")
     words = tuple(int(word) if word.isdecimal() else word for word in name.split("."))
     guess = value_at(scene.model_dump(mode="json", by_alias=True), words)
     if isinstance(guess, bool) or not isinstance(guess, int | float):
@@ -94,6 +95,14 @@ def refuse_twice(names: Sequence[str]) -> None:
     for name in names:
         if names.count(name) > 1:
             raise SceneError(f"--fit {name}: is given twice; leave one out")
+
+
+def refuse_too_deep(measured: MeasuredResistance, diameter: float, data: Path | str) -> None:
+    """A pipe is not pressed in by more than its diameter, in soil at small strain least of all."""
+    deepest = float(measured.w.max())
+    if deepest > diameter:
+        allowed = f"w reaches {deepest:g} m, more than the pipe's diameter of {diameter:g} m"
+        raise SceneError(f"{data}: {allowed}; check the unit of w, or leave these rows out")
 
 
 def refuse_too_many(parameters: Sequence[FitParameter], measured: MeasuredResistance, data: Path | str) -> None:

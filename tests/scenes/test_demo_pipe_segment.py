@@ -11,7 +11,7 @@ import pytest
 
 from demos.page import block
 from demos.pipe_segment.curves import FORMULAS, HERE, PAUSE, SCENE, D, demo_path, monotonic, resistance, strip
-from demos.pipe_segment.run import DEPTHS, FINER, FREELY, NOISE, capacity_page, stiffness_page
+from demos.pipe_segment.run import FINER, FREELY, NOISE, capacity_page, stiffness_page
 from riser_soil.calibration.segment import write_table
 from riser_soil.core.arrays import Array
 from riser_soil.scene.reader import read_scene

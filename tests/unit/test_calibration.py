@@ -88,6 +88,22 @@ def test_a_scene_that_is_no_segment_is_refused(override: str, said: str) -> None
         first_penetration(read_scene(SCENE, (override,)))
 
 
+def test_a_penetration_of_the_wrong_unit_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match="w reaches 6 m, more than the pipe's diameter"):
+        calibrate(written(tmp_path, GOOD.replace("[mm]", "[m]")), SCENE, ["soil.law.su=1e3:9e3"], tmp_path / "out")
+
+
+def test_resistance_is_per_length_of_pipe_on_soil(tmp_path: Path) -> None:
+    """In plane strain it does not matter how thick the slice is, nor how far the pipe juts out."""
+    path, table = path_through(np.array([0.02 * D]), 0.0, 0.01 * D), tmp_path / TABLE
+    write_table(path, 0.0, table)
+    thick, longer = "soil.block.x=[0.075, 0.225]", "riser.end.position=[0.6, 0.0, 0.15]"
+    more = (thick, longer, "riser.segments.0.length=0.6")
+    V = [PipeSegment(str(SCENE), (*COARSE, *given)).resistance({}, path, table)[-1] for given in ((), more)]
+    assert V[1] == pytest.approx(V[0], rel=0.01)
+    assert V[0] > 500.0
+
+
 def test_other_files_are_not_overwritten(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match=r"more than a calibration, data\.csv"):
         calibrate(written(tmp_path, GOOD), SCENE, ["soil.law.su=1e3:9e3"], tmp_path, force=True)
