@@ -135,6 +135,47 @@ def material(
 
 
 @app.command()
+def calibrate(
+    data: Annotated[
+        Path, typer.Argument(metavar="DATA.csv", help="what was measured: columns w [m], V [N/m], in the order of time")
+    ],
+    scene: SceneFile,
+    wanted: Annotated[
+        list[str],
+        typer.Option(
+            "--fit",
+            metavar="PATH=LOW:HIGH",
+            help="a number of the scene to find, with its bounds, e.g. soil.law.su=1e3:10e3; may be repeated; the "
+            "scene's own number is the first guess",
+        ),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FOLDER", help="folder; else the scene's name and -calibrated"),
+    ] = None,
+    step: Annotated[
+        float, typer.Option("--step", metavar="PART", help="largest step of the pipe over its diameter")
+    ] = 0.01,
+    relative: Annotated[
+        bool, typer.Option("--relative", help="the errors of V grow with V; else they are taken to be of one size")
+    ] = False,
+    force: Annotated[bool, typer.Option("--force", help="overwrite a calibration, which is refused otherwise")] = False,
+    overrides: Overrides = None,
+) -> None:
+    """Find numbers of a pipe segment's scene, such as su, from measured resistance by penetration."""
+    with _expected_errors():
+        from riser_soil.calibration.calibrate import calibrate as find
+        from riser_soil.calibration.report import result_lines
+
+        folder = output or Path(f"{Path(scene).stem}-calibrated")
+        _read(scene, overrides)
+        with _placed(scene, overrides):
+            also = overrides or ()
+            found = find(data, scene, wanted, folder, overrides=also, step=step, relative=relative, force=force)
+        typer.echo("\n".join([*result_lines(found), f"calibrated scene, fit and picture are in {folder}"]))
+
+
+@app.command()
 def schema() -> None:
     """Print the JSON schema of scene files: every key with its meaning, unit and default; editors use it."""
     from riser_soil.scene.schema import schema_text
