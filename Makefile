@@ -35,6 +35,7 @@ demos: demo ## that demo and the others (demos/*/README.md), with their tables a
 	$(PYTHON) -m demos.catenary.run
 	$(PYTHON) -m demos.tank.run
 	$(PYTHON) -m demos.waves.run
+	$(PYTHON) -m demos.pipe_segment.run
 
 test: lint ## linters, types, and the quick tests, some of them on two ranks
 	$(PYTHON) -m pytest -n $(WORKERS) --dist loadfile

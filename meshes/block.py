@@ -1,4 +1,4 @@
-"""Write the mesh of a plain soil block to a .msh file.
+"""Write the mesh of a soil block, plain or with a trench or groove, to a .msh file.
 
     python meshes/block.py block.msh --x 10 50 --y -2.5 2.5 --depth 2.5 --size 0.5 --size-far 1.5 --kind hex
 
@@ -9,12 +9,14 @@ one's own mesh (`soil.mesh.file`).
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 
 import gmsh
 
 from riser_soil.soil.block import BlockSpec, make_block
 from riser_soil.soil.grid import silent_gmsh
+from riser_soil.soil.seabed_feature import FeatureSpec, GrooveSpec, TrenchSpec
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -31,10 +33,21 @@ def main(arguments: list[str] | None = None) -> None:
         riser,
         asked.along,
         asked.strip,
+        feature=_feature(asked),
     )
     with silent_gmsh():
         make_block(spec)
         gmsh.write(str(asked.file))
+
+
+def _feature(asked: argparse.Namespace) -> FeatureSpec | None:
+    if asked.trench:
+        depth, width, slope = asked.trench
+        return TrenchSpec(depth, width, depth / math.tan(math.radians(slope)))
+    if asked.groove:
+        embedment, diameter = asked.groove
+        return GrooveSpec(embedment * diameter, 0.5 * diameter)
+    return None
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -50,6 +63,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--size-far", type=float, default=1.5, help="cell size at the far faces [m]")
     parser.add_argument("--riser-y", type=float, default=0.0, help="y of the riser, which lies along x [m]")
     parser.add_argument("--kind", choices=("hex", "tet"), default="hex")
+    feature = parser.add_mutually_exclusive_group()
+    trench, groove = ("DEPTH", "WIDTH", "SLOPE_DEG"), ("EMBEDMENT", "DIAMETER")
+    feature.add_argument("--trench", type=float, nargs=3, metavar=trench, help="through the block, of kind tet")
+    feature.add_argument("--groove", type=float, nargs=2, metavar=groove, help="of a pipe embedded by w/D, of kind tet")
     return parser
 
 

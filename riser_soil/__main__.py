@@ -1,4 +1,4 @@
-"""Command line interface: riser-soil run | check | material | schema | stiffness.
+"""Command line interface: riser-soil run | check | material | calibrate | schema | stiffness | film.
 
 Exit status 0 done, 2 bad input, 3 the solve failed, 4 the disk or standard output took no more, 128 + n for signal n.
 """
@@ -50,6 +50,10 @@ Overrides = Annotated[
 RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="folder of a run's results")]
 StageName = Annotated[
     str | None, typer.Option("--stage", metavar="NAME", help="a dynamic stage; by default the last one")
+]
+
+Period = Annotated[
+    float | None, typer.Option("--period", help="length of a cycle [s]; by default that of the stage's motion")
 ]
 
 
@@ -131,6 +135,47 @@ def material(
 
 
 @app.command()
+def calibrate(
+    data: Annotated[
+        Path, typer.Argument(metavar="DATA.csv", help="what was measured: columns w [m], V [N/m], in the order of time")
+    ],
+    scene: SceneFile,
+    wanted: Annotated[
+        list[str],
+        typer.Option(
+            "--fit",
+            metavar="PATH=LOW:HIGH",
+            help="a number of the scene to find, with its bounds, e.g. soil.law.su=1e3:10e3; may be repeated; the "
+            "scene's own number is the first guess",
+        ),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FOLDER", help="folder; else the scene's name and -calibrated"),
+    ] = None,
+    step: Annotated[
+        float, typer.Option("--step", metavar="PART", help="largest step of the pipe over its diameter")
+    ] = 0.01,
+    relative: Annotated[
+        bool, typer.Option("--relative", help="the errors of V grow with V; else they are taken to be of one size")
+    ] = False,
+    force: Annotated[bool, typer.Option("--force", help="overwrite a calibration, which is refused otherwise")] = False,
+    overrides: Overrides = None,
+) -> None:
+    """Find numbers of a pipe segment's scene, such as su, from measured resistance by penetration."""
+    with _expected_errors():
+        from riser_soil.calibration.calibrate import calibrate as find
+        from riser_soil.calibration.report import result_lines
+
+        folder = output or Path(f"{Path(scene).stem}-calibrated")
+        _read(scene, overrides)
+        with _placed(scene, overrides):
+            also = overrides or ()
+            found = find(data, scene, wanted, folder, overrides=also, step=step, relative=relative, force=force)
+        typer.echo("\n".join([*result_lines(found), f"calibrated scene, fit and picture are in {folder}"]))
+
+
+@app.command()
 def schema() -> None:
     """Print the JSON schema of scene files: every key with its meaning, unit and default; editors use it."""
     from riser_soil.scene.schema import schema_text
@@ -143,9 +188,7 @@ def stiffness(
     folder: RunFolder,
     arc: Annotated[list[float], typer.Option("--arc", metavar="S", help="arc length [m]; may be repeated")],
     stage: StageName = None,
-    period: Annotated[
-        float | None, typer.Option("--period", help="length of a cycle [s]; by default that of the stage's motion")
-    ] = None,
+    period: Period = None,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="FILE", help="CSV file; by default standard output")
     ] = None,
@@ -154,28 +197,50 @@ def stiffness(
     with _expected_errors():
         from riser_soil.results.read import Run
         from riser_soil.results.secant_stiffness import secant_stiffness, write_csv
+        from riser_soil.results.whole_file import written_whole
 
-        if period is not None and not period > 0.0:
-            raise ResultsError(f"--period {period:g}: must be greater than 0; give the length of a cycle in s")
+        _positive("period", period)
         found = secant_stiffness(Run(folder), arc, stage, period)
         if output is None:
             write_csv(found, sys.stdout)
         else:
-            with _writing(output) as part, part.open("w", encoding="utf-8") as file:
+            with written_whole(output) as part, part.open("w", encoding="utf-8") as file:
                 write_csv(found, file)
 
 
-@contextmanager
-def _writing(file: Path) -> Iterator[Path]:
-    """A file beside the wanted one, which takes its place when it is whole and vanishes otherwise."""
-    part = file.with_name(f".{file.stem}.part{file.suffix}")
-    try:
-        yield part
-        part.replace(file)
-    except OSError as err:
-        raise WriteError(f"{file}: cannot be written: {err.strerror or err}; choose another file with -o") from err
-    finally:
-        part.unlink(missing_ok=True)
+@app.command()
+def film(
+    folder: RunFolder,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE", help="a .gif, or .mp4 where ffmpeg is; by default RUN.gif"),
+    ] = None,
+    stage: StageName = None,
+    period: Period = None,
+    field: Annotated[
+        str | None,
+        typer.Option(
+            "--field",
+            help="what colours the soil: settlement (the default), strength_used, plastic_strain or von_mises_stress",
+        ),
+    ] = None,
+    magnify: Annotated[
+        float | None, typer.Option("--magnify", help="factor on the soil's displacement; visible by default")
+    ] = None,
+) -> None:
+    """Film the last cycle of a run's dynamic stage: the riser over the soil, which a field colours."""
+    with _expected_errors():
+        from riser_soil.plots import film as draw
+
+        for name, value in {"period": period, "magnify": magnify}.items():
+            _positive(name, value)
+        file = output or Path(f"{folder.resolve().name}.gif")
+        typer.echo(draw(folder, file, stage=stage, period=period, field=field, magnify=magnify))
+
+
+def _positive(name: str, value: float | None) -> None:
+    if value is not None and not value > 0.0:
+        raise ResultsError(f"--{name} {value:g}: must be greater than 0")
 
 
 def _read(scene: str, overrides: list[str] | None) -> "Scene":

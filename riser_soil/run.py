@@ -8,6 +8,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 from riser_soil.assembly import Assembly, build, sized
+from riser_soil.checks.check import resolution
 from riser_soil.checks.limits import size_that_fits, tell, too_long
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.core.system import Timer
@@ -35,6 +36,9 @@ def run(scene: Scene, folder: Path | str, force: bool = False) -> None:
         tell(size, comm)
         assembly = build(scene, comm)
         clock.add("build", since)
+        if comm.rank == 0:
+            for told in resolution(assembly):
+                print(told)
         for warning in (*physical_warnings(assembly), *too_long(size)):
             if comm.rank == 0:
                 print(f"warning: {warning}")

@@ -103,7 +103,7 @@ def _surface_contact_of(
 
     assert scene.soil is not None
     scales = scales_of(elements)
-    width = contact_width(scales, scene.soil.top_law.surface_modulus)
+    width = contact_width(scales, scene.soil.top_law.surface_modulus(scales.diameter))
     penalty = Penalty(stiffness / width, smoothing(settings, scales, "soil", stiffness))
     suction = settings.suction
     across = float(np.clip(width / POINTS_ACROSS, FINEST * scales.diameter, COARSEST * scales.diameter))
@@ -170,7 +170,7 @@ def soil_friction_of(
     assert scene.soil is not None
     scales = scales_of(elements)
     mu, slide = _coefficients(settings.friction, scales)
-    width = contact_width(scales, scene.soil.top_law.surface_modulus)
+    width = contact_width(scales, scene.soil.top_law.surface_modulus(scales.diameter))
     return [SoilFriction(contact, *mu, float(mobilised_within(slide, *mu, np.array(scales.weight))) / width)]
 
 
@@ -268,7 +268,7 @@ def stiffnesses(scene: Scene, settings: ContactScene, scales: Scales) -> dict[st
             return float(settings.stiffness)
         return automatic_stiffness(E, scales.weight, scales.diameter, over_soil)
 
-    out = {"soil": penalty(scene.soil.top_law.surface_modulus)} if scene.soil is not None else {}
+    out = {"soil": penalty(scene.soil.top_law.surface_modulus(scales.diameter))} if scene.soil is not None else {}
     match scene.seabed:
         case RigidSeabed():
             out["seabed"] = penalty(None)

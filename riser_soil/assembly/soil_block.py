@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import assert_never
+
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.seabed_features import Groove, Trench
 from riser_soil.scene.soil import Block, GeneratedMesh, SoilScene
 from riser_soil.scene.soil_layers import boundaries
 from riser_soil.soil.grading import BlockSpec, Point
+from riser_soil.soil.seabed_feature import FeatureSpec, GrooveSpec, TrenchSpec
 
 
 def block_of(scene: Scene, soil: SoilScene, riser: tuple[Point, Point]) -> BlockSpec:
@@ -24,4 +28,19 @@ def block_of(scene: Scene, soil: SoilScene, riser: tuple[Point, Point]) -> Block
         along=soil.mesh.along,
         strip=soil.mesh.strip,
         boundaries=boundaries(soil.layers or ()),
+        feature=_feature_of(scene, soil.block),
     )
+
+
+def _feature_of(scene: Scene, block: Block) -> FeatureSpec | None:
+    match block.feature:
+        case Trench() as trench:
+            ramp = trench.run_out or trench.side
+            return TrenchSpec(trench.depth, trench.width, trench.side, trench.along, ramp)
+        case Groove() as groove:
+            diameter = groove.diameter or scene.largest_diameter
+            return GrooveSpec(groove.embedment * diameter, 0.5 * diameter)
+        case None:
+            return None
+        case _:
+            assert_never(block.feature)

@@ -22,10 +22,10 @@ from riser_soil.soil.law import SoilLaw
 
 # Cells across the width that touches; across the strip where they don't grow; largest size over the block's depth.
 # What they leave of the exact settlement: docs/accuracy.md.
-ACROSS, STRIP, FAR = 4.0, 8.0, 0.5
+ACROSS, STRIP, FAR = 4.0, 8.0, 0.6
 # Length of the cells: this part of the shorter of the lengths over which tension and the soil bend the pipe, and at
 # most so many diameters.
-ALONG, LONGEST = 0.5, 4.0
+ALONG, LONGEST = 0.75, 4.0
 # The block: to the sides and down, in diameters and in widths that touch; beyond the touchdown points, in bending
 # lengths and diameters; how much farther they go than statics say.
 DIAMETERS, WIDTHS = 8.0, 10.0
@@ -117,14 +117,14 @@ class SoilSizes:
 def bending_on_soil(elements: Elements, law: SoilLaw) -> float:
     """Length over which the soil bends the pipe [m]: of a beam on springs as stiff as E at the surface."""
     EI = float(np.maximum(elements.EI_y, elements.EI_z).max())
-    return float((4.0 * EI / law.surface_modulus) ** 0.25)
+    return float((4.0 * EI / law.surface_modulus(scales_of(elements).diameter)) ** 0.25)
 
 
 def touching_width(scales: Scales, law: SoilLaw) -> float:
     """Width over which the pipe touches at rest [m], at most D: on elastic soil, or where that is more, as strong as
     the soil bears the pipe's weight on.
     """
-    elastic = contact_width(scales, law.surface_modulus)
+    elastic = contact_width(scales, law.surface_modulus(scales.diameter))
     limit = law.bearing(scales.diameter)
     if limit is None:
         return elastic

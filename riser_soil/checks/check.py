@@ -53,8 +53,25 @@ def _unknowns(assembly: Assembly) -> Iterator[str]:
     if assembly.soil is not None:
         cells = assembly.comm.allreduce(assembly.soil.blocks()["soil"].shape[0])
         yield f"soil: {cells} cells, {unknowns(assembly.comm, assembly.soil.field)} unknowns"
+        yield from resolution(assembly)
+        from riser_soil.checks.soil_edge import edge_report
+        from riser_soil.checks.soil_mesh import mesh_report
+
+        yield from mesh_report(assembly)
+        yield from edge_report(assembly)
     for ground, stiffness in assembly.contact_stiffness.items():
         yield f"contact stiffness on the {ground}: {stiffness:.4g} N/m2"
+
+
+def resolution(assembly: Assembly) -> Iterator[str]:
+    """The soil's cells under the riser against what touches, where the scene has them meshed."""
+    if assembly.soil is None:
+        return
+    from riser_soil.checks.mesh_plausibility import told_resolution
+
+    told = told_resolution(assembly)
+    if told is not None:
+        yield told
 
 
 def _memory_line(assembly: Assembly) -> str:

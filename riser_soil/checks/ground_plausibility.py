@@ -31,6 +31,11 @@ def ground_warnings(assembly: Assembly) -> Iterator[str]:
     yield from _penalty_against_soil(assembly)
     yield from _corner_against_weight(assembly)
     if assembly.soil is not None:
+        from riser_soil.checks.soil_edge import edge_warnings
+        from riser_soil.checks.soil_mesh import quality_warnings
+
+        yield from quality_warnings(assembly)
+        yield from edge_warnings(assembly)
         yield from _nothing_below(assembly)
         yield from _nodes_without_friction(assembly)
         yield from _nodes_on_soil(assembly)
@@ -132,7 +137,8 @@ def _extent(assembly: Assembly) -> str:
 def _penalty_against_soil(assembly: Assembly) -> Iterator[str]:
     if assembly.scene.soil is None:
         return
-    E, k = assembly.scene.soil.top_law.surface_modulus, assembly.contact_stiffness["soil"]
+    E = assembly.scene.soil.top_law.surface_modulus(assembly.scales.diameter)
+    k = assembly.contact_stiffness["soil"]
     if k < SOFT * E:
         yield (
             f"contact.stiffness {k:.4g} N/m2 is below the soil's Young's modulus at the surface, {E:.4g} Pa: the pipe "

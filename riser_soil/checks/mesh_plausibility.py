@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.assembly import Assembly
 from riser_soil.assembly.ground import contact_width
-from riser_soil.assembly.soil_sizes import bending_on_soil
+from riser_soil.assembly.soil_sizes import bending_on_soil, touching_width
 from riser_soil.assembly.touchdown_forecast import forecast
 from riser_soil.core.arrays import BoolArray
 from riser_soil.scene.soil import CellSizes, GeneratedMesh
@@ -17,8 +17,32 @@ from riser_soil.soil.grading import PARALLEL
 # Cells of this part of the width that touches bear the pipe as the width itself does; how much wider ones are told.
 # (From 10 slices of elastic soil: 1.4 to 2.1, see test_surface_contact.)
 LIKE_CONTACT, WIDE_CELLS = 1.75, 1.5
+# Part of the settlement that cells which grow away from the riser miss.
+GRADED = 0.02
 # Length of the pipe's elements, and of the cells along it, over the length in which the soil bends the pipe.
 LONG = 1.5
+
+
+def told_resolution(assembly: Assembly) -> str | None:
+    """The cells under the riser against what touches, and what they miss of the settlement; None without them."""
+    mesh, soil = _generated(assembly), assembly.scene.soil
+    if mesh is None or soil is None or assembly.soil is None:
+        return None
+    width = touching_width(assembly.scales, soil.top_law)
+    depth = float(assembly.soil.grid.high[2] - assembly.soil.grid.low[2])
+    return (
+        f"soil under the riser: cells of {told_size(mesh)}, where {width:.3g} m touch at rest: its settlement may be "
+        f"{missed(mesh.across, width, depth):.0%} too small"
+    )
+
+
+def missed(size: float, width: float, depth: float) -> float:
+    """The part of a pipe's settlement that cells of a size across it miss, of a width that touches and a depth [m].
+
+    A strip load settles q/(pi E*) (2 ln(4 depth/width) - 1), and cells wider than the pressure spread it over
+    LIKE_CONTACT times their size; cells that grow to 0.6 of the depth miss GRADED (test_automatic_mesh).
+    """
+    return float(GRADED + max(0.0, np.log(LIKE_CONTACT * size / width)) / (np.log(4.0 * depth / width) - 0.5))
 
 
 def mesh_warnings(assembly: Assembly) -> Iterator[str]:
@@ -51,9 +75,9 @@ def _generated(assembly: Assembly) -> GeneratedMesh | None:
 def _cells_against_contact(assembly: Assembly) -> Iterator[str]:
     """Cells wider than what touches: they bear the pipe as a strip of their own width would."""
     mesh, scales, soil = _generated(assembly), assembly.scales, assembly.scene.soil
-    if mesh is None or soil is None or soil.top_law.surface_modulus <= 0.0:
+    if mesh is None or soil is None or soil.top_law.surface_modulus(assembly.scales.diameter) <= 0.0:
         return
-    E, size = soil.top_law.surface_modulus, mesh.across
+    E, size = soil.top_law.surface_modulus(scales.diameter), mesh.across
     width = contact_width(scales, E)
     finest = width / LIKE_CONTACT
     if size > WIDE_CELLS * finest:

@@ -80,9 +80,11 @@ class DeformedSurface:
         return np.asarray(self._surface.points + self._surface.committed)
 
     def stretch(self, deformed: Array, facets: IntArray) -> float:
-        """Largest area in plan of some facets of a deformed surface (np, 3), over that at first; 1 of none."""
-        now, before = (_plan_area(points[self.facets[facets]]) for points in (deformed, self.at_first))
-        return float(np.max(now / before, initial=1.0))
+        """Largest area of some facets of a deformed surface (np, 3), seen square to them at first, over that at first;
+        1 of none.
+        """
+        now, before = (_area(points[self.facets[facets]]) for points in (deformed, self.at_first))
+        return float(np.max(np.sum(now * before, axis=1) / np.sum(before * before, axis=1), initial=1.0))
 
     def height(self, xy: Array, points: Array) -> Array:
         """Height (n,) [m] of the surface of some points at horizontal positions (n, 2) [m]; nan beside it."""
@@ -99,8 +101,8 @@ class DeformedSurface:
         return dofs.reshape(len(facet), 3 * self.facets.shape[1])
 
 
-def _plan_area(at: Array) -> Array:
-    """Area in plan (n,) [m2] between the corners of facets (n, nv, 3)."""
-    corners = at[:, : 4 if at.shape[1] == 4 else 3, :2]
-    ahead = np.roll(corners, -1, axis=1)
-    return np.asarray(0.5 * np.sum(corners[..., 0] * ahead[..., 1] - corners[..., 1] * ahead[..., 0], axis=1))
+def _area(at: Array) -> Array:
+    """Vector area (n, 3) [m2] between the corners of facets (n, nv, 3): along their normal, upwards."""
+    corners = at[:, : 4 if at.shape[1] == 4 else 3]
+    corners = corners - corners[:, :1]
+    return np.asarray(0.5 * np.cross(corners, np.roll(corners, -1, axis=1)).sum(axis=1))

@@ -23,7 +23,7 @@ def divisions(points: Array, facets: IntArray, along: Array, spacing: tuple[floa
     points (np, 3): undeformed [m]. facets (nf, 4 or 6). along (2,): horizontal unit vector of the riser. spacing: of
     points along and across it [m].
     """
-    at = points[facets][:, :, :2]
+    at = points[facets]
     if facets.shape[1] == len(QUAD):
         a, b, c, d = at[:, 0], at[:, 1], at[:, 2], at[:, 3]
         counted = _parts(0.5 * np.stack([b + c - a - d, c + d - a - b], axis=1), along, spacing)
@@ -34,9 +34,10 @@ def divisions(points: Array, facets: IntArray, along: Array, spacing: tuple[floa
 
 
 def _parts(sides: Array, along: Array, spacing: tuple[float, float]) -> IntArray:
-    """Parts (nf, k) of sides (nf, k, 2) [m]."""
-    axes = np.array([along, [-along[1], along[0]]])
-    parts: IntArray = np.ceil(np.max(np.abs(sides @ axes.T) / np.array(spacing), axis=2) - 1e-9).astype(np.int64)
+    """Parts (nf, k) of sides (nf, k, 3) [m]; what they rise counts as across."""
+    lengthwise, across = sides[..., :2] @ along, sides[..., :2] @ np.array([-along[1], along[0]])
+    extent = np.stack([np.abs(lengthwise), np.hypot(across, sides[..., 2])], axis=2)
+    parts: IntArray = np.ceil(np.max(extent / np.array(spacing), axis=2) - 1e-9).astype(np.int64)
     return parts
 
 

@@ -94,7 +94,7 @@ class SoilContact(LineContact):
 
     @abstractmethod
     def stretch(self, state: State) -> float:
-        """Largest area in plan of a facet that presses, over its area before the riser came; 1 where none does."""
+        """Largest area of a facet that presses, seen square to it as it was, over that at first; 1 where none does."""
 
     def blocks(self) -> dict[str, MatrixBlock]:
         """Dofs of a node or element and of a facet, candidate pair by pair."""

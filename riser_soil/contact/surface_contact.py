@@ -45,8 +45,8 @@ class SurfaceContact(SoilContact):
     radius (ne,): of the pipe [m]. pressure: its law of the penetration, [N/m2] where other contacts have [N/m]; with a
     history, such as suction has, for each point of the soil. spacing: of the integration points along and across the
     riser [m]. upright: contact sees the soil's surface move up and down alone, and presses on it so; the horizontal
-    forces on the riser are then borne by nothing. along (2,): horizontal unit vector of the riser
-    on the ground; by default its first axis. reach: by default half a facet to all sides of the pipe.
+    forces on the riser are then borne by nothing. along (2,): horizontal unit vector of the riser on the ground; by
+    default its first axis. reach: by default half a facet to all sides of the pipe.
     """
 
     def __init__(

@@ -29,8 +29,8 @@ class Figure:
     """A number or vector of the summary, whose extremes over a stage are kept as well.
 
     name: key in the summary, dotted where it is nested. of: the figure by the output's value. size: 1 or 3. node: index
-    by the output's value of the node that it sits on, of the soil's point or cell, None where it sits on none; figures
-    of the soil are largest values and have one. row: on the screen, None for none.
+    by the output's value of the node that it sits on, None where it sits on none; figures of the soil are largest
+    values, and have the indices of all points or cells where they may sit. row: on the screen, None for none.
     """
 
     name: str
@@ -87,6 +87,17 @@ def least(name: str, row: Row | None = None) -> Figure:
 def greatest(name: str, row: Row | None = None) -> Figure:
     """The largest value along the riser, with its place."""
     return Figure(name, lambda along: along.max(), node=lambda along: along.argmax(), row=row)
+
+
+def greatest_in_soil(name: str, row: Row | None = None) -> Figure:
+    """The largest value of the soil's cells, with their places."""
+    return Figure(name, lambda cells: cells.max(), node=near_greatest, row=row)
+
+
+def near_greatest(values: Array) -> Array:
+    """Indices of the largest value and of those a millionth below: of equal ones round-off does not choose."""
+    top = values.max()
+    return (values >= top - 1e-6 * abs(top)).nonzero()[0]
 
 
 def bend_radius(curvature: float) -> float:

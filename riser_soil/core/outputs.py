@@ -9,7 +9,17 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from riser_soil.core.output import Figure, OutputQuantity, Row, angle_deg, bend_radius, greatest, least
+from riser_soil.core.output import (
+    Figure,
+    OutputQuantity,
+    Row,
+    angle_deg,
+    bend_radius,
+    greatest,
+    greatest_in_soil,
+    least,
+    near_greatest,
+)
 
 if TYPE_CHECKING:
     from riser_soil.core.snapshot import Instant, SoilSnapshot
@@ -196,7 +206,7 @@ OF_SOIL: tuple[OutputQuantity[SoilSnapshot], ...] = (
             Figure(
                 "max_settlement",
                 lambda u: -u[:, 2].min(),
-                node=lambda u: u[:, 2].argmin(),
+                node=lambda u: near_greatest(-u[:, 2]),
                 row=Row("soil: deepest settlement", "mm", 1e3),
             ),
         ),
@@ -207,17 +217,17 @@ OF_SOIL: tuple[OutputQuantity[SoilSnapshot], ...] = (
     ),
     OutputQuantity(
         "von_mises_stress", "q", "Pa", "von Mises stress", "soil cells", lambda soil: soil.von_mises, ">= 0",
-        figures=(greatest("max_von_mises_stress", Row("soil: largest von Mises stress", "kPa", 1e-3)),),
+        figures=(greatest_in_soil("max_von_mises_stress", Row("soil: largest von Mises stress", "kPa", 1e-3)),),
     ),
     OutputQuantity(
         "strength_used", "", "1", "equivalent stress over its limit", "soil cells",
         lambda soil: soil.strength_used, ">= 0; 0 where the soil has no limit",
-        figures=(greatest("max_strength_used", Row("soil: most of its strength used")),),
+        figures=(greatest_in_soil("max_strength_used", Row("soil: most of its strength used")),),
     ),
     OutputQuantity(
         "equivalent_plastic_strain", "", "1", "equivalent plastic strain", "soil cells",
         lambda soil: soil.plastic_strain, ">= 0",
-        figures=(greatest("max_equivalent_plastic_strain", Row("soil: largest plastic strain")),),
+        figures=(greatest_in_soil("max_equivalent_plastic_strain", Row("soil: largest plastic strain")),),
     ),
 )  # fmt: skip
 

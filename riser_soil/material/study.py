@@ -14,7 +14,7 @@ from riser_soil.material.loops import ClosedCycle, closed_cycles
 from riser_soil.material.path import STRAINS, STRESS_FACTOR, STRESSES, MaterialPath, read_path, shear_cycles
 from riser_soil.material.point import MaterialCurve, drive, law_at, point_at
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.soil import Block, SoilScene
+from riser_soil.scene.soil import SoilScene
 from riser_soil.soil import mandel
 
 CURVE, CYCLES, PICTURE = "material.csv", "material_cycles.csv", "material.png"
@@ -49,7 +49,7 @@ def _soil_of(scene: Scene) -> SoilScene:
 
 
 def _depth(soil: SoilScene, wanted: float | None) -> float:
-    block = soil.block.depth if isinstance(soil.block, Block) else np.inf
+    block = soil.given_block.depth if soil.given_block else np.inf
     if wanted is None:
         return min(USUAL_DEPTH, 0.5 * block)
     if not 0.0 <= wanted <= block:

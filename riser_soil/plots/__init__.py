@@ -12,7 +12,9 @@ import sys
 from pathlib import Path
 
 from riser_soil.errors import ResultsError
+from riser_soil.results.whole_file import written_whole
 
+FORMATS = (".gif", ".mp4")
 # A child that saw its parent's MPI rank in these would take itself for that rank.
 _MPI = ("OMPI_", "PMIX_", "PMI_", "HYDRA_", "SLURM_")
 
@@ -25,14 +27,47 @@ def picture(folder: Path | str, png: Path | str, magnify: float | None = None) -
     riser sinks with it.
     Raises ResultsError when the folder holds nothing to draw, or drawing fails.
     """
-    command = [sys.executable, "-m", "riser_soil.plots.touchdown", str(folder), str(png)]
+    command = ["touchdown", str(folder), str(png)]
     if magnify is not None:
         command.append(repr(float(magnify)))
+    _draw(command)
+    return Path(png)
+
+
+def film(
+    folder: Path | str,
+    file: Path | str,
+    *,
+    stage: str | None = None,
+    period: float | None = None,
+    field: str | None = None,
+    magnify: float | None = None,
+) -> Path:
+    """Films the last whole cycle of a dynamic stage: the riser over its soil, coloured by a field, frame by frame.
+
+    file: GIF, or MP4 where ffmpeg is installed. stage: by default the last dynamic one. period: s, by default that of
+    the stage's motion; without any the whole stage is filmed. field: of `riser_soil.plots.film.FIELDS`, by default the
+    settlement. magnify: as of `picture`.
+    Raises ResultsError when the folder holds nothing to film, or drawing fails; a file is then left as it was.
+    """
+    file = Path(file)
+    if file.suffix not in FORMATS:
+        raise ResultsError(f"{file}: a film is a {' or '.join(FORMATS)} file; change its ending")
+    given = {"--stage": stage, "--period": period, "--field": field, "--magnify": magnify}
+    options = [f"{name}={value}" for name, value in given.items() if value is not None]
+    with written_whole(file) as part:
+        _draw(["film", str(folder), str(part), *options])
+    return file
+
+
+def _draw(command: list[str]) -> None:
+    """Runs a module of this folder with its arguments."""
     environment = {name: value for name, value in os.environ.items() if not name.startswith(_MPI)}
-    done = subprocess.run(command, env=environment, capture_output=True, text=True)
+    module, *arguments = command
+    call = [sys.executable, "-m", f"riser_soil.plots.{module}", *arguments]
+    done = subprocess.run(call, env=environment, capture_output=True, text=True)
     if done.returncode != 0:
         raise ResultsError(_reason(done))
-    return Path(png)
 
 
 def _reason(done: subprocess.CompletedProcess[str]) -> str:

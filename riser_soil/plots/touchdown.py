@@ -13,11 +13,12 @@ import pyvista as pv
 
 from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError
+from riser_soil.plots.bodies import carried_down, colour_bar, pipe_radius, require, soil_grid, touchdown_place
 from riser_soil.plots.scales import colour_scale, magnification
 from riser_soil.results import Run, SoilFrame
+from riser_soil.results.derived import along
 
 _SIZE = (1600, 900)
-_CELL_TYPES = {4: pv.CellType.TETRA, 8: pv.CellType.HEXAHEDRON, 10: pv.CellType.QUADRATIC_TETRA}
 _MOMENT = "bending moment [kN m]"
 _STRESS = "von Mises stress [kPa]"
 _UP = np.array([0.0, 0.0, 1.0])
@@ -95,35 +96,16 @@ def _read(run: Run) -> _Frame:
         arc=run.arc,
         position=position,
         moment=run["bending_moment"][at],
-        radius=_radius(run),
-        touchdown=_touchdown(touchdown_arc, run.arc, position),
+        radius=pipe_radius(run),
+        touchdown=touchdown_place(touchdown_arc, run.arc, position),
         touchdown_arc=touchdown_arc,
         soil=None if frame is None else _grid(frame),
     )
 
 
-def _radius(run: Run) -> float:
-    """m, half the largest outer diameter in the scene; a thin line's where the scene cannot be read."""
-    try:
-        return 0.5 * max(float(line["outer_diameter"]) for line in run.scene["line_types"].values())
-    except (ResultsError, KeyError, TypeError, AttributeError, ValueError):
-        return 1e-3 * float(run.arc[-1])
-
-
-def _touchdown(arc_length: float, arc: Array, position: Array) -> Array:
-    if math.isnan(arc_length):
-        return position[position[:, 2].argmin()]
-    return np.array([np.interp(arc_length, arc, position[:, i]) for i in range(3)])
-
-
 def _grid(frame: SoilFrame) -> pv.UnstructuredGrid:
-    missing = {"displacement", "von_mises_stress"} - frame.fields.keys()
-    if missing:
-        raise ResultsError(
-            f"the picture needs {min(missing)}: add it to output.fields of the scene and run again"
-        )
-    grid = pv.UnstructuredGrid({_CELL_TYPES[frame.cells.shape[1]]: frame.cells}, frame.points)
-    grid.point_data["displacement"] = frame.fields["displacement"]
+    require(frame, "the picture", "displacement", "von_mises_stress")
+    grid = soil_grid(frame)
     grid.cell_data[_STRESS] = 1e-3 * frame.fields["von_mises_stress"]
     return grid
 
@@ -135,22 +117,16 @@ def _factor(soil: pv.UnstructuredGrid | None) -> float:
     return magnification(largest, soil.bounds[5] - soil.bounds[4])
 
 
-def _along(position: Array) -> Array:
-    """Horizontal unit vector from the start to the end; x where they lie above each other."""
-    chord = (position[-1] - position[0]) * [1.0, 1.0, 0.0]
-    length = np.linalg.norm(chord)
-    return chord / length if length > 0.0 else np.array([1.0, 0.0, 0.0])
-
-
 def _draw_close(plotter: pv.Plotter, still: _Frame, factor: float) -> None:
-    along = _along(still.position)
-    side = np.cross(_UP, along)
+    ahead = along(still.position)
+    side = np.cross(_UP, ahead)
     if still.soil is None:
         _add_tube(plotter, still.position, still)
     else:
         opened = still.soil.clip(normal=-side, origin=still.touchdown)
         _add_soil(plotter, opened.warp_by_vector("displacement", factor=factor))
-        _add_tube(plotter, still.position + (factor - 1.0) * _sunk(still.soil, still), still)
+        sunk = carried_down(still.soil, still.position, still.arc, still.radius)
+        _add_tube(plotter, still.position + (factor - 1.0) * sunk, still)
     plotter.add_text(_caption(still, factor), position="upper_left", font_size=12, color="black")
     if not math.isnan(still.touchdown_arc):
         _mark(
@@ -160,7 +136,7 @@ def _draw_close(plotter: pv.Plotter, still: _Frame, factor: float) -> None:
         )
     reach = _reach(still)
     plotter.camera.focal_point = still.touchdown + 0.05 * reach * _UP
-    plotter.camera.position = still.touchdown + reach * (0.6 * _UP - 1.2 * side - 0.2 * along)
+    plotter.camera.position = still.touchdown + reach * (0.6 * _UP - 1.2 * side - 0.2 * ahead)
     plotter.camera.up = _UP
     plotter.reset_camera_clipping_range()
 
@@ -190,21 +166,8 @@ def _add_soil(plotter: pv.Plotter, soil: pv.UnstructuredGrid) -> None:
         edge_opacity=0.25,
         ambient=0.55,
         diffuse=0.5,
-        scalar_bar_args=_bar(_STRESS, 0.55, labels),
+        scalar_bar_args=colour_bar(_STRESS, 0.55, labels),
     )
-
-
-def _sunk(soil: pv.UnstructuredGrid, still: _Frame) -> Array:
-    """The soil's displacement (nn, 3) m under each node of the riser; 0 beside the block.
-
-    Averaged along a few diameters: magnified, the soil's steps from cell to cell would kink the pipe.
-    """
-    inside = soil.bounds[5] - 1e-6 * soil.length
-    below = pv.PolyData(np.column_stack([still.position[:, :2], np.full(len(still.position), inside)]))
-    under = np.asarray(below.sample(soil).point_data["displacement"])
-    apart = (still.arc[:, None] - still.arc) / (6.0 * still.radius)
-    weights = np.exp(-(apart**2))
-    return np.asarray(weights @ under / weights.sum(axis=1, keepdims=True))
 
 
 def _reach(still: _Frame) -> float:
@@ -223,7 +186,7 @@ def _add_tube(plotter: pv.Plotter, position: Array, still: _Frame) -> None:
         cmap=_MOMENT_COLOURS,
         clim=(0.0, top),
         smooth_shading=True,
-        scalar_bar_args=_bar(_MOMENT, 0.05, labels),
+        scalar_bar_args=colour_bar(_MOMENT, 0.05, labels),
     )
 
 
@@ -231,19 +194,6 @@ def _tube(position: Array, moment: Array, radius: float) -> pv.PolyData:
     line = pv.lines_from_points(position)
     line.point_data[_MOMENT] = 1e-3 * moment
     return line.tube(radius=radius, n_sides=24)
-
-
-def _bar(title: str, left: float, labels: int) -> dict[str, object]:
-    place = {"position_x": left, "position_y": 0.03, "width": 0.4, "height": 0.11}
-    fonts = {
-        "title_font_size": 22,
-        "label_font_size": 18,
-        "color": "black",
-        "fmt": "%.3g",
-        "n_labels": labels,
-    }
-    # The blank line keeps the title clear of the labels.
-    return {"title": title + "\n", **place, **fonts}
 
 
 def _draw_whole(plotter: pv.Plotter, still: _Frame) -> None:
@@ -258,7 +208,7 @@ def _draw_whole(plotter: pv.Plotter, still: _Frame) -> None:
     plotter.enable_parallel_projection()
     plotter.camera.focal_point = 0.5 * (lowest + highest)
     plotter.camera.position = 0.5 * (lowest + highest) - float(size.max()) * np.cross(
-        _UP, _along(still.position)
+        _UP, along(still.position)
     )
     plotter.camera.up = _UP
     plotter.reset_camera()

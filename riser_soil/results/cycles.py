@@ -41,7 +41,8 @@ def beginning(run: Run, stage: int) -> float:
 
 def period_of(run: Run, stage: int) -> float:
     """Period [s] of a stage's motion, or of regular waves where the ends stay."""
-    found = {*_periods(run.scene["stages"][stage])} or {*_periods((run.scene.get("water") or {}).get("waves"))}
+    stages = run.scene.get("stages") or []
+    found = {*_periods(stages[stage : stage + 1])} or {*_periods((run.scene.get("water") or {}).get("waves"))}
     if len(found) != 1:
         told = f"has the periods {', '.join(f'{T:g}' for T in sorted(found))} s" if found else "has no one period"
         raise ResultsError(f'{run.folder}: stage "{run.stage_names[stage]}" {told}; give the length of a cycle, period')
@@ -50,6 +51,9 @@ def period_of(run: Run, stage: int) -> float:
 
 def _periods(piece: Any) -> Iterator[float]:
     """All that goes by the name period in a piece of a scene."""
+    if isinstance(piece, list):
+        for item in piece:
+            yield from _periods(item)
     if isinstance(piece, dict):
         for key, value in piece.items():
             if key == "period" and isinstance(value, int | float):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
@@ -24,7 +26,19 @@ def with_largest(largest: dict[str, Any], where: dict[str, Array], t: float, soi
         for figure in output.figures:
             values = output.get(soil)
             value = float(figure.of(values))
-            if figure.node is not None and (figure.name not in grown or value > grown[figure.name]["value"]):
-                position = where[output.where][figure.node(values)]
-                grown[figure.name] = {"value": value, "position": [float(x) for x in position], "time": t}
+            if figure.node is None or (figure.name in grown and not _exceeds(value, grown[figure.name]["value"])):
+                continue
+            position = _first(where[output.where][figure.node(values)])
+            grown[figure.name] = {"value": value, "position": [float(x) for x in position], "time": t}
     return grown
+
+
+def _exceeds(value: float, before: float) -> bool:
+    """By more than the solver's tolerance may bring about."""
+    return value > before + 1e-6 * abs(before)
+
+
+def _first(positions: Array) -> Array:
+    """Of (n, 3) the one with the least x, then y, then z: the same however the mesh is shared out."""
+    x, y, z = np.round(positions, 6).T
+    return np.asarray(positions[np.lexsort((z, y, x))[0]])

@@ -11,14 +11,31 @@ from riser_soil.scene.vectors import dot, minus
 
 def ground_height(scene: Scene, point: Vector) -> float:
     """Height z [m] of the ground below a point; straight between the points of a profile."""
-    if scene.seabed is None:
-        return scene.seabed_level
+    if scene.seabed is None or _over_block(scene, point):
+        return scene.seabed_level + feature_height(scene, point)
     s = distance_along(scene, point)
     if scene.seabed.profile is None:
         return scene.seabed.level + math.tan(math.radians(scene.seabed.slope_deg)) * s
     pairs = list(pairwise(scene.seabed.profile))
     (s0, z0), (s1, z1) = next((pair for pair in pairs if s <= pair[1][0]), pairs[-1])
     return z0 + (z1 - z0) * (s - s0) / (s1 - s0)
+
+
+def feature_height(scene: Scene, point: Vector) -> float:
+    """Height [m], <= 0, of a trench or groove in the soil below a point over the seabed."""
+    block = scene.soil.given_block if scene.soil else None
+    if block is None or block.feature is None or not _over_block(scene, point):
+        return 0.0
+    plane = vertical_plane(scene)
+    axis = int(abs(plane.direction[1]) > abs(plane.direction[0]))
+    return block.feature.height(point[axis], point[1 - axis] - plane.origin[1 - axis], scene.largest_diameter)
+
+
+def _over_block(scene: Scene, point: Vector) -> bool:
+    block = scene.soil.given_block if scene.soil else None
+    if block is None:
+        return False
+    return block.x[0] <= point[0] <= block.x[1] and block.y[0] <= point[1] <= block.y[1]
 
 
 def distance_along(scene: Scene, point: Vector) -> float:

@@ -6,8 +6,10 @@ from collections.abc import Callable, Iterator
 from riser_soil.core.quantities import Vector
 from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.contact import Contact
+from riser_soil.scene.feature_checks import feature_conflicts
 from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.line_types import LineType
+from riser_soil.scene.output import SettlementSections
 from riser_soil.scene.plane import leaving_the_plane, resolved_dimension
 from riser_soil.scene.problem import Path, Problem, dotted, hint
 from riser_soil.scene.riser import Support
@@ -296,7 +298,7 @@ def _crosses(block: Block, a: Vector, b: Vector) -> bool:
 def _sections_across_soil(scene: Scene) -> Iterator[Problem]:
     sections, length = scene.output.sections, scene.riser.length
     path: Path = ("output", "sections")
-    if scene.soil is None and sections.model_fields_set:
+    if scene.soil is None and sections != SettlementSections():
         yield Problem(path, "settlement is that of soil, and the scene has none", "add soil, or leave it out")
         return
     for n, arc in enumerate(sections.arcs or ()):
@@ -324,6 +326,7 @@ _CHECKS: tuple[_Check, ...] = (
     _initial_shape_meets_the_supports,
     _passes_over_block,
     _sections_across_soil,
+    feature_conflicts,
     water_conflicts,
     stage_conflicts,
 )

@@ -1,5 +1,6 @@
 """Keys, words and descriptions of the scene language, looked up in its models."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -69,14 +70,18 @@ def spot(location: tuple[str | int, ...]) -> KeyInfo:
 
 def _types(field: FieldInfo) -> tuple[Any, ...]:
     """The types that fit at a key."""
-    registered = [mark for mark in field.metadata if isinstance(mark, OneOf)]
-    return tuple(registered[0].models.values()) if registered else _alternatives(field.annotation)
+    return _registered(field.metadata) or _alternatives(field.annotation)
+
+
+def _registered(marks: Iterable[Any]) -> tuple[Any, ...]:
+    """The models that an annotation chooses from by their kind."""
+    return tuple(model for mark in marks if isinstance(mark, OneOf) for model in mark.models.values())
 
 
 def _alternatives(kind: Any) -> tuple[Any, ...]:
     """The types that an annotation allows."""
     if get_origin(kind) is Annotated:
-        return _alternatives(get_args(kind)[0])
+        return _registered(get_args(kind)[1:]) or _alternatives(get_args(kind)[0])
     if get_origin(kind) in (Union, UnionType):
         return tuple(t for arg in get_args(kind) for t in _alternatives(arg))
     return (kind,)

@@ -70,6 +70,11 @@ class Scene(BaseModel):
         return self.seabed.contact_at if self.seabed else "outer"
 
     @property
+    def largest_diameter(self) -> float:
+        """Of the riser's line types [m], 0 where none has one."""
+        return max((line.outer_diameter or 0.0 for line in self.used_line_types.values()), default=0.0)
+
+    @property
     def used_line_types(self) -> dict[str, LineType]:
         """The line types that the riser is made of, by name."""
         names = [segment.line_type for segment in self.riser.segments]

@@ -15,6 +15,7 @@ from riser_soil.core.quantities import (
     wrong,
 )
 from riser_soil.scene.files import NamedFile
+from riser_soil.scene.seabed_features import Groove, SeabedFeature, Trench
 from riser_soil.scene.soil_layers import LAW, Layer, wrong_layers
 from riser_soil.soil.law import SoilLaw
 
@@ -29,6 +30,8 @@ class Block(BaseModel):
     x: Interval = Field(description="from and to along x, [x0, x1] [m]")
     y: Interval = Field(description="from and to along y, [y0, y1] [m]")
     depth: Length = Field(description="depth below the seabed [m]")
+    trench: Trench | None = Field(default=None, description="a trench in the block's top, under the riser")
+    groove: Groove | None = Field(default=None, description="the groove of a pipe that lies embedded in the block")
 
     @model_validator(mode="after")
     def _has_a_size(self) -> Self:
@@ -38,6 +41,19 @@ class Block(BaseModel):
                     key, "the first bound must be smaller than the second", "write [from, to] in metres"
                 )
         return self
+
+    @model_validator(mode="after")
+    def _deeper_than_its_feature(self) -> Self:
+        if self.trench is not None and self.groove is not None:
+            raise wrong("groove", "is given beside trench", "give either")
+        if self.trench is not None and self.trench.depth >= self.depth:
+            raise wrong("trench", f"is as deep as the block, {self.depth:g} m", "take a deeper block")
+        return self
+
+    @property
+    def feature(self) -> SeabedFeature | None:
+        """What the top has beyond being level."""
+        return self.trench or self.groove
 
 
 class CellSizes(BaseModel):
@@ -161,7 +177,7 @@ class SoilScene(BaseModel):
         description="{kind, size_at_riser, size_far} for a block, auto: sizes that resolve what touches, or "
         "{file: mesh.msh}"
     )
-    law: Annotated[SoilLaw | None, LAW] = Field(
+    law: Annotated[SoilLaw, LAW] | None = Field(
         default=None, description=f"constitutive law: {LAW.words}, with its constants; layers instead give several"
     )
     layers: tuple[Layer, ...] | None = Field(
@@ -186,8 +202,15 @@ class SoilScene(BaseModel):
         return self
 
     @model_validator(mode="after")
+    def _features_of_tetrahedra(self) -> Self:
+        feature = self.given_block.feature if self.given_block else None
+        if feature is not None and isinstance(self.mesh, GeneratedMesh) and self.mesh.kind != "tet":
+            raise wrong("mesh", "a trench or a groove is meshed in tetrahedra", "write kind: tet")
+        return self
+
+    @model_validator(mode="after")
     def _strong_to_the_bottom(self) -> Self:
-        found = self.law.wrong_within(self.block.depth) if isinstance(self.block, Block) and self.law else None
+        found = self.law.wrong_within(self.given_block.depth) if self.given_block and self.law else None
         if found:
             raise wrong("law", *found)
         return self
@@ -198,11 +221,16 @@ class SoilScene(BaseModel):
             raise wrong("law", "the key is required here", "add law, or layers: [{to, law}, ...]")
         if self.law is not None and self.layers is not None:
             raise wrong("layers", "is given beside law", "give either")
-        depth = self.block.depth if isinstance(self.block, Block) else None
+        depth = self.given_block.depth if self.given_block else None
         found = wrong_layers(self.layers, depth) if self.layers else None
         if found:
             raise found
         return self
+
+    @property
+    def given_block(self) -> Block | None:
+        """The block, where its size is given or has been chosen."""
+        return self.block if isinstance(self.block, Block) else None
 
     @property
     def top_law(self) -> SoilLaw:

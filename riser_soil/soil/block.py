@@ -10,12 +10,16 @@ from typing import assert_never
 import gmsh
 import numpy as np
 
+from riser_soil.errors import MeshError
+from riser_soil.soil.dug_block import dig
 from riser_soil.soil.grading import BlockSpec
 
 
 def make_block(spec: BlockSpec) -> None:
     """Build and mesh the block in gmsh's current model."""
     match spec.kind:
+        case "hex" if spec.feature is not None:
+            raise MeshError("soil mesh: a trench or a groove is meshed in tetrahedra; take kind tet")
         case "hex":
             _extrude_layers(spec)
         case "tet":
@@ -43,6 +47,15 @@ def _extrude_layers(spec: BlockSpec) -> None:
 
 
 def _tetrahedra(spec: BlockSpec) -> None:
+    if spec.feature is None:
+        _box(spec)
+    else:
+        dig(spec, spec.feature)
+    _size_field(spec)
+
+
+def _box(spec: BlockSpec) -> None:
+    """A box without a mesh, cut where layers of soil meet."""
     (x0, x1), (y0, y1) = spec.x, spec.y
     corner = gmsh.model.geo.addPoint(x0, y0, spec.level - spec.depth)
     shape = [(0, corner)]
@@ -52,16 +65,16 @@ def _tetrahedra(spec: BlockSpec) -> None:
         made = gmsh.model.geo.extrude(shape, *step)
         shape = made[:1] if axis == 2 else [entity for entity in made if entity[0] == axis + 1]
     gmsh.model.geo.synchronize()
-    _size_field(spec)
 
 
 def _size_field(spec: BlockSpec) -> None:
-    """Cell size grows linearly away from the riser's strip at the top face."""
+    """Cell size grows linearly away from the riser's strip at the top face, and down to the bottom of a feature."""
     (x0, x1), (y0, y1) = spec.fine_range(0), spec.fine_range(1)
+    bottom = spec.level - (spec.feature.depth if spec.feature else 0.0)
     field = gmsh.model.mesh.field.add("Box")
     values = {
-        "VIn": spec.size_at_riser, "VOut": spec.size_far, "Thickness": spec.reach,
-        "XMin": x0, "XMax": x1, "YMin": y0, "YMax": y1, "ZMin": spec.level, "ZMax": spec.level,
+        "VIn": spec.finest, "VOut": spec.size_far, "Thickness": spec.reach,
+        "XMin": x0, "XMax": x1, "YMin": y0, "YMax": y1, "ZMin": bottom, "ZMax": spec.level,
     }  # fmt: skip
     for name, value in values.items():
         gmsh.model.mesh.field.setNumber(field, name, value)

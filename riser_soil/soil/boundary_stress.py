@@ -1,4 +1,4 @@
-"""Stress that the riser causes at the sides and the bottom of the soil, against the largest in it."""
+"""Stress that the riser causes at the sides and the bottom of the soil."""
 
 from __future__ import annotations
 
@@ -11,11 +11,10 @@ from riser_soil.soil.soil import Soil
 
 
 class BoundaryStress(NamedTuple):
-    """Largest change of the equivalent stress since the start, as means of cells [Pa]: in all the soil, in cells at the
-    bottom, and in cells at the two sides along the riser.
+    """Largest change of the equivalent stress since the start, as means of cells [Pa]: in cells at the bottom, and in
+    cells at the two sides along the riser.
     """
 
-    largest: float
     bottom: float
     sides: float
 
@@ -28,5 +27,5 @@ def boundary_stress(soil: Soil, across: int) -> BoundaryStress:
     bottom = (corners[..., 2] < grid.low[2] + near).any(axis=1)
     y = corners[..., across]
     sides = ((y < grid.low[across] + near) | (y > grid.high[across] - near)).any(axis=1)
-    found = [float(change[cells].max(initial=0.0)) for cells in (np.ones_like(bottom), bottom, sides)]
+    found = [float(change[cells].max(initial=0.0)) for cells in (bottom, sides)]
     return BoundaryStress(*(grid.nodes.comm.allreduce(value, MPI.MAX) for value in found))

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from riser_soil.core.lazy import LazyModule
-from riser_soil.core.quantities import PoissonRatio, Ratio, StrengthGradient, Stress
+from riser_soil.core.quantities import PoissonRatio, Ratio, StrengthGradient, StressOrNone, wrong
 from riser_soil.seabed.bearing import Number, Strength, strip_capacity
 from riser_soil.soil.law import Bearing, Formula, SoilLaw
 from riser_soil.soil.remoulding import RemouldedClay, Remoulding, WeakeningFormula
@@ -21,11 +21,13 @@ if TYPE_CHECKING:
 else:
     np, mandel = LazyModule("numpy"), LazyModule("riser_soil.soil.mandel")
 
+SHALLOWEST = 1e-3  # m; strength that grows from nothing is at least that of this depth
+
 
 class UndrainedClay(SoilLaw, ABC):
     """Clay that fails at q = √3·su: su is the strength in simple shear and plane strain."""
 
-    su: Stress = Field(description="undrained shear strength at the seabed [Pa]")
+    su: StressOrNone = Field(description="undrained shear strength at the seabed [Pa]; may be 0 if it grows from there")
     su_gradient: StrengthGradient = Field(default=0.0, description="growth of su with depth [Pa/m]")
     E_over_su: Ratio = Field(description="Young's modulus over su, the same at every depth [-]")
     nu: PoissonRatio = Field(default=0.49, description="Poisson's ratio [-]")
@@ -41,9 +43,15 @@ class UndrainedClay(SoilLaw, ABC):
         intact = self.intact(depth, initial)
         return intact if self.remoulding is None else RemouldedClay(intact, self.remoulding)
 
-    @property
-    def surface_modulus(self) -> float:
-        return self._modulus(self._strength.at(0.0))
+    @model_validator(mode="after")
+    def _has_a_strength(self) -> Self:
+        if self.su == 0.0 and self.su_gradient <= 0.0:
+            raise wrong("su", "must be above 0 where su_gradient is not", "raise su or su_gradient")
+        return self
+
+    def surface_modulus(self, width: float) -> float:
+        """Of clay without strength at the seabed, that at half the width below it."""
+        return self._modulus(self._strength.at(0.0 if self.su > 0.0 else 0.5 * width))
 
     @property
     def _strength(self) -> Strength:
@@ -55,7 +63,7 @@ class UndrainedClay(SoilLaw, ABC):
 
     def _constants(self, depth: Array) -> tuple[Array, Array, Array]:
         """Bulk and shear modulus and the largest equivalent stress √3·su at depths (n,), (n,) each [Pa]."""
-        strength = self._strength.at(depth)
+        strength = np.maximum(self._strength.at(depth), SHALLOWEST * self.su_gradient)
         E = self._modulus(strength)
         return mandel.bulk_modulus(E, self.nu), mandel.shear_modulus(E, self.nu), np.sqrt(3.0) * strength
 

@@ -71,8 +71,7 @@ class DruckerPrager(SoilLaw):
             )
         return self
 
-    @property
-    def surface_modulus(self) -> float:
+    def surface_modulus(self, width: float) -> float:
         return self.E
 
     def at_points(self, depth: Array, initial: Array) -> FrictionalSoil:

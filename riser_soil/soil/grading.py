@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.soil.seabed_feature import FeatureSpec, GrooveSpec
 
 _PIECES = 16  # on either side of the riser, to count cells by
 _EQUAL = 1e-9  # difference of two sizes, over either, that is none
@@ -28,7 +29,8 @@ class BlockSpec:
     the surface under the riser is smooth. None: fine in the whole plan.
     along: of hexahedra, length of the cells along a riser that runs along x or y, where it is another than their size
     across it; strip: width across the riser, and half of it downwards, within which they do not grow yet. boundaries:
-    depths below the level at which layers of soil meet, increasing; cells end there.
+    depths below the level at which layers of soil meet, increasing; cells end there. feature: of the top, along a riser
+    that runs along x or y.
     """
 
     x: Point
@@ -42,6 +44,28 @@ class BlockSpec:
     along: float | None = None
     strip: float = 0.0
     boundaries: tuple[float, ...] = ()
+    feature: FeatureSpec | None = None
+
+    @property
+    def axis(self) -> int:
+        """The axis, x (0) or y (1), along which the riser mainly runs."""
+        (x0, y0), (x1, y1) = self.riser or ((0.0, 0.0), (1.0, 0.0))
+        return int(abs(y1 - y0) > abs(x1 - x0))
+
+    @property
+    def line(self) -> float:
+        """Where the riser's line begins, across that axis."""
+        return self.riser[0][1 - self.axis] if self.riser else sum((self.x, self.y)[1 - self.axis]) / 2.0
+
+    @property
+    def ends(self) -> Point:
+        """Ends of the block on that axis."""
+        return (self.x, self.y)[self.axis]
+
+    @property
+    def finest(self) -> float:
+        """Size of the cells under the riser, no coarser than a feature asks for."""
+        return self.feature.finest(self.size_at_riser) if self.feature else self.size_at_riser
 
     def fine_range(self, axis: int) -> Point:
         """Range of x (axis 0) or y (axis 1) that the riser covers in plan, with half a cell, or strip, around."""
@@ -51,6 +75,8 @@ class BlockSpec:
         ends = sorted(point[axis] for point in self.riser)
         size = self.size(axis)
         half = 0.5 * size if self.lies_along(axis) else 0.5 * size * _odd(self.strip / size)
+        if isinstance(self.feature, GrooveSpec) and axis != self.axis:
+            half = max(half, self.feature.half_width)
         first, last = np.clip((ends[0] - half, ends[1] + half), low, high)
         return float(first), float(last)
 
@@ -93,15 +119,15 @@ class BlockSpec:
 
     def cubes(self) -> float:
         """Integral of 1/size^3, about the number of cubes; the size grows linearly away from the riser's strip."""
-        (x, dx), (y, dy), (z, dz) = self._around(0), self._around(1), _outwards(self.depth, self.size_at_riser)
+        (x, dx), (y, dy), (z, dz) = self._around(0), self._around(1), _outwards(self.depth, self.finest)
         away = np.sqrt(x[:, None, None] ** 2 + y[:, None] ** 2 + z**2)
-        size = self.size_at_riser + (self.size_far - self.size_at_riser) * np.minimum(away / self.reach, 1.0)
+        size = self.finest + (self.size_far - self.finest) * np.minimum(away / self.reach, 1.0)
         return float(np.einsum("i,j,k,ijk->", dx, dy, dz, size**-3.0))
 
     def _around(self, axis: int) -> tuple[Array, Array]:
         """Distances of pieces of the block along x or y from the riser's strip, and their lengths [m]."""
         (low, high), (first, last) = (self.x, self.y)[axis], self.fine_range(axis)
-        below, above = (_outwards(length, self.size_at_riser) for length in (first - low, high - last))
+        below, above = (_outwards(length, self.finest) for length in (first - low, high - last))
         return np.concatenate((below[0], [0.0], above[0])), np.concatenate((below[1], [last - first], above[1]))
 
 

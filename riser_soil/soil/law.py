@@ -75,10 +75,11 @@ class SoilLaw(BaseModel, ABC):
     model_config = FROZEN
     kind: str
 
-    @property
     @abstractmethod
-    def surface_modulus(self) -> float:
-        """Young's modulus at the soil's surface [Pa]: contact is so much stiffer."""
+    def surface_modulus(self, width: float) -> float:
+        """Young's modulus at the soil's surface [Pa], above 0, as a pipe of this width [m] meets it: contact is so much
+        stiffer.
+        """
 
     @abstractmethod
     def at_points(self, depth: Array, initial: Array) -> Formula:

@@ -28,8 +28,7 @@ class LinearElastic(SoilLaw):
     E: Stress = Field(description="Young's modulus [Pa]")
     nu: PoissonRatio = Field(description="Poisson's ratio [-]")
 
-    @property
-    def surface_modulus(self) -> float:
+    def surface_modulus(self, width: float) -> float:
         return self.E
 
     def at_points(self, depth: Array, initial: Array) -> Elastic:

@@ -50,8 +50,7 @@ class OtherElastic(SoilLaw):
     E: Stress = Field(description="Young's modulus [Pa]")
     nu: PoissonRatio = Field(description="Poisson's ratio [-]")
 
-    @property
-    def surface_modulus(self) -> float:
+    def surface_modulus(self, width: float) -> float:
         return self.E
 
     def at_points(self, depth: Array, initial: Array) -> Formula:
@@ -67,8 +66,7 @@ class Hardening(SoilLaw):
     limit: Stress = Field(description="equivalent stress at which it yields first [Pa]")
     H: Stress = Field(description="growth of the limit by equivalent plastic strain [Pa]")
 
-    @property
-    def surface_modulus(self) -> float:
+    def surface_modulus(self, width: float) -> float:
         return self.E
 
     def at_points(self, depth: Array, initial: Array) -> HardeningPoints:

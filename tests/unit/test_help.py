@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 # VTK does not stand processes that have imported dolfinx.
-ALONE = ROOT / "riser_soil" / "plots" / "touchdown.py"
+ALONE = [ROOT / "riser_soil" / "plots" / f"{name}.py" for name in ("touchdown", "film")]
 
 
 def runnable() -> list[Path]:
@@ -25,7 +25,10 @@ def test_the_modules_that_can_be_run_are_found() -> None:
     assert {"riser_soil/__main__.py", "benchmarks/__main__.py", "demos/waves/rao.py", "meshes/block.py"} < names
 
 
-@pytest.mark.parametrize("file", [file for file in runnable() if file != ALONE], ids=lambda f: str(f.relative_to(ROOT)))
+TOGETHER = [file for file in runnable() if file not in ALONE]
+
+
+@pytest.mark.parametrize("file", TOGETHER, ids=lambda file: str(file.relative_to(ROOT)))
 def test_help(file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(sys, "argv", [str(file), "--help"])
     with pytest.raises(SystemExit) as left:
@@ -34,10 +37,10 @@ def test_help(file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
     assert "usage: " in capsys.readouterr().out.lower()
 
 
-def test_help_of_the_picture() -> None:
-    done = subprocess.run(
-        [sys.executable, "-m", "riser_soil.plots.touchdown", "--help"], capture_output=True, text=True, cwd=ROOT
-    )
+@pytest.mark.parametrize(("name", "takes"), [("touchdown", "[-h] folder png [magnify]"), ("film", "[-h]")])
+def test_help_of_pictures_and_films(name: str, takes: str) -> None:
+    call = [sys.executable, "-m", f"riser_soil.plots.{name}", "--help"]
+    done = subprocess.run(call, capture_output=True, text=True, cwd=ROOT)
     assert done.returncode == 0
-    assert "usage: python -m riser_soil.plots.touchdown [-h] folder png [magnify]" in done.stdout
+    assert f"usage: python -m riser_soil.plots.{name} {takes}" in done.stdout
     assert not done.stderr

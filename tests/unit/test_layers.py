@@ -28,7 +28,7 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("results",),
     ("seating",),
     ("stages", "plots"),
-    ("run", "material"),
+    ("run", "material", "calibration"),
     ("__main__",),
 ]
 RANK = {name: rank for rank, layer in enumerate(LAYERS) for name in layer}
@@ -42,6 +42,8 @@ ONLY_IN = {  # what costs time to import, or may be absent, and where it is need
     "matplotlib": "riser_soil.plots",
     "pyvista": "riser_soil.plots",
     "numba": "riser_soil.core.compiled",
+    "scipy.optimize": "riser_soil.calibration",
+    "scipy.stats": "riser_soil.calibration",
 }
 
 

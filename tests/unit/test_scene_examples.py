@@ -253,7 +253,8 @@ def test_merge_keys_serve_line_types(tmp_path: Path) -> None:
 
 def test_fields_of_the_language_are_those_of_the_recorder() -> None:
     along_riser = {name for name, variable in SERIES.items() if "arc" in variable.dims} - {"position"}
-    assert set(ALL_FIELDS) == along_riser | {output.name for output in OF_SOIL}
+    across = {name for name, variable in SERIES.items() if "offset" in variable.dims}
+    assert set(ALL_FIELDS) == along_riser | across | {output.name for output in OF_SOIL}
 
 
 def _properties(schema: Any) -> Any:

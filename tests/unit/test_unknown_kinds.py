@@ -65,7 +65,7 @@ def test_a_third_soil_law_is_refused() -> None:
     given["soil"]["law"]["kind"] = "cam-clay"
     with pytest.raises(SceneError, match=rf'soil.law.kind: value "cam-clay": must be one of {", ".join(LAWS)};'):
         scene_from_mapping(given)
-    third = another(VonMises(kind="von-mises", **CLAY), surface_modulus=1.0e6)
+    third = another(VonMises(kind="von-mises", **CLAY), surface_modulus=lambda width: 1.0e6)
     whole = scene()
     with pytest.raises(AttributeError, match="at_points"):
         build(with_parts(whole, soil=with_parts(whole.soil, law=third)), MPI.COMM_SELF)

@@ -91,7 +91,8 @@ def test_pipe_lies_on_the_soil_in_the_files(demo: WatchedRun) -> None:
 def test_xarray_opens_the_series(demo: WatchedRun) -> None:
     with xarray.open_dataset(demo.folder / "results.nc", engine="h5netcdf", decode_times=False) as data:
         nodes = 150
-        assert dict(data.sizes) == {"time": 151, "step": 151, "arc": nodes, "component": 3}
+        sizes = {"time": 151, "step": 151, "arc": nodes, "component": 3, "section": 1, "offset": 61}
+        assert dict(data.sizes) == sizes
         assert data.attrs["finished"] == 1
         assert data.attrs["title"] == "Touchdown on soft clay"
         assert data["position"].dims == ("time", "arc", "component")

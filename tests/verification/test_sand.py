@@ -35,8 +35,7 @@ def test_strip_collapses_at_prandtls_load_with_friction() -> None:
         strip = press_strip("hex", cells, far=4.0 / cells, law=law, strength=c)
         assert strip.load[-1] - strip.load[-2] < 1e-2 * factor, strip.load
         errors.append(strip.load[-1] / factor - 1.0)
-    assert 0.0 < errors[1] < 0.15
-    assert errors[1] < 0.6 * errors[0]
+    assert errors == pytest.approx([0.22, 0.115], abs=0.005)
 
 
 @pytest.mark.parametrize(("phi", "psi"), [(20.0, 0.0), (35.0, 5.0), (32.0, 32.0)])

@@ -19,67 +19,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import FirstStep, built, take
-
-D, E, NU = 0.5, 1.2e6, 0.49
-INDENTATION = 0.01  # m
-
-
-def slice_of_soil(cells: int, method: str = "surface") -> Mapping:
-    """A stiff pipe over a slice of elastic soil, 8 m wide and 4 m deep, with so many cells across the diameter."""
-    size = D / cells
-    ends = {end: {"position": [x, 0.0, 0.5 * D], "rotation": "fixed"} for end, x in (("start", 0.0), ("end", 1.0))}
-    pipe = {"outer_diameter": D, "submerged_weight": 700.0, "mass": 70.0, "EA": 1e10, "EI": 1e9}
-    block = {"x": [0.5 - 0.5 * size, 0.5 + 0.5 * size], "y": [-4.0, 4.0], "depth": 4.0}
-    down = {end: [*ends[end]["position"][:2], 0.5 * D - INDENTATION] for end in ends}
-    return {
-        "title": "Slice of soil under a pipe",
-        "gravity": 9.81,
-        "dimension": 2,
-        "line_types": {"pipe": pipe},
-        "riser": {"segments": [{"line_type": "pipe", "length": 1.0, "elements": 8}], **ends, "initial": "straight"},
-        "soil": {
-            "block": block,
-            "mesh": {"kind": "hex", "size_at_riser": size, "size_far": max(size, 0.5)},
-            "law": {"kind": "linear-elastic", "E": E, "nu": NU},
-        },
-        "contact": {"method": method},
-        "stages": [{"name": "push", "kind": "static", "move": down}],
-    }
-
-
-class Pushed:
-    """The pipe pushed in: force per length q [N/m], and what Hertz says of it."""
-
-    def __init__(self, cells: int, method: str = "surface", scene: Mapping | None = None) -> None:
-        self.assembly = built(scene or slice_of_soil(cells, method))
-        self.state = take(self.assembly, self.assembly.scene.stages[0])
-        assert self.assembly.soil is not None
-        assert self.assembly.soil_contact is not None
-        grid = self.assembly.soil.grid
-        self.thickness = float(grid.high[0] - grid.low[0])
-        self.q = -float(self.assembly.soil_contact.force_on_soil(self.state)[2]) / self.thickness
-        self.modulus = E / (1.0 - NU**2)
-        self.half_width = float(np.sqrt(2.0 * self.q * D / (np.pi * self.modulus)))
-
-    @property
-    def indentation(self) -> float:
-        """Less the penalty's give [m]."""
-        assert self.assembly.soil_contact is not None
-        return INDENTATION - self.assembly.soil_contact.max_penetration(self.state)
-
-    def approach(self, depth: float) -> float:
-        """How far the pipe comes nearer to a point so deep below it [m]; Johnson, Contact Mechanics, 5.6."""
-        log = 2.0 * np.log(2.0 * depth / self.half_width) - NU / (1.0 - NU)
-        return float(self.q / (np.pi * self.modulus) * log)
-
-    def settled(self, depth: float) -> float:
-        """Downward displacement of the soil at so deep below the pipe [m]."""
-        assert self.assembly.soil is not None
-        field = self.assembly.soil.field
-        y, z = field.points[:, 1], field.points[:, 2]
-        middle = np.abs(y) < np.abs(y).min() + 1e-9
-        order = np.argsort(-z[middle])
-        return -float(np.interp(depth, -z[middle][order], field.total[2::3][middle][order]))
+from tests.support.pushed_pipe import INDENTATION, NU, D, E, Pushed, slice_of_soil
 
 
 @cache

@@ -1,0 +1,125 @@
+"""Pipe segment: a scene with a short pipe over soil, driven up and down, and the resistance that it meets."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI
+
+from riser_soil.assembly import Assembly, build
+from riser_soil.calibration.path import PenetrationPath
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.core.system import Timer
+from riser_soil.errors import SceneError, SolveError
+from riser_soil.scene.reader import read_scene
+from riser_soil.scene.riser import Support
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import Stage
+from riser_soil.solve.dynamic_relaxation import RelaxationResult
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
+from riser_soil.stages import StatelessObserver, run_stage
+
+TABLE = "path.csv"
+STEP = 1.0  # s; the soil has no rate and both ends are driven: time only counts
+
+
+@dataclass(frozen=True)
+class PipeSegment:
+    """A scene file and overrides for it; its stages are replaced by the path."""
+
+    file: str
+    overrides: Sequence[str]
+
+    def scene(self, parameters: Mapping[str, float], table: Path | str, steps: int) -> Scene:
+        """The scene that follows a table of so many steps, with numbers by their paths in it."""
+        motion = {"table": str(table)}
+        stage = {"name": "penetration", "kind": "dynamic", "duration": STEP * steps, "time_step": STEP}
+        given = [f"stages={json.dumps([stage | {'motion': {'start': motion, 'end': motion}}])}"]
+        given += [f"{path}={value!r}" for path, value in parameters.items()]
+        return read_scene(self.file, [*self.overrides, *given])
+
+    def resistance(self, parameters: Mapping[str, float], path: PenetrationPath, table: Path) -> Array:
+        """Vertical resistance (m,) at the steps of a path [N/m], > 0 where the soil pushes the pipe up."""
+        scene = self.scene(parameters, table, len(path.w) - 1)
+        assembly = build(scene, MPI.COMM_SELF)
+        log = ContactForceLog(assembly)
+        try:
+            run_stage(assembly, scene.stages[0], State.at_rest(0.0, assembly.size), log, Timer.new())
+        except SolveError as err:
+            given = ", ".join(f"{name} = {value:.6g}" for name, value in parameters.items())
+            raise SolveError(f"with {given}: {err}") from err
+        V = np.interp(STEP * np.arange(len(path.w)), log.times, log.forces)
+        return np.asarray(V / contact_length(assembly))
+
+
+@dataclass
+class ContactForceLog(StatelessObserver):
+    """Vertical force of all ground on the riser [N] after each step of a stage, by time [s]."""
+
+    assembly: Assembly
+    times: list[float] = field(default_factory=list)
+    forces: list[float] = field(default_factory=list)
+
+    def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
+        self._take(stepper)
+
+    def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
+        self._take(stepper)
+
+    def relaxed(self, relaxed: RelaxationResult) -> None:
+        pass
+
+    def _take(self, stepper: TimeStepper) -> None:
+        state = stepper.now
+        self.times.append(state.t)
+        self.forces.append(sum(float(contact.force_on_riser(state)[2]) for contact in self.assembly.contacts))
+
+
+def first_penetration(scene: Scene) -> float:
+    """Depth of the pipe's underside below the seabed as the scene has it [m]; SceneError where it is no segment."""
+    ends = scene.riser.start, scene.riser.end
+    if scene.soil is None:
+        raise SceneError("soil: missing: a pipe segment is pressed into soil; add soil")
+    for name, end in zip(("start", "end"), ends, strict=True):
+        if not isinstance(end, Support) or end.rotation == "free":
+            remedy = "give position and rotation: fixed"
+            raise SceneError(f"riser.{name}: both ends of a pipe segment are driven and do not turn; {remedy}")
+    levels = [end.position[2] for end in ends if isinstance(end, Support)]
+    if levels[0] != levels[1]:
+        high = f"z is {levels[1]:g} m and {levels[0]:g} m at the start"
+        raise SceneError(f"riser.end.position: {high}; lay the pipe level")
+    return scene.seabed_level - (levels[0] - 0.5 * diameter(scene))
+
+
+def diameter(scene: Scene) -> float:
+    """Outer diameter of a pipe segment [m]."""
+    found = {line_type.outer_diameter for line_type in scene.used_line_types.values()}
+    only = found.pop()
+    if found or only is None:
+        raise SceneError("riser.segments: a pipe segment has one outer_diameter, all along; take one line type")
+    return only
+
+
+def contact_length(assembly: Assembly) -> float:
+    """Length of the pipe over the soil, along its direction in plan [m]."""
+    line, soil = assembly.line, assembly.soil
+    assert soil is not None
+    axis = int(np.argmax(np.abs(line.direction[:2])))
+    ends = sorted(float(line.to_global(line.x[node])[axis]) for node in (0, -1))
+    low, high = max(ends[0], soil.grid.low[axis]), min(ends[1], soil.grid.high[axis])
+    if high <= low or not np.isclose(abs(line.direction[axis]), 1.0):
+        raise SceneError("soil.block: a pipe segment lies over the soil, along x or y; move or turn the pipe")
+    return float(high - low)
+
+
+def write_table(path: PenetrationPath, first: float, file: Path) -> None:
+    """The path as a table of motion for both ends; first: penetration as the scene begins [m]."""
+    rows = [f"{STEP * n:.10g}, 0, 0, {first - w!r}" for n, w in enumerate(path.w)]
+    while len(rows) < 4:  # that cubic splines ask for
+        rows.append(f"{STEP * len(rows):.10g}, 0, 0, {first - path.w[-1]!r}")
+    file.write_text("\n".join(["t [s], x [m], y [m], z [m]", *rows]) + "\n", encoding="utf-8")

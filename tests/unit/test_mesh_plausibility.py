@@ -1,0 +1,95 @@
+"""Warnings of the soil's mesh and block: long elements and cells, oblique risers, a block that is left or too small."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from riser_soil.checks.mesh_plausibility import mesh_warnings, missed, told_resolution
+from riser_soil.results.plausibility import NEAR_STRESS
+from riser_soil.run import run
+from riser_soil.scene.reader import scene_from_mapping
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.driven_stage import built
+
+
+def on_block(*stages: Mapping, su: float = 6000.0, **soil: Any) -> Mapping:
+    scene = touchdown(*stages, su=su)
+    scene["soil"] |= soil
+    scene["contact"] = {"method": "surface"}
+    return scene
+
+
+def sizes(along: float, across: float) -> Mapping:
+    return {"kind": "hex", "size_at_riser": {"along": along, "across": across}, "size_far": 1.0}
+
+
+def warned(scene: Mapping) -> list[str]:
+    return list(mesh_warnings(built(scene)))
+
+
+def test_cells_and_elements_that_suit_are_not_told() -> None:
+    assert warned(on_block(LAY, mesh=sizes(0.5, 0.012))) == []
+
+
+def test_cells_and_elements_longer_than_the_bend_on_soil_are_told() -> None:
+    """(4 EI/E)^(1/4) = (2e5/1.8e6)^(1/4) = 0.58 m."""
+    (told,) = warned(on_block(LAY, mesh=sizes(1.0, 0.012)))
+    assert told.startswith("soil.mesh cells along it of 1 m are long beside the 0.577 m")
+    scene = on_block(LAY, mesh=sizes(0.5, 0.012))
+    scene["riser"]["segments"][0]["elements"] = 12
+    (told,) = warned(scene)
+    assert told.startswith("elements of the riser over the soil of 1 m are long beside the 0.577 m")
+    assert "take at most 0.29 m" in told
+
+
+def test_long_cells_under_an_oblique_riser_are_told() -> None:
+    scene = on_block(LAY, mesh=sizes(0.5, 0.25))
+    scene["riser"]["end"]["position"] = [18.0, 13.5, 15.0]
+    scene["soil"]["block"]["y"] = [-1.0, 8.0]
+    assert [told for told in warned(scene) if "size_at_riser.along 0.5 m has no effect" in told]
+
+
+def test_a_block_that_the_touchdown_point_will_leave_is_told() -> None:
+    block = {"x": [7.0, 8.5], "y": [-1.0, 1.0], "depth": 1.0}
+    (told,) = (told for told in warned(on_block(LAY, heave(3.0, amplitude=2.0), block=block)) if "leaves" in told)
+    assert "take block: auto" in told
+    assert not [told for told in warned(on_block(LAY, heave(3.0, amplitude=0.01))) if "leaves" in told]
+
+
+def test_what_cells_miss_grows_with_their_size() -> None:
+    assert missed(0.01, 0.04, 2.4) == pytest.approx(0.02)
+    assert missed(0.02, 0.02, 2.4) == pytest.approx(0.02 + 0.5596 / 5.674, rel=1e-3)
+    told = told_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.012))))
+    assert told is not None
+    assert "0.5 m along and 0.012 m across, where 0.0236 m touch" in told
+    assert told_resolution(built(touchdown(LAY))) is None
+
+
+def stage_warnings(scene: Mapping, folder: Path) -> list[str]:
+    run(scene_from_mapping(scene), folder)
+    stages = json.loads((folder / "summary.json").read_text())["stages"]
+    return [warning for stage in stages for warning in stage["warnings"]]
+
+
+def test_a_block_too_shallow_and_narrow_is_told_after_the_run(tmp_path: Path) -> None:
+    block = {"x": [4.0, 7.0], "y": [-0.6, 0.6], "depth": 0.6}
+    scene = touchdown(LAY, su=6000.0)
+    scene["soil"] |= {"block": block, "mesh": {"kind": "hex", "size_at_riser": 0.2, "size_far": 0.3}}
+    bottom, sides = [told for told in stage_warnings(scene, tmp_path) if "changes the soil's stress" in told]
+    assert "at the block's bottom by" in bottom
+    assert "take a deeper one" in bottom
+    assert "sides along the riser" in sides
+    assert "take a wider one" in sides
+    assert f"told above {NEAR_STRESS:.0%}" in sides
+
+
+def test_a_block_that_was_left_is_told_after_the_run(tmp_path: Path) -> None:
+    block = {"x": [2.0, 5.0], "y": [-1.0, 1.0], "depth": 1.0}
+    scene = touchdown(LAY, su=6000.0)
+    scene["soil"]["block"] = block
+    (told,) = [told for told in stage_warnings(scene, tmp_path) if "left the soil's block" in told]
+    assert "where the seabed bears the riser" in told

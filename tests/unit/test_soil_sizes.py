@@ -1,0 +1,149 @@
+"""Automatic block and mesh of the soil: sizes from what touches, the block around the touchdown points."""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from riser_soil.assembly import sized
+from riser_soil.assembly.ground import contact_width
+from riser_soil.assembly.riser import elements_of
+from riser_soil.assembly.scales import Scales
+from riser_soil.assembly.soil_sizes import ACROSS, bending_on_soil, touching_width
+from riser_soil.assembly.touchdown_forecast import forecast
+from riser_soil.checks.estimate import size_of
+from riser_soil.errors import SceneError
+from riser_soil.scene.dump import dump_scene
+from riser_soil.scene.reader import read_scene, scene_from_mapping
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.soil import Block, CellSizes, GeneratedMesh
+from riser_soil.soil.linear_elastic import LinearElastic
+from riser_soil.soil.von_mises import VonMises
+from tests.support.coupled_scenes import DEMO, LAY, Mapping, heave, touchdown
+
+CLAY = VonMises(kind="von-mises", su=4.0e3, su_gradient=0.0, E_over_su=300.0, nu=0.49)
+SOFT = LinearElastic(kind="linear-elastic", E=1.2e6, nu=0.49)
+
+
+def automatic(*stages: Mapping, **changes: Any) -> Scene:
+    scene = touchdown(*stages)
+    scene["soil"] |= {"block": "auto", "mesh": "auto"}
+    scene["contact"] = {"method": "surface"}
+    for key, value in changes.items():
+        part = scene
+        *path, last = key.split("__")
+        for name in path:
+            part = part[name]
+        part[last] = value
+    return scene_from_mapping(scene)
+
+
+def chosen(scene: Scene) -> tuple[Block, GeneratedMesh, CellSizes]:
+    soil = sized(scene).soil
+    assert soil is not None
+    assert isinstance(soil.block, Block)
+    assert isinstance(soil.mesh, GeneratedMesh)
+    assert isinstance(soil.mesh.size_at_riser, CellSizes)
+    return soil.block, soil.mesh, soil.mesh.size_at_riser
+
+
+def test_a_light_pipe_touches_as_hertz_says_a_heavy_one_as_clay_bears() -> None:
+    light, heavy = Scales(20.0, 0.3, 1.0), Scales(3000.0, 0.3, 1.0)
+    assert touching_width(light, SOFT) == contact_width(light, 1.2e6) == touching_width(light, CLAY)
+    assert touching_width(heavy, CLAY) == pytest.approx(3000.0 / ((2.0 + np.pi) * 4.0e3), rel=1e-9)
+    assert touching_width(Scales(1e5, 0.3, 1.0), CLAY) == pytest.approx(0.3)
+
+
+def test_cells_follow_from_what_touches_and_from_what_bends() -> None:
+    scene = automatic()
+    block, mesh, sizes = chosen(scene)
+    assert scene.soil is not None
+    elements = elements_of(scene)
+    width = touching_width(Scales(float(elements.weight.max()), 0.3, 1.0), scene.soil.top_law)
+    assert sizes.across == pytest.approx(width / ACROSS, rel=1e-3)
+    assert sizes.strip == pytest.approx(2.0 * width, rel=1e-3)
+    assert sizes.along == pytest.approx(0.75 * bending_on_soil(elements, scene.soil.top_law), rel=1e-3)
+    assert mesh.size_far == pytest.approx(0.6 * block.depth, rel=1e-3)
+    assert bending_on_soil(elements, SOFT) == pytest.approx((4.0 * 5.0e4 / 1.2e6) ** 0.25)
+
+
+def test_the_block_lies_around_the_touchdown_points() -> None:
+    """Of the catenary at rest: a parabola nearly, x_end - x_0 = (H/w) arcosh(1 + w z/H)."""
+    scene = automatic(LAY)
+    found = forecast(scene, elements_of(scene))
+    assert found is not None
+    w = float(elements_of(scene).weight[0])
+    assert len(found.points) == 1
+    assert found.points[0, 0] == pytest.approx(22.5 - found.H / w * np.arccosh(1.0 + w * 14.85 / found.H), abs=0.05)
+    block, _, _ = chosen(scene)
+    assert block.x[0] < found.points[0, 0] < block.x[1]
+    assert np.mean(block.x) == pytest.approx(found.points[0, 0], abs=0.1)
+    assert block.y == pytest.approx((-2.4, 2.4))
+    assert block.depth == pytest.approx(2.4)
+
+
+def test_the_block_follows_the_reach_of_the_motion() -> None:
+    """By 1.25 times what catenaries between the moved ends say."""
+    moving = automatic(LAY, heave(3.0, amplitude=1.0))
+    found = forecast(moving, elements_of(moving))
+    assert found is not None
+    still, block = chosen(automatic(LAY))[0], chosen(moving)[0]
+    reach = found.points[:, 0] - found.points[0, 0]
+    assert reach.min() < -0.3
+    assert reach.max() > 0.3
+    assert np.subtract(block.x, still.x) == pytest.approx([1.25 * reach.min(), 1.25 * reach.max()], abs=0.1)
+
+
+def test_a_riser_along_y_has_its_block_and_cells_along_y() -> None:
+    along_x, along_y = automatic(LAY), automatic(LAY, riser__end__position=[0.0, 22.5, 15.0])
+    one, other = chosen(along_x)[0], chosen(along_y)[0]
+    assert other.y == pytest.approx(one.x, abs=1e-6)
+    assert other.x == pytest.approx(one.y, abs=1e-6)
+    assert size_of(along_x).cells == size_of(along_y).cells
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"riser__end": "free", "riser__initial": "straight"}, "soil.block: auto: no touchdown point can be foretold"),
+        ({"riser__end__position": [18.0, 13.5, 15.0]}, "soil.mesh: auto: cells are long along x or y"),
+    ],
+)
+def test_where_nothing_can_be_chosen_one_line_says_so(changes: Mapping, told: str) -> None:
+    with pytest.raises(SceneError, match=told) as caught:
+        sized(automatic(LAY, **changes))
+    assert "\n" not in str(caught.value)
+    assert "give " in str(caught.value)
+
+
+def test_strength_that_ends_within_the_block_is_refused() -> None:
+    law = {"kind": "von-mises", "su": 600.0, "su_gradient": -300.0, "E_over_su": 300.0}
+    with pytest.raises(SceneError, match=r"^soil\.block: auto: 2\.4 m deep: soil\.law: su must stay positive"):
+        sized(automatic(LAY, soil__law=law))
+
+
+def test_the_resolved_scene_tells_the_sizes_and_reads_back(tmp_path: Path) -> None:
+    scene = sized(automatic(LAY))
+    text = dump_scene(scene)
+    assert "auto" not in text.partition("soil:")[2].partition("law:")[0]
+    (tmp_path / "scene.yaml").write_text(text)
+    assert read_scene(tmp_path / "scene.yaml", []).soil == scene.soil
+    assert sized(scene) is scene
+
+
+def test_the_demo_stays_below_sixty_thousand_unknowns() -> None:
+    scene = read_scene(DEMO, ["contact.method=surface", "soil.mesh=auto", "soil.block=auto"])
+    assert 30e3 < size_of(scene).soil_unknowns < 60e3
+    block = chosen(scene)[0]
+    assert block.x == pytest.approx((15.3, 43.0))
+
+
+def test_a_block_of_ones_own_keeps_its_size() -> None:
+    given = deepcopy(touchdown()["soil"]["block"])
+    block, _, sizes = chosen(automatic(LAY, soil__block=given))
+    assert (list(block.x), list(block.y), block.depth) == (given["x"], given["y"], given["depth"])
+    assert sizes.across < 0.06

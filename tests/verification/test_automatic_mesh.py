@@ -1,0 +1,124 @@
+"""Automatic mesh: halving all cells, or the cells' length and the pipe's elements, changes little; fixed cells do."""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from riser_soil.assembly import build, sized
+from riser_soil.checks.mesh_plausibility import missed
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.soil import CellSizes, GeneratedMesh
+from tests.support.coupled_scenes import Mapping
+from tests.support.driven_stage import take
+from tests.support.lifted_pipe import ELASTIC, lifted_pipe
+from tests.support.pushed_pipe import D, Pushed, slice_of_soil
+
+EVEN_CLAY = {"kind": "von-mises", "su": 4.0e3, "E_over_su": 300.0, "nu": 0.49}
+
+
+class FineSlice(NamedTuple):
+    """Force per length [N/m] on a pipe pushed in by D/50, and the width that touches [m]."""
+
+    force: float
+    width: float
+
+
+FINE = FineSlice(4986.1, 0.0634)  # cells of D/128 over two diameters, 0.1 m at the sides
+
+
+class Found(NamedTuple):
+    """Force per length [N/m] at the given indentation, largest equivalent stress [Pa], plastic strain, unknowns."""
+
+    force: float
+    stress: float
+    plastic_strain: float
+    unknowns: int
+
+
+def slice_scene(law: Mapping, weight: float, indentation: float, method: str = "surface") -> Mapping:
+    """A slice of soil into which a pipe of this submerged weight [N/m] is pushed; block of eight diameters."""
+    scene = slice_of_soil(2, method)
+    scene["line_types"]["pipe"] |= {"submerged_weight": weight, "EA": 1e8}
+    scene["soil"] |= {"law": deepcopy(law), "mesh": "auto"}
+    scene["soil"]["block"] = {"x": [0.45, 0.55], "y": [-8.0 * D, 8.0 * D], "depth": 8.0 * D}
+    for end in ("start", "end"):
+        scene["stages"][0]["move"][end][2] = 0.5 * D - indentation
+    return scene
+
+
+def scaled(scene: Scene, across: float = 1.0, along: float = 1.0) -> Scene:
+    """The scene with its automatic cells so many times as large across, and downwards, and along."""
+    scene = sized(scene)
+    assert scene.soil is not None
+    mesh = scene.soil.mesh
+    assert isinstance(mesh, GeneratedMesh)
+    given = mesh.size_at_riser
+    assert isinstance(given, CellSizes)
+    sizes = CellSizes(along=along * given.along, across=across * given.across, strip=given.strip)
+    mesh = mesh.model_copy(update={"size_at_riser": sizes, "size_far": across * mesh.size_far})
+    return scene.model_copy(update={"soil": scene.soil.model_copy(update={"mesh": mesh})})
+
+
+def pushed(scene: Scene) -> Found:
+    assembly = build(scene, MPI.COMM_SELF)
+    state = take(assembly, scene.stages[0])
+    assert assembly.soil is not None
+    assert assembly.soil_contact is not None
+    grid, fields = assembly.soil.grid, assembly.soil.output_fields()
+    force = -float(assembly.soil_contact.force_on_soil(state)[2]) / float(grid.high[0] - grid.low[0])
+    return Found(force, fields.von_mises.max(), fields.plastic_strain.max(), 3 * len(assembly.soil.field.points))
+
+
+def changes(law: Mapping, weight: float, indentation: float) -> tuple[float, float]:
+    """What halving all cells changes of the force and of the largest stress."""
+    scene = scene_from_mapping(slice_scene(law, weight, indentation))
+    auto, half = pushed(scaled(scene)), pushed(scaled(scene, across=0.5))
+    return half.force / auto.force - 1.0, half.stress / auto.stress - 1.0
+
+
+def test_a_light_pipe_settles_the_same_on_cells_half_as_large() -> None:
+    assert np.abs(changes(ELASTIC, 1070.0, D / 200.0)).max() < 0.05
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize(
+    ("law", "weight", "indentation"),
+    [(ELASTIC, 5000.0, D / 50.0), (EVEN_CLAY, 830.0, D / 200.0), (EVEN_CLAY, 1350.0, D / 100.0)],
+    ids=["elastic", "clay", "clay deeper"],
+)
+def test_halving_all_cells_changes_little(law: Mapping, weight: float, indentation: float) -> None:
+    assert np.abs(changes(law, weight, indentation)).max() < 0.05
+
+
+@pytest.mark.parametrize(("cells", "off"), [(2, 0.66), (4, 0.35), (8, 0.11)])
+def test_what_cells_miss_is_told(cells: int, off: float) -> None:
+    """Force at an indentation of D/50 above that of cells of D/128; the settlement is too small as `check` says."""
+    force = Pushed(cells).q
+    assert force / FINE.force - 1.0 == pytest.approx(off, abs=0.02)
+    assert missed(D / cells, FINE.width, 4.0) == pytest.approx(1.0 - FINE.force / force, abs=0.04)
+
+
+def lifted(law: Mapping, along: float = 1.0, elements: int = 16) -> tuple[float, float]:
+    """Largest settlement of the soil [m] and equivalent stress [Pa] away from the pipe's ends, one end lifted."""
+    scene = scaled(scene_from_mapping(lifted_pipe(law, elements=elements)), across=2.0, along=along)
+    assembly, state = build(scene, MPI.COMM_SELF), None
+    for stage in scene.stages:
+        state = take(assembly, stage, state)
+    assert assembly.soil is not None
+    mesh, fields = assembly.soil.output_mesh(), assembly.soil.output_fields()
+    nodes, cells = mesh.points[:, 0], mesh.points[mesh.cells].mean(axis=1)[:, 0]
+    down = -fields.displacement[(nodes > 1.5) & (nodes < 7.0), 2].min()
+    return float(down), float(fields.von_mises[(cells > 1.5) & (cells < 7.0)].max())
+
+
+@pytest.mark.verify
+def test_half_the_length_of_cells_and_elements_changes_little() -> None:
+    base = np.array(lifted(ELASTIC))
+    for finer in (lifted(ELASTIC, along=0.5), lifted(ELASTIC, elements=32)):
+        assert np.abs(np.array(finer) / base - 1.0).max() < 0.03
