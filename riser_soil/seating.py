@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from riser_soil.assembly import Assembly
@@ -20,7 +22,7 @@ def seat(assembly: Assembly, model: Model, settings: NewtonSettings, clock: Time
     on_soil = {id(part) for part in (assembly.soil, assembly.soil_contact, assembly.soil_friction)}
     alone = Model(model.lines, [part for part in model.parts if id(part) not in on_soil])
     system = System(assembly.comm, alone, clock)
-    newton = Newton(system, settings)
+    newton = Newton(system, replace(settings, line_search=False))
     try:
         size = system.numbering.size
         solution = newton.solve(Step(Static(), State.at_rest(0.0, size), 0.0, 1.0, None, np.zeros(size)))

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol
+
+import numpy as np
+from mpi4py import MPI
 
 from riser_soil.assembly import Assembly
 from riser_soil.assembly.stage import scheme_of, times_to_hit
@@ -23,7 +27,8 @@ from riser_soil.solve.newton import Newton, NewtonSettings
 from riser_soil.solve.step_control import Control, StepControl
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
-LAID_IN = 4  # load steps on soil, at least
+LAID_IN = 8  # load steps on soil, at least
+MOVED_BY, MOST_STEPS = 0.25, 64  # diameters that an end moves in a load step on soil; load steps by themselves
 MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
 
 
@@ -223,15 +228,30 @@ def _relaxed(assembly: Assembly, stepper: TimeStepper, control: Control, observe
 
 def _settings(assembly: Assembly) -> NewtonSettings:
     solver = assembly.scene.solver
-    return NewtonSettings(solver.tolerance, solver.max_iterations, assembly.scales.force_floor)
+    on_soil = assembly.soil is not None
+    return NewtonSettings(solver.tolerance, solver.max_iterations, assembly.scales.force_floor, line_search=on_soil)
+
+
+def _load_steps(assembly: Assembly, stage: StaticStage, stepper: TimeStepper) -> int:
+    """Load steps of a static stage: as many as the scene asks for; more where soil is to follow a riser that is laid on
+    it or moved. Collective.
+    """
+    asked = assembly.scene.solver.load_steps
+    if assembly.cushion is None:
+        return asked
+    end, line = State.at_rest(1.0, assembly.size), assembly.line
+    stepper.system.prescribe(end)
+    mine = float(np.abs(end.u[line.translation_dofs]).max()) if line.active else 0.0
+    moved = assembly.comm.allreduce(mine, MPI.MAX) / (MOVED_BY * assembly.scales.diameter)
+    laid = LAID_IN if assembly.is_laid_in(stage) else 1
+    return max(asked, laid, min(math.ceil(moved), MOST_STEPS))
 
 
 def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> StepControl | AutoSteps:
     """The steps of a stage, from its beginning to its end."""
     solver = assembly.scene.solver
     if isinstance(stage, StaticStage):
-        laid = assembly.cushion is not None and assembly.is_laid_in(stage)
-        return StepControl(1.0, 1.0 / max(solver.load_steps, LAID_IN if laid else 1), solver.min_load_step)
+        return StepControl(1.0, 1.0 / _load_steps(assembly, stage, stepper), solver.min_load_step)
     smallest = assembly.smallest_step(stage)
     if stage.time_step == "auto":
         tolerance = assembly.error_tolerance(stage)

@@ -220,7 +220,9 @@ def _add_ground(assembly: Assembly) -> None:
         contact = ground.soil_contact_of(scene, settings, line, elements, soil.surface, stiffness["soil"])
         assembly.soil_contact = contact
         assembly.frictions += ground.soil_friction_of(scene, settings, contact, elements)
-        assembly.cushion = ground.cushion_of(scene, settings, contact, elements)
+        assembly.cushion = ground.cushion_of(
+            scene, settings, contact, elements, soil.surface.points, assembly.comm
+        )
     if scene.seabed is not None:
         law = ground.seabed_law(scene.seabed, settings, elements, stiffness)
         assembly.seabed = ground.seabed_contact_of(scene, settings, line, elements, law, assembly.soil_contact)

@@ -8,6 +8,7 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.assembly.scales import Scales, contact_radius, scales_of
+from riser_soil.core.arrays import Array
 from riser_soil.assembly.soil_law import law_of, volumes, weight_of
 from riser_soil.errors import SceneError
 from riser_soil.interruption import restoring_signal_handlers
@@ -40,7 +41,7 @@ GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within 
 POINTS_ACROSS, FINEST, COARSEST, ALONG = 4.0, 1.0 / 200.0, 1.0 / 16.0, 4.0
 # Of the outer diameter: a penalty's corner, sharper ones cost Newton iterations; the slide that mobilises friction.
 NARROWEST_CORNER, WIDEST_CORNER, MOBILISATION = 1.0 / 3000.0, 1.0 / 300.0, 1.0 / 30.0
-CUSHION = 0.01  # of the diameter: how far it gives under the riser's weight
+CUSHION, LEVEL = 0.01, 0.01  # of the diameter: how far it gives under the riser's weight; unevenness of a level top
 
 
 def soil_of(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Soil:
@@ -174,13 +175,19 @@ def soil_friction_of(
     return [SoilFriction(contact, *mu, float(mobilised_within(slide, *mu, np.array(scales.weight))) / width)]
 
 
-def cushion_of(scene: Scene, settings: ContactScene, contact: SoilContact, elements: Elements) -> Cushion | None:
-    """What holds the riser at first where the pipe's surface is to touch a level soil."""
-    if settings.at_nodes:
+def cushion_of(
+    scene: Scene, settings: ContactScene, contact: SoilContact, elements: Elements, top: Array, comm: MPI.Intracomm
+) -> Cushion | None:
+    """What holds the riser at first where the pipe's surface is to touch a level soil; collective.
+
+    top (np, 3): points of the soil's surface [m], all of it on the first rank.
+    """
+    scales = scales_of(elements)
+    level = bool(np.ptp(top[:, 2]) < LEVEL * scales.diameter) if len(top) else True
+    if not comm.bcast(level) or settings.at_nodes:
         return None
     from riser_soil.contact.cushion import Cushion
 
-    scales = scales_of(elements)
     return Cushion(
         contact.line,
         contact_radius(scene, elements),

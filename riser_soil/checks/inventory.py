@@ -42,11 +42,12 @@ def _reasons(scene: Scene) -> dict[str, str]:
         "friction": _no_friction(scene, "seabed"),
         "soil friction": _no_friction(scene, "soil"),
         "soil": "" if scene.soil is not None else "the scene has no soil",
+        "cushion": _no_cushion(scene),
         "contact": "" if ground else "the scene has neither seabed nor soil",
     }
 
 
-DISSIPATING = ("morison", "structural damping", "contact", "seabed", "friction", "soil friction", "soil")
+DISSIPATING = ("morison", "structural damping", "contact", "seabed", "friction", "soil friction", "soil", "cushion")
 #: Accounts of a part that tells what is its own and what is the time scheme's.
 SPLIT = {"soil": ("soil_plasticity", "soil_time_scheme")}
 WORKING = ("loads", "morison", "buoyancy")
@@ -69,6 +70,14 @@ def _in_ledger(scene: Scene, names: tuple[str, ...]) -> tuple[str, ...]:
 
 def has_dynamics(scene: Scene) -> bool:
     return any(s.kind == "dynamic" for s in scene.stages)
+
+
+def _no_cushion(scene: Scene) -> str:
+    if scene.soil is None:
+        return "the scene has no soil"
+    if scene.contact is not None and scene.contact.at_nodes:
+        return "the riser touches the soil at its nodes"
+    return "" if scene.stages[0].kind == "static" else "the riser is not laid in a static stage"
 
 
 def _no_friction(scene: Scene, ground: str) -> str:

@@ -13,6 +13,7 @@ from petsc4py import PETSc
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, local
 from riser_soil.core.system import System
+from riser_soil.solve.line_search import step_length
 from riser_soil.solve.linear_solver import PREFIX, defaults, factorise_directly
 from riser_soil.solve.stability import prescribe_free_turns, unstable_modes
 from riser_soil.solve.time_scheme import Scheme, Static
@@ -46,6 +47,7 @@ class NewtonSettings:
     the same step (Shamanskii's method), as long as each leaves less than this share: two or three such iterations cost
     less than one with its own tangent. Only in time steps without contact, which start near their end: contact has
     corners, and an equilibrium may be far away. least_iterations: before a residual counts as small.
+    line_search: shorten steps that lead far beyond the least energy, see `line_search`.
     """
 
     tolerance: float
@@ -53,6 +55,7 @@ class NewtonSettings:
     floor: float
     reuse: float = REUSE
     least_iterations: int = 0
+    line_search: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +105,8 @@ class Newton:
         snes.setJacobian(self._jacobian, self.system.matrix.mat)
         snes.setConvergenceTest(self._test)
         snes.setTolerances(max_it=self.settings.max_iterations)
+        if self.settings.line_search:
+            snes.setLineSearchPreCheck(self._shorten)
         snes.getKSP().setType(PETSc.KSP.Type.PREONLY)
         factorise_directly(snes.getKSP().getPC(), self.system)
         snes.setOptionsPrefix(PREFIX)
@@ -185,6 +190,22 @@ class Newton:
         self._forces = self.system.forces(self._balanced)
         residual = self._step.scheme.combine(self._forces, self._past)
         self.system.numbering.add_to_global(residual, f)
+
+    def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> bool:
+        """Scale the step -y from x to the length that the line search finds; whether that changed it."""
+        tried, found = x.duplicate(), x.duplicate()
+
+        def slope(part: float) -> float:
+            x.copy(tried)
+            tried.axpy(-part, y)
+            self._function(self._snes, tried, found)
+            return -float(found.dot(y))
+
+        part = step_length(-float(self._f.dot(y)), slope)
+        y.scale(part)
+        for vector in (tried, found):
+            vector.destroy()
+        return part != 1.0
 
     def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, jacobian: PETSc.Mat, p: PETSc.Mat) -> None:
         """A matrix left as it is keeps its factors."""

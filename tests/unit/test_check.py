@@ -44,7 +44,7 @@ def with_value(mapping: Mapping, *path: str | int, value: Any) -> Mapping:
 def test_a_whole_scene() -> None:
     lines = report(touchdown(LAY, heave(1.0))).splitlines()
     assert lines[0] == "Touchdown on a small block: 2 stages, riser in 2 dimensions"
-    assert lines[1] == "built: riser, inertia, morison, seabed, soil, contact"
+    assert lines[1] == "built: riser, inertia, morison, seabed, soil, cushion, contact"
     assert lines[2:4] == [
         "left out: springs: no end has a rotational spring",
         "left out: attachments: nothing is attached to the riser",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from copy import deepcopy
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,8 +15,10 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.system import System, total
 from riser_soil.results import Run
 from riser_soil.riser.catenary import catenary
-from riser_soil.scene.reader import read_scene
+from riser_soil.run import run
+from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep
+from riser_soil.stages import LAID_IN
 from tests.support.coupled_scenes import DEMO, LAY, Mapping, touchdown
 from tests.support.driven_stage import built, take
 from tests.support.watched_run import WatchedRun
@@ -190,3 +193,18 @@ def test_demo_balances_its_energy(demo: WatchedRun) -> None:
 @cache
 def built_demo() -> Assembly:
     return build(read_scene(DEMO), MPI.COMM_SELF)
+
+
+LIFTED: Mapping = {"name": "lift", "kind": "static", "move": {"end": [22.5, 0.0, 15.5]}}
+
+
+@pytest.mark.parametrize("su", [1000.0, 6000.0])
+def test_laid_and_lifted_on_plastic_clay_by_newton_alone(su: float, tmp_path: Path) -> None:
+    """In load steps: the riser comes to rest on its cushion, the soil takes over, one end is lifted; no relaxation."""
+    scene = touchdown(LAY, LIFTED, su=su)
+    run(scene_from_mapping(scene), tmp_path)
+    summary = Run(tmp_path).summary
+    for stage in summary["stages"]:
+        assert stage["relaxations"] == 0, stage["name"]
+        assert stage["newton_iterations"] / stage["steps"] <= 6.0, stage["name"]
+    assert summary["stages"][0]["steps"] >= LAID_IN
