@@ -8,8 +8,8 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.assembly.scales import Scales, contact_radius, scales_of
-from riser_soil.core.arrays import Array
 from riser_soil.assembly.soil_law import law_of, volumes, weight_of
+from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.interruption import restoring_signal_handlers
 from riser_soil.riser.line import Line
