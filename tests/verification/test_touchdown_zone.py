@@ -176,7 +176,9 @@ def tell_of_the_trough(seen: Run) -> None:
     assert np.count_nonzero(alone) > 5
     in_plane = np.linalg.norm(seen["force_on_soil"][-1, :, ::2], axis=1)  # the mesh's two halves are no mirror images
     np.testing.assert_allclose(in_plane[alone], seen["contact_force"][-1, alone], rtol=1e-9)
-    np.testing.assert_allclose(seen["soil_settlement"][-1, alone], sunk[alone], rtol=0.2)
+    touching = alone & (seen["penetration"][-1] > 0.0)  # a node has its share of what elements beside it press on
+    assert np.count_nonzero(touching) > 5
+    np.testing.assert_allclose(seen["soil_settlement"][-1, touching], sunk[touching], rtol=1e-9)
     assert np.isnan(seen["soil_settlement"][-1, seen["position"][-1, :, 0] > 9.5]).all()
     assert seen["section_arc"][-1, 0] == seen["touchdown_arc"][-1]
     np.testing.assert_array_equal(seen["section_position"][-1, 0], seen["touchdown_position"][-1])
