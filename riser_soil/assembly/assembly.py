@@ -28,7 +28,7 @@ from riser_soil.scene.stages import DynamicStage, MovedEnds, Stage, StaticStage
 
 if TYPE_CHECKING:
     from riser_soil.assembly.vessels import Vessels
-    from riser_soil.contact.contact import RiserContact
+    from riser_soil.contact.contact import LoadsSoil, RiserContact
     from riser_soil.contact.cushion import Cushion
     from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.seabed_contact import SeabedContact
@@ -90,6 +90,13 @@ class Assembly:
         """Contact parts of the riser."""
         both: tuple[RiserContact | None, RiserContact | None] = (self.soil_contact, self.seabed)
         return [contact for contact in both if contact is not None]
+
+    @property
+    def on_soil(self) -> list[LoadsSoil]:
+        """Parts by which the riser loads the soil."""
+        from riser_soil.contact.contact import LoadsSoil
+
+        return [part for part in (*self.contacts, *self.frictions) if isinstance(part, LoadsSoil)]
 
     @property
     def size(self) -> int:

@@ -8,7 +8,6 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.assembly.scales import Scales, contact_radius, scales_of
-from riser_soil.assembly.soil_law import law_of, volumes, weight_of
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.interruption import restoring_signal_handlers
@@ -20,6 +19,7 @@ from riser_soil.scene.plane import vertical_plane
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed, Seabed, SpringSeabed
 from riser_soil.scene.soil import GeneratedMesh, MeshFile, SoilScene
+from riser_soil.scene.soil_law import law_of, volumes, weight_of
 
 if TYPE_CHECKING:
     from riser_soil.contact.cushion import Cushion

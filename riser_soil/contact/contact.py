@@ -48,3 +48,12 @@ class RiserContact(Part, Protocol):
     def predict(self, guess: State) -> Array:
         """Increments (all local dofs) of a first guess of a step in which the riser lands, see `landing`."""
         ...
+
+
+@runtime_checkable
+class LoadsSoil(Protocol):
+    """A part by which the riser loads the soil: contact with it, or friction there."""
+
+    def force_on_soil_per_length(self, state: State) -> Array:
+        """Force on the soil by length of the riser at its nodes (nn, 3) [N/m], global axes."""
+        ...

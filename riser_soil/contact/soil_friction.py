@@ -23,7 +23,7 @@ AREA = 3  # column of the memory, behind the traction
 @dataclass(frozen=True, eq=False)
 class SlidingState:
     """Friction at a state: traction (n, 3) on the riser [Pa] of the n points that press, their plastic slip (n,) [m];
-    residual (m, nz) of the pairs by z [N, N.m], see `ActivePairs`.
+    by_z (n, nz): its force on each point's z, see `ActivePairs`, and gradient (m, nz): residual of the pairs [N, N.m].
     """
 
     found: SurfaceState
@@ -32,6 +32,7 @@ class SlidingState:
     components: Array
     traction: Array
     slip: Array
+    by_z: Array
     gradient: Array
 
 
@@ -74,9 +75,9 @@ class SoilFriction(LinePart):
         slip = np.linalg.norm(_along(moved.along, moved.moved) - (kept - t) / self._stiffness, axis=1)
         on_riser = np.einsum("nri,nr->ni", moved.along, t)
         gradient = np.zeros_like(pressed.gradient)
-        force = -pressed.points.area[:, None] * on_riser
-        add_rows(gradient, pressed.pair, np.ones(len(force)), np.einsum("ni,niz->nz", force, moved.by_z))
-        return SlidingState(found, moved, elastic, t, on_riser, slip, gradient)
+        by_z = np.einsum("ni,niz->nz", pressed.points.area[:, None] * on_riser, moved.by_z)
+        add_rows(gradient, pressed.pair, -np.ones(len(by_z)), by_z)
+        return SlidingState(found, moved, elastic, t, on_riser, slip, by_z, gradient)
 
     def _pressure(self, found: SurfaceState) -> Array:
         """Pressure (n,) of the points [Pa], 0 where they pull."""
@@ -167,6 +168,17 @@ class SoilFriction(LinePart):
             return np.zeros(3)
         sliding = self.evaluate(state)
         return self.contact.sum_on_riser(sliding.found.pressed, sliding.gradient)
+
+    def force_on_soil(self, state: State) -> Array:
+        """Sum of the friction on the soil (3,) [N], global axes."""
+        return self.contact.sum_on_soil(self.evaluate(state).gradient) if self.line.active else np.zeros(3)
+
+    def force_on_soil_per_length(self, state: State) -> Array:
+        """The points' friction on the nodes of their facets (nn, 3) [N/m], shared by two nodes of the riser."""
+        if not self.line.active:
+            return np.zeros((self.line.nodes, 3))
+        sliding = self.evaluate(state)
+        return self.contact.soil_per_length(sliding.found.pressed, sliding.by_z)
 
     def state(self) -> Saved:
         return {"slid": self._slid} | gathered({"points": self._memory})

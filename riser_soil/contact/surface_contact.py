@@ -250,20 +250,25 @@ class SurfaceContact(SoilContact):
 
     def force_on_soil(self, state: State) -> Array:
         """Sum of the contact forces on the soil (3,) [N], global axes."""
-        if not self.active:
-            return np.zeros(3)
-        return np.asarray(-self._on_facets(self.evaluate(state).pressed.gradient).reshape(-1, 3).sum(axis=0))
+        return self.sum_on_soil(self.evaluate(state).pressed.gradient) if self.active else np.zeros(3)
+
+    def sum_on_soil(self, gradient: Array) -> Array:
+        """Sum of forces on the soil (3,) [N], global axes, of those on the pairs, minus `gradient` (m, nz)."""
+        return np.asarray(-self._on_facets(gradient).reshape(-1, 3).sum(axis=0))
 
     def force_on_soil_per_length(self, state: State) -> Array:
         """The points' forces on the nodes of their facets (nn, 3) [N/m], shared linearly by two nodes of the riser."""
-        total = np.zeros((self.line.nodes, 3))
-        if self.active:
-            pressed = self.evaluate(state).pressed
-            element, along = pressed.points.element, pressed.points.along[:, None]
-            on_nodes = pressed.force[:, None] * pressed.forms[:, 0, 4 * self.line.dimension :]
-            on_soil = on_nodes.reshape(len(element), -1, 3).sum(axis=1)
-            np.add.at(total, element, (1.0 - along) * on_soil)
-            np.add.at(total, element + 1, along * on_soil)
+        if not self.active:
+            return np.zeros((self.line.nodes, 3))
+        pressed = self.evaluate(state).pressed
+        return self.soil_per_length(pressed, pressed.force[:, None] * pressed.forms[:, 0])
+
+    def soil_per_length(self, pressed: ActivePairs, by_z: Array) -> Array:
+        """By length of the riser (nn, 3) [N/m]: the facets' share of the points' forces by_z (n, nz) [N, N.m]."""
+        on_soil = self._on_facets(by_z).reshape(len(by_z), self._soil.facets.shape[1], 3).sum(axis=1)
+        total, points = np.zeros((self.line.nodes, 3)), pressed.points
+        np.add.at(total, points.element, (1.0 - points.along)[:, None] * on_soil)
+        np.add.at(total, points.element + 1, points.along[:, None] * on_soil)
         return np.asarray(total / self.line.tributary_length[:, None])
 
     def stretch(self, state: State) -> float:

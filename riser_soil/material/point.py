@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.assembly.soil_law import volumes, weight_of
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.errors import SceneError, SolveError
 from riser_soil.material.path import STRAIN_FACTOR, STRESS_FACTOR, STRESSES, MaterialPath
 from riser_soil.scene.soil import SoilScene
+from riser_soil.scene.soil_law import volumes, weight_of
 from riser_soil.scene.soil_layers import boundaries
 from riser_soil.soil import mandel
 from riser_soil.soil.law import PLASTIC_STRAIN, Formula, SoilLaw, StressUpdate

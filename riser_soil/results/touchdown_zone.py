@@ -39,7 +39,6 @@ class TouchdownZone:
         arc = touchdown_arc(intervals, line)
         if self._sections is not None and (lay_sections or not self._sections.laid):
             self._sections.lay(state, arc)
-        soil_contact = self._assembly.soil_contact
         return ContactSnapshot(
             touchdown_arc=arc,
             touchdown_position=position_at(line, state, arc),
@@ -50,17 +49,17 @@ class TouchdownZone:
             embedment=self._embedded(state) if "embedment" in self._fields else None,
             slip=self._slip() if "slip" in self._fields else None,
             settlement=self._settlement(state) if "soil_settlement" in self._fields else None,
-            force_on_soil=(
-                soil_contact.force_on_soil_per_length(state)
-                if soil_contact is not None and "force_on_soil" in self._fields
-                else None
-            ),
+            force_on_soil=self._on_soil(state) if "force_on_soil" in self._fields else None,
             sections=self._sections.look(state) if self._sections is not None else None,
         )
 
     def _settlement(self, state: State) -> Array | None:
         contact, xy = self._assembly.soil_contact, self._assembly.line.positions3(state)[:, :2]
         return None if contact is None else contact.settlement(xy, state)
+
+    def _on_soil(self, state: State) -> Array:
+        """Of contact and friction together."""
+        return np.asarray(np.sum([part.force_on_soil_per_length(state) for part in self._assembly.on_soil], axis=0))
 
     def _penetration(self, state: State) -> Array:
         found = [contact.penetration(state) for contact in self._assembly.contacts]

@@ -20,7 +20,8 @@ DRIVER = f"""
 import sys
 from types import SimpleNamespace
 from mpi4py import MPI
-import riser_soil.__main__ as command
+import riser_soil.commands.endings as endings
+from riser_soil.__main__ import main
 from riser_soil.errors import SolveError
 
 def compute(scene, folder, force):
@@ -28,10 +29,10 @@ def compute(scene, folder, force):
         raise FAILURE
     MPI.COMM_WORLD.Barrier()
 
-command._PATIENCE = 2.0
+endings._PATIENCE = 2.0
 sys.modules["riser_soil.run"] = SimpleNamespace(run=compute)
 sys.argv = ["riser-soil", "run", {str(SCENE)!r}]
-command.main()
+main()
 """
 
 

@@ -29,6 +29,7 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("seating",),
     ("stages", "plots"),
     ("run", "material", "calibration"),
+    ("commands",),
     ("__main__",),
 ]
 RANK = {name: rank for rank, layer in enumerate(LAYERS) for name in layer}

@@ -78,15 +78,24 @@ def test_dragged_far_it_resists_with_mu_times_the_pressure(move: tuple[float, fl
         assert friction.slip()[2:4] == pytest.approx(0.05, rel=0.2)
 
 
-def test_forces_on_riser_and_soil_sum_to_zero() -> None:
-    made = pipe_on_surface(sagging(), top("quad4"))
+@KINDS
+@DIMENSIONS
+def test_forces_on_riser_and_soil_sum_to_zero(kind: str, dimension: int) -> None:
+    """In all, and of contact and friction together along the riser; in a plane what lies in it."""
+    made = pipe_on_surface(sagging(angle=0.3 * (dimension == 3)), top(kind), dimension)
     friction = with_friction(made)
+    made.commit(shaken(made, 1, 2e-3), friction)
     state = made.state(shaken(made, 3, 2e-3))
     residual = made.residual(state.u, friction)
-    on_soil = -residual[made.surface.offset :].reshape(-1, 3).sum(axis=0)
-    on_riser = friction.force_on_riser(state)
+    on_soil, on_riser = friction.force_on_soil(state), friction.force_on_riser(state)
+    small = 1e-12 * np.abs(on_riser).max()
     assert np.abs(on_riser).max() > 1.0
-    assert np.abs(on_soil + on_riser).max() < 1e-12 * np.abs(on_riser).max()
+    assert np.abs(on_soil + residual[made.surface.offset :].reshape(-1, 3).sum(axis=0)).max() < small
+    in_plane = made.line.basis @ made.line.basis.T
+    assert np.abs(in_plane @ on_soil + on_riser).max() < small
+    parts = made.contact, friction
+    total = sum(made.line.tributary_length @ part.force_on_soil_per_length(state) for part in parts)
+    assert np.abs(in_plane @ total + sum(part.force_on_riser(state) for part in parts)).max() < 10.0 * small
 
 
 def test_a_closed_way_gives_no_work() -> None:

@@ -11,12 +11,12 @@ import pytest
 from mpi4py import MPI
 from ruamel.yaml import YAML
 
-from riser_soil.assembly.soil_law import law_of, weight_of
 from riser_soil.core.arrays import Array
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.soil import SoilScene
+from riser_soil.scene.soil_law import law_of, weight_of
 from riser_soil.soil.block import BlockSpec
 from riser_soil.soil.grading import landing
 from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid, silent_gmsh

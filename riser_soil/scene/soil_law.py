@@ -1,4 +1,4 @@
-"""Assembly of the soil's law and weight, of one kind or by layers."""
+"""The soil's law and weight of a scene, of one kind or by layers."""
 
 from __future__ import annotations
 

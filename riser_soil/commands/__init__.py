@@ -1,0 +1,1 @@
+"""Commands of riser-soil, one module each or a few that belong together."""

@@ -1,0 +1,36 @@
+"""The application: its commands in the order of its help, its own options."""
+
+from typing import Annotated
+
+import typer
+
+from riser_soil import __version__
+from riser_soil.commands.ground import calibrate, material
+from riser_soil.commands.results import film, stiffness
+from riser_soil.commands.run import check, run, schema
+
+app = typer.Typer(
+    help="Static and dynamic analysis of a riser on the seabed.",
+    epilog="Exit status: 0 done, 2 bad input, 3 the solve failed, 4 the disk or standard output took no more, "
+    "130 Ctrl-C, 143 SIGTERM (what was computed until then is kept).",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+for command in (run, check, material, calibrate, schema, stiffness, film):
+    app.command()(command)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"riser-soil {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="print the version")
+    ] = False,
+) -> None:
+    """Static and dynamic analysis of a riser on the seabed."""

@@ -1,0 +1,83 @@
+"""How commands end: expected errors by their message alone, told once under mpirun, with their exit status."""
+
+import os
+import sys
+import time
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import typer
+
+from riser_soil.errors import Interruption, RiserSoilError, WriteError, is_full
+from riser_soil.interruption import default_signal_handlers
+
+# Seconds that a rank leaves to the first one to tell an error that both have met.
+_PATIENCE = 5.0
+
+
+@contextmanager
+def expected_errors() -> Iterator[None]:
+    """Tell expected errors by their message alone and leave with their status."""
+    try:
+        yield
+    except RiserSoilError as err:
+        _tell_once(str(err))
+        _end_other_ranks(err.exit_status)
+        raise typer.Exit(err.exit_status) from err
+    except Interruption as err:
+        err.told = True
+        if rank() == 0 or not err.together:
+            _tell_once(str(err))
+        if not err.together:
+            _leave_other_ranks(err.exit_status)
+        raise typer.Exit(err.exit_status) from err
+    except OSError as err:
+        if not is_full(err):
+            raise
+        _tell_once(f"{err.filename or 'a file'}: cannot be written: {err.strerror}")
+        _end_other_ranks(WriteError.exit_status)
+        raise typer.Exit(WriteError.exit_status) from err
+    except Exception:
+        if size() > 1:
+            traceback.print_exc()
+        _end_other_ranks(1)
+        raise
+
+
+def rank() -> int:
+    """This process's number under mpirun, without importing MPI; 0 alone."""
+    return _from_environment("OMPI_COMM_WORLD_RANK", "PMI_RANK") or 0
+
+
+def size() -> int:
+    """Number of processes under mpirun, without importing MPI; 1 alone."""
+    return _from_environment("OMPI_COMM_WORLD_SIZE", "PMI_SIZE") or 1
+
+
+def _from_environment(*names: str) -> int | None:
+    return next((int(os.environ[name]) for name in names if os.environ.get(name, "").isdecimal()), None)
+
+
+def _tell_once(message: str) -> None:
+    """Print an error. As a rule all ranks meet it: the first tells it and ends the job, the others wait."""
+    if rank() > 0:
+        default_signal_handlers()
+        time.sleep(_PATIENCE)
+    typer.echo(message, err=True)
+
+
+def _end_other_ranks(status: int) -> None:
+    """Ranks that wait in a collective call for this one would wait for ever."""
+    mpi = sys.modules.get("mpi4py.MPI")
+    if mpi is not None and size() > 1:
+        sys.stderr.flush()
+        mpi.COMM_WORLD.Abort(status)
+
+
+def _leave_other_ranks(status: int) -> None:
+    """mpirun ends them, if it is not ending all of them already; an orderly end would wait for them."""
+    if size() > 1:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)

@@ -1,0 +1,60 @@
+"""Commands that take a scene as a whole: riser-soil run | check | schema."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from riser_soil.commands.arguments import Overrides, SceneFile
+from riser_soil.commands.endings import expected_errors, rank
+from riser_soil.commands.scenes import placed, read, result_folder
+from riser_soil.errors import SceneError
+
+
+def run(
+    scene: SceneFile,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FOLDER",
+            help="result folder; else output.directory of the scene, else the scene file's name without "
+            "its ending, in the current folder",
+        ),
+    ] = None,
+    restart: Annotated[bool, typer.Option("--restart", help="not supported yet")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="overwrite a finished run, which is refused otherwise")
+    ] = False,
+    overrides: Overrides = None,
+) -> None:
+    """Compute a scene and leave its results in a folder."""
+    with expected_errors():
+        if restart:
+            raise SceneError("--restart: not supported yet; run the scene from its beginning")
+        checked = read(scene, overrides)
+        folder = result_folder(scene, checked, output, force)
+        from riser_soil.run import run as compute
+
+        with placed(scene, overrides):
+            compute(checked, folder, force)
+
+
+def check(scene: SceneFile, overrides: Overrides = None) -> None:
+    """Check a scene: tell what would be built, what is left out and why, what looks doubtful; solve nothing."""
+    with expected_errors():
+        checked = read(scene, overrides)
+        from riser_soil.checks.check import describe
+
+        with placed(scene, overrides):
+            text = describe(checked)
+        if rank() == 0:
+            typer.echo(text)
+
+
+def schema() -> None:
+    """Print the JSON schema of scene files: every key with its meaning, unit and default; editors use it."""
+    from riser_soil.scene.schema import schema_text
+
+    typer.echo(schema_text())

@@ -1,0 +1,46 @@
+"""A command's scene: read, its errors placed in the file, its result folder."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from riser_soil.commands.endings import rank
+from riser_soil.errors import MeshError, SceneError
+
+if TYPE_CHECKING:
+    from riser_soil.scene.scene import Scene
+
+
+def read(scene: str, overrides: list[str] | None) -> "Scene":
+    """The scene of a file, or SceneError."""
+    from riser_soil.scene.reader import read_scene
+
+    try:
+        return read_scene(scene, overrides or ())
+    except OSError as err:
+        raise SceneError(f"{scene}: cannot be read: {err.strerror}") from err
+
+
+def result_folder(file: str, scene: "Scene", output: Path | None, force: bool) -> Path:
+    """The folder for the results; a finished run in it is only overwritten by force."""
+    from riser_soil.results.ownership import refuse
+
+    folder = output or Path(scene.output.directory or Path(file).stem)
+    if os.path.lexists(folder) and not folder.is_dir():
+        raise SceneError(f"{folder}: is a file, not a folder; choose another result folder with -o FOLDER")
+    if rank() == 0:
+        refuse(folder, force)
+    return folder
+
+
+@contextmanager
+def placed(file: str, overrides: list[str] | None) -> Iterator[None]:
+    """Parts that find a scene impossible know its keys; file and line are added here."""
+    try:
+        yield
+    except (SceneError, MeshError) as err:
+        from riser_soil.scene.reader import with_place
+
+        raise type(err)(with_place(str(err), file, overrides or ())) from err
