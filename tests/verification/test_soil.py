@@ -74,6 +74,11 @@ def test_extrapolated_strip_is_prandtls(kind: str, cells: tuple[int, ...]) -> No
 
 
 @pytest.mark.verify
+def test_strip_on_fine_cells_is_within_two_per_cent() -> None:
+    assert 0.0 < press_strip("hex", 32, far=0.25).load[-1] / PRANDTL - 1.0 < 0.02
+
+
+@pytest.mark.verify
 @pytest.mark.parametrize("ratio", [2.0, 6.0])
 def test_strip_on_clay_that_grows_stronger(ratio: float) -> None:
     """V/B = F ((2 + pi) su0 + k B/4), Davis & Booker (1973); ratio k B/su0.
