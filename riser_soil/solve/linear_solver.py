@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
@@ -13,6 +14,7 @@ PREFIX = "riser_soil_"
 # MUMPS' controls: room for fill-in in per cent (14); for counting pivots, on several ranks too (13), null pivots (24).
 ROOM = {14: 60}
 COUNTING = {13: 1, 24: 1}
+IN_LIBRARY = 76  # PETSc's code of an error in another library, here MUMPS
 NO_PIVOT = 1e-200  # whatever the units; by PETSc's default the stiffness of a riser a fingernail long is none
 
 
@@ -34,6 +36,15 @@ def factorise_directly(pc: PETSc.PC, system: System) -> None:
     """Make a preconditioner an exact solver, symmetric where the system is."""
     mumps = not _is_chain(system)
     _choose(pc, system, "cholesky" if mumps and system.symmetric else "lu", ROOM)
+
+
+def complaint(err: PETSc.Error) -> str:
+    """What MUMPS said of a system that it could not solve, the same on all ranks; "" for other errors of PETSc."""
+    if err.ierr != IN_LIBRARY:
+        return ""
+    said = re.search(r"(?:in|during) (?:the )?(\w[\w ]*) phase.*INFOG\(1\)\s*=\s*(-?\d+)", str(err))
+    where = f" in its {said[1]} phase: INFOG(1) = {said[2]}" if said else ""
+    return f"the linear solver failed (MUMPS{where})"
 
 
 def negative_pivots(system: System) -> int:

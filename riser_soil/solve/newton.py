@@ -14,12 +14,13 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, local
 from riser_soil.core.system import System
 from riser_soil.solve.line_search import step_length
-from riser_soil.solve.linear_solver import PREFIX, defaults, factorise_directly
+from riser_soil.solve.linear_solver import PREFIX, complaint, defaults, factorise_directly
 from riser_soil.solve.stability import prescribe_free_turns, unstable_modes
 from riser_soil.solve.time_scheme import Scheme, Static
 
 CONVERGED = PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
 DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_DTOL
+NOT_SOLVED = PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE
 ITERATING = PETSc.SNES.ConvergedReason.ITERATING
 REUSE = 0.1
 STATIC = Static().weights(0.0)
@@ -117,15 +118,36 @@ class Newton:
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError; collective."""
         self._begin(step)
-        began, counted = time.perf_counter(), self.system.clock.total
-        self._snes.solve(None, self._x)
-        self.iterations += len(self._norms) - 1
-        self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
-        if self._snes.getConvergedReason() <= 0:
-            raise NotConvergedError(self._reason())
+        if failure := self._run():
+            raise NotConvergedError(failure)
         state = self._trial(self._x)
         self.require_admissible(state)
         return Solution(state, self._forces, self._norms)
+
+    def _run(self) -> str:
+        """Iterate; "" where that converges, else why not. No factors outlive a failed factorisation: MUMPS would refuse
+        all that comes after it.
+        """
+        began, counted, complained = time.perf_counter(), self.system.clock.total, ""
+        try:
+            self._snes.solve(None, self._x)
+        except PETSc.Error as err:
+            complained = complaint(err)
+            if not complained:
+                raise
+        self.iterations += self._taken
+        self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
+        reason = self._snes.getConvergedReason()
+        failure = self._reason(complained) if complained or reason <= 0 else ""
+        if complained or reason == NOT_SOLVED:
+            self._snes.destroy()
+            self._snes = self._create()
+        return failure
+
+    @property
+    def _taken(self) -> int:
+        """Iterations of the step so far; a residual that is not finite at its start is none."""
+        return max(len(self._norms) - 1, 0)
 
     def require_admissible(self, state: State) -> None:
         """Raise NotConvergedError where a state in balance is none of the line."""
@@ -253,15 +275,17 @@ class Newton:
         mine = [float(f @ f) for f in (reactions, inertia, contact)]
         return math.sqrt(max(system.sum(mine)))
 
-    def _reason(self) -> str:
-        reason = self._snes.getConvergedReason()
-        name = next(
-            (n for n, v in vars(PETSc.SNES.ConvergedReason).items() if v == reason and n.startswith("DIV")),
-            str(reason),
-        )
+    def _reason(self, complained: str) -> str:
         norms = ", ".join(f"{n:.3g}" for n in self._norms[-3:])
-        count = len(self._norms) - 1
-        return f"{name.lower()} after {count} iterations (last residual norms {norms} N); {self._where()}"
+        return (
+            f"{complained or self._reason_name()} after {self._taken} iterations (last residual norms {norms} N); "
+            f"{self._where()}"
+        )
+
+    def _reason_name(self) -> str:
+        reason = self._snes.getConvergedReason()
+        names = (n for n, v in vars(PETSc.SNES.ConvergedReason).items() if v == reason and n.startswith("DIV"))
+        return next(names, str(reason)).lower()
 
     def _weighed(self) -> Array:
         """This rank's residual [N], moments over the lever."""

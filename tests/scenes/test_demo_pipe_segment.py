@@ -57,6 +57,14 @@ def test_resistance_is_that_of_a_strip_as_wide_as_the_chord() -> None:
     assert V[-1] == pytest.approx(strip(ratio[-1]), rel=0.1)
 
 
+@pytest.mark.verify
+@pytest.mark.parametrize("cells", [(), FINER], ids=["D/8", "D/16"])
+def test_resistance_never_falls_down_to_a_quarter_of_the_diameter(cells: tuple[str, ...]) -> None:
+    V = resistance(monotonic(0.25), *cells)
+    assert np.diff(V).min() > -1e-3 * V.max()
+    assert V[-1] > 4.0
+
+
 def test_what_was_found_covers_what_was_behind_the_curves() -> None:
     for name, (truth, found, interval, _) in rows(block(PAGE, "fits")).items():
         low, high = map(float, interval.split(" to "))

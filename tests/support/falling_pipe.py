@@ -69,7 +69,7 @@ class Energies(StatelessObserver):
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """A step just committed; its kinetic energy is that of the pipe as it moves."""
-        by_contact = step.turned["seabed"].dissipated
+        by_contact = sum(step.turned[each].dissipated for each in ("seabed", "contact") if each in step.turned)
         self._rows.append((stepper.energy.total, step.work, step.dissipated, by_contact))
         self.cuts += step.cuts
 

@@ -1,4 +1,4 @@
-"""A rough rigid strip on a plane-strain block of soil without weight: its load as it is pressed in."""
+"""A rigid strip, rough unless told, on a plane-strain block of soil without weight: its load as it is pressed in."""
 
 from __future__ import annotations
 
@@ -22,23 +22,30 @@ CLAY = VonMises(kind="von-mises", su=SU, su_gradient=0.0, E_over_su=300.0, nu=0.
 
 @dataclass(frozen=True, eq=False)
 class Strip:
-    """Load of a rough rigid strip of half width 1 m, over the strength, and residual norms, step by step."""
+    """Load of a rigid strip of half width 1 m, over the strength, and residual norms, step by step."""
 
     load: Array
     norms: list[list[float]]
 
 
 def press_strip(
-    kind: str, cells: int, family: Family | None = None, far: float = 0.5, law: SoilLaw = CLAY, strength: float = SU
+    kind: str,
+    cells: int,
+    family: Family | None = None,
+    far: float = 0.5,
+    law: SoilLaw = CLAY,
+    strength: float = SU,
+    steps: int = 15,
+    rough: bool = True,
 ) -> Strip:
     """Press half of a strip 0.15 m into a plane-strain block 5 m wide, 3 m deep; `cells` under the strip."""
     soil, under = strip_soil(kind, cells, family, far, law)
     driven = np.zeros((len(under), 3), dtype=bool)
-    driven[under] = True
+    driven[under] = [rough, rough, True]
     bench = Bench(soil, driven.ravel())
-    given = np.where(under, -0.01, 0.0)[:, None] * np.array([0.0, 0.0, 1.0])
+    given = np.where(under, -0.15 / steps, 0.0)[:, None] * np.array([0.0, 0.0, 1.0])
     loads, norms = [], []
-    for _ in range(15):
+    for _ in range(steps):
         bench.step(given.ravel())
         norms.append(bench.norms)
         reaction = bench.force(np.zeros(soil.field.size)).reshape(-1, 3)[under, 2].sum()

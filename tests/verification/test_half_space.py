@@ -1,0 +1,56 @@
+"""Elastic soil against the half space: Boussinesq's and Cerruti's loads on blocks that grow."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from riser_soil.core.arrays import Array
+from tests.support.half_space import ALONG, DOWN, LoadedBlock, boussinesq, cerruti
+
+LOADS = pytest.mark.parametrize(("direction", "unit"), [(DOWN, boussinesq), (ALONG, cerruti)], ids=["down", "along"])
+
+
+def shares(kind: str, h: float, direction: Array, unit: Any) -> Array:
+    """Of the half space's displacement 1.5 to 2 m from the patch, in blocks of 4 and 8 m to each side."""
+    found = [LoadedBlock(kind, h, half, 0.25 * half, direction).share(unit) for half in (4.0, 8.0)]
+    print(f"{kind}, cells of {h:g} m: {found}, extrapolated {2.0 * found[1] - found[0]:.4f}")
+    return np.array(found)
+
+
+def in_large_blocks(found: Array) -> None:
+    """What a block misses goes with 1/size; what is left of it without any is the cells'."""
+    missing = 1.0 - found
+    assert missing[0] / missing[1] == pytest.approx(2.0, rel=0.06)
+    assert 2.0 * found[1] - found[0] == pytest.approx(1.0, abs=0.03)
+
+
+@LOADS
+def test_displacement_is_that_of_the_half_space(direction: Array, unit: Any) -> None:
+    in_large_blocks(shares("tet", 0.5, direction, unit))
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize(("kind", "h"), [("hex", 0.25), ("tet", 0.25)])
+@LOADS
+def test_displacement_is_that_of_the_half_space_on_finer_cells(
+    kind: str, h: float, direction: Array, unit: Any
+) -> None:
+    in_large_blocks(shares(kind, h, direction, unit))
+
+
+@LOADS
+def test_solutions_of_the_half_space_are_in_equilibrium(direction: Array, unit: Any) -> None:
+    """Navier's equation (λ + G) grad div u + G Δu = 0 by differences, at some points below the surface."""
+    points, h, nu = np.array([[0.7, 0.4, -0.9], [-0.3, 1.1, -0.6]]), 1e-2, 0.3
+    steps = h * np.eye(3)
+    grad_div, laplacian = np.zeros((2, 3)), np.zeros((2, 3))
+    for i in range(3):
+        laplacian += unit(points + steps[i]) - 2.0 * unit(points) + unit(points - steps[i])
+        for j in range(3):
+            mixed = [a * b * unit(points + a * steps[i] + b * steps[j]) for a in (-1, 1) for b in (-1, 1)]
+            grad_div[:, i] += 0.25 * np.sum(mixed, axis=0)[:, j]
+    residual = grad_div / (1.0 - 2.0 * nu) + laplacian
+    assert np.abs(residual).max() < 1e-2 * np.abs(laplacian).max()

@@ -1,0 +1,41 @@
+"""A pipe falls on a slice of soil: no energy appears beyond what gravity puts in, whatever the contact's stiffness."""
+
+from __future__ import annotations
+
+import pytest
+
+from riser_soil.core.part import State
+from riser_soil.core.system import Timer
+from riser_soil.stages import run_stage
+from tests.support.coupled_scenes import Mapping
+from tests.support.driven_stage import built
+from tests.support.falling_on_soil import CLAY, ELASTIC, END, FALL, MIDDLE, falling
+from tests.support.falling_pipe import Energies
+
+LAWS = pytest.mark.parametrize("law", [ELASTIC, CLAY], ids=["elastic", "clay"])
+WHERE = pytest.mark.parametrize("where", [MIDDLE, END], ids=["middle", "end"])
+
+
+def gains_nothing(k: float, dt: float, law: Mapping, where: tuple[float, float]) -> None:
+    """The pipe has struck, and what is stored never exceeds what it began with."""
+    assembly, seen = built(falling(k, dt, law, where)), Energies()
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), seen, Timer.new())
+    print(f"k {k:.0e} N/m2, dt {dt:g} s: {seen.report()}")
+    assert seen.gain[-1] < -0.1 * FALL, "nothing was struck"
+    assert seen.gain.max() < 1e-9 * FALL
+    assert seen.appeared.max() < 5e-3 * FALL
+    assert seen.by_contact.sum() > 0.0
+
+
+@pytest.mark.parametrize(("k", "dt", "law"), [(1e7, 0.05, ELASTIC), (1e8, 0.02, CLAY)], ids=["elastic", "clay"])
+def test_impact_on_soil_gains_no_energy(k: float, dt: float, law: Mapping) -> None:
+    gains_nothing(k, dt, law, MIDDLE)
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize("k", [1e6, 1e7, 1e8])
+@LAWS
+@WHERE
+def test_impact_on_soil_gains_no_energy_at_any_step(k: float, law: Mapping, where: tuple[float, float]) -> None:
+    for dt in (0.05, 0.02, 0.005):
+        gains_nothing(k, dt, law, where)
