@@ -261,7 +261,7 @@ class SurfaceContact(SoilContact):
             pressed = self.evaluate(state).pressed
             element, along = pressed.points.element, pressed.points.along[:, None]
             on_nodes = pressed.force[:, None] * pressed.forms[:, 0, 4 * self.line.dimension :]
-            on_soil = on_nodes.reshape(len(element), -1, 3).sum(axis=1)
+            on_soil = on_nodes.reshape(len(element), on_nodes.shape[1] // 3, 3).sum(axis=1)
             np.add.at(total, element, (1.0 - along) * on_soil)
             np.add.at(total, element + 1, along * on_soil)
         return np.asarray(total / self.line.tributary_length[:, None])
