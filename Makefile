@@ -29,7 +29,7 @@ setup: ## Debian packages, the environment .venv, riser_soil in it; does nothing
 	@scripts/setup.sh
 
 demo: setup ## a flexible riser comes down on 3D clay: results and a picture in demos/touchdown_clay/results
-	$(PYTHON) demos/touchdown_clay/run.py
+	$(PYTHON) -m demos.touchdown_clay.run
 
 demos: demo ## that demo and the others (demos/*/README.md), with their tables and pictures
 	$(PYTHON) -m demos.catenary.run

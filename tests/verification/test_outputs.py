@@ -34,7 +34,7 @@ PLACED = ("max_bending_moment", "max_curvature", "min_bend_radius", "min_effecti
 def test_vtk_reads_the_riser(demo: WatchedRun) -> None:
     run = Run(demo.folder)
     times, frames = read_by_vtk(demo.folder / "riser.xdmf")
-    assert len(times) == 1 + 30, "the laid riser, then every half second"
+    assert len(times) == 1 + 24, "the laid riser, then every half second"
     rows = np.searchsorted(run.time, np.array(times) - 1e-9)
     np.testing.assert_allclose(run.time[rows], times, atol=1e-12)
     for row, frame in zip(rows, frames, strict=True):
@@ -50,7 +50,7 @@ def test_vtk_reads_the_soil(demo: WatchedRun) -> None:
     times, frames = read_by_vtk(demo.folder / "soil.xdmf")
     riser_times, _ = read_by_vtk(demo.folder / "riser.xdmf")
     assert times == riser_times, "both on one time axis"
-    volume = 40.0 * 5.0 * 2.5
+    volume = 16.0 * 4.0 * 1.5
     for number, frame in enumerate(frames):
         assert set(frame["cell_types"].tolist()) == {HEXAHEDRON}
         assert frame["volumes"].sum() == pytest.approx(volume, rel=1e-9)
@@ -65,7 +65,7 @@ def test_vtk_reads_the_soil(demo: WatchedRun) -> None:
     last = frames[-1]
     assert last["point:displacement"][:, 2].min() < -1e-3
     depth = -last["points"][:, 2].min()
-    assert 100.0 < last["cell:von_mises_stress"].max() <= np.sqrt(3.0) * (4.0e3 + 1.5e3 * depth)
+    assert 100.0 < last["cell:von_mises_stress"].max() <= np.sqrt(3.0) * (2.0e3 + 1.5e3 * depth)
     assert last["cell:equivalent_plastic_strain"].min() >= 0.0
 
 
@@ -91,7 +91,7 @@ def test_pipe_lies_on_the_soil_in_the_files(demo: WatchedRun) -> None:
 def test_xarray_opens_the_series(demo: WatchedRun) -> None:
     with xarray.open_dataset(demo.folder / "results.nc", engine="h5netcdf", decode_times=False) as data:
         nodes = 150
-        sizes = {"time": 151, "step": 151, "arc": nodes, "component": 3, "section": 1, "offset": 61}
+        sizes = {"time": 121, "step": 121, "arc": nodes, "component": 3, "section": 1, "offset": 61}
         assert dict(data.sizes) == sizes
         assert data.attrs["finished"] == 1
         assert data.attrs["title"] == "Touchdown on soft clay"
@@ -130,11 +130,11 @@ def test_summary_is_as_documented(demo: WatchedRun) -> None:
         assert stage["warnings"] == []
     assert [(s["name"], s["kind"], s["time"], s["steps"]) for s in summary["stages"]] == [
         ("lay", "static", 0.0, 1),
-        ("heave", "dynamic", 15.0, 150),
+        ("heave", "dynamic", 12.0, 120),
     ]
     lost = summary["stages"][1]["energy"]["dissipated_by"]
     assert sum(lost.values()) == pytest.approx(summary["stages"][1]["energy"]["dissipated"])
-    assert abs(lost["soil_plasticity"]) < 1e-6 * lost["soil_time_scheme"], "this clay stays elastic"
+    assert lost["soil_plasticity"] > lost["soil_time_scheme"], "this clay yields"
 
 
 def assert_final(final: Any) -> None:
