@@ -36,6 +36,7 @@ demos: demo ## that demo and the others (demos/*/README.md), with their tables a
 	$(PYTHON) -m demos.tank.run
 	$(PYTHON) -m demos.waves.run
 	$(PYTHON) -m demos.pipe_segment.run
+	$(PYTHON) -m demos.trench.run
 
 test: lint ## linters, types, and the quick tests, some of them on two ranks
 	$(PYTHON) -m pytest -n $(WORKERS) --dist loadfile

@@ -177,14 +177,14 @@ def test_demo_contact_and_soil_only_take_energy(demo: WatchedRun, part: str) -> 
 
 
 def test_demo_balances_its_energy(demo: WatchedRun) -> None:
-    """Measured: 3.7 J off at most on the way, 0.3 J in a step, of 57.5 kJ that the floater puts in."""
+    """Measured: 4 J off at most on the way, 0.3 J in a step, of 97 kJ turned over; the floater puts in some 10 kJ."""
     run = Run(demo.folder)
     energy = run.summary["stages"][1]["energy"]
-    each = run["energy_residual"][1:]
+    each = run["energy_residual"][-120:]
     assert np.abs(each).max() < 1.0
-    assert np.abs(np.cumsum(each)).max() < 2e-4 * energy["work"]
+    assert np.abs(np.cumsum(each)).max() < 1e-4 * energy["turned_over"]
     assert energy["residual"] == pytest.approx(each.sum(), abs=1e-6)
-    assert energy["work"] > 1e4
+    assert energy["turned_over"] > 1e4
 
 
 @cache
