@@ -63,7 +63,8 @@ def draw(png: Path, runs: dict[str, Run]) -> None:
     for name, run in runs.items():
         near = run.arc <= 45.0
         heights = at_rest(run, "position")[:, 2] - 0.15
-        for axis, values in zip(axes, (heights, at_rest(run, "contact_force"), at_rest(run, "bending_moment") / 1e3)):
+        shown = (heights, at_rest(run, "contact_force"), at_rest(run, "bending_moment") / 1e3)
+        for axis, values in zip(axes, shown, strict=True):
             axis.plot(run.arc[near], values[near], label=name)
     axes[0].set(ylabel="height of the underside [m]", ylim=(-0.4, 1.0))
     axes[1].set(ylabel="contact force [N/m]")

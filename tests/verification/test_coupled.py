@@ -159,7 +159,7 @@ def test_demo_needs_few_newton_iterations(demo: WatchedRun) -> None:
 
 
 def test_demo_lays_down_the_weight_that_does_not_hang(demo: WatchedRun) -> None:
-    """Contact and the start's support bear the weight of what lies; the catenary says how much, less 1.5 % by the current."""
+    """Contact and the start's support bear the weight of what lies; the catenary tells it, less 1.5 % by current."""
     final = Run(demo.folder).summary["stages"][0]["final"]
     assembly = built_demo()
     w = float(assembly.elements.weight[0])

@@ -70,7 +70,7 @@ def test_vtk_reads_the_soil(demo: WatchedRun) -> None:
 
 
 def test_pipe_lies_on_the_soil_in_the_files(demo: WatchedRun) -> None:
-    """The settlement told is that of the surface in the file, and the underside lies in it by what its force compresses.
+    """The settlement told is that of the surface in the file, the underside lies in it by what force compresses.
 
     That is f/k at a chord as wide as the diameter, with k ten times the soil's modulus, and more on a narrower one.
     """
