@@ -29,13 +29,14 @@ setup: ## Debian packages, the environment .venv, riser_soil in it; does nothing
 	@scripts/setup.sh
 
 demo: setup ## a flexible riser comes down on 3D clay: results and a picture in demos/touchdown_clay/results
-	$(PYTHON) demos/touchdown_clay/run.py
+	$(PYTHON) -m demos.touchdown_clay.run
 
 demos: demo ## that demo and the others (demos/*/README.md), with their tables and pictures
 	$(PYTHON) -m demos.catenary.run
 	$(PYTHON) -m demos.tank.run
 	$(PYTHON) -m demos.waves.run
 	$(PYTHON) -m demos.pipe_segment.run
+	$(PYTHON) -m demos.trench.run
 
 test: lint ## linters, types, and the quick tests, some of them on two ranks
 	$(PYTHON) -m pytest -n $(WORKERS) --dist loadfile

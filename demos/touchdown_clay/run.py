@@ -1,6 +1,8 @@
-"""A riser comes down on soft clay while the floater heaves: compute the scene beside this file, then draw it.
+"""A riser comes down on soft clay while the floater moves: compute the scene beside this file, then draw it.
 
-Usage: python run.py [FOLDER], by default `results` beside this file. Leaves the run's files and touchdown.png there.
+Usage, in the project's folder: python -m demos.touchdown_clay.run [FOLDER] [--page]
+FOLDER is by default `results` beside this file; the run's files, figures.md and touchdown.png are left there. --page
+writes the figures into README.md and the picture where README.md shows it.
 """
 
 from __future__ import annotations
@@ -8,20 +10,61 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from demos.page import publish, table
 from riser_soil.plots import picture
+from riser_soil.results import Run
+from riser_soil.results.secant_stiffness import secant_stiffness
 from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
 
 HERE = Path(__file__).parent
+PAGE, PICTURES = HERE / "README.md", HERE.parents[1] / "docs"
+ARCS = (22.0, 24.0, 26.0)  # m, of the stiffness
 
 
-def main(folder: Path) -> None:
+def main(folder: Path, page: bool) -> None:
     run(read_scene(HERE / "scene.yaml"), folder, force=True)
-    picture(folder, folder / "touchdown.png")
-    print(f"results and touchdown.png are in {folder}; open riser.xdmf and soil.xdmf in ParaView")
+    pictures = PICTURES if page else folder
+    publish({"figures": figures(Run(folder)), "stiffness": stiffness(Run(folder))}, folder, PAGE if page else None)
+    picture(folder, pictures / "touchdown.png")
+    print(f"\nresults are in {folder}, touchdown.png in {pictures}; open riser.xdmf and soil.xdmf in ParaView")
+
+
+def figures(done: Run) -> str:
+    """What the stages leave: at the end of the static one, the range over the dynamic one."""
+    static, motion = done.summary["stages"]
+    ranges, rows = motion["extremes"], []
+    for name, key, scale, digits in (
+        ("touchdown arc length [m]", "touchdown_arc", 1.0, 2),
+        ("largest bending moment [kN.m]", "max_bending_moment", 1e-3, 3),
+    ):
+        rest = static["final"][key]
+        rest = rest["value"] if isinstance(rest, dict) else rest
+        low, high = (ranges[key][end] * scale for end in ("min", "max"))
+        rows.append([name, f"{rest * scale:.{digits}f}", f"{low:.{digits}f} to {high:.{digits}f}"])
+    for name, key, scale, digits in (
+        ("deepest settlement of the clay [mm]", "max_settlement", 1e3, 2),
+        ("largest von Mises stress [kPa]", "max_von_mises_stress", 1e-3, 2),
+        ("most of the strength used [-]", "max_strength_used", 1.0, 2),
+        ("largest plastic strain [%]", "max_equivalent_plastic_strain", 1e2, 2),
+    ):
+        rest, most = (stage["soil"][key]["value"] * scale for stage in (static, motion))
+        rows.append([name, f"{rest:.{digits}f}", f"up to {most:.{digits}f}"])
+    lost = motion["energy"]["dissipated_by"]["soil_plasticity"]
+    rows.append(["dissipated by the clay's plasticity [J]", "", f"{lost:.1f}"])
+    return table(["", "laid", "in heave and surge"], rows)
+
+
+def stiffness(done: Run) -> str:
+    """Secant stiffness over su, cycle by cycle."""
+    found = secant_stiffness(done, ARCS)
+    rows = ([f"{n}", *(f"{k:.0f}" for k in ks)] for n, ks in enumerate(found.over_su, 1))
+    return table(["cycle, k/su at arc length", *(f"{arc:g} m" for arc in ARCS)], rows)
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, nargs="?", default=HERE / "results", help="folder for the results")
-    main(parser.parse_args().folder)
+    parser.add_argument("--page", action="store_true", help="write figures and picture into the demo's page, too")
+    given = parser.parse_args()
+    main(given.folder, given.page)

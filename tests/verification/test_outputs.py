@@ -34,7 +34,7 @@ PLACED = ("max_bending_moment", "max_curvature", "min_bend_radius", "min_effecti
 def test_vtk_reads_the_riser(demo: WatchedRun) -> None:
     run = Run(demo.folder)
     times, frames = read_by_vtk(demo.folder / "riser.xdmf")
-    assert len(times) == 1 + 30, "the laid riser, then every half second"
+    assert len(times) == 1 + 24, "the laid riser, then every half second"
     rows = np.searchsorted(run.time, np.array(times) - 1e-9)
     np.testing.assert_allclose(run.time[rows], times, atol=1e-12)
     for row, frame in zip(rows, frames, strict=True):
@@ -50,7 +50,7 @@ def test_vtk_reads_the_soil(demo: WatchedRun) -> None:
     times, frames = read_by_vtk(demo.folder / "soil.xdmf")
     riser_times, _ = read_by_vtk(demo.folder / "riser.xdmf")
     assert times == riser_times, "both on one time axis"
-    volume = 40.0 * 5.0 * 2.5
+    volume = 16.0 * 4.0 * 1.5
     for number, frame in enumerate(frames):
         assert set(frame["cell_types"].tolist()) == {HEXAHEDRON}
         assert frame["volumes"].sum() == pytest.approx(volume, rel=1e-9)
@@ -65,33 +65,34 @@ def test_vtk_reads_the_soil(demo: WatchedRun) -> None:
     last = frames[-1]
     assert last["point:displacement"][:, 2].min() < -1e-3
     depth = -last["points"][:, 2].min()
-    assert 100.0 < last["cell:von_mises_stress"].max() <= np.sqrt(3.0) * (4.0e3 + 1.5e3 * depth)
+    assert 100.0 < last["cell:von_mises_stress"].max() <= np.sqrt(3.0) * (2.0e3 + 1.5e3 * depth)
     assert last["cell:equivalent_plastic_strain"].min() >= 0.0
 
 
 def test_pipe_lies_on_the_soil_in_the_files(demo: WatchedRun) -> None:
-    """Between pipe and settled soil is the gap at which the law gives the contact force that is recorded.
+    """The settlement told is that of the surface in the file, the underside lies in it by what force compresses.
 
-    f = k (s - gap)²/(4 s) in the law's rounded corner, with k ten times the soil's modulus and s = 1 mm.
+    That is f/k at a chord as wide as the diameter, with k ten times the soil's modulus, and more on a narrower one.
     """
-    run, k, s = Run(demo.folder), 10.0 * 300.0 * 4.0e3, 1e-3
+    run, k = Run(demo.folder), 10.0 * 300.0 * 2.0e3
     frame = run.soil_frame()
     assert frame.time == run.time[-1]
     top = np.flatnonzero(frame.points[:, 2] > -1e-9)
     deformed = frame.points[top] + frame.fields["displacement"][top]
     x = run["position"][-1][:, 0]
-    lying = (x > 14.0) & (x < 24.0)
+    lying = (x > 21.0) & (x < 28.0)
     position, force = run["position"][-1][lying], run["contact_force"][-1][lying]
     below = griddata(deformed[:, :2], deformed[:, 2], position[:, :2])
-    assert below.max() < -3e-4
-    gap = position[:, 2] - 0.15 - below
-    np.testing.assert_allclose(gap, s - 2.0 * np.sqrt(s * force / k), atol=3e-6)
+    np.testing.assert_allclose(run["soil_settlement"][-1][lying], -below, atol=1e-12)
+    assert below.max() < -2e-3
+    compressed = (below + 0.15 - position[:, 2]) * k / force
+    assert 0.9 < compressed.min() <= compressed.max() < 2.0
 
 
 def test_xarray_opens_the_series(demo: WatchedRun) -> None:
     with xarray.open_dataset(demo.folder / "results.nc", engine="h5netcdf", decode_times=False) as data:
         nodes = 150
-        sizes = {"time": 151, "step": 151, "arc": nodes, "component": 3, "section": 1, "offset": 61}
+        sizes = {"time": 121, "step": 125, "arc": nodes, "component": 3, "section": 1, "offset": 61}
         assert dict(data.sizes) == sizes
         assert data.attrs["finished"] == 1
         assert data.attrs["title"] == "Touchdown on soft clay"
@@ -106,7 +107,8 @@ def test_xarray_opens_the_series(demo: WatchedRun) -> None:
             assert variable.attrs["long_name"]
             assert variable.attrs["units"]
         assert float(data["effective_tension"].sel(arc=148.0).isel(time=-1)) > 5e4
-        np.testing.assert_array_equal(data["newton_iterations"], [s.iterations for s in demo.steps])
+        np.testing.assert_array_equal(data["newton_iterations"][1:], [s.iterations for s in demo.steps[1:]])
+        assert data["newton_iterations"][0] >= demo.steps[0].iterations, "with those of dynamic relaxation"
         assert np.isnan(data["energy_residual"][0])
 
 
@@ -129,12 +131,12 @@ def test_summary_is_as_documented(demo: WatchedRun) -> None:
         assert set(stage["energy"]) == ENERGY
         assert stage["warnings"] == []
     assert [(s["name"], s["kind"], s["time"], s["steps"]) for s in summary["stages"]] == [
-        ("lay", "static", 0.0, 1),
-        ("heave", "dynamic", 15.0, 150),
+        ("lay", "static", 0.0, 5),
+        ("heave", "dynamic", 12.0, 120),
     ]
     lost = summary["stages"][1]["energy"]["dissipated_by"]
     assert sum(lost.values()) == pytest.approx(summary["stages"][1]["energy"]["dissipated"])
-    assert abs(lost["soil_plasticity"]) < 1e-6 * lost["soil_time_scheme"], "this clay stays elastic"
+    assert lost["soil_plasticity"] > lost["soil_time_scheme"], "this clay yields"
 
 
 def assert_final(final: Any) -> None:

@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[2]
 MIDPOINT = "stages.1.scheme={midpoint: {}}"
 IN_SPACE = ("dimension=3", "line_types.flexible.GJ=4.0e4")
 STORM = ("water.waves.jonswap.components=10", "water.waves.ramp=1.0", "output.xdmf_interval=0.4")
-COARSE = ("soil.mesh.size_at_riser=1.0", "soil.mesh.size_far=2.5", "soil.law.su=800.0", "stages.1.time_step=0.2")
+COARSE = ("soil.mesh.size_at_riser=1.0", "soil.mesh.size_far=2.0", "stages.1.time_step=0.2")
 
 
 def shortened(file: str, duration: float, *overrides: str) -> Scene:

@@ -1,0 +1,83 @@
+"""A riser that touches down in a trench, beside the same riser on level soil.
+
+Usage, in the project's folder: python -m demos.trench.run [--results FOLDER] [--page]
+Leaves both runs, a table (trench.md) and a picture in `results` beside this file; --page writes them where README.md
+shows them.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from demos.compute import compute
+from demos.page import publish, table
+from riser_soil.core.arrays import Array
+from riser_soil.plots.curves import save, sheet
+from riser_soil.results import Run
+
+HERE = Path(__file__).parent
+SCENE, PAGE, PICTURES = HERE / "scene.yaml", HERE / "README.md", HERE.parents[1] / "docs"
+LEVEL = "soil.block.trench=null"
+
+
+def main(results: Path, page: bool) -> None:
+    runs = {"trench": compute(SCENE, results / "trench"), "level soil": compute(SCENE, results / "level", LEVEL)}
+    publish({"trench": comparison(runs)}, results, PAGE if page else None)
+    pictures = PICTURES if page else results
+    draw(pictures / "trench.png", runs)
+    print(f"\nthe runs and the table are in {results}, the picture in {pictures}")
+
+
+def comparison(runs: dict[str, Run]) -> str:
+    """Both runs at the end of their static stage, and the ranges while the floater moves."""
+    found = [rows(run.summary["stages"]) for run in runs.values()]
+    return table(["", *runs], ([name, *(column[name] for column in found)] for name in found[0]))
+
+
+def rows(stages: list[dict[str, Any]]) -> dict[str, str]:
+    final, moment = stages[0]["final"], stages[0]["final"]["max_bending_moment"]
+    shown = {
+        "at rest: touchdown arc length [m]": f"{final['touchdown_arc']:.2f}",
+        "stretches that touch": f"{final['touchdown_points']:.0f}",
+        "largest bending moment [kN.m]": f"{moment['value'] / 1e3:.3f}",
+        "at arc length [m]": f"{moment['arc']:.1f}",
+        "contact force [kN]": f"{final['contact_force'] / 1e3:.2f}",
+    }
+    for stage in stages[1:]:
+        touchdown, bent = (stage["extremes"][key] for key in ("touchdown_arc", "max_bending_moment"))
+        shown["in heave: touchdown arc length [m]"] = f"{touchdown['min']:.2f} to {touchdown['max']:.2f}"
+        shown["largest bending moment, in heave [kN.m]"] = f"{bent['min'] / 1e3:.3f} to {bent['max'] / 1e3:.3f}"
+    return shown
+
+
+def at_rest(run: Run, name: str) -> Array:
+    """A series at the end of the static stage."""
+    return run[name][0]
+
+
+def draw(png: Path, runs: dict[str, Run]) -> None:
+    """Height of the riser's underside, contact force and bending moment along it, at rest."""
+    figure, axes = sheet(1, 3, width=14.0, height=4.2)
+    for name, run in runs.items():
+        near = run.arc <= 45.0
+        heights = at_rest(run, "position")[:, 2] - 0.15
+        shown = (heights, at_rest(run, "contact_force"), at_rest(run, "bending_moment") / 1e3)
+        for axis, values in zip(axes, shown, strict=True):
+            axis.plot(run.arc[near], values[near], label=name)
+    axes[0].set(ylabel="height of the underside [m]", ylim=(-0.4, 1.0))
+    axes[1].set(ylabel="contact force [N/m]")
+    axes[2].set(ylabel="bending moment [kN.m]")
+    for axis in axes:
+        axis.set(xlabel="arc length [m]")
+        axis.legend()
+    save(figure, png)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--results", type=Path, default=HERE / "results", help="folder for runs and table")
+    parser.add_argument("--page", action="store_true", help="write table and picture into the demo's page, too")
+    given = parser.parse_args()
+    main(given.results, given.page)

@@ -1,0 +1,40 @@
+"""The trench's demo: its page beside its runs, and what the trench changes."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from demos.compute import compute
+from demos.page import block
+from demos.trench.run import HERE, LEVEL, SCENE, rows
+
+TEXT = (HERE / "README.md").read_text(encoding="utf-8")
+STATIC = "stages=[{name: lay, kind: static}]"
+
+
+def shown() -> dict[str, list[str]]:
+    cells = ([cell.strip() for cell in line.split("|")[1:-1]] for line in block(TEXT, "trench").splitlines()[2:])
+    return {first: others for first, *others in cells}
+
+
+@pytest.mark.parametrize(
+    ("column", "overrides"), [pytest.param(0, (STATIC,), marks=pytest.mark.verify), (1, (STATIC, LEVEL))]
+)
+def test_page_shows_rest_as_computed(column: int, overrides: tuple[str, ...], tmp_path: Path) -> None:
+    found = rows(compute(SCENE, tmp_path / "run", *overrides).summary["stages"])
+    page = {name: float(shown()[name][column]) for name in found}
+    assert page == pytest.approx({name: float(value) for name, value in found.items()}, rel=0.005)
+
+
+def test_the_riser_touches_down_later_in_the_trench() -> None:
+    touchdown, pieces = (list(map(float, shown()[name])) for name in list(shown())[:2])
+    assert touchdown[0] > touchdown[1] + 1.0
+    assert pieces[0] > pieces[1] == 1.0
+
+
+@pytest.mark.parametrize("target", sorted(set(re.findall(r"\]\(([^)#]+)\)", TEXT))))
+def test_link(target: str) -> None:
+    assert (HERE / target).exists()

@@ -1,0 +1,27 @@
+"""The page of the touchdown demo shows what its run gives."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from demos.page import block
+from demos.touchdown_clay.run import HERE, PAGE, figures, stiffness
+from riser_soil.results import Run
+from tests.support.watched_run import WatchedRun
+
+TEXT = PAGE.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(("name", "computed"), [("figures", figures), ("stiffness", stiffness)])
+def test_page_shows_figures_as_computed(demo: WatchedRun, name: str, computed: object) -> None:
+    assert callable(computed)
+    shown, found = (re.split(r"(-?\d+\.?\d*)", text) for text in (block(TEXT, name), computed(Run(demo.folder))))
+    assert shown[::2] == found[::2]
+    assert [*map(float, shown[1::2])] == pytest.approx([*map(float, found[1::2])], rel=0.01, abs=0.011)
+
+
+@pytest.mark.parametrize("target", sorted(set(re.findall(r"\]\(([^)#]+)\)", TEXT))))
+def test_link(target: str) -> None:
+    assert (HERE / target).exists()
