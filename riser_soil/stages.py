@@ -29,6 +29,7 @@ from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
 LAID_IN = 8  # load steps on soil, at least
 MOVED_BY, MOST_STEPS = 0.25, 64  # diameters that an end moves in a load step on soil; load steps by themselves
+MOST_RELAXED = 1  # times in a static stage on soil
 MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
 
 
@@ -141,15 +142,16 @@ def _restore(system: System, saved: Saved) -> None:
         system.renew_pattern()
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class StageRun:
-    """A stage in progress: its time stepper, step control and observer."""
+    """A stage in progress: its time stepper, step control and observer; how often relaxation has been tried."""
 
     assembly: Assembly
     stage: Stage
     stepper: TimeStepper
     control: StepControl | AutoSteps
     observer: StageObserver
+    relaxed: int = 0
 
     def state(self) -> Saved:
         """All that the stage is resumed from, see `saved_state`."""
@@ -189,7 +191,7 @@ def _walk(run: StageRun, checkpoint: Checkpoint | None) -> State:
     stepper, control = run.stepper, run.control
     while not control.finished:
         static = isinstance(run.stage, StaticStage)
-        step = _static_step(run.assembly, stepper, control, run.observer) if static else stepper.advance(control)
+        step = _static_step(run) if static else stepper.advance(control)
         with uninterrupted():
             stepper.commit(step, control)
             run.observer.record(stepper, step, last=control.finished)
@@ -199,16 +201,21 @@ def _walk(run: StageRun, checkpoint: Checkpoint | None) -> State:
     return stepper.before
 
 
-def _static_step(assembly: Assembly, stepper: TimeStepper, control: Control, observer: StageObserver) -> AcceptedStep:
+def _static_step(run: StageRun) -> AcceptedStep:
     """By Newton's method, in load steps that are halved a few times, else by dynamic relaxation.
 
-    Where relaxation does not get to the load factor that was missed, it all begins again with half the step.
+    Where relaxation does not get to the load factor that was missed, it all begins again with half the step. On soil
+    it is tried MOST_RELAXED times: clay at the end of its strength creeps on in ever shorter steps.
     """
+    assembly, stepper, control = run.assembly, run.stepper, run.control
     while True:
         try:
             return stepper.advance(control, MOST_CUTS if stepper.depends_on(control) else 0)
         except SolveError:
-            if _relaxed(assembly, stepper, control, observer):
+            run.relaxed += 1
+            if assembly.cushion is not None and run.relaxed > MOST_RELAXED:
+                raise
+            if _relaxed(assembly, stepper, control, run.observer):
                 return stepper.advance(control, 0)
 
 

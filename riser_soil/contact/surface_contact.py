@@ -24,6 +24,8 @@ from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.trial import Trial
 from riser_soil.soil.surface import SoilTop
 
+AROUND = 0.25  # radii around the pipe in which facets are candidates: each of them couples its nodes to the element
+
 
 @dataclass(frozen=True, eq=False)
 class SurfaceState:
@@ -46,7 +48,8 @@ class SurfaceContact(SoilContact):
     history, such as suction has, for each point of the soil. spacing: of the integration points along and across the
     riser [m]. upright: contact sees the soil's surface move up and down alone, and presses on it so; the horizontal
     forces on the riser are then borne by nothing. along (2,): horizontal unit vector of the riser on the ground; by
-    default its first axis. reach: by default half a facet to all sides of the pipe.
+    default its first axis. reach: by default half a facet above the soil, but no more than a quarter radius around the
+    pipe.
     """
 
     def __init__(
@@ -65,7 +68,8 @@ class SurfaceContact(SoilContact):
         self._radius, self._pressure, self._upright = radius, pressure, upright
         if not self.active:
             return
-        self._reach = reach or CandidateRange(0.5 * self._soil.facet_size, 0.5 * self._soil.facet_size)
+        half = 0.5 * self._soil.facet_size
+        self._reach = reach or CandidateRange(half, min(half, AROUND * float(radius.max())))
         axis = line.basis[:2, 0] if along is None else along
         self._parts = divisions(surface.points, self._soil.facets, axis, spacing)
         self._first = np.append(0, np.cumsum(self._parts.prod(axis=1)))[:-1]

@@ -120,7 +120,7 @@ def names(assembly: Assembly, stage: int) -> list[str]:
 
 def test_static_stages_build_nothing_of_dynamics() -> None:
     assembly = built(touchdown(LAY, heave(0.2)))
-    assert names(assembly, 0) == ["riser", "soil", "contact", "seabed"]
+    assert names(assembly, 0) == ["riser", "soil", "contact", "seabed", "cushion"]
     assert names(assembly, 1) == ["riser", "inertia", "morison", "soil", "contact", "seabed"]
 
 
