@@ -74,7 +74,8 @@ def drive(point: MaterialPoint, path: MaterialPath) -> MaterialCurve:
     law = point.law
     before = law.update(np.zeros((1, 6)), law.start())
     wanted = path.values * np.where(path.stress, STRESS_FACTOR, STRAIN_FACTOR)
-    strain, lost = np.zeros(6), 0.0
+    strain: Array = np.zeros(6)
+    lost = 0.0
     rows = [(strain, before, lost)]
     for number, values in enumerate(wanted, start=1):
         increment = np.where(path.stress, 0.0, values - strain)

@@ -50,8 +50,9 @@ class TroughSections:
     ) -> None:
         self._line, self._contact, self._given, self._offsets = line, contact, arcs, np.array(offsets)
         count = len(arcs or (0.0,))
-        self._arc, self._position = np.full(count, np.nan), np.full((count, 3), np.nan)
-        self._direction = np.full((count, 3), np.nan)
+        self._arc: Array = np.full(count, np.nan)
+        self._position: Array = np.full((count, 3), np.nan)
+        self._direction: Array = np.full((count, 3), np.nan)
 
     @property
     def laid(self) -> bool:
@@ -80,7 +81,7 @@ class TroughSections:
 
     @property
     def _there(self) -> BoolArray:
-        return ~np.isnan(self._direction).any(axis=1)
+        return np.asarray(~np.isnan(self._direction).any(axis=1))
 
     def state(self) -> Saved:
         return {"arc": self._arc.copy(), "position": self._position.copy(), "direction": self._direction.copy()}

@@ -148,8 +148,8 @@ def test_closed_cycles_take_work() -> None:
     history, before = law.start(), law.initial
     history = law.update(path[0], history).history
     for _ in range(30):
-        work = np.zeros(200)
-        before, stored = history[:, :6], np.zeros(200)
+        work: Array = np.zeros(200)
+        before = history[:, :6]
         for increment in path[1:]:
             found = law.update(increment, history)
             work += mandel.product(found.stress, increment)

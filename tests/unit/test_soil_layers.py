@@ -106,7 +106,7 @@ def test_weight_above() -> None:
 def test_cells_land_on_the_places_and_keep_their_grading() -> None:
     x = -np.geomspace(8.0, 1.0, 20)
     out = landing(x, [-5.1, -2.03, -2.0])
-    assert {-8.0, -5.1, -2.03, -2.0, -1.0} <= {*out.tolist()}
+    assert {-8.0, -5.1, -2.03, -2.0, -1.0} <= set(out)
     assert np.all(np.diff(out) > 0.0)
     assert abs(len(out) - len(x)) <= 2
     near = np.diff(out)[out[:-1] < -5.0] / np.interp(out[:-1][out[:-1] < -5.0], x[:-1], np.diff(x))
