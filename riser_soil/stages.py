@@ -7,9 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-import numpy as np
-from mpi4py import MPI
-
 from riser_soil.assembly import Assembly
 from riser_soil.assembly.stage import scheme_of, times_to_hit
 from riser_soil.core.part import Model, State
@@ -239,17 +236,14 @@ def _settings(assembly: Assembly) -> NewtonSettings:
     return NewtonSettings(solver.tolerance, solver.max_iterations, assembly.scales.force_floor, line_search=on_soil)
 
 
-def _load_steps(assembly: Assembly, stage: StaticStage, stepper: TimeStepper) -> int:
+def _load_steps(assembly: Assembly, stage: StaticStage) -> int:
     """Load steps of a static stage: as many as the scene asks for; more where soil is to follow a riser that is laid on
-    it or moved. Collective.
+    it or moved.
     """
     asked = assembly.scene.solver.load_steps
     if assembly.cushion is None:
         return asked
-    end, line = State.at_rest(1.0, assembly.size), assembly.line
-    stepper.system.prescribe(end)
-    mine = float(np.abs(end.u[line.translation_dofs]).max()) if line.active else 0.0
-    moved = assembly.comm.allreduce(mine, MPI.MAX) / (MOVED_BY * assembly.scales.diameter)
+    moved = assembly.moved_in(stage) / (MOVED_BY * assembly.scales.diameter)
     laid = LAID_IN if assembly.is_laid_in(stage) else 1
     return max(asked, laid, min(math.ceil(moved), MOST_STEPS))
 
@@ -258,7 +252,7 @@ def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> StepCont
     """The steps of a stage, from its beginning to its end."""
     solver = assembly.scene.solver
     if isinstance(stage, StaticStage):
-        return StepControl(1.0, 1.0 / _load_steps(assembly, stage, stepper), solver.min_load_step)
+        return StepControl(1.0, 1.0 / _load_steps(assembly, stage), solver.min_load_step)
     smallest = assembly.smallest_step(stage)
     if stage.time_step == "auto":
         tolerance = assembly.error_tolerance(stage)

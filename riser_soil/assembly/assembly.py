@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
 from mpi4py import MPI
 
 from riser_soil.assembly.motions import end_positions, set_motions, vessels_of
@@ -185,6 +186,13 @@ class Assembly:
         soil = [self.soil] if self.soil is not None else []
         cushion = [self.cushion] if self.cushion is not None and self.is_laid_in(stage) else []
         return Model([self.line], [*parts, *soil, *self.contacts, *self.frictions, *cushion], self.ground_fields)
+
+    def moved_in(self, stage: StaticStage) -> float:
+        """How far a static stage moves the end that it moves farthest [m], from where it was as the stage began."""
+        origins = self.begun.get(stage.name, end_positions(self.line))
+        targets = (getattr(stage.move, name, None) for name in ("start", "end"))
+        ways = [np.subtract(target, x) for target, x in zip(targets, origins, strict=True) if target is not None]
+        return max((float(np.linalg.norm(way)) for way in ways), default=0.0)
 
     def is_laid_in(self, stage: Stage) -> bool:
         """Whether a static stage is the first, in which the riser is laid on the soil."""

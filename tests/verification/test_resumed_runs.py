@@ -42,6 +42,12 @@ def surface_on_clay() -> Scene:
     return scene_from_mapping(scene | {"contact": {"method": "surface", "smoothing": 1e-3}})
 
 
+def laid_and_lifted_on_clay() -> Scene:
+    """As many load steps are left as there would have been: they follow from how far the whole stage moves the end."""
+    lift = {"name": "lift", "kind": "static", "move": {"end": [22.5, 0.0, 15.3]}}
+    return scene_from_mapping(touchdown(LAY, lift, su=1000.0))
+
+
 SHORT = {
     "first scene": (lambda: shortened("demos/first_scene.yaml", 1.0), (5,)),
     "catenary": (lambda: shortened("demos/catenary/scene.yaml", 1.0), (1, 6)),
@@ -50,7 +56,8 @@ SHORT = {
     "waves": (two_storms, (4, 7)),
     "touchdown on clay": (lambda: shortened("demos/touchdown_clay/scene.yaml", 1.0, *COARSE), (4,)),
     "plastic clay in space": (plastic_clay_in_space, (4,)),
-    "surface contact on plastic clay": (surface_on_clay, (4,)),
+    "surface contact on plastic clay": (surface_on_clay, (4, 10)),
+    "laid and lifted on clay": (laid_and_lifted_on_clay, (10,)),
     "midpoint rule": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT), (6,)),
     "midpoint rule in space": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT, *IN_SPACE), (6,)),
     "automatic steps": (lambda: shortened("demos/catenary/scene.yaml", 2.0, "stages.1.time_step=auto"), (7,)),
