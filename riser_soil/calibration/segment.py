@@ -40,7 +40,7 @@ class PipeSegment:
         motion = {"table": str(table)}
         stage = {"name": "penetration", "kind": "dynamic", "duration": STEP * steps, "time_step": STEP}
         given = [f"stages={json.dumps([stage | {'motion': {'start': motion, 'end': motion}}])}"]
-        given += [f"{path}={value!r}" for path, value in parameters.items()]
+        given += [f"{path}={float(value)!r}" for path, value in parameters.items()]
         return read_scene(self.file, [*self.overrides, *given])
 
     def resistance(self, parameters: Mapping[str, float], path: PenetrationPath, table: Path) -> Array:
@@ -119,7 +119,7 @@ def contact_length(assembly: Assembly) -> float:
 
 def write_table(path: PenetrationPath, first: float, file: Path) -> None:
     """The path as a table of motion for both ends; first: penetration as the scene begins [m]."""
-    rows = [f"{STEP * n:.10g}, 0, 0, {first - w!r}" for n, w in enumerate(path.w)]
+    rows = [f"{STEP * n:.10g}, 0, 0, {float(first - w)!r}" for n, w in enumerate(path.w)]
     while len(rows) < 4:  # that cubic splines ask for
-        rows.append(f"{STEP * len(rows):.10g}, 0, 0, {first - path.w[-1]!r}")
+        rows.append(f"{STEP * len(rows):.10g}, 0, 0, {float(first - path.w[-1])!r}")
     file.write_text("\n".join(["t [s], x [m], y [m], z [m]", *rows]) + "\n", encoding="utf-8")

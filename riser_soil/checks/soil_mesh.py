@@ -63,4 +63,4 @@ def _cells_across(assembly: Assembly, depths: tuple[float, ...]) -> int:
 
 
 def _place(point: tuple[float, ...]) -> str:
-    return f"({', '.join(f'{x:.4g}' for x in point)}) m"
+    return f"({', '.join(f'{round(x, 6) + 0.0:.4g}' for x in point)}) m"

@@ -50,7 +50,7 @@ if comm.rank == 0:
     ("how", "failure"),
     [
         ("told", "diverged_linear_solve"),
-        ("raising", "the linear solver failed (MUMPS in its numerical factorization phase: INFOG(1) = -10)"),
+        ("raising", "the linear solver failed (MUMPS"),
     ],
 )
 def test_springs_without_stiffness_fail_and_others_after_them_do_not(
@@ -61,8 +61,9 @@ def test_springs_without_stiffness_fail_and_others_after_them_do_not(
     script.write_text(SCRIPT)
     done = mpirun(ranks, str(script), how)
     assert done.returncode == 0, done.stderr
-    told = done.stdout.strip().split("; ")
-    assert told == ["-0.600000000", failure, "-0.600000000", failure, failure, "-1.200000000"]
+    told = done.stdout.strip().split("; ")  # more or less of what MUMPS says, by PETSc's version
+    expected = ["-0.600000000", failure, "-0.600000000", failure, failure, "-1.200000000"]
+    assert [text[: len(start)] for text, start in zip(told, expected, strict=True)] == expected
 
 
 @pytest.mark.parametrize("code", [55, 63])
