@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import argparse
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 
@@ -32,6 +33,15 @@ def publish(blocks: Mapping[str, str], results: Path, page: Path | None = None) 
         print(f"\n{name}:\n{text}")
     if page is not None:
         page.write_text(filled(page.read_text(encoding="utf-8"), blocks), encoding="utf-8")
+
+
+def script(main: Callable[[Path, bool], None], description: str | None, here: Path) -> None:
+    """Run a demo's script with its command line: the folder of its results, and whether its page is written, too."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--results", type=Path, default=here / "results", help="folder for runs and tables")
+    parser.add_argument("--page", action="store_true", help="write tables and pictures into the demo's page, too")
+    given = parser.parse_args()
+    main(given.results, given.page)
 
 
 def _place(page: str, name: str) -> tuple[int, int]:

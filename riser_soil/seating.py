@@ -19,8 +19,8 @@ def seat(assembly: Assembly, model: Model, settings: NewtonSettings, clock: Time
 
     By Newton's method, else by dynamic relaxation: SolveError where that finds none either.
     """
-    on_soil = {id(part) for part in (assembly.soil, assembly.soil_contact, assembly.soil_friction)}
-    alone = Model(model.lines, [part for part in model.parts if id(part) not in on_soil])
+    absent = [assembly.soil, *assembly.on_soil]
+    alone = Model(model.lines, [part for part in model.parts if not any(part is each for each in absent)])
     system = System(assembly.comm, alone, clock)
     newton = Newton(system, replace(settings, line_search=False))
     try:

@@ -6,12 +6,11 @@ Leaves runs, tables (*.md) and pictures in `results` beside this file; --page wr
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 from demos.catenary.statics import COARSE, FINE, HERE, SCENE, WEIGHTS, hanging, paths_page, table1_page
 from demos.compute import compute
-from demos.page import publish
+from demos.page import publish, script
 from riser_soil.plots.curves import along_arc, end_reactions, save, shapes, sheet
 from riser_soil.results import Run
 
@@ -57,8 +56,4 @@ def draw_surge(runs: dict[str, Run], png: Path) -> None:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--results", type=Path, default=HERE / "results", help="folder for runs and tables")
-    parser.add_argument("--page", action="store_true", help="write tables and pictures into the demo's page, too")
-    given = parser.parse_args()
-    main(given.results, given.page)
+    script(main, __doc__, HERE)

@@ -7,13 +7,12 @@ them.
 
 from __future__ import annotations
 
-import argparse
 from contextlib import redirect_stdout
 from pathlib import Path
 
 import numpy as np
 
-from demos.page import publish, table
+from demos.page import publish, script, table
 from demos.pipe_segment.curves import (
     AMPLITUDES,
     DEEPEST,
@@ -145,8 +144,4 @@ def draw_stiffness(png: Path, w: Array, V: Array) -> None:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--results", type=Path, default=HERE / "results", help="folder for tables and calibrations")
-    parser.add_argument("--page", action="store_true", help="write tables and pictures into the demo's page, too")
-    given = parser.parse_args()
-    main(given.results, given.page)
+    script(main, __doc__, HERE)

@@ -6,12 +6,11 @@ Leaves runs, tables (*.md) and pictures in `results` beside this file; --page wr
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping
 from pathlib import Path
 
 from demos.compute import compute
-from demos.page import publish, table
+from demos.page import publish, script, table
 from demos.tank.statics import HERE, at_rest_blocks
 from demos.tank.swing import EXTREMES, NEAR_TOUCHDOWN, SCENE, SINCE, extremes
 from riser_soil.core.arrays import Array
@@ -101,8 +100,4 @@ def draw_seabeds(runs: Mapping[str, Run], png: Path) -> None:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--results", type=Path, default=HERE / "results", help="folder for runs and tables")
-    parser.add_argument("--page", action="store_true", help="write tables and pictures into the demo's page, too")
-    given = parser.parse_args()
-    main(given.results, given.page)
+    script(main, __doc__, HERE)

@@ -7,12 +7,11 @@ shows them.
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 from typing import Any
 
 from demos.compute import compute
-from demos.page import publish, table
+from demos.page import publish, script, table
 from riser_soil.core.arrays import Array
 from riser_soil.plots.curves import save, sheet
 from riser_soil.results import Run
@@ -76,8 +75,4 @@ def draw(png: Path, runs: dict[str, Run]) -> None:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--results", type=Path, default=HERE / "results", help="folder for runs and table")
-    parser.add_argument("--page", action="store_true", help="write table and picture into the demo's page, too")
-    given = parser.parse_args()
-    main(given.results, given.page)
+    script(main, __doc__, HERE)

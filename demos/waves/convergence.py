@@ -5,7 +5,6 @@ Usage, in the project's folder: python -m demos.waves.convergence [--page]. Some
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -13,7 +12,7 @@ import numpy as np
 from ruamel.yaml import YAML
 
 from demos.compute import timed
-from demos.page import publish, table
+from demos.page import publish, script, table
 from demos.waves.run import HERE, PAGE, SCENE, SINCE
 from riser_soil.results import Run
 from riser_soil.results.derived import peak
@@ -69,8 +68,4 @@ def as_table(found: Mapping[tuple[float, float], tuple[int, float, dict[str, flo
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--results", type=Path, default=HERE / "results", help="folder for runs and tables")
-    parser.add_argument("--page", action="store_true", help="write the table into the demo's page, too")
-    given = parser.parse_args()
-    main(given.results, given.page)
+    script(main, __doc__, HERE)

@@ -67,16 +67,12 @@ class Assembly:
     soil: Soil | None = None
     soil_contact: SoilContact | None = None
     seabed: SeabedContact | None = None
-    frictions: list[CoulombFriction | SoilFriction] = field(default_factory=list)
+    friction: CoulombFriction | None = None
+    soil_friction: SoilFriction | None = None
     cushion: Cushion | None = None
     contact_stiffness: dict[str, float] = field(default_factory=dict)
     vessels: Vessels | None = None
     begun: dict[str, Array] = field(default_factory=dict)
-
-    @property
-    def soil_friction(self) -> CoulombFriction | SoilFriction | None:
-        """Friction on the soil."""
-        return next((friction for friction in self.frictions if friction.name == "soil friction"), None)
 
     @property
     def ground_fields(self) -> list[Field]:
@@ -93,11 +89,20 @@ class Assembly:
         return [contact for contact in both if contact is not None]
 
     @property
+    def frictions(self) -> list[CoulombFriction | SoilFriction]:
+        """Friction parts of the riser."""
+        return [friction for friction in (self.friction, self.soil_friction) if friction is not None]
+
+    @property
     def on_soil(self) -> list[LoadsSoil]:
         """Parts by which the riser loads the soil."""
-        from riser_soil.contact.contact import LoadsSoil
+        both: tuple[LoadsSoil | None, LoadsSoil | None] = (self.soil_contact, self.soil_friction)
+        return [part for part in both if part is not None]
 
-        return [part for part in (*self.contacts, *self.frictions) if isinstance(part, LoadsSoil)]
+    @property
+    def touches_soil_all_along(self) -> bool:
+        """Whether there is soil that the pipe's surface touches, not the riser's nodes alone."""
+        return self.soil is not None and self.scene.contact is not None and not self.scene.contact.at_nodes
 
     @property
     def size(self) -> int:
@@ -234,11 +239,11 @@ def _add_ground(assembly: Assembly) -> None:
         assembly.soil = soil = ground.soil_of(scene, scene.soil, line, assembly.comm)
         contact = ground.soil_contact_of(scene, settings, line, elements, soil.surface, stiffness["soil"])
         assembly.soil_contact = contact
-        assembly.frictions += ground.soil_friction_of(scene, settings, contact, elements)
-        assembly.cushion = ground.cushion_of(
-            scene, settings, contact, elements, soil.surface.points, assembly.comm
-        )
+        assembly.soil_friction = ground.soil_friction_of(scene, settings, contact, elements)
+        if assembly.laying is not None or scene.stages[0].kind == "static":
+            top = soil.surface.points
+            assembly.cushion = ground.cushion_of(scene, settings, contact, elements, top, assembly.comm)
     if scene.seabed is not None:
         law = ground.seabed_law(scene.seabed, settings, elements, stiffness)
         assembly.seabed = ground.seabed_contact_of(scene, settings, line, elements, law, assembly.soil_contact)
-        assembly.frictions += ground.friction_of(settings, assembly.seabed, elements)
+        assembly.friction = ground.friction_of(settings, assembly.seabed, elements)

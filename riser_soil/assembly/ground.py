@@ -147,22 +147,22 @@ def seabed_contact_of(
     )
 
 
-def friction_of(settings: ContactScene, seabed: SeabedContact, elements: Elements) -> list[CoulombFriction]:
+def friction_of(settings: ContactScene, seabed: SeabedContact, elements: Elements) -> CoulombFriction | None:
     """Friction on the seabed, where the scene asks for it."""
     if settings.friction is None:
-        return []
+        return None
     from riser_soil.contact.friction import CoulombFriction, mobilised_within
 
     mu, slide = _coefficients(settings.friction, scales_of(elements))
-    return [CoulombFriction(seabed, *mu, mobilised_within(slide, *mu, np.abs(elements.weight)))]
+    return CoulombFriction(seabed, *mu, mobilised_within(slide, *mu, np.abs(elements.weight)))
 
 
 def soil_friction_of(
     scene: Scene, settings: ContactScene, contact: SoilContact, elements: Elements
-) -> list[SoilFriction]:
+) -> SoilFriction | None:
     """Friction on the soil, where the scene asks for it and the pipe's surface touches."""
     if settings.friction is None or settings.at_nodes:
-        return []
+        return None
     from riser_soil.contact.friction import mobilised_within
     from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.contact.surface_contact import SurfaceContact
@@ -172,7 +172,7 @@ def soil_friction_of(
     scales = scales_of(elements)
     mu, slide = _coefficients(settings.friction, scales)
     width = contact_width(scales, scene.soil.top_law.surface_modulus(scales.diameter))
-    return [SoilFriction(contact, *mu, float(mobilised_within(slide, *mu, np.array(scales.weight))) / width)]
+    return SoilFriction(contact, *mu, float(mobilised_within(slide, *mu, np.array(scales.weight))) / width)
 
 
 def cushion_of(

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -17,6 +15,7 @@ from riser_soil.calibration.segment import TABLE, PipeSegment
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.plots.resistance import draw_resistance
+from riser_soil.results.whole_file import refuse_file, written_together
 from riser_soil.scene.dump import dump_scene
 
 SCENE, CURVE, NUMBERS, PICTURE = "calibrated.yaml", "fit.csv", "calibration.json", "fit.png"
@@ -26,8 +25,7 @@ FILES = (SCENE, TABLE, CURVE, NUMBERS, PICTURE)
 
 def refuse_folder(folder: Path, force: bool) -> None:
     """Only an empty folder, or by force one with a calibration, takes another."""
-    if os.path.lexists(folder) and not folder.is_dir():
-        raise SceneError(f"{folder}: is a file, not a folder; choose another folder with -o FOLDER")
+    refuse_file(folder)
     there = sorted(entry.name for entry in folder.iterdir()) if folder.is_dir() else []
     if [name for name in there if name not in FILES]:
         raise SceneError(f"{folder}: holds more than a calibration, {there[0]}; choose another with -o FOLDER")
@@ -64,20 +62,15 @@ def write_folder(
     fit: Fit,
     diameter: float,
 ) -> None:
-    """All files together: they are made in a folder beside, and moved in when they are whole. place: of the table."""
-    folder.parent.mkdir(parents=True, exist_ok=True)
+    """All files together, none of them by halves. place: of the table."""
     values = {each.parameter.name: each.value for each in fit.parameters}
     smooth = segment.resistance(values, path, place / TABLE)
-    with tempfile.TemporaryDirectory(dir=folder.parent, prefix=f".{folder.name}.") as made_in:
-        made = Path(made_in)
+    with written_together(folder, FILES) as made:
         (made / TABLE).write_bytes((place / TABLE).read_bytes())
         (made / SCENE).write_text(_scene_text(segment, values, path, place / TABLE), encoding="utf-8")
         np.savetxt(made / CURVE, _curve(measured, fit), "%.8g", ",", header=COLUMNS, comments="")
         (made / NUMBERS).write_text(json.dumps(as_dict(fit), indent=2) + "\n", encoding="utf-8")
         draw_resistance(made / PICTURE, (measured.w, measured.V), (path.w, smooth), result_lines(fit), diameter)
-        folder.mkdir(exist_ok=True)
-        for name in FILES:
-            os.replace(made / name, folder / name)
 
 
 def as_dict(fit: Fit) -> dict[str, object]:

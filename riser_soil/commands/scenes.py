@@ -1,6 +1,5 @@
 """A command's scene: read, its errors placed in the file, its result folder."""
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -26,10 +25,10 @@ def read(scene: str, overrides: list[str] | None) -> "Scene":
 def result_folder(file: str, scene: "Scene", output: Path | None, force: bool) -> Path:
     """The folder for the results; a finished run in it is only overwritten by force."""
     from riser_soil.results.ownership import refuse
+    from riser_soil.results.whole_file import refuse_file
 
     folder = output or Path(scene.output.directory or Path(file).stem)
-    if os.path.lexists(folder) and not folder.is_dir():
-        raise SceneError(f"{folder}: is a file, not a folder; choose another result folder with -o FOLDER")
+    refuse_file(folder)
     if rank() == 0:
         refuse(folder, force)
     return folder

@@ -50,7 +50,6 @@ class RiserContact(Part, Protocol):
         ...
 
 
-@runtime_checkable
 class LoadsSoil(Protocol):
     """A part by which the riser loads the soil: contact with it, or friction there."""
 

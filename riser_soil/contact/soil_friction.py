@@ -22,16 +22,14 @@ AREA = 3  # column of the memory, behind the traction
 
 @dataclass(frozen=True, eq=False)
 class SlidingState:
-    """Friction at a state: traction (n, 3) on the riser [Pa] of the n points that press, their plastic slip (n,) [m];
+    """Friction at a state: elastic guess (n, 3) and traction (n, 3) on the riser [Pa] of the n points that press;
     by_z (n, nz): its force on each point's z, see `ActivePairs`, and gradient (m, nz): residual of the pairs [N, N.m].
     """
 
     found: SurfaceState
     moved: Slide
     elastic: Array
-    components: Array
     traction: Array
-    slip: Array
     by_z: Array
     gradient: Array
 
@@ -70,14 +68,12 @@ class SoilFriction(LinePart):
         moved = slide(pressed.points, self._start(state), now, self.line.basis)
         before = self._memory.at(pressed.points.number)[:, :AREA]
         elastic = before - self._stiffness * moved.moved
-        kept, slope = _along(moved.along, before), _along(moved.along, elastic)
-        t, _, _ = traction(slope, self._pressure(found), self._mu)
-        slip = np.linalg.norm(_along(moved.along, moved.moved) - (kept - t) / self._stiffness, axis=1)
+        t, _, _ = traction(_along(moved.along, elastic), self._pressure(found), self._mu)
         on_riser = np.einsum("nri,nr->ni", moved.along, t)
         gradient = np.zeros_like(pressed.gradient)
         by_z = np.einsum("ni,niz->nz", pressed.points.area[:, None] * on_riser, moved.by_z)
         add_rows(gradient, pressed.pair, -np.ones(len(by_z)), by_z)
-        return SlidingState(found, moved, elastic, t, on_riser, slip, by_z, gradient)
+        return SlidingState(found, moved, elastic, on_riser, by_z, gradient)
 
     def _pressure(self, found: SurfaceState) -> Array:
         """Pressure (n,) of the points [Pa], 0 where they pull."""
@@ -152,9 +148,11 @@ class SoilFriction(LinePart):
     def _nodal_slip(self, sliding: SlidingState) -> Array:
         """Plastic slip in the step at the nodes (nn,) [m]: the mean over the points that press, shared by two nodes."""
         points, slid, pressing = sliding.found.pressed.points, np.zeros(self.line.nodes), np.zeros(self.line.nodes)
+        plastic = _along(sliding.moved.along, sliding.traction - sliding.elastic) / self._stiffness
+        slip = np.linalg.norm(plastic, axis=1)
         for node, share in ((points.element, 1.0 - points.along), (points.element + 1, points.along)):
             weight = share * points.area * (sliding.found.pressed.force > 0.0)
-            np.add.at(slid, node, weight * sliding.slip)
+            np.add.at(slid, node, weight * slip)
             np.add.at(pressing, node, weight)
         return slid / np.where(pressing > 0.0, pressing, 1.0)
 

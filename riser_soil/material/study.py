@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from pathlib import Path
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.errors import SceneError, WriteError, is_full
+from riser_soil.errors import SceneError
 from riser_soil.material.loops import ClosedCycle, closed_cycles
 from riser_soil.material.path import STRAINS, STRESS_FACTOR, STRESSES, MaterialPath, read_path, shear_cycles
 from riser_soil.material.point import MaterialCurve, drive, law_at, point_at
+from riser_soil.results.whole_file import refuse_file, written_together
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import SoilScene
 from riser_soil.soil import mandel
 
-CURVE, CYCLES, PICTURE = "material.csv", "material_cycles.csv", "material.png"
+FILES = CURVE, CYCLES, PICTURE = "material.csv", "material_cycles.csv", "material.png"
 USUAL_DEPTH = 1.0  # m, at most half of the block's depth
 SIGNED = "# riser_soil material: "  # the first line's beginning, by which the program knows its files
 
@@ -59,9 +59,8 @@ def _depth(soil: SoilScene, wanted: float | None) -> float:
 
 def _refuse(folder: Path, force: bool) -> None:
     """Raises SceneError where files would be replaced that may not be."""
-    if os.path.lexists(folder) and not folder.is_dir():
-        raise SceneError(f"{folder}: is a file, not a folder; choose another result folder with -o FOLDER")
-    for name in (CURVE, CYCLES, PICTURE):
+    refuse_file(folder)
+    for name in FILES:
         if not os.path.lexists(folder / name):
             continue
         if not force:
@@ -78,22 +77,13 @@ def _own(file: Path) -> bool:
 
 
 def _leave(folder: Path, heading: str, curve: MaterialCurve, cycles: list[ClosedCycle]) -> None:
-    """Write all files beside their places, then rename them: none is left half written."""
+    """Write all files, none of them by halves."""
     from riser_soil.plots.material import draw
 
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=folder, prefix=".riser_soil_") as workshop:
-            drafts = Path(workshop)
-            _write(drafts / CURVE, heading, _curve_columns(curve))
-            _write(drafts / CYCLES, heading, _cycle_columns(cycles))
-            draw(drafts / CURVE, drafts / CYCLES, drafts / PICTURE)
-            for name in (CURVE, CYCLES, PICTURE):
-                (drafts / name).replace(folder / name)
-    except OSError as err:
-        if is_full(err):
-            raise WriteError(f"{folder}: cannot be written: {err.strerror}") from err
-        raise SceneError(f"{folder}: cannot be used as the output folder: {err.strerror or err}") from err
+    with written_together(folder, FILES) as drafts:
+        _write(drafts / CURVE, heading, _curve_columns(curve))
+        _write(drafts / CYCLES, heading, _cycle_columns(cycles))
+        draw(drafts / CURVE, drafts / CYCLES, drafts / PICTURE)
 
 
 def _write(file: Path, heading: str, columns: dict[str, Array]) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import sys
+from collections.abc import Callable
 
 import numpy as np
 import pyvista as pv
@@ -12,6 +14,16 @@ from riser_soil.errors import ResultsError
 from riser_soil.results import Run, SoilFrame
 
 _CELL_TYPES = {4: pv.CellType.TETRA, 8: pv.CellType.HEXAHEDRON, 10: pv.CellType.QUADRATIC_TETRA}
+
+
+def exit_status(draw: Callable[[], None]) -> int:
+    """Of a process that draws: 0, or 1 after a failure, which is one line on standard error."""
+    try:
+        draw()
+    except (ResultsError, OSError) as err:
+        print(err, file=sys.stderr)
+        return 1
+    return 0
 
 
 def pipe_radius(run: Run) -> float:

@@ -13,7 +13,15 @@ import pyvista as pv
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import ResultsError
-from riser_soil.plots.bodies import carried_down, colour_bar, pipe_radius, require, soil_grid, touchdown_place
+from riser_soil.plots.bodies import (
+    carried_down,
+    colour_bar,
+    exit_status,
+    pipe_radius,
+    require,
+    soil_grid,
+    touchdown_place,
+)
 from riser_soil.plots.moving_pictures import write_film
 from riser_soil.plots.scales import colour_scale, magnification
 from riser_soil.results import Run, SoilFrame
@@ -165,12 +173,8 @@ def _look(plotter: pv.Plotter, focus: Array, bounds: tuple[float, ...], ahead: A
 def main(arguments: list[str]) -> int:
     """A failure is one line on standard error."""
     asked = _parser().parse_args(arguments)
-    try:
-        film(Run(asked.folder), asked.file, asked.stage, asked.period, asked.field, asked.magnify)
-    except (ResultsError, OSError) as err:
-        print(err, file=sys.stderr)
-        return 1
-    return 0
+    wanted = asked.stage, asked.period, asked.field, asked.magnify
+    return exit_status(lambda: film(Run(asked.folder), asked.file, *wanted))
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -13,7 +13,15 @@ import pyvista as pv
 
 from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError
-from riser_soil.plots.bodies import carried_down, colour_bar, pipe_radius, require, soil_grid, touchdown_place
+from riser_soil.plots.bodies import (
+    carried_down,
+    colour_bar,
+    exit_status,
+    pipe_radius,
+    require,
+    soil_grid,
+    touchdown_place,
+)
 from riser_soil.plots.scales import colour_scale, magnification
 from riser_soil.results import Run, SoilFrame
 from riser_soil.results.derived import along
@@ -64,12 +72,7 @@ def draw(folder: Path, png: Path, magnify: float | None = None) -> None:
 def main(arguments: list[str]) -> int:
     """FOLDER PNG [MAGNIFY]; a failure is one line on standard error."""
     asked = _parser().parse_args(arguments)
-    try:
-        draw(asked.folder, asked.png, asked.magnify)
-    except (ResultsError, OSError) as err:
-        print(err, file=sys.stderr)
-        return 1
-    return 0
+    return exit_status(lambda: draw(asked.folder, asked.png, asked.magnify))
 
 
 def _parser() -> argparse.ArgumentParser:

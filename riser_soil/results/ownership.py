@@ -15,7 +15,7 @@ from xml.sax.saxutils import quoteattr
 
 import h5py
 
-from riser_soil.errors import RiserSoilError, SceneError, WriteError, is_full
+from riser_soil.errors import SceneError, WriteError
 from riser_soil.results.folder import (
     NAMES,
     RISER_NUMBERS,
@@ -29,6 +29,7 @@ from riser_soil.results.folder import (
     is_finished,
 )
 from riser_soil.results.growing_file import reading
+from riser_soil.results.whole_file import unusable
 
 PROGRAM = "riser_soil"
 XDMF_HEAD = """<?xml version="1.0"?>
@@ -59,7 +60,7 @@ def refuse(folder: Path, force: bool) -> None:
         for name in NAMES:
             _refuse_foreign(folder / name)
     except OSError as err:
-        raise _unusable(folder, err) from err
+        raise unusable(folder, err, "; nothing was computed") from err
 
 
 def refuse_together(folder: Path, force: bool, comm: Any) -> None:
@@ -90,14 +91,8 @@ def prepare(folder: Path, force: bool) -> FolderLock:
             if name != SCENE:
                 (folder / name).unlink(missing_ok=True)
     except OSError as err:
-        raise _unusable(folder, err) from err
+        raise unusable(folder, err, "; nothing was computed") from err
     return lock
-
-
-def _unusable(folder: Path, err: OSError) -> RiserSoilError:
-    if is_full(err):
-        return WriteError(f"{folder}: cannot be written: {err.strerror}; nothing was computed")
-    return SceneError(f"{folder}: cannot be used as the output folder: {err.strerror or err}")
 
 
 def _refuse_foreign(path: Path) -> None:

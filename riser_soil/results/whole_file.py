@@ -1,12 +1,14 @@
-"""A file that is written whole or not at all."""
+"""Files that are written whole or not at all, one by one or together."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
+import tempfile
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from riser_soil.errors import WriteError
+from riser_soil.errors import RiserSoilError, SceneError, WriteError, is_full
 
 
 @contextmanager
@@ -26,3 +28,38 @@ def written_whole(file: Path) -> Iterator[Path]:
     finally:
         if file.parent.is_dir():
             part.unlink(missing_ok=True)
+
+
+@contextmanager
+def written_together(folder: Path, names: Sequence[str]) -> Iterator[Path]:
+    """A place for the block to write files of these names: they take their places in the folder then, and vanish after
+    an error, a folder that was made for them, too.
+
+    WriteError where the disk takes no more, SceneError where it can't be the folder.
+    """
+    there = folder.is_dir()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            with tempfile.TemporaryDirectory(dir=folder, prefix=".riser_soil_") as place:
+                yield Path(place)
+                for name in names:
+                    (Path(place) / name).replace(folder / name)
+        finally:
+            if not there and not any(folder.iterdir()):
+                folder.rmdir()
+    except OSError as err:
+        raise unusable(folder, err) from err
+
+
+def refuse_file(folder: Path) -> None:
+    """Raises SceneError for a result folder that is a file."""
+    if os.path.lexists(folder) and not folder.is_dir():
+        raise SceneError(f"{folder}: is a file, not a folder; choose another result folder with -o FOLDER")
+
+
+def unusable(folder: Path, err: OSError, when_full: str = "") -> RiserSoilError:
+    """The error of a result folder in which nothing can be written; when_full: said where the disk takes no more."""
+    if is_full(err):
+        return WriteError(f"{folder}: cannot be written: {err.strerror}{when_full}")
+    return SceneError(f"{folder}: cannot be used as the output folder: {err.strerror or err}")

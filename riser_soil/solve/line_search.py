@@ -2,7 +2,8 @@
 
 Where contact opens or soil is near its limit, a Newton step may lead far beyond the equilibrium. With the residual r as
 the slope of an energy, g(a) = r(x + a d)·d falls to zero where the energy is least along the step d; g(0) < 0. A full
-step is taken where it does not go far beyond that, else the zero is bracketed by the Illinois method.
+step is taken where it does not go far beyond that, else the zero is bracketed by false position, the slope at the end
+that stays counting half each time (after the Illinois method, so that neither end stays for long).
 """
 
 from __future__ import annotations
@@ -34,10 +35,10 @@ def step_length(start: float, slope: Callable[[float], float]) -> float:
 
 
 def _between(low: float, high: float, below: float, above: float) -> float:
-    """The secant's zero; the middle where a slope is not finite or the secant hardly moves."""
+    """The secant's zero, kept from both ends by a twentieth; the middle where a slope is not finite."""
     middle = 0.5 * (low + high)
-    if not math.isfinite(above):
+    if not math.isfinite(above - below):
         return middle
     part = low - below * (high - low) / (above - below)
     edge = 0.05 * (high - low)
-    return part if low + edge < part < high - edge else (low + edge if part <= low + edge else high - edge)
+    return min(max(part, low + edge), high - edge)

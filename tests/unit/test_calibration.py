@@ -17,6 +17,7 @@ from riser_soil.calibration.segment import TABLE, PipeSegment, first_penetration
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import read_scene
+from riser_soil.soil.clay import UndrainedClay
 
 SCENE = Path(__file__).parents[2] / "demos/pipe_segment/scene.yaml"
 SLICE = ("soil.mesh.size_at_riser=0.075", "soil.block.x=[0.1125, 0.1875]")
@@ -181,7 +182,10 @@ def test_a_noisy_curve_gives_its_strength_back(tmp_path: Path, capsys: pytest.Ca
     assert su.value == pytest.approx(4.0e3, rel=0.02)
     assert su.interval[0] < 4.0e3 < su.interval[1]
     assert su.interval[1] - su.interval[0] < 0.05 * su.value
-    assert read_scene(tmp_path / "out/calibrated.yaml").soil.law.su == su.value  # type: ignore[union-attr]
+    soil = read_scene(tmp_path / "out/calibrated.yaml").soil
+    assert soil is not None
+    assert isinstance(soil.law, UndrainedClay)
+    assert soil.law.su == su.value
     assert json.loads((tmp_path / "out/calibration.json").read_text())["converged"]
     assert (tmp_path / "out/fit.png").stat().st_size > 10_000
     assert "misfit" in capsys.readouterr().out

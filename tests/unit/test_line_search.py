@@ -6,9 +6,17 @@ import math
 from collections.abc import Callable
 from functools import partial
 
+import numpy as np
 import pytest
+from mpi4py import MPI
 
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Forces, Model, State, Weights
+from riser_soil.core.system import System, Timer
 from riser_soil.solve.line_search import FAR, MOST, NEAR, step_length
+from riser_soil.solve.newton import Newton, NewtonSettings, NotConvergedError, Step
+from riser_soil.solve.time_scheme import Static
+from tests.support.toy_chain import Chain, Springs
 
 
 def counted(slope: Callable[[float], float]) -> tuple[Callable[[float], float], list[float]]:
@@ -53,3 +61,37 @@ def test_a_step_that_leads_to_nowhere_is_shortened() -> None:
 
 def test_a_direction_that_climbs_is_left_alone() -> None:
     assert step_length(1.0, lambda a: 10.0 * a) == 1.0
+
+
+LIMIT, YIELDS_AT = 10.0, 0.1  # N, m
+
+
+class YieldingSprings(Springs):
+    """Forces LIMIT tanh(e/YIELDS_AT) in the stretches e, and weight: far from rest they hardly stiffen."""
+
+    def residual(self, state: State, forces: Forces) -> None:
+        f = LIMIT * np.tanh(self._stretch(state) / YIELDS_AT)
+        forces.force[:-1] -= f
+        forces.force[1:] += f
+        forces.force += self.weight
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        far = np.clip(self._stretch(state) / YIELDS_AT, -300.0, 300.0)
+        k = LIMIT / YIELDS_AT / np.cosh(far) ** 2
+        values["chain"] += weights.force * k[:, None, None] * np.array([[1.0, -1.0], [-1.0, 1.0]])
+
+
+@pytest.mark.parametrize("line_search", [True, False])
+def test_newton_comes_back_from_beyond_the_limit_with_it_alone(line_search: bool) -> None:
+    """Springs squeezed to 2.5 times what they yield at come to bear what stands on them: 3, 2 and 1 N."""
+    chain = Chain(np.arange(4.0), prescribed=True)
+    springs = YieldingSprings(chain, 1.0 + 2.5 * YIELDS_AT, 0.0, weight=1.0)
+    system = System(MPI.COMM_SELF, Model([chain], [springs]), Timer.new())
+    newton, z = Newton(system, NewtonSettings(1e-10, 25, 1e-12, line_search=line_search)), np.zeros(4)
+    step = Step(Static(), State(0.0, z, z.copy(), z.copy()), 1.0, 1.0, None, z.copy())
+    if not line_search:
+        with pytest.raises(NotConvergedError):
+            newton.solve(step)
+        return
+    stretch = np.diff(chain.heights(newton.solve(step).state)) - springs.rest
+    assert LIMIT * np.tanh(stretch / YIELDS_AT) == pytest.approx([-3.0, -2.0, -1.0], rel=1e-8)

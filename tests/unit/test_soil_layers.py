@@ -120,12 +120,12 @@ def column(kind: Any, bottoms: tuple[float, ...]) -> DistributedMesh:
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("laws", [(SOFT, STIFF), (STIFF, SOFT)])
-def test_two_layers_settle_under_their_weight_as_a_column(kind: str, laws: tuple[SoilLaw, SoilLaw]) -> None:
+def test_two_layers_settle_under_their_weight_as_a_column(kind: str, laws: tuple[LinearElastic, LinearElastic]) -> None:
     """1:1000 in stiffness: w(z) is the integral of σ/M below z, M = E(1−ν)/((1+ν)(1−2ν)) of each layer."""
     soil = column_of(kind, laws, (0.7,), LayeredWeight((0.7,), (4.0e3, 9.0e3)), start="unstressed")
     Bench(soil, np.zeros(soil.field.size, dtype=bool)).step(np.zeros(soil.field.size))
     depth = -soil.field.points[:, 2]
-    M = [law.E * (1.0 - law.nu) / (1.0 + law.nu) / (1.0 - 2.0 * law.nu) for law in laws]  # type: ignore[attr-defined]
+    M = [law.E * (1.0 - law.nu) / (1.0 + law.nu) / (1.0 - 2.0 * law.nu) for law in laws]
     upper = 0.5 * 4.0e3 * (0.7**2 - np.minimum(depth, 0.7) ** 2) / M[0]
     low = np.maximum(depth, 0.7) - 0.7
     lower = (4.0e3 * 0.7 * (2.3 - low) + 0.5 * 9.0e3 * (2.3**2 - low**2)) / M[1]
