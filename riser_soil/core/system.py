@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 from mpi4py import MPI
@@ -124,9 +124,8 @@ class System:
         for part in self.model.parts:
             turned = part.work(before, after) if part.active else Work()
             mine[part.name] = mine.get(part.name, Work()) + turned
-        summed = self.sum([x for work in mine.values() for x in astuple(work)])
-        size = len(fields(Work))
-        return {name: Work(*summed[size * i : size * (i + 1)]) for i, name in enumerate(mine)}
+        summed = iter(self.sum([x for work in mine.values() for x in vars(work).values()]))
+        return {name: Work(*(next(summed) for _ in vars(work))) for name, work in mine.items()}
 
     def work_against(self, bulk: Array, end: Array, u: Array) -> float:
         """Work [J] that bulk forces F, as their mean, and end-of-step forces E take out over a step."""

@@ -77,10 +77,8 @@ class Recorder:
         self._fields = fields
         left_out = outputs.left_out(fields)
         self._ledger = ledger_variables(facts.dissipating, facts.working)
-        self._series = SeriesFile(
-            *(folder / run_folder.SERIES, arc, facts.title, facts.version, left_out, self._ledger),
-            *(facts.sections, facts.offsets),
-        )
+        made_of = facts.title, facts.version, left_out, self._ledger, facts.sections, facts.offsets
+        self._series = SeriesFile(folder / run_folder.SERIES, arc, *made_of)
         self._riser_frames = XdmfFile(
             folder / run_folder.RISER_XDMF, "riser", polyline(arc.size), polyline=True
         )
