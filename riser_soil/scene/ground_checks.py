@@ -1,0 +1,93 @@
+"""Checks of seabed, soil and contact with them, and of ends that lie on the ground."""
+
+from collections.abc import Iterator
+
+from riser_soil.scene.bathymetry import ground_height
+from riser_soil.scene.contact import Contact
+from riser_soil.scene.problem import Path, Problem
+from riser_soil.scene.riser import Support
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed
+
+# Part of its radius by which a prescribed end may lie in a rigid seabed.
+_SUNK = 0.02
+
+
+def ground_conflicts(scene: Scene) -> Iterator[Problem]:
+    """Conflicts of seabed, soil, contact and the ends on them."""
+    for check in (
+        _contact_with_something,
+        _seabed_has_one_shape,
+        _ground_can_do_so,
+        _surface_of_a_pipe_and_soil,
+        _ends_above_seabed,
+    ):
+        yield from check(scene)
+
+
+def _contact_with_something(scene: Scene) -> Iterator[Problem]:
+    if scene.contact and not scene.seabed and not scene.soil:
+        yield Problem(("contact",), "there is nothing to touch", "add seabed or soil, or leave out contact")
+
+
+def _seabed_has_one_shape(scene: Scene) -> Iterator[Problem]:
+    seabed = scene.seabed
+    if seabed is None:
+        return
+    if seabed.profile is not None and (seabed.level or seabed.slope_deg):
+        yield Problem(("seabed", "profile"), "is given beside level or slope_deg", "give either")
+    if scene.soil is not None and (seabed.profile is not None or seabed.slope_deg):
+        key = "slope_deg" if seabed.slope_deg else "profile"
+        yield Problem(("seabed", key), "the soil's top is level, and so must be the seabed beside it", "leave it out")
+
+
+def _ground_can_do_so(scene: Scene) -> Iterator[Problem]:
+    if scene.contact is None:
+        return
+    on_soil = scene.soil is not None and not scene.contact.at_nodes
+    for key in ("friction", "suction"):
+        if getattr(scene.contact, key) and scene.seabed is None and not on_soil:
+            text = "acts on a seabed or on the soil's surface, and there is neither"
+            yield Problem(("contact", key), text, "add seabed, or leave out contact.method: node, or leave it out")
+    if scene.contact.suction and isinstance(scene.seabed, HystereticSeabed) and not on_soil:
+        yield Problem(("contact", "suction"), "a hysteretic seabed has its own, in seabed.law", "leave it out")
+
+
+def _surface_of_a_pipe_and_soil(scene: Scene) -> Iterator[Problem]:
+    if scene.contact is None:
+        return
+    if scene.contact.soil_moves != "freely":
+        yield from _sees_soil_move_upright(scene, scene.contact)
+    if scene.contact.method == "surface" and scene.soil is None:
+        remedy = "add soil, or take line or node"
+        yield Problem(("contact", "method"), "surface is contact with soil, and the scene has none", remedy)
+    if scene.soil is not None and scene.contact_at == "axis" and not scene.contact.at_nodes:
+        remedy = "write outer, or contact.method: node"
+        yield Problem(("seabed", "contact_at"), "the axis has no surface to touch the soil with", remedy)
+
+
+def _sees_soil_move_upright(scene: Scene, contact: Contact) -> Iterator[Problem]:
+    path: Path = ("contact", "soil_moves")
+    if scene.soil is None or contact.at_nodes:
+        yield Problem(path, "is for the surface of soil", "add soil, take method: surface, or leave this out")
+    elif contact.friction is not None:
+        yield Problem(path, "friction slides over soil that moves freely", "write freely, or leave out friction")
+
+
+def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
+    if not scene.contact:
+        return
+    types = [scene.line_types[scene.riser.segments[n].line_type] for n in (0, -1)]
+    ends = {"start": scene.riser.start, "end": scene.riser.end}
+    for (key, end), line in zip(ends.items(), types, strict=True):
+        if not isinstance(end, Support):
+            continue
+        ground = ground_height(scene, end.position)
+        sunk = ground - end.position[2]
+        radius = 0.5 * (line.outer_diameter or 0.0) if scene.contact_at == "outer" else 0.0
+        if sunk > 0.0:
+            allowed = f"must not lie below the seabed (z = {ground:g} m)"
+            yield Problem(("riser", key, "position"), allowed, "raise the position or lower the seabed")
+        elif isinstance(scene.seabed, RigidSeabed) and scene.soil is None and sunk + radius > _SUNK * radius:
+            allowed = f"would press the pipe {sunk + radius:.3g} m into the rigid seabed"
+            yield Problem(("riser", key, "position"), allowed, f"raise it to z = {ground + radius:g} m")
