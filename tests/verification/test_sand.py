@@ -64,7 +64,9 @@ def test_the_matrix_is_the_slope_of_the_residual() -> None:
 
 
 def test_heave_takes_energy_in_every_step() -> None:
-    heaved = HeavedSoil(on_sand(heave(6.0, 0.15)))
+    """Without a cut. (With full Newton steps a third of them are cut, and the others take 5 iterations.)"""
+    heaved = HeavedSoil(on_sand(heave(6.0, 0.15)) | {"contact": {"method": "node"}})
+    assert len(heaved.lost) == 40
     assert min(heaved.lost) > -1e-9 * max(heaved.lost)
-    assert np.mean(heaved.iterations) < 6.0
+    assert np.mean(heaved.iterations) < 7.0
     assert heaved.plastic_strain > 1e-5
