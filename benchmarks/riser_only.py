@@ -21,7 +21,8 @@ from riser_soil.core.part import Forces, State
 from riser_soil.core.system import Timer
 from riser_soil.results.observer import Observer
 from riser_soil.solve.linear_solver import factorise_directly
-from riser_soil.solve.newton import Newton, Step
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.solution import Step
 
 SCENE = Path(__file__).parent.parent / "tests" / "scenes" / "catenary.yaml"
 SIZES = ((2, 35), (2, 100), (3, 100), (3, 400))

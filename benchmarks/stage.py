@@ -18,7 +18,8 @@ from riser_soil.core.system import System, Timer
 from riser_soil.results.observer import Observer
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
-from riser_soil.solve.newton import Newton, NewtonSettings
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.solution import NewtonSettings
 from riser_soil.solve.time_stepper import TimeStepper
 from riser_soil.stages import steps_of
 

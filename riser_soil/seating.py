@@ -10,7 +10,8 @@ from riser_soil.assembly import Assembly
 from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.dynamic_relaxation import relax
-from riser_soil.solve.newton import Newton, NewtonSettings, NotConvergedError, Step
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Step
 from riser_soil.solve.time_scheme import Static
 
 

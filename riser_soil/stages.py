@@ -20,7 +20,8 @@ from riser_soil.seating import seat
 from riser_soil.solve.automatic_steps import AutoSteps
 from riser_soil.solve.dynamic_relaxation import RelaxationResult, relax
 from riser_soil.solve.local_error import first_step
-from riser_soil.solve.newton import Newton, NewtonSettings
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.solution import NewtonSettings
 from riser_soil.solve.step_control import Control, StepControl
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
@@ -232,8 +233,9 @@ def _relaxed(assembly: Assembly, stepper: TimeStepper, control: Control, observe
 
 def _settings(assembly: Assembly) -> NewtonSettings:
     solver = assembly.scene.solver
-    on_soil = assembly.soil is not None
-    return NewtonSettings(solver.tolerance, solver.max_iterations, assembly.scales.force_floor, line_search=on_soil)
+    on_soil, floor = assembly.soil is not None, assembly.scales.force_floor
+    settings = NewtonSettings(solver.tolerance, solver.max_iterations, floor)
+    return replace(settings, line_search=on_soil, linear_start=on_soil)
 
 
 def _load_steps(assembly: Assembly, stage: StaticStage) -> int:

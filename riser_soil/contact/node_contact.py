@@ -100,6 +100,7 @@ class NodeContact(SoilContact):
 
     def commit(self, state: State) -> None:
         """Nothing is kept but the pattern."""
+        super().commit(state)
         self._detected.forget()
 
     def force_per_length(self, state: State) -> Array:

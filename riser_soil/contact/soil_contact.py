@@ -103,11 +103,14 @@ class SoilContact(LineContact):
         return {SOIL: MatrixBlock(rows, rows)}
 
     def rebuild(self, state: State) -> None:
-        """Choose the candidates anew: around a state, and what was missed since the last time."""
+        """Choose the candidates anew: around a state, and all that was missed in the step so far."""
         if self.active:
             self._patch = self.candidates(state).joined(self._missed)
-            self._missed = CandidatePairs.none(len(self._soil.facets))
         self.outgrown = False
+
+    def commit(self, state: State) -> None:
+        """What the step has missed on its way is of no concern to the next."""
+        self._missed = CandidatePairs.none(len(self._soil.facets))
 
     def places(self, on_line: IntArray, facet: IntArray) -> IntArray:
         """Where the pattern has pairs (m,); -1, which is noted, where it has not."""
@@ -147,10 +150,8 @@ class SoilContact(LineContact):
         """The pattern: another one, as wide as need be, gives the same forces but to round-off."""
         if not self.active:
             return {}
-        return {"patch": self._present_patch().pairs, "missed": self._missed.pairs, "outgrown": np.array(self.outgrown)}
+        return {"patch": self._present_patch().pairs}
 
     def restore(self, saved: Saved) -> None:
         if self.active:
-            self.outgrown = bool(saved["outgrown"])
-            facets = len(self._soil.facets)
-            self._patch, self._missed = (CandidatePairs(facets, saved[name]) for name in ("patch", "missed"))
+            self._patch = CandidatePairs(len(self._soil.facets), saved["patch"])

@@ -214,6 +214,7 @@ class SurfaceContact(SoilContact):
 
     def commit(self, state: State) -> None:
         """Keep the history of the points."""
+        super().commit(state)
         if self.law.columns:
             pressed = self.evaluate(state).pressed
             self._memory.keep(pressed.points.number, pressed.history)

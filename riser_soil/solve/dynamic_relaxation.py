@@ -21,7 +21,8 @@ from riser_soil.errors import SolveError
 from riser_soil.riser.line import Line
 from riser_soil.riser.relaxation import Relaxation
 from riser_soil.solve.buckling import buckling_mode, stabilising_drag
-from riser_soil.solve.newton import Newton, NewtonSettings, NotConvergedError, Solution, Step, UnstableError
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError
 from riser_soil.solve.time_scheme import Static
 
 FREE_FALL = 0.1  # the first step lets the riser fall by about this many element lengths

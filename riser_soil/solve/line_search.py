@@ -17,9 +17,11 @@ MOST = 10  # evaluations of the slope within the step
 
 
 def step_length(start: float, slope: Callable[[float], float]) -> float:
-    """Part of a step to take, 0 to 1. start: slope at its beginning; slope: of the energy at a part of the step."""
+    """Part of a step to take, -1 to 1. start: slope at its beginning; slope: of the energy at a part of the step."""
+    if start > 0.0:
+        return -step_length(-start, lambda part: -slope(-part))
     end = slope(1.0)
-    if start >= 0.0 or end <= FAR * -start:
+    if end <= FAR * -start:
         return 1.0
     low, high, below, above = 0.0, 1.0, start, end
     for _ in range(MOST):

@@ -26,8 +26,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
-from riser_soil.solve.newton import Solution
 from riser_soil.solve.riser_mass import RiserMass
+from riser_soil.solve.solution import Solution
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
 
 CONTACT = GeneralizedAlpha.newmark(0.5, 1.0)

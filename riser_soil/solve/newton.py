@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass, field
+from collections.abc import Callable
 
 import numpy as np
 from mpi4py import MPI
@@ -12,76 +12,25 @@ from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, local
+from riser_soil.core.roles import Adaptive, with_role
 from riser_soil.core.system import System
+from riser_soil.solve.failed_step import place_of_largest, reason_name
 from riser_soil.solve.line_search import step_length
 from riser_soil.solve.linear_solver import PREFIX, complaint, defaults, factorise_directly
+from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError
 from riser_soil.solve.stability import prescribe_free_turns, unstable_modes
-from riser_soil.solve.time_scheme import Scheme, Static
+from riser_soil.solve.time_scheme import Static
 
 CONVERGED = PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
 DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_DTOL
 NOT_SOLVED = PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE
 ITERATING = PETSc.SNES.ConvergedReason.ITERATING
-REUSE = 0.1
+PROBE = 1e-6  # of the prescribed motion, along which the slope of the residual is taken
 STATIC = Static().weights(0.0)
 
 
-class NotConvergedError(Exception):
-    """A step that Newton could not solve; its text says why and where the residual sits."""
-
-
-class UnstableError(NotConvergedError):
-    """An unstable equilibrium, from which the riser would buckle or swing away: `solution`."""
-
-    def __init__(self, text: str, solution: Solution) -> None:
-        super().__init__(text)
-        self.solution = solution
-
-
-@dataclass(frozen=True)
-class NewtonSettings:
-    """tolerance: of the residual's norm, relative to the norm of the forces in play, moments over the
-    system's lever.
-
-    floor [N]: the norm that counts as zero, for round-off of a scene whose forces all vanish.
-    reuse: an iteration that leaves less than this share of the residual leaves its factorised tangent to the next of
-    the same step (Shamanskii's method), as long as each leaves less than this share: two or three such iterations cost
-    less than one with its own tangent. Only in time steps without contact, which start near their end: contact has
-    corners, and an equilibrium may be far away. least_iterations: before a residual counts as small.
-    line_search: shorten steps that lead far beyond the least energy, see `line_search`.
-    """
-
-    tolerance: float
-    max_iterations: int
-    floor: float
-    reuse: float = REUSE
-    least_iterations: int = 0
-    line_search: bool = False
-
-
-@dataclass(frozen=True, eq=False)
-class Step:
-    """One step to solve: from the accepted state `before` to time t."""
-
-    scheme: Scheme
-    before: State
-    t: float
-    dt: float
-    start: Forces | None
-    guess: Array
-
-
-@dataclass(frozen=True, eq=False)
-class Solution:
-    """A converged step: the state at its end, the forces in balance by group, the residual norms [N]."""
-
-    state: State
-    forces: Forces
-    norms: list[float] = field(default_factory=list)
-
-    @property
-    def iterations(self) -> int:
-        return len(self.norms) - 1
+class OutgrownError(Exception):
+    """The matrix' pattern has no place for something in the tangent, such as a contact that has come up."""
 
 
 class Newton:
@@ -97,6 +46,7 @@ class Newton:
         self._f = system.numbering.vector.duplicate()
         self._levers = system.numbering.vector.duplicate()
         system.numbering.to_global(system.levers, self._levers)
+        self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
         self._snes = self._create()
 
     def _create(self) -> PETSc.SNES:
@@ -118,30 +68,95 @@ class Newton:
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError; collective."""
         self._begin(step)
-        if failure := self._run():
+        if self.settings.linear_start and self._weights.inertia == 0.0 and not self._continues():
+            self._start_linearly()
+        if failure := self._iterate():
             raise NotConvergedError(failure)
         state = self._trial(self._x)
         self.require_admissible(state)
         return Solution(state, self._forces, self._norms)
 
-    def _run(self) -> str:
-        """Iterate; "" where that converges, else why not. No factors outlive a failed factorisation: MUMPS would refuse
-        all that comes after it.
+    def _continues(self) -> bool:
+        """Whether a static step goes on as those before: its guess leaves less out of balance than its loads put there.
+
+        A motion that is prescribed puts nothing there but through the stretch of the elements beside it.
         """
-        began, counted, complained = time.perf_counter(), self.system.clock.total, ""
+        still = np.zeros_like(self._step.guess)
+        return self._out_of_balance(self._with_prescribed(self._step.guess)) < self._out_of_balance(still)
+
+    def _start_linearly(self) -> None:
+        """First iteration of a static step: the linear response to its loads and prescribed motion where it starts.
+
+        An end that is moved alone stretches the element beside it by far, and its false tension spoils what follows.
+        """
+        still = np.zeros_like(self._step.guess)
+        _, probed = self._balance(PROBE * self._with_prescribed(still))
+        start, residual = self._balance(still)
+        self.system.numbering.add_to_global(residual + (probed - residual) / PROBE, self._f)
+        self._norms.append(self._norm())
+        self._assemble(start)
+        while self._outgrown():
+            self._renew(start)
+            self._assemble(start)
+        solver = self._snes.getKSP()
+        solver.setOperators(self.system.matrix.mat)
+        if failure := self._failing(lambda: solver.solve(self._f, self._x), lambda: solver.reason < 0):
+            raise NotConvergedError(failure)
+        self._x.scale(-1.0)
+
+    def _with_prescribed(self, u: Array) -> Array:
+        """Increments with those that are prescribed in the step."""
+        out = u.copy()
+        out[self.system.prescribed_dofs] = self._prescribed[0]
+        return out
+
+    def _out_of_balance(self, u: Array) -> float:
+        """Norm of the residual of increments [N]; collective."""
+        self.system.numbering.add_to_global(self._balance(u)[1], self._f)
+        return self._norm()
+
+    def _balance(self, u: Array) -> tuple[State, Array]:
+        """State of the increments u, those of the prescribed dofs included, and its residual."""
+        state = State(self._step.t, u, self._still.v, self._still.a)
+        self._forces = self.system.forces(state)
+        return state, self._step.scheme.combine(self._forces, self._past)
+
+    def _iterate(self) -> str:
+        """Iterate, from wherever the pattern was outgrown with a wider one; "" where that converges, else why not."""
+        while True:
+            try:
+                return self._run()
+            except OutgrownError:
+                self._renew(self._balanced)
+                self._norms.pop()
+
+    def _run(self) -> str:
+        """Iterate; "" where that converges, else why not."""
+        began, counted = time.perf_counter(), self.system.clock.total
+        self._snes.setTolerances(max_it=self.settings.max_iterations - self._taken)
         try:
-            self._snes.solve(None, self._x)
+            failure = self._failing(lambda: self._snes.solve(None, self._x), lambda: self._snes.reason == NOT_SOLVED)
+        finally:
+            self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
+        self.iterations += self._taken
+        return failure or ("" if self._snes.reason > 0 else self._reason(""))
+
+    def _failing(self, solve: Callable[[], None], unsolved: Callable[[], bool]) -> str:
+        """Call a solver; why its linear systems could not be solved, else "". No factors outlive a failed
+        factorisation: MUMPS would refuse all that comes after it.
+        """
+        complained = ""
+        try:
+            solve()
         except PETSc.Error as err:
             complained = complaint(err)
             if not complained:
                 raise
-        self.iterations += self._taken
-        self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
-        reason = self._snes.getConvergedReason()
-        failure = self._reason(complained) if complained or reason <= 0 else ""
-        if complained or reason == NOT_SOLVED:
-            self._snes.destroy()
-            self._snes = self._create()
+        if not complained and not unsolved():
+            return ""
+        failure = self._reason(complained)
+        self._snes.destroy()
+        self._snes = self._create()
         return failure
 
     @property
@@ -171,11 +186,18 @@ class Newton:
 
     def unstable_modes(self, state: State, forces: Forces | None = None, doubtful: bool = False) -> int:
         """Negative pivots at a static state; its forces may be known. doubtful: with those that may be. Collective."""
-        found = self.system.forces(state) if forces is None else forces
-        return unstable_modes(self.system, state, STATIC, self._scale(found), doubtful)
+        scale = self._scale(self.system.forces(state) if forces is None else forces)
+        negative = unstable_modes(self.system, state, STATIC, scale, doubtful)
+        while self._outgrown():
+            self._renew(state)
+            negative = unstable_modes(self.system, state, STATIC, scale, doubtful)
+        return negative
 
-    def renew(self) -> None:
-        """Take over a new matrix after the system's pattern has changed."""
+    def _renew(self, state: State) -> None:
+        """Take a matrix that has places for all that the tangent holds at a state."""
+        for part in self._adaptive:
+            if part.outgrown:
+                part.rebuild(state)
         self._snes.destroy()
         self.system.renew_pattern()
         self._snes = self._create()
@@ -194,7 +216,7 @@ class Newton:
         """State of the unknowns x; the same object while x stays the same, so that parts need not look twice."""
         u = np.zeros(self.system.numbering.size)
         self.system.numbering.to_local(x, u)
-        u[self.system.prescribed_dofs] = self._prescribed[0]
+        u = self._with_prescribed(u)
         if self._state is None or (u != self._state.u).any():
             self._state = self._follow(u)
             self._balanced = self._step.scheme.balanced_at(self._step.before, self._state, self._step.dt)
@@ -233,9 +255,20 @@ class Newton:
         """A matrix left as it is keeps its factors."""
         if not self._reusable():
             self._trial(x)
-            self.system.assemble(self._balanced, self._weights)
-            if self._weights.inertia == 0.0:
-                prescribe_free_turns(self.system, self._balanced, self.settings.tolerance * self._scale(self._forces))
+            self._assemble(self._balanced)
+            if self._outgrown():
+                raise OutgrownError
+
+    def _assemble(self, state: State) -> None:
+        self.system.assemble(state, self._weights)
+        if self._weights.inertia == 0.0:
+            prescribe_free_turns(self.system, state, self.settings.tolerance * self._scale(self._forces))
+
+    def _outgrown(self) -> bool:
+        """Whether something in the tangent assembled last had no place in the pattern; collective."""
+        if not self._adaptive:
+            return False
+        return bool(self.system.comm.allreduce(any(part.outgrown for part in self._adaptive), MPI.LOR))
 
     def _reusable(self) -> bool:
         """Whether the tangent of the previous iteration can be reused."""
@@ -254,17 +287,21 @@ class Newton:
         return self.system.smooth and self._weights.inertia > 0.0
 
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
-        norm = math.sqrt(self.system.sum([float(np.sum(self._weighed() ** 2))])[0])
+        norm = self._norm()
         self._norms.append(norm)
         if not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
-        if iteration < self._least_iterations:
+        if self._taken < self._least_iterations:
             return ITERATING
         if norm <= max(self.settings.tolerance * self._scale(self._forces), self.settings.floor):
             return CONVERGED
-        if iteration >= 4 and norm > 1e6 * self._norms[0]:
+        if self._taken >= 4 and norm > 1e6 * max(self._norms[:2]):
             return DIVERGED
         return ITERATING
+
+    def _norm(self) -> float:
+        """Norm of the residual [N]; collective."""
+        return math.sqrt(self.system.sum([float(np.sum(self._weighed() ** 2))])[0])
 
     def _scale(self, forces: Forces) -> float:
         """Norm of the forces in play: reactions, inertia, contact on the lines."""
@@ -276,31 +313,15 @@ class Newton:
         return math.sqrt(max(system.sum(mine)))
 
     def _reason(self, complained: str) -> str:
+        """Why the step did not converge. complained: what the linear solver said of it."""
         norms = ", ".join(f"{n:.3g}" for n in self._norms[-3:])
-        return (
-            f"{complained or self._reason_name()} after {self._taken} iterations (last residual norms {norms} N); "
-            f"{self._where()}"
-        )
-
-    def _reason_name(self) -> str:
-        reason = self._snes.getConvergedReason()
-        names = (n for n, v in vars(PETSc.SNES.ConvergedReason).items() if v == reason and n.startswith("DIV"))
-        return next(names, str(reason)).lower()
+        why = complained or reason_name(self._snes)
+        place = place_of_largest(self.system, self._weighed(), self._f.getOwnershipRange()[0])
+        return f"{why} after {self._taken} iterations (last residual norms {norms} N); {place}"
 
     def _weighed(self) -> Array:
         """This rank's residual [N], moments over the lever."""
         return np.asarray(self._f.array_r / self._levers.array_r)
-
-    def _where(self) -> str:
-        """The row with the largest residual, in words."""
-        values = np.abs(self._weighed())
-        if not self.system.comm.allreduce(bool(np.isfinite(values).all()), MPI.LAND):
-            return "the residual is not finite"
-        first = self._f.getOwnershipRange()[0]
-        k = int(np.argmax(values)) if len(values) else -1
-        mine = (float(values[k]), first + k) if k >= 0 else (-1.0, -1)
-        worst, row = max(self.system.comm.allgather(mine))
-        return f"the largest residual, {worst:.3g} N, sits at the {self.system.describe(row)}"
 
     def destroy(self) -> None:
         for thing in (self._snes, self._x, self._f, self._levers):

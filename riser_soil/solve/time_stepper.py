@@ -9,14 +9,15 @@ from mpi4py import MPI
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Work, local
-from riser_soil.core.roles import Adaptive, MomentumCorrecting, Predictor, with_role
+from riser_soil.core.roles import MomentumCorrecting, Predictor, with_role
 from riser_soil.core.saved_state import Saved, Stateful, gathered, record_of, under, values_of, within
 from riser_soil.core.system import System, total
 from riser_soil.errors import SolveError
 from riser_soil.solve.local_error import LocalError
-from riser_soil.solve.newton import Newton, NotConvergedError, Solution, Step
+from riser_soil.solve.newton import Newton
 from riser_soil.solve.predictor import Extrapolation
 from riser_soil.solve.riser_mass import RiserMass
+from riser_soil.solve.solution import NotConvergedError, Solution, Step
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.step_end import CommittedStep
 from riser_soil.solve.time_scheme import Scheme
@@ -72,7 +73,6 @@ class TimeStepper:
         self._error: LocalError | None = None
         parts = system.model.parts
         self._predictors: list[Predictor] = [*system.model.lines, *with_role(parts, Predictor)]
-        self._adaptive: list[Adaptive] = with_role(parts, Adaptive)
         self._momentum_correcting: list[MomentumCorrecting] = with_role(parts, MomentumCorrecting)
         if isinstance(before, State):
             self._begin(before)
@@ -155,13 +155,8 @@ class TimeStepper:
         return self.before if self._error is None else self._error.start(self.before, dt)
 
     def _solve(self, step: Step) -> Solution:
-        """By Newton's method, once more where the motion has outgrown the matrix' pattern; stable in statics."""
-        try:
-            solution = self.newton.solve(step)
-        except NotConvergedError:
-            if not self._renew_pattern():
-                raise
-            solution = self.newton.solve(step)
+        """By Newton's method; stable in statics."""
+        solution = self.newton.solve(step)
         if not self.scheme.dynamic:
             self.newton.require_stable(solution)
         return solution
@@ -172,16 +167,6 @@ class TimeStepper:
         for owner in self._predictors:
             guess = owner.predict(State(t, guess, self.before.v, self.before.a))
         return guess
-
-    def _renew_pattern(self) -> bool:
-        """Rebuild what the motion has outgrown; whether anything was."""
-        outgrown = [part for part in self._adaptive if part.outgrown]
-        if not self.system.comm.allreduce(bool(outgrown), MPI.LOR):
-            return False
-        for part in outgrown:
-            part.rebuild(self.before)
-        self.newton.renew()
-        return True
 
     def _account(self, solution: Solution, control: Control, cuts: int) -> AcceptedStep:
         """Energy balance of the step: stored, dissipated and external."""
@@ -244,7 +229,6 @@ class TimeStepper:
         self.energy = self._energy_after(step)
         self._past.accept(state.u, step.dt)
         control.accept(easy=step.solution.iterations <= EASY)
-        self._renew_pattern()
 
     def _rates_after(self, step: AcceptedStep) -> tuple[State, State]:
         """The state just committed, increments zero: with the bulk's rates alone, and as the riser moves."""

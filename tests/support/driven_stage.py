@@ -20,7 +20,8 @@ from riser_soil.results.observer import Observer
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
-from riser_soil.solve.newton import Newton, NewtonSettings
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.solution import NewtonSettings
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper

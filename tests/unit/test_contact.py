@@ -318,6 +318,9 @@ def test_pattern_is_outgrown_and_rebuilt() -> None:
     K = case.dense_tangent(u)
     np.testing.assert_allclose(K, differences(case, u), atol=1e-7 * abs(K).max())
     case.contact.rebuild(case.state())
+    assert not case.outgrows(u), "what is missed counts until the step's end"
+    case.contact.commit(case.state())
+    case.contact.rebuild(case.state())
     assert case.outgrows(u), "what is neither near nor missed is dropped"
     case.contact.rebuild(case.state(u))
     assert not case.outgrows(u)

@@ -14,7 +14,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, Model, State, Weights
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.line_search import FAR, MOST, NEAR, step_length
-from riser_soil.solve.newton import Newton, NewtonSettings, NotConvergedError, Step
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Step
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Springs
 
@@ -59,8 +60,10 @@ def test_a_step_that_leads_to_nowhere_is_shortened() -> None:
     assert 0.0 < part <= 0.3
 
 
-def test_a_direction_that_climbs_is_left_alone() -> None:
-    assert step_length(1.0, lambda a: 10.0 * a) == 1.0
+def test_a_step_that_climbs_is_taken_backwards() -> None:
+    """To the least energy there, or all of it where that lies further away."""
+    assert step_length(1.0, lambda a: 1.0 + 10.0 * a) == pytest.approx(-0.1, abs=0.1 * NEAR)
+    assert step_length(1.0, lambda a: 1.0 + 0.2 * a) == -1.0
 
 
 LIMIT, YIELDS_AT = 10.0, 0.1  # N, m

@@ -17,7 +17,8 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
-from riser_soil.solve.newton import Newton, NewtonSettings, NotConvergedError, Step
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Step
 from riser_soil.solve.time_scheme import Static
 from tests.support.toy_chain import Chain, Springs
 

@@ -20,7 +20,8 @@ from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.buckling import _largest, stabilising_drag
-from riser_soil.solve.newton import Newton, NewtonSettings
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.solution import NewtonSettings
 from riser_soil.solve.time_scheme import Static
 from tests.support.coupled_scenes import Mapping
 from tests.support.on_ranks import mpirun

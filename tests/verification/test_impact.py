@@ -32,7 +32,8 @@ from riser_soil.core.system import Timer
 from riser_soil.results.observer import riser_snapshot
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
-from riser_soil.solve.newton import Newton, Solution, Step
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.solution import Solution, Step
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher, built, take

@@ -1,0 +1,71 @@
+"""A step for Newton's method and its solution, the method's settings, and how it fails."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Forces, State
+from riser_soil.solve.time_scheme import Scheme
+
+REUSE = 0.1
+
+
+class NotConvergedError(Exception):
+    """A step that Newton could not solve; its text says why and where the residual sits."""
+
+
+class UnstableError(NotConvergedError):
+    """An unstable equilibrium, from which the riser would buckle or swing away: `solution`."""
+
+    def __init__(self, text: str, solution: Solution) -> None:
+        super().__init__(text)
+        self.solution = solution
+
+
+@dataclass(frozen=True)
+class NewtonSettings:
+    """tolerance: of the residual's norm, relative to the norm of the forces in play, moments over the
+    system's lever.
+
+    floor [N]: the norm that counts as zero, for round-off of a scene whose forces all vanish.
+    reuse: an iteration that leaves less than this share of the residual leaves its factorised tangent to the next of
+    the same step (Shamanskii's method), as long as each leaves less than this share: two or three such iterations cost
+    less than one with its own tangent. Only in time steps without contact, which start near their end: contact has
+    corners, and an equilibrium may be far away. least_iterations: before a residual counts as small.
+    line_search: shorten steps that lead far beyond the least energy, see `line_search`. linear_start: begin a static
+    step with the linear response to it, instead of the guess.
+    """
+
+    tolerance: float
+    max_iterations: int
+    floor: float
+    reuse: float = REUSE
+    least_iterations: int = 0
+    line_search: bool = False
+    linear_start: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """One step to solve: from the accepted state `before` to time t."""
+
+    scheme: Scheme
+    before: State
+    t: float
+    dt: float
+    start: Forces | None
+    guess: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """A converged step: the state at its end, the forces in balance by group, the residual norms [N]."""
+
+    state: State
+    forces: Forces
+    norms: list[float] = field(default_factory=list)
+
+    @property
+    def iterations(self) -> int:
+        return len(self.norms) - 1
