@@ -1,5 +1,5 @@
-"""Coupled runs on difficult soil get to their end: almost incompressible, or without strength at the seabed; and a pipe
-that leaves the soil as a whole and comes down again.
+"""Coupled runs on difficult soil get to their end: almost incompressible, without strength at the seabed, in cells that
+grow a thousandfold; and a pipe that leaves the soil as a whole and comes down again.
 """
 
 from __future__ import annotations
@@ -7,13 +7,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import System
+from riser_soil.core.system import System, Timer
 from riser_soil.scene.stages import Stage
-from riser_soil.solve.time_stepper import AcceptedStep
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
+from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.support.driven_stage import built, take
+from tests.support.driven_stage import Watcher, built, take
 from tests.support.falling_on_soil import CLAY, ELASTIC, MIDDLE, D, falling
 
 
@@ -53,6 +55,67 @@ def runs_and_bears(scene: Mapping) -> None:
     weight = float(assembly.elements.weight @ assembly.line.length)
     print(f"borne {np.array(borne) / weight}, iterations {iterations}")
     assert np.all((np.array(borne) > 0.2 * weight) & (np.array(borne) < weight))
+
+
+CELL = 0.075  # m
+
+
+class Laying(Watcher):
+    """A riser is laid on cells of a quarter of its diameter, which grow to about `times` their size far from it."""
+
+    def __init__(self, times: float, law: Mapping) -> None:
+        super().__init__(self._count)
+        scene, far = touchdown(LAY, su=2000.0), times * CELL
+        side = max(2.0, 2.5 * far)
+        scene["soil"]["block"] = {"x": [3.0, 6.0], "y": [-side, side], "depth": side}
+        sizes = {"along": 1.5, "across": CELL, "strip": 0.15}
+        scene["soil"]["mesh"] = {"kind": "hex", "size_at_riser": sizes, "size_far": far}
+        scene["soil"]["law"] |= law
+        self.iterations, self.cuts, self.assembly = list[int](), 0, built(scene)
+        lay = self.assembly.scene.stages[0]
+        state = run_stage(self.assembly, lay, State.at_rest(0.0, self.assembly.size), self, Timer.new())
+        contact = self.assembly.soil_contact
+        assert contact is not None
+        self.borne = -float(contact.force_on_soil(state)[2])
+
+    def _count(self, _: TimeStepper, step: AcceptedStep) -> None:
+        self.iterations.append(step.solution.iterations)
+        self.cuts += step.cuts
+
+
+def growth(assembly: Assembly) -> tuple[float, float]:
+    """The widest over the narrowest cell across the riser, and the deepest over the shallowest."""
+    assert assembly.soil is not None
+    points = np.round(assembly.soil.output_mesh().points, 6)
+    across, down = (np.diff(np.unique(points[:, axis])) for axis in (1, 2))
+    return float(across.max() / across.min()), float(down.max() / down.min())
+
+
+def lays_as_on_even_cells(law: Mapping) -> None:
+    """Without relaxation or cuts, in as many iterations as where cells grow tenfold, to about the same load."""
+    even, graded = Laying(10.0, law), Laying(1300.0, law)
+    print(f"iterations {even.iterations}, graded {graded.iterations}; borne {even.borne:.1f}, {graded.borne:.1f} N")
+    assert min(growth(graded.assembly)) > 1000.0
+    assert graded.relaxations == graded.cuts == 0
+    assert np.mean(graded.iterations) < 1.2 * np.mean(even.iterations)
+    assert graded.borne == pytest.approx(even.borne, rel=0.1)
+
+
+def test_cells_that_grow_a_thousandfold() -> None:
+    lays_as_on_even_cells({})
+
+
+DIFFICULT = {
+    "nearly incompressible": {"nu": 0.4999},
+    "no strength at the seabed": {"su": 0.0, "su_gradient": 4.0e4},
+    "both": {"su": 0.0, "su_gradient": 4.0e4, "nu": 0.4999},
+}
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize("name", DIFFICULT)
+def test_cells_that_grow_a_thousandfold_on_difficult_soil(name: str) -> None:
+    lays_as_on_even_cells(DIFFICULT[name])
 
 
 @pytest.mark.parametrize("law", [ELASTIC, CLAY], ids=["elastic", "clay"])
