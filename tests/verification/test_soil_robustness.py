@@ -1,8 +1,10 @@
 """Coupled runs on difficult soil get to their end: almost incompressible, without strength at the seabed, in cells that
-grow a thousandfold; and a pipe that leaves the soil as a whole and comes down again.
+grow a thousandfold; and pipes and risers that leave the soil as a whole and come down again.
 """
 
 from __future__ import annotations
+
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +13,9 @@ from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
+from riser_soil.results import Run
+from riser_soil.run import run
+from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import Stage
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
@@ -136,6 +141,32 @@ def test_pipe_that_leaves_the_soil_touches_again(law: Mapping) -> None:
     assert landings == 3, force
     assert force.min() == 0.0
     assert force.max() > 100.0
+
+
+def lifted_and_set_down() -> Mapping:
+    """Both ends are moved until all of the riser hangs, then back; the clay yields when it is laid."""
+    scene = touchdown(LAY, moved("lift", [0.0, 0.0, 0.8], [24.0, 0.0, 16.0]), su=600.0)
+    scene["stages"].append(moved("set down", [0.0, 0.0, 0.15], [22.5, 0.0, 15.0]))
+    return scene | {"output": {"fields": ["soil_settlement", "embedment"]}}
+
+
+def moved(name: str, start: list[float], end: list[float]) -> Mapping:
+    return {"name": name, "kind": "static", "move": {"start": start, "end": end}}
+
+
+def test_a_riser_lifted_off_the_soil_comes_to_rest_in_its_trough(tmp_path: Path) -> None:
+    run(scene_from_mapping(lifted_and_set_down()), tmp_path)
+    found = Run(tmp_path)
+    for stage in found.summary["stages"]:
+        assert (stage["method"], stage["relaxations"], stage["step_cuts"]) == ("newton", 0, 0)
+    laid, lifted, again = found["contact_force_sum"]
+    assert np.abs(lifted).max() == 0.0
+    assert again[2] == pytest.approx(laid[2], rel=2e-3)
+    borne = found["start_force"] + found["end_force"] + found["contact_force_sum"]
+    assert np.ptp(borne[:, 2]) < 1e-6 * borne[0, 2], "the weight"
+    trough = np.nanmax(found["soil_settlement"], axis=1)
+    assert 0.2 * trough[0] < trough[1] < 0.5 * trough[0]
+    assert trough[0] < trough[2] < 1.03 * trough[0]
 
 
 def forces(scene: Mapping) -> Array:
