@@ -1,4 +1,4 @@
-"""Bearing capacity check after a failed solve: where the riser's load exceeds what the ground bears."""
+"""Bearing capacity check: where the riser's load exceeds what the ground bears, after a failed solve or a stage."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ import numpy as np
 from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
+from riser_soil.riser.line import Line
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
+    from riser_soil.soil.law import Bearing
 
 
 class Overload(NamedTuple):
@@ -44,6 +46,33 @@ def overload(assembly: Assembly) -> str:
         f"the riser puts {worst.load:.4g} N/m on clay that bears about {worst.capacity:.4g} N/m, {worst.meaning}, and "
         f"has sunk in by {worst.depth:.4g} m: check su, or hold the riser up"
     )
+
+
+def surface_bearing(assembly: Assembly) -> Bearing | None:
+    """What the surface of the soil bears under a strip as wide as the pipe.
+
+    None without soil under the riser or without a limit, and where firmer soil may begin within a diameter: below a
+    first layer that ends there, or anywhere among named volumes.
+    """
+    soil, D = assembly.scene.soil, assembly.scales.diameter
+    if soil is None or assembly.soil_contact is None:
+        return None
+    first = soil.layers[0] if soil.layers and len(soil.layers) > 1 else None
+    if first is not None and (first.to is None or first.to < D):
+        return None
+    return soil.top_law.bearing(D)
+
+
+def over_a_length(force: Array, line: Line, length: float) -> Array:
+    """Mean of a force per length (nn,) [N/m] over a length [m] around each node; at a node as it is, where its own
+    share of the riser is longer.
+    """
+    share = line.tributary_length
+    ends = np.append(0.0, np.cumsum(share))
+    total = np.append(0.0, np.cumsum(force * share))
+    middle = 0.5 * (ends[1:] + ends[:-1])
+    first, last = (np.interp(middle + side * length, ends, total) for side in (-0.5, 0.5))
+    return np.asarray((last - first) / length)
 
 
 def _overloads(assembly: Assembly) -> Iterator[Overload]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from riser_soil.assembly import Assembly
+from riser_soil.checks.overload import over_a_length, surface_bearing
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, packed, unpacked
@@ -26,6 +27,9 @@ LARGE_STRAIN = 0.1
 # Stretch in plan of the soil's surface under the riser from which small strain no longer holds: a pipe pushed into a
 # slice of plastic clay, with 8 cells across its diameter, is borne less and less from between 1.3 and 1.6 on.
 LARGE_STRETCH = 1.2
+# Load over the bearing capacity from which the soil's strength comes of its cells. (What a strip on fine cells bears
+# beyond Prandtl's load is some per cent; a square bears 1.2 times as much per length.)
+OVERLOADED = 1.25
 # Stress at the block's bottom or sides, over the riser's weight on its diameter, from which the block is too small to
 # stand for the ground: 0.1 at eight diameters from the pipe, 0.4 at three. (The largest in it hangs on the cells.)
 NEAR_STRESS = 0.15
@@ -62,6 +66,7 @@ class Plausibility:
         self.radius = at_most(np.repeat(0.5 * elements.outer_diameter[:, None], 2, axis=1))
         self._middle = 0.5 * (assembly.line.arc[1:] + assembly.line.arc[:-1])
         self._touched = assembly.soil_contact is None
+        self._bearing = surface_bearing(assembly)
         self._where = ""
         self._lowest: Array = np.full(3, np.nan)
 
@@ -71,6 +76,7 @@ class Plausibility:
         self._largest = 0.0  # moment [N.m]
         self._boundary: BoundaryStress | None = None
         self._axial = self._bending = self._smooth = self._steep = self._stretch = self._beyond = LargestValue()
+        self._load = LargestValue()
 
     def look(self, t: float, state: State, riser: RiserSnapshot, touch: ContactSnapshot) -> None:
         """t: s of the run (static stages: load factor)."""
@@ -80,12 +86,22 @@ class Plausibility:
         self._largest = max(self._largest, float(riser.bending_moment.max()))
         contact = self._assembly.soil_contact
         if contact is not None:
-            self._touched = self._touched or bool(contact.force_per_length(state).any())
+            force = contact.force_per_length(state)
+            self._touched = self._touched or bool(force.any())
+            self._load = self._load.or_larger(self._borne(force), arc, t)
             self._beyond = self._beyond.or_larger(self._past_the_block(touch), np.array([touch.touchdown_arc]), t)
             self._stretch = self._stretch.or_larger(np.array([contact.stretch(state)]), np.full(1, np.nan), t)
         down = not math.isnan(touch.touchdown_arc)
         self._where = "touches down at" if down else "hangs with its lowest point at"
         self._lowest = touch.touchdown_position if down else riser.position[riser.position[:, 2].argmin()]
+
+    def _borne(self, force: Array) -> Array:
+        """What the soil bears per length (nn,) [N/m], over a diameter at least; 0 where there is no limit to compare it
+        with. force (nn,): of contact.
+        """
+        if self._bearing is None:
+            return np.zeros(len(force))
+        return over_a_length(force, self._assembly.line, self._assembly.scales.diameter)
 
     def look_around(self, boundary: BoundaryStress | None) -> None:
         """At the stage's end; None without soil."""
@@ -117,6 +133,7 @@ class Plausibility:
         yield from self._strains()
         yield from self._blurred()
         yield from self._stretched()
+        yield from self._overloaded()
         yield from self._left()
         yield from self._too_small()
         if self._last_stage and not self._touched:
@@ -157,6 +174,16 @@ class Plausibility:
                 "to for no figure, or raise su"
             )
 
+    def _overloaded(self) -> Iterator[str]:
+        bearing, worst = self._bearing, self._load
+        if bearing is not None and worst.value > OVERLOADED * bearing.capacity:
+            yield (
+                f"the soil bears {worst.value:.4g} N/m at arc {worst.arc:.5g} m and {worst.t:.5g} {self._unit}, "
+                f"{worst.value / bearing.capacity:.2g} times the {bearing.capacity:.4g} N/m that its clay can at the "
+                f"surface, {bearing.meaning}: cells too coarse to yield bear the rest, and the riser would sink in; "
+                "check su, take cells of at most an eighth of the diameter across (mesh: auto), or hold the riser up"
+            )
+
     def _left(self) -> Iterator[str]:
         if self._touched and self._beyond.value > self._assembly.scales.diameter:
             yield (
@@ -195,7 +222,7 @@ class Plausibility:
 
     @property
     def _largest_values(self) -> tuple[LargestValue, ...]:
-        return self._axial, self._bending, self._smooth, self._steep, self._stretch, self._beyond
+        return self._axial, self._bending, self._smooth, self._steep, self._stretch, self._beyond, self._load
 
     def state(self) -> Saved:
         worst = [astuple(found) for found in self._largest_values]
@@ -206,5 +233,5 @@ class Plausibility:
         """In the stage that has begun."""
         self._largest, self._touched = float(saved["largest"]), bool(saved["touched"])
         found = (LargestValue(*row) for row in saved["worst"].tolist())
-        self._axial, self._bending, self._smooth, self._steep, self._stretch, self._beyond = found
+        self._axial, self._bending, self._smooth, self._steep, self._stretch, self._beyond, self._load = found
         self._where, self._lowest = unpacked(saved["where"]), saved["lowest"]

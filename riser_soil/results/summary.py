@@ -37,6 +37,14 @@ def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
             f"the time scheme {done} {own:.3g} J, {own / ledger.turned_over:.2%} of the {ledger.turned_over:.3g} J "
             "turned over: take a smaller time_step"
         )
+    given = -ledger.dissipated_by.get("contact", 0.0)
+    if given > allowed:
+        yield (
+            f"contact with the soil gave {given:.3g} J, {given / ledger.turned_over:.2%} of the "
+            f"{ledger.turned_over:.3g} J turned over: the pipe sank through the soil's surface, past its axis, or a "
+            "step threw the soil aside; take contact.stiffness auto, and a time_step in which the pipe falls by less "
+            "than its radius"
+        )
 
 
 @dataclass(frozen=True)

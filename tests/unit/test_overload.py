@@ -1,21 +1,26 @@
-"""What is said of ground that bears less than the riser puts on it."""
+"""What is said of ground that bears less than the riser puts on it, after a failed solve and after a stage."""
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from riser_soil.assembly import Assembly
-from riser_soil.checks.overload import overload
+from riser_soil.checks.overload import over_a_length, overload, surface_bearing
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
+from riser_soil.run import run
+from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.seabed.bearing import Strength, strip_capacity
 from riser_soil.seabed.law import NormalLaw
 from riser_soil.stages import run_stage
+from tests.support.coupled_scenes import Mapping, touchdown
 from tests.support.driven_stage import Watcher, built
 from tests.support.riser_scenes import prescribed, riser_scene, static
 from tests.support.soil_loops import aubeny_biscontin, randolph_quiggin
@@ -77,3 +82,68 @@ def test_nothing_where_the_ground_bears_it(seabed: dict[str, object]) -> None:
     assembly = lying(seabed)
     assert np.any(_depth(assembly, State.at_rest(0.0, assembly.size)) > 0.0)
     assert overload(assembly) == ""
+
+
+def on_clay(su: float, **soil: object) -> Mapping:
+    """717 N/m on cells of 0.5 m, more than the pipe's diameter."""
+    scene = touchdown(su=su)
+    scene["soil"]["law"]["su_gradient"] = 0.0
+    scene["soil"] |= soil
+    return scene
+
+
+def overloaded(scene: Mapping, folder: Path) -> list[str]:
+    """What is told of the soil's load after the only stage."""
+    run(scene_from_mapping(scene), folder)
+    (stage,) = json.loads((folder / "summary.json").read_text())["stages"]
+    return [warning for warning in stage["warnings"] if "the soil bears" in warning]
+
+
+@pytest.mark.parametrize("method", ["node", "surface"])
+def test_coarse_cells_that_bear_more_than_their_clay_are_told(method: str, tmp_path: Path) -> None:
+    (told,) = overloaded(on_clay(450.0) | {"contact": {"method": method}}, tmp_path)
+    found = re.search(r"bears (\S+) N/m at arc (\S+) m and 1 of the load, (\S+) times the (\S+) N/m", told)
+    assert found, told
+    load, arc, times, capacity = (float(each) for each in found.groups())
+    assert capacity == pytest.approx((2.0 + np.pi) * 450.0 * D, rel=1e-3)
+    assert times == pytest.approx(load / capacity, rel=0.05)
+    assert load > 717.0
+    assert 2.0 < arc < 9.0
+    assert "at most an eighth of the diameter" in told
+
+
+def test_what_clay_bears_is_not_told(tmp_path: Path) -> None:
+    assert overloaded(on_clay(1500.0) | {"contact": {"method": "node"}}, tmp_path) == []
+
+
+SAND: Mapping = {"kind": "drucker-prager", "friction_angle_deg": 35.0, "cohesion": 100.0, "E": 1.0e6}
+CLAY: Mapping = {"kind": "von-mises", "su": 500.0, "E_over_su": 300.0}
+
+
+def bearing(**soil: object) -> float | None:
+    scene = on_clay(500.0)
+    if "layers" in soil:
+        del scene["soil"]["law"]
+    found = surface_bearing(built(scene | {"soil": scene["soil"] | soil}))
+    return found.capacity if found is not None else None
+
+
+def test_soil_is_compared_with_what_is_known_to_bear() -> None:
+    """Not sand, nor clay above a layer that begins within a diameter."""
+    prandtl = pytest.approx((2.0 + np.pi) * 500.0 * D, rel=1e-4)
+    assert bearing() == prandtl
+    assert bearing(layers=[{"to": 0.4, "law": CLAY}, {"law": SAND}]) == prandtl
+    assert bearing(layers=[{"to": 0.2, "law": CLAY}, {"law": SAND}]) is None
+    assert bearing(law=SAND) is None
+    assert surface_bearing(lying({"kind": "rigid"})) is None
+
+
+def test_mean_over_a_length() -> None:
+    """Of a force on one node: all of it over the length, or its own share of the riser where that is longer."""
+    line = lying({"kind": "rigid"}).line
+    force = np.where(np.arange(line.nodes) == 30, 900.0, 100.0)
+    share = line.tributary_length[30]
+    assert share == pytest.approx(0.5)
+    assert over_a_length(force, line, D)[29:32] == pytest.approx([100.0, 900.0, 100.0])
+    assert over_a_length(force, line, 1.0)[30] == pytest.approx(0.5 * 900.0 + 0.5 * 100.0)
+    assert over_a_length(force, line, 1.5)[29] == pytest.approx((1.0 * 100.0 + 0.5 * 900.0) / 1.5)

@@ -99,6 +99,6 @@ def test_soil_that_is_never_touched_is_told_after_the_last_stage(tmp_path: Path)
 
 
 def test_soil_that_is_touched_is_not_told(tmp_path: Path) -> None:
-    below = touchdown()
+    below = touchdown(su=2000.0)
     below["soil"] |= {"block": {"x": [2.0, 9.0], "y": [-1.0, 1.0], "depth": 1.0}, "mesh": ONE_CELL}
     assert told(below, tmp_path) == [[]]

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
+from riser_soil.results import Run
+from riser_soil.run import run
+from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import built
@@ -32,8 +37,20 @@ def test_impact_on_soil_gains_no_energy(k: float, dt: float, law: Mapping) -> No
     gains_nothing(k, dt, law, MIDDLE)
 
 
+@pytest.mark.parametrize(("k", "told"), [(1e4, True), (1e7, False)], ids=["sinks through", "lands"])
+def test_a_pipe_that_sinks_through_the_surface_is_told(k: float, told: bool, tmp_path: Path) -> None:
+    """Contact as soft as that pushes it out below, with more energy than it took."""
+    run(scene_from_mapping(falling(k, 0.02, ELASTIC)), tmp_path)
+    (stage,) = Run(tmp_path).summary["stages"]
+    warnings = [warning for warning in stage["warnings"] if "sank through the soil's surface" in warning]
+    assert len(warnings) == told
+    given = -stage["energy"]["dissipated_by"]["contact"]
+    assert all(f"contact with the soil gave {given:.3g} J" in warning for warning in warnings)
+    assert (given > FALL) == told
+
+
 @pytest.mark.verify
-@pytest.mark.parametrize("k", [1e6, 1e7, 1e8])
+@pytest.mark.parametrize("k", [1e5, 1e6, 1e7, 1e8, 1e9])
 @LAWS
 @WHERE
 def test_impact_on_soil_gains_no_energy_at_any_step(k: float, law: Mapping, where: tuple[float, float]) -> None:

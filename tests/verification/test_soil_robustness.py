@@ -1,19 +1,26 @@
-"""Coupled runs on difficult soil get to their end: almost incompressible, or without strength at the seabed; and a pipe
-that leaves the soil as a whole and comes down again.
+"""Coupled runs on difficult soil get to their end: almost incompressible, without strength at the seabed, in cells that
+grow a thousandfold; and pipes and risers that leave the soil as a whole and come down again.
 """
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.system import System
+from riser_soil.core.system import System, Timer
+from riser_soil.results import Run
+from riser_soil.run import run
+from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import Stage
-from riser_soil.solve.time_stepper import AcceptedStep
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
+from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.support.driven_stage import built, take
+from tests.support.driven_stage import Watcher, built, take
 from tests.support.falling_on_soil import CLAY, ELASTIC, MIDDLE, D, falling
 
 
@@ -55,6 +62,67 @@ def runs_and_bears(scene: Mapping) -> None:
     assert np.all((np.array(borne) > 0.2 * weight) & (np.array(borne) < weight))
 
 
+CELL = 0.075  # m
+
+
+class Laying(Watcher):
+    """A riser is laid on cells of a quarter of its diameter, which grow to about `times` their size far from it."""
+
+    def __init__(self, times: float, law: Mapping) -> None:
+        super().__init__(self._count)
+        scene, far = touchdown(LAY, su=2000.0), times * CELL
+        side = max(2.0, 2.5 * far)
+        scene["soil"]["block"] = {"x": [3.0, 6.0], "y": [-side, side], "depth": side}
+        sizes = {"along": 1.5, "across": CELL, "strip": 0.15}
+        scene["soil"]["mesh"] = {"kind": "hex", "size_at_riser": sizes, "size_far": far}
+        scene["soil"]["law"] |= law
+        self.iterations, self.cuts, self.assembly = list[int](), 0, built(scene)
+        lay = self.assembly.scene.stages[0]
+        state = run_stage(self.assembly, lay, State.at_rest(0.0, self.assembly.size), self, Timer.new())
+        contact = self.assembly.soil_contact
+        assert contact is not None
+        self.borne = -float(contact.force_on_soil(state)[2])
+
+    def _count(self, _: TimeStepper, step: AcceptedStep) -> None:
+        self.iterations.append(step.solution.iterations)
+        self.cuts += step.cuts
+
+
+def growth(assembly: Assembly) -> tuple[float, float]:
+    """The widest over the narrowest cell across the riser, and the deepest over the shallowest."""
+    assert assembly.soil is not None
+    points = np.round(assembly.soil.output_mesh().points, 6)
+    across, down = (np.diff(np.unique(points[:, axis])) for axis in (1, 2))
+    return float(across.max() / across.min()), float(down.max() / down.min())
+
+
+def lays_as_on_even_cells(law: Mapping) -> None:
+    """Without relaxation or cuts, in as many iterations as where cells grow tenfold, to about the same load."""
+    even, graded = Laying(10.0, law), Laying(1300.0, law)
+    print(f"iterations {even.iterations}, graded {graded.iterations}; borne {even.borne:.1f}, {graded.borne:.1f} N")
+    assert min(growth(graded.assembly)) > 1000.0
+    assert graded.relaxations == graded.cuts == 0
+    assert np.mean(graded.iterations) < 1.2 * np.mean(even.iterations)
+    assert graded.borne == pytest.approx(even.borne, rel=0.1)
+
+
+def test_cells_that_grow_a_thousandfold() -> None:
+    lays_as_on_even_cells({})
+
+
+DIFFICULT = {
+    "nearly incompressible": {"nu": 0.4999},
+    "no strength at the seabed": {"su": 0.0, "su_gradient": 4.0e4},
+    "both": {"su": 0.0, "su_gradient": 4.0e4, "nu": 0.4999},
+}
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize("name", DIFFICULT)
+def test_cells_that_grow_a_thousandfold_on_difficult_soil(name: str) -> None:
+    lays_as_on_even_cells(DIFFICULT[name])
+
+
 @pytest.mark.parametrize("law", [ELASTIC, CLAY], ids=["elastic", "clay"])
 def test_pipe_that_leaves_the_soil_touches_again(law: Mapping) -> None:
     """Both ends go up and down by 0.06 m every half a second about 0.05 m above the soil."""
@@ -73,6 +141,32 @@ def test_pipe_that_leaves_the_soil_touches_again(law: Mapping) -> None:
     assert landings == 3, force
     assert force.min() == 0.0
     assert force.max() > 100.0
+
+
+def lifted_and_set_down() -> Mapping:
+    """Both ends are moved until all of the riser hangs, then back; the clay yields when it is laid."""
+    scene = touchdown(LAY, moved("lift", [0.0, 0.0, 0.8], [24.0, 0.0, 16.0]), su=600.0)
+    scene["stages"].append(moved("set down", [0.0, 0.0, 0.15], [22.5, 0.0, 15.0]))
+    return scene | {"output": {"fields": ["soil_settlement", "embedment"]}}
+
+
+def moved(name: str, start: list[float], end: list[float]) -> Mapping:
+    return {"name": name, "kind": "static", "move": {"start": start, "end": end}}
+
+
+def test_a_riser_lifted_off_the_soil_comes_to_rest_in_its_trough(tmp_path: Path) -> None:
+    run(scene_from_mapping(lifted_and_set_down()), tmp_path)
+    found = Run(tmp_path)
+    for stage in found.summary["stages"]:
+        assert (stage["method"], stage["relaxations"], stage["step_cuts"]) == ("newton", 0, 0)
+    laid, lifted, again = found["contact_force_sum"]
+    assert np.abs(lifted).max() == 0.0
+    assert again[2] == pytest.approx(laid[2], rel=2e-3)
+    borne = found["start_force"] + found["end_force"] + found["contact_force_sum"]
+    assert np.ptp(borne[:, 2]) < 1e-6 * borne[0, 2], "the weight"
+    trough = np.nanmax(found["soil_settlement"], axis=1)
+    assert 0.2 * trough[0] < trough[1] < 0.5 * trough[0]
+    assert trough[0] < trough[2] < 1.03 * trough[0]
 
 
 def forces(scene: Mapping) -> Array:
