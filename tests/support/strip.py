@@ -44,19 +44,26 @@ def press_strip(
     return press(soil, under, 1.0 / cells, strength, steps, rough)
 
 
-def press_graded_strip(edge: float, law: SoilLaw = CLAY, steps: int = 15, rough: bool = True) -> Strip:
-    """The same on tetrahedra of the size `edge` [m] at the strip's edge, that grow by 4 times as much per metre."""
-    grid = tet_slice(1.0, 5.0, 3.0, thickness=2.0 * edge, edge=edge, growth=4.0 * edge, far=16.0 * edge)
+def press_graded_strip(
+    size: float, law: SoilLaw = CLAY, steps: int = 15, rough: bool = True, fine: float = 0.0, depth: float = 0.15
+) -> Strip:
+    """The same, `depth` [m] down, on tetrahedra of a `size` [m] at the strip's edge and `fine` m inwards below it.
+
+    Away from there they grow by 4 times as much per metre, to 16 times as much.
+    """
+    grid = tet_slice(1.0, 5.0, 3.0, 2.0 * size, size, growth=4.0 * size, far=16.0 * size, fine=fine)
     soil = Soil(grid, law.at_points, level=0.0, unit_weight=0.0)
-    return press(soil, under_strip(soil), 2.0 * edge, SU, steps, rough)
+    return press(soil, under_strip(soil), 2.0 * size, SU, steps, rough, depth)
 
 
-def press(soil: Soil, under: BoolArray, thickness: float, strength: float, steps: int, rough: bool) -> Strip:
-    """Press the nodes `under` (n,) the strip 0.15 m down, in equal steps, on a slice of this thickness [m]."""
+def press(
+    soil: Soil, under: BoolArray, thickness: float, strength: float, steps: int, rough: bool, depth: float = 0.15
+) -> Strip:
+    """Press the nodes `under` (n,) the strip `depth` [m] down, in equal steps, on a slice of this thickness [m]."""
     driven = np.zeros((len(under), 3), dtype=bool)
     driven[under] = [rough, rough, True]
     bench = Bench(soil, driven.ravel())
-    given = np.where(under, -0.15 / steps, 0.0)[:, None] * np.array([0.0, 0.0, 1.0])
+    given = np.where(under, -depth / steps, 0.0)[:, None] * np.array([0.0, 0.0, 1.0])
     loads, norms = [], []
     for _ in range(steps):
         bench.step(given.ravel())

@@ -12,17 +12,19 @@ from riser_soil.soil.grid import DistributedMesh, file_grid, silent_gmsh
 
 
 def tet_slice(
-    half: float, wide: float, deep: float, thickness: float, edge: float, growth: float, far: float
+    half: float, wide: float, deep: float, thickness: float, edge: float, growth: float, far: float, fine: float = 0.0
 ) -> DistributedMesh:
     """0 < x < wide, 0 < y < thickness, -deep < z < 0 [m]; a line of the mesh at the strip's edge, x = half.
 
-    Size of the triangles: `edge` there, `growth` times the distance from it more elsewhere, at most `far`.
+    Size of the triangles: `edge` there and below the strip to `fine` from it, elsewhere `growth` times the distance from
+    there more, at most `far`.
     """
     with TemporaryDirectory() as folder:
         path = Path(folder) / "slice.msh"
         with silent_gmsh():
             _draw(half, wide, deep, thickness)
-            _grade(f"Min({edge} + {growth} * Sqrt((x - {half})^2 + z^2), {far})")
+            beside = f"(Abs(x - {half - 0.5 * fine}) - {0.5 * fine})"  # negative below the fine part of the strip
+            _grade(f"Min({edge} + {growth} * Sqrt((0.5 * ({beside} + Abs({beside})))^2 + z^2), {far})")
             gmsh.model.mesh.generate(3)
             gmsh.write(str(path))
         return file_grid(MPI.COMM_SELF, path)

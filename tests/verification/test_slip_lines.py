@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.support.slip_lines import ROUGH, SMOOTH, bearing_factor, field, forces
+from tests.support.strip import CLAY, SU, press_graded_strip
 
 PRANDTL = 2.0 + np.pi
 
@@ -46,3 +47,21 @@ def test_bearing_factor_is_near_a_published_fit(ratio: float) -> None:
     rough = 2.56 + 0.457 * ratio - np.hypot(0.457 * ratio + 0.713, 1.38)
     assert bearing_factor(ratio, False, 20) == pytest.approx(smooth, rel=0.015)
     assert bearing_factor(ratio, True, 20) == pytest.approx(rough, rel=0.015)
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize("rough", [False, True], ids=["smooth", "rough"])
+@pytest.mark.parametrize("ratio", [2.0, 6.0])
+def test_strip_on_clay_that_grows_stronger_bears_what_slip_lines_tell(ratio: float, rough: bool) -> None:
+    """V/B = F ((2 + π) su0 + k B/4), B = 2 m, on tetrahedra that are halved everywhere: from above, at first order."""
+    law = CLAY.model_copy(update={"su_gradient": ratio * SU / 2.0})
+    exact = bearing_factor(ratio, rough, 40) * (PRANDTL + 0.25 * ratio)
+    sizes = 1.0 / 16.0, 1.0 / 32.0
+    pressed = [press_graded_strip(size, law, rough=rough, fine=1.0, depth=0.1) for size in sizes]
+    errors = np.array([strip.load[-1] for strip in pressed]) / exact - 1.0
+    rate, extrapolated = np.log2(errors[0] / errors[1]), 2.0 * errors[1] - errors[0]
+    print(f"k B/su0 = {ratio:g}, rough {rough}: {errors}, rate {rate:.2f}, extrapolated {extrapolated:.4f}")
+    assert pressed[1].load[-1] - pressed[1].load[-2] < 1e-3 * exact
+    assert 0.0 < errors[1] < 0.05
+    assert rate > 0.85
+    assert abs(extrapolated) < 0.02
