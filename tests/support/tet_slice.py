@@ -16,8 +16,8 @@ def tet_slice(
 ) -> DistributedMesh:
     """0 < x < wide, 0 < y < thickness, -deep < z < 0 [m]; a line of the mesh at the strip's edge, x = half.
 
-    Size of the triangles: `edge` there and below the strip to `fine` from it, elsewhere `growth` times the distance from
-    there more, at most `far`.
+    Size of the triangles: `edge` there and below the strip to `fine` from it, elsewhere `growth` times the distance
+    from there more, at most `far`.
     """
     with TemporaryDirectory() as folder:
         path = Path(folder) / "slice.msh"
