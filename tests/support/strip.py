@@ -76,16 +76,20 @@ def press(
 def _step(bench: Bench, given: Array, halvings: int = 2) -> None:
     """One step of the bench, or two of half the size where it finds no balance."""
     try:
-        return bench.step(given)
+        bench.step(given)
     except AssertionError:
         if halvings == 0:
             raise
+        _scale(bench, 0.5)
+        for _ in range(2):
+            _step(bench, 0.5 * given, halvings - 1)
+        _scale(bench, 2.0)
+
+
+def _scale(bench: Bench, share: float) -> None:
+    """The next step starts from so much of the last increment."""
     if bench.increment is not None:
-        bench.increment = 0.5 * bench.increment
-    for _ in range(2):
-        _step(bench, 0.5 * given, halvings - 1)
-    if bench.increment is not None:
-        bench.increment = 2.0 * bench.increment
+        bench.increment = share * bench.increment
 
 
 def strip_soil(kind: str, cells: int, family: Family | None, far: float, law: SoilLaw) -> tuple[Soil, BoolArray]:
