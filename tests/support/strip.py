@@ -45,15 +45,15 @@ def press_strip(
 
 
 def press_graded_strip(
-    size: float, law: SoilLaw = CLAY, steps: int = 15, rough: bool = True, fine: float = 0.0, depth: float = 0.15
+    size: float, growth: float, law: SoilLaw = CLAY, rough: bool = True, fine: float = 0.0, depth: float = 0.15
 ) -> Strip:
     """The same, `depth` [m] down, on tetrahedra of a `size` [m] at the strip's edge and `fine` m inwards below it.
 
-    Away from there they grow by 4 times as much per metre, to 16 times as much.
+    Away from there they grow by `growth` metres per metre, up to 16 times that size.
     """
-    grid = tet_slice(1.0, 5.0, 3.0, 2.0 * size, size, growth=4.0 * size, far=16.0 * size, fine=fine)
+    grid = tet_slice(1.0, 5.0, 3.0, 2.0 * size, size, growth, far=16.0 * size, fine=fine)
     soil = Soil(grid, law.at_points, level=0.0, unit_weight=0.0)
-    return press(soil, under_strip(soil), 2.0 * size, SU, steps, rough, depth)
+    return press(soil, under_strip(soil), 2.0 * size, SU, round(100.0 * depth), rough, depth)
 
 
 def press(

@@ -53,15 +53,15 @@ def test_bearing_factor_is_near_a_published_fit(ratio: float) -> None:
 @pytest.mark.parametrize("rough", [False, True], ids=["smooth", "rough"])
 @pytest.mark.parametrize("ratio", [2.0, 6.0])
 def test_strip_on_clay_that_grows_stronger_bears_what_slip_lines_tell(ratio: float, rough: bool) -> None:
-    """V/B = F ((2 + π) su0 + k B/4), B = 2 m, on tetrahedra that are halved everywhere: from above, at first order."""
+    """V/B = F ((2 + π) su0 + k B/4), B = 2 m: from above, at about first order as the tetrahedra below it are halved."""
     law = CLAY.model_copy(update={"su_gradient": ratio * SU / 2.0})
     exact = bearing_factor(ratio, rough, 40) * (PRANDTL + 0.25 * ratio)
     sizes = 1.0 / 16.0, 1.0 / 32.0
-    pressed = [press_graded_strip(size, law, rough=rough, fine=1.0, depth=0.1) for size in sizes]
+    pressed = [press_graded_strip(size, 0.25, law, rough=rough, fine=1.0, depth=0.1) for size in sizes]
     errors = np.array([strip.load[-1] for strip in pressed]) / exact - 1.0
     rate, extrapolated = np.log2(errors[0] / errors[1]), 2.0 * errors[1] - errors[0]
     print(f"k B/su0 = {ratio:g}, rough {rough}: {errors}, rate {rate:.2f}, extrapolated {extrapolated:.4f}")
-    assert pressed[1].load[-1] - pressed[1].load[-2] < 1e-3 * exact
-    assert 0.0 < errors[1] < 0.05
-    assert rate > 0.85
-    assert abs(extrapolated) < 0.02
+    assert pressed[1].load[-1] - pressed[1].load[-2] < 1e-3 * exact, "the load still rises"
+    assert 0.0 < errors[1] < (0.05 if rough else 0.02)
+    assert rate > 0.65
+    assert abs(extrapolated) < 0.015
