@@ -53,7 +53,7 @@ def test_bearing_factor_is_near_a_published_fit(ratio: float) -> None:
 @pytest.mark.parametrize("rough", [False, True], ids=["smooth", "rough"])
 @pytest.mark.parametrize("ratio", [2.0, 6.0])
 def test_strip_on_clay_that_grows_stronger_bears_what_slip_lines_tell(ratio: float, rough: bool) -> None:
-    """V/B = F ((2 + π) su0 + k B/4), B = 2 m: from above, at about first order as the tetrahedra below it are halved."""
+    """V/B = F ((2 + π) su0 + k B/4), B = 2 m: from above, at about first order in the cells below it."""
     law = CLAY.model_copy(update={"su_gradient": ratio * SU / 2.0})
     exact = bearing_factor(ratio, rough, 40) * (PRANDTL + 0.25 * ratio)
     sizes = 1.0 / 16.0, 1.0 / 32.0
