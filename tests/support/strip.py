@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.soil.block import BlockSpec
 from riser_soil.soil.families import Family
 from riser_soil.soil.grid import DistributedMesh, block_grid
@@ -15,6 +15,7 @@ from riser_soil.soil.law import SoilLaw
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.von_mises import VonMises
 from tests.support.soil_bench import Bench
+from tests.support.tet_slice import tet_slice
 
 SU = 1.0e3
 CLAY = VonMises(kind="von-mises", su=SU, su_gradient=0.0, E_over_su=300.0, nu=0.49)
@@ -40,25 +41,69 @@ def press_strip(
 ) -> Strip:
     """Press half of a strip 0.15 m into a plane-strain block 5 m wide, 3 m deep; `cells` under the strip."""
     soil, under = strip_soil(kind, cells, family, far, law)
+    return press(soil, under, 1.0 / cells, strength, steps, rough)
+
+
+def press_graded_strip(
+    size: float, growth: float, law: SoilLaw = CLAY, rough: bool = True, fine: float = 0.0, depth: float = 0.15
+) -> Strip:
+    """The same, `depth` [m] down, on tetrahedra of a `size` [m] at the strip's edge and `fine` m inwards below it.
+
+    Away from there they grow by `growth` metres per metre, up to 16 times that size.
+    """
+    grid = tet_slice(1.0, 5.0, 3.0, 2.0 * size, size, growth, far=16.0 * size, fine=fine)
+    soil = Soil(grid, law.at_points, level=0.0, unit_weight=0.0)
+    return press(soil, under_strip(soil), 2.0 * size, SU, round(100.0 * depth), rough, depth)
+
+
+def press(
+    soil: Soil, under: BoolArray, thickness: float, strength: float, steps: int, rough: bool, depth: float = 0.15
+) -> Strip:
+    """Press the nodes `under` (n,) the strip `depth` [m] down, in equal steps, on a slice of this thickness [m]."""
     driven = np.zeros((len(under), 3), dtype=bool)
     driven[under] = [rough, rough, True]
     bench = Bench(soil, driven.ravel())
-    given = np.where(under, -0.15 / steps, 0.0)[:, None] * np.array([0.0, 0.0, 1.0])
+    given = np.where(under, -depth / steps, 0.0)[:, None] * np.array([0.0, 0.0, 1.0])
     loads, norms = [], []
     for _ in range(steps):
-        bench.step(given.ravel())
+        _step(bench, given.ravel())
         norms.append(bench.norms)
         reaction = bench.force(np.zeros(soil.field.size)).reshape(-1, 3)[under, 2].sum()
-        loads.append(-reaction * cells / strength)
+        loads.append(-reaction / (thickness * strength))
     return Strip(np.array(loads), norms)
 
 
-def strip_soil(kind: str, cells: int, family: Family | None, far: float, law: SoilLaw) -> tuple[Soil, Array]:
+def _step(bench: Bench, given: Array, halvings: int = 2) -> None:
+    """One step of the bench, or two of half the size where it finds no balance."""
+    try:
+        bench.step(given)
+    except AssertionError:
+        if halvings == 0:
+            raise
+        _scale(bench, 0.5)
+        for _ in range(2):
+            _step(bench, 0.5 * given, halvings - 1)
+        _scale(bench, 2.0)
+
+
+def _scale(bench: Bench, share: float) -> None:
+    """The next step starts from so much of the last increment."""
+    if bench.increment is not None:
+        bench.increment = share * bench.increment
+
+
+def strip_soil(kind: str, cells: int, family: Family | None, far: float, law: SoilLaw) -> tuple[Soil, BoolArray]:
     """A slice one cell thick, and which nodes lie under the strip."""
     h = 1.0 / cells
     fine = ((-1.0, 0.0), (1.25 - 0.5 * h, 0.0))  # cells of size h from the symmetry plane to x = 1.25
     spec = BlockSpec((0.0, 5.0), (0.0, h), 3.0, h, far, kind="tet" if kind == "tet" else "hex", riser=fine)
     grid: DistributedMesh = block_grid(MPI.COMM_SELF, spec)
     soil = Soil(replace(grid, family=family or grid.family), law.at_points, level=0.0, unit_weight=0.0)
-    x, _, z = grid.nodes.points.T
-    return soil, (z > -1e-9) & (x < 1.0 + 1e-9)
+    return soil, under_strip(soil)
+
+
+def under_strip(soil: Soil) -> BoolArray:
+    """Which nodes (n,) lie under the strip."""
+    x, _, z = soil.field.points.T
+    under: BoolArray = (z > -1e-9) & (x < 1.0 + 1e-9)
+    return under

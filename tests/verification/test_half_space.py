@@ -1,4 +1,4 @@
-"""Elastic soil against the half space: Boussinesq's and Cerruti's loads on blocks that grow."""
+"""Elastic soil against the half space: Boussinesq's and Cerruti's loads and a strip's on blocks that grow."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
+from tests.support.elastic_strip import StripOnSlice
 from tests.support.half_space import ALONG, DOWN, LoadedBlock, boussinesq, cerruti
 
 LOADS = pytest.mark.parametrize(("direction", "unit"), [(DOWN, boussinesq), (ALONG, cerruti)], ids=["down", "along"])
@@ -54,3 +55,35 @@ def test_solutions_of_the_half_space_are_in_equilibrium(direction: Array, unit: 
             grad_div[:, i] += 0.25 * np.sum(mixed, axis=0)[:, j]
     residual = grad_div / (1.0 - 2.0 * nu) + laplacian
     assert np.abs(residual).max() < 1e-2 * np.abs(laplacian).max()
+
+
+def strip_errors(kind: str, cells: int) -> tuple[Array, Array]:
+    """Errors of settlement and of stress below the strip, in blocks of 8, 16 and 32 widths to the side and as deep."""
+    slices = [StripOnSlice(kind, cells, widths) for widths in (8.0, 16.0, 32.0)]
+    errors = np.array([[block.settlement_error(), block.stress_error()] for block in slices])
+    print(f"{kind}, {cells} cells: settlement {errors[:, 0]}, stress {errors[:, 1]}, orders {orders(errors)}")
+    return errors[:, 0], errors[:, 1]
+
+
+def orders(errors: Array) -> Array:
+    return np.asarray(np.log2(errors[:-1] / errors[1:]))
+
+
+@pytest.mark.parametrize("kind", ["hex", "tet"])
+def test_strip_settles_as_on_the_half_space(kind: str) -> None:
+    """A block's end takes from the stress in proportion to 1/size, from the settlement's differences to 1/size²."""
+    settlement, stress = strip_errors(kind, 8)
+    assert orders(stress) == pytest.approx(1.0, abs=0.15)
+    assert orders(settlement[:2]) == pytest.approx(2.0, abs=0.2)
+    assert settlement[2] < 2.5e-3
+    assert stress[2] < 1e-2
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize(("kind", "blocks"), [("hex", 2), ("tet", 3)])
+def test_strip_settles_as_on_the_half_space_on_fine_cells(kind: str, blocks: int) -> None:
+    """blocks: how many of them, the smallest first, err more by their size than by their cells."""
+    settlement, stress = strip_errors(kind, 16)
+    assert orders(stress) == pytest.approx(1.0, abs=0.12)
+    assert orders(settlement[:blocks]) == pytest.approx(2.0, abs=0.1)
+    assert settlement[2] < 1.1e-3
