@@ -1,0 +1,43 @@
+"""Capacity of a pipe wished in place, smooth and rough, from two meshes each, against bounds and a published fit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from riser_soil.core.arrays import Array
+from tests.support.pipe_in_place import chord, pipe_in_place, resistance, rough_by_slip_lines, smooth_by_slip_lines
+
+PRANDTL = 2.0 + np.pi
+
+
+def fitted(w: float, rough: bool) -> float:
+    """V/(D su) = a (w/D)^b, w <= D/2, fitted by Aubeny, Shi & Murff (2005) to finite elements; a, b from memory."""
+    return 6.73 * w**0.29 if rough else 4.97 * w**0.23
+
+
+def fallen(load: Array) -> float:
+    """By how much the load ever falls below what it has been, over its peak."""
+    return float(np.max(np.maximum.accumulate(load) - load) / load.max())
+
+
+@pytest.mark.parametrize("w", [0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5])
+def test_slip_lines_lie_between_what_is_known(w: float) -> None:
+    """Prandtl's strip on the chord is the most that a smooth and the least that a rough pipe bears by them."""
+    strip = PRANDTL * chord(w)
+    assert smooth_by_slip_lines(w) < strip
+    assert rough_by_slip_lines(w) >= strip
+    assert (rough_by_slip_lines(w) == pytest.approx(strip, rel=1e-12)) == (w < 0.1465)
+    assert smooth_by_slip_lines(w) == pytest.approx(_summed(w), rel=1e-6)
+
+
+def test_a_half_buried_pipe_by_hand() -> None:
+    assert smooth_by_slip_lines(0.5) == pytest.approx(4.0)
+    assert rough_by_slip_lines(0.5) == pytest.approx(1.0 + 0.5 * np.pi + 2.0 * np.sqrt(2.0))
+
+
+def _summed(w: float) -> float:
+    """The pressure on a smooth pipe, summed over the surface in contact by the midpoint rule."""
+    end, n = float(np.arccos(1.0 - 2.0 * w)), 4000
+    angle = (np.arange(n) + 0.5) * end / n
+    return float(np.sum((PRANDTL - 2.0 * angle) * np.cos(angle)) * end / n)
