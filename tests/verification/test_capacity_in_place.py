@@ -9,6 +9,8 @@ from riser_soil.core.arrays import Array
 from tests.support.pipe_in_place import chord, pipe_in_place, resistance, rough_by_slip_lines, smooth_by_slip_lines
 
 PRANDTL = 2.0 + np.pi
+FEW, MORE = (9, 13, 19), (13, 19, 27)  # strips of the groove
+WITHIN, COARSE, FALLS = 0.03, 0.07, 0.01  # shares of the capacity
 
 
 def fitted(w: float, rough: bool) -> float:
@@ -41,3 +43,38 @@ def _summed(w: float) -> float:
     end, n = float(np.arccos(1.0 - 2.0 * w)), 4000
     angle = (np.arange(n) + 0.5) * end / n
     return float(np.sum((PRANDTL - 2.0 * angle) * np.cos(angle)) * end / n)
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize("rough", [False, True], ids=["smooth", "rough"])
+@pytest.mark.parametrize("w", [0.1, 0.2, 0.3, 0.4, 0.5])
+def test_capacity_from_three_meshes(w: float, rough: bool) -> None:
+    """Extrapolated; a smooth pipe's load falls a little behind its peak, as docs/accuracy.md tells."""
+    strips = FEW if w < 0.35 else MORE
+    loads = [resistance(pipe_in_place(w, n, rough)) for n in strips]
+    peaks = np.array([load.max() for load in loads])
+    capacity = extrapolated(peaks, strips)
+    print(f"w/D = {w:g}: {peaks}, extrapolated {capacity:.3f}; fallen {[round(fallen(load), 5) for load in loads]}")
+    known = rough_by_slip_lines(w) if rough else smooth_by_slip_lines(w), fitted(w, rough)
+    assert (1.0 - WITHIN) * min(known) < capacity < (1.0 + WITHIN) * max(known)
+    assert np.abs(peaks / capacity - 1.0).max() < COARSE
+    assert fallen(loads[-1]) < FALLS
+
+
+def extrapolated(found: Array, strips: tuple[int, int, int]) -> float:
+    """To cells without size, by the order that three meshes show, taken as at least first and at most second."""
+    first, second = np.diff(found)
+    ratio = strips[2] / strips[1]
+    order = np.log(first / second) / np.log(ratio) if first * second > 0.0 else 1.0
+    return float(found[2] + second / (ratio ** np.clip(order, 1.0, 2.0) - 1.0))
+
+
+@pytest.mark.verify
+def test_upright_the_load_never_falls() -> None:
+    """Pushed by D/10 into clay of E/su = 300: between a smooth and a rough pipe, as contact presses upright on the clay."""
+    scene = pipe_in_place(0.3, 9, rough=False, E_over_su=300.0, down=0.1)
+    scene["contact"]["soil_moves"] = "upright"
+    scene["solver"]["load_steps"] = 16
+    load = resistance(scene)
+    assert np.all(np.diff(load) > 0.0)
+    assert smooth_by_slip_lines(0.3) < load[-1] < rough_by_slip_lines(0.3)
