@@ -38,6 +38,13 @@ def test_a_half_buried_pipe_by_hand() -> None:
     assert rough_by_slip_lines(0.5) == pytest.approx(1.0 + 0.5 * np.pi + 2.0 * np.sqrt(2.0))
 
 
+def test_a_sequence_of_known_order_is_extrapolated() -> None:
+    size = 1.0 / np.array(MORE)
+    for order in (1.0, 1.5, 2.0):
+        assert extrapolated(4.0 + 3.0 * size**order, MORE) == pytest.approx(4.0, abs=1e-4)
+    assert extrapolated(np.array([4.1, 4.0, 4.05]), MORE) == pytest.approx(4.05 + 0.05 / (27 / 19 - 1.0))
+
+
 def _summed(w: float) -> float:
     """The pressure on a smooth pipe, summed over the surface in contact by the midpoint rule."""
     end, n = float(np.arccos(1.0 - 2.0 * w)), 4000
@@ -64,14 +71,16 @@ def test_capacity_from_three_meshes(w: float, rough: bool) -> None:
 def extrapolated(found: Array, strips: tuple[int, int, int]) -> float:
     """To cells without size, by the order that three meshes show, taken as at least first and at most second."""
     first, second = np.diff(found)
-    ratio = strips[2] / strips[1]
-    order = np.log(first / second) / np.log(ratio) if first * second > 0.0 else 1.0
-    return float(found[2] + second / (ratio ** np.clip(order, 1.0, 2.0) - 1.0))
+    coarse, middle, fine = 1.0 / np.array(strips)
+    orders = np.linspace(1.0, 2.0, 101)
+    ratios = (coarse**orders - middle**orders) / (middle**orders - fine**orders)
+    order = np.interp(first / second, ratios, orders)
+    return float(found[2] + second * fine**order / (middle**order - fine**order))
 
 
 @pytest.mark.verify
 def test_upright_the_load_never_falls() -> None:
-    """Pushed by D/10 into clay of E/su = 300: between a smooth and a rough pipe, as contact presses upright on the clay."""
+    """Pushed by D/10, E/su = 300: more than a smooth pipe and less than a rough one, as contact presses upright."""
     scene = pipe_in_place(0.3, 9, rough=False, E_over_su=300.0, down=0.1)
     scene["contact"]["soil_moves"] = "upright"
     scene["solver"]["load_steps"] = 16
