@@ -93,7 +93,7 @@ def pipe_in_place(w: float, strips: int, rough: bool, *, E_over_su: float = 0.0,
 
 def friction(E_over_su: float) -> Mapping:
     """Rough, and mobilised sooner the stiffer the clay is."""
-    return {"axial": ROUGH, "lateral": ROUGH, "mobilisation": D * 600.0 / E_over_su}
+    return {"axial": ROUGH, "lateral": ROUGH, "mobilisation": 200.0 / E_over_su}
 
 
 def resistance(scene: Mapping) -> Array:

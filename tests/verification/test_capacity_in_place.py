@@ -1,4 +1,4 @@
-"""Capacity of a pipe wished in place, smooth and rough, from two meshes each, against bounds and a published fit."""
+"""Capacity of a pipe wished in place, smooth and rough, from two meshes, against slip lines and a published fit."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from riser_soil.core.arrays import Array
 from tests.support.pipe_in_place import chord, pipe_in_place, resistance, rough_by_slip_lines, smooth_by_slip_lines
 
 PRANDTL = 2.0 + np.pi
-FEW, MORE = (9, 13, 19), (13, 19, 27)  # strips of the groove
-WITHIN, COARSE, FALLS = 0.03, 0.07, 0.01  # shares of the capacity
+FEW, MORE = (9, 19), (13, 27)  # strips of the groove
+WITHIN, COARSE, FALLS = 0.04, 0.07, 3e-3  # shares of the capacity
 
 
 def fitted(w: float, rough: bool) -> float:
@@ -38,11 +38,10 @@ def test_a_half_buried_pipe_by_hand() -> None:
     assert rough_by_slip_lines(0.5) == pytest.approx(1.0 + 0.5 * np.pi + 2.0 * np.sqrt(2.0))
 
 
-def test_a_sequence_of_known_order_is_extrapolated() -> None:
-    size = 1.0 / np.array(MORE)
-    for order in (1.0, 1.5, 2.0):
-        assert extrapolated(4.0 + 3.0 * size**order, MORE) == pytest.approx(4.0, abs=1e-4)
-    assert extrapolated(np.array([4.1, 4.0, 4.05]), MORE) == pytest.approx(4.05 + 0.05 / (27 / 19 - 1.0))
+def test_extrapolation_of_both_orders() -> None:
+    for order in (1, 2):
+        coarse, fine = (4.0 + 3.0 * float(n) ** -order for n in FEW)
+        assert extrapolated(coarse, fine, FEW)[order - 1] == pytest.approx(4.0, rel=1e-12)
 
 
 def _summed(w: float) -> float:
@@ -55,27 +54,25 @@ def _summed(w: float) -> float:
 @pytest.mark.verify
 @pytest.mark.parametrize("rough", [False, True], ids=["smooth", "rough"])
 @pytest.mark.parametrize("w", [0.1, 0.2, 0.3, 0.4, 0.5])
-def test_capacity_from_three_meshes(w: float, rough: bool) -> None:
-    """Extrapolated; a smooth pipe's load falls a little behind its peak, as docs/accuracy.md tells."""
+def test_capacity_from_two_meshes(w: float, rough: bool) -> None:
+    """Midway between what first and second order make of them. A smooth pipe's load falls a little behind its peak."""
     strips = FEW if w < 0.35 else MORE
     loads = [resistance(pipe_in_place(w, n, rough)) for n in strips]
-    peaks = np.array([load.max() for load in loads])
-    capacity = extrapolated(peaks, strips)
-    print(f"w/D = {w:g}: {peaks}, extrapolated {capacity:.3f}; fallen {[round(fallen(load), 5) for load in loads]}")
+    coarse, fine = (float(load.max()) for load in loads)
+    first, second = extrapolated(coarse, fine, strips)
+    capacity = 0.5 * (first + second)
+    print(f"w/D = {w:g}: {coarse:.3f}, {fine:.3f}, {first:.3f} to {second:.3f}, fell by {fallen(loads[-1]):.1e}")
     known = rough_by_slip_lines(w) if rough else smooth_by_slip_lines(w), fitted(w, rough)
     assert (1.0 - WITHIN) * min(known) < capacity < (1.0 + WITHIN) * max(known)
-    assert np.abs(peaks / capacity - 1.0).max() < COARSE
+    assert abs(coarse / capacity - 1.0) < COARSE
     assert fallen(loads[-1]) < FALLS
 
 
-def extrapolated(found: Array, strips: tuple[int, int, int]) -> float:
-    """To cells without size, by the order that three meshes show, taken as at least first and at most second."""
-    first, second = np.diff(found)
-    coarse, middle, fine = 1.0 / np.array(strips)
-    orders = np.linspace(1.0, 2.0, 101)
-    ratios = (coarse**orders - middle**orders) / (middle**orders - fine**orders)
-    order = np.interp(first / second, ratios, orders)
-    return float(found[2] + second * fine**order / (middle**order - fine**order))
+def extrapolated(coarse: float, fine: float, strips: tuple[int, int]) -> tuple[float, float]:
+    """To cells without size, by the first and by the second order."""
+    ratio = strips[1] / strips[0]
+    first, second = (fine + (fine - coarse) / (ratio**order - 1.0) for order in (1, 2))
+    return first, second
 
 
 @pytest.mark.verify
