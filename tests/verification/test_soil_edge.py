@@ -12,7 +12,6 @@ from riser_soil.checks.check import describe
 from riser_soil.checks.soil_edge import penetration, settlement
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
-from riser_soil.soil.seabed_feature import GrooveSpec
 from tests.support.coupled_scenes import Mapping, touchdown
 from tests.support.driven_stage import built, take
 
@@ -22,9 +21,9 @@ STIFF: Mapping = {"kind": "linear-elastic", "E": 1.5e9, "nu": 0.49}
 CLAY: Mapping = {"kind": "von-mises", "su": 5.0e3, "E_over_su": 300.0, "nu": 0.49}
 
 
-def pressed(down: float, soil: Mapping, embedment: float = 0.0) -> Mapping:
+def pressed(down: float, soil: Mapping) -> Mapping:
     """A stiff pipe without weight is pushed into a slice of soil, 1.2 m deep."""
-    z = (0.5 - embedment) * D
+    z = 0.5 * D
     ends = {end: {"position": [x, 0.0, z], "rotation": "fixed"} for end, x in (("start", 0.0), ("end", LENGTH))}
     pipe = {"outer_diameter": D, "EA": 1e10, "EI": 1e8, "submerged_weight": 0.0}
     move = {end: [x, 0.0, z - down] for end, x in (("start", 0.0), ("end", LENGTH))}
@@ -112,15 +111,3 @@ def test_a_trench_that_ends_at_the_edge_is_told() -> None:
     assert "let it end within the block" in told(mapping)[1]
     mapping["soil"]["block"]["trench"] |= {"along": [4.0, 7.0], "run_out": 1.0}
     assert len(told(mapping)) == 1
-
-
-@pytest.mark.verify
-def test_a_pipe_in_place_bears_what_limit_analysis_says() -> None:
-    """A smooth pipe embedded by 0.3 D: V/(D su) = 4.97 (w/D)^0.23 by Aubeny, Shi & Murff (2005), from memory, 3.77."""
-    soil = {"law": CLAY, "mesh": {"kind": "tet", "size_at_riser": 0.04, "size_far": 0.3}}
-    mapping = pressed(0.012, soil, embedment=0.3)
-    mapping["soil"]["block"] |= {"groove": {"embedment": 0.3}, "y": [-1.2, 1.2]}
-    mapping["solver"] = {"load_steps": 8}
-    assert GrooveSpec(0.3 * D, 0.5 * D).strips(0.04) == 9
-    capacity = force_per_length(mapping) / (D * CLAY["su"])
-    assert capacity == pytest.approx(4.97 * 0.3**0.23, rel=0.1)
