@@ -123,7 +123,7 @@ def _take(
     system = System(assembly.comm, model, clock)
     if not isinstance(begin, State):
         _restore(system, begin)
-    newton = Newton(system, _settings(assembly))
+    newton = Newton(system, replace(_settings(assembly), linear_start=_starts_at_rest(assembly, stage)))
     try:
         run = _begin_run(assembly, stage, system, newton, begin, observer)
         return _walk(run, checkpoint)
@@ -226,6 +226,8 @@ def _relaxed(assembly: Assembly, stepper: TimeStepper, control: Control, observe
         if not stepper.depends_on(control) or not control.cut():
             raise
         return False
+    finally:
+        stepper.newton.renew()  # relaxation has chosen patterns of its own
     observer.relaxed(relaxed)
     stepper.restart()
     return True
@@ -233,9 +235,13 @@ def _relaxed(assembly: Assembly, stepper: TimeStepper, control: Control, observe
 
 def _settings(assembly: Assembly) -> NewtonSettings:
     solver = assembly.scene.solver
-    on_soil, floor = assembly.soil is not None, assembly.scales.force_floor
-    settings = NewtonSettings(solver.tolerance, solver.max_iterations, floor)
-    return replace(settings, line_search=on_soil, linear_start=on_soil)
+    on_soil = assembly.soil is not None
+    return NewtonSettings(solver.tolerance, solver.max_iterations, assembly.scales.force_floor, line_search=on_soil)
+
+
+def _starts_at_rest(assembly: Assembly, stage: Stage) -> bool:
+    """Whether a stage on soil begins with a riser in equilibrium: on its cushion, or after another stage."""
+    return assembly.soil is not None and (assembly.cushion is not None or not assembly.is_laid_in(stage))
 
 
 def _load_steps(assembly: Assembly, stage: StaticStage) -> int:

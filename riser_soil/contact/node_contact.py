@@ -82,7 +82,7 @@ class NodeContact(SoilContact):
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         """Add d²ψ/du², unweighted: contact stands at the end of the step."""
         touching = self.detect(state).touching
-        add_blocks(values[SOIL], self.places(touching.node, touching.facet), touching.hessian)
+        add_blocks(values[SOIL], self.places(values[SOIL], touching.node, touching.facet), touching.hessian)
 
     def energy(self, state: State) -> Energy:
         """Potential of the penalty."""

@@ -112,9 +112,12 @@ class SoilContact(LineContact):
         """What the step has missed on its way is of no concern to the next."""
         self._missed = CandidatePairs.none(len(self._soil.facets))
 
-    def places(self, on_line: IntArray, facet: IntArray) -> IntArray:
-        """Where the pattern has pairs (m,); -1, which is noted, where it has not."""
-        places = self._present_patch().places(on_line, facet)
+    def places(self, values: Array, on_line: IntArray, facet: IntArray) -> IntArray:
+        """Where the pattern, and a matrix' values (mp, nr, nr) of it, have pairs (m,); -1, which is noted, where not."""
+        patch = self._present_patch()
+        if len(values) != len(patch.pairs):
+            raise RuntimeError("contact on soil: its pattern was rebuilt, and the matrix is that of the one before")
+        places = patch.places(on_line, facet)
         missed = places < 0
         if missed.any():
             self.outgrown = True

@@ -177,7 +177,7 @@ class SurfaceContact(SoilContact):
         """Add the derivative of the pairs' forces, minus `gradient` (m, nz), which is `by_z` (m, nz, nz)."""
         pressed = found.pressed
         by_dofs = self._by_dofs(found.trial, pressed)
-        places = self.places(pressed.element, pressed.facet)
+        places = self.places(values[SOIL], pressed.element, pressed.facet)
         add_blocks(values[SOIL], places, np.swapaxes(by_dofs, 1, 2) @ by_z @ by_dofs)
         found.trial.add_turning(values[self.line.name], 1.0, self._on_line(pressed, gradient))
 

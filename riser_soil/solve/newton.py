@@ -25,12 +25,9 @@ CONVERGED = PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
 DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_DTOL
 NOT_SOLVED = PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE
 ITERATING = PETSc.SNES.ConvergedReason.ITERATING
+OUTGROWN = PETSc.SNES.ConvergedReason.CONVERGED_ITS  # stops where the matrix' pattern lacks places
 PROBE = 1e-6  # of the prescribed motion, along which the slope of the residual is taken
 STATIC = Static().weights(0.0)
-
-
-class OutgrownError(Exception):
-    """The matrix' pattern has no place for something in the tangent, such as a contact that has come up."""
 
 
 class Newton:
@@ -124,21 +121,19 @@ class Newton:
     def _iterate(self) -> str:
         """Iterate, from wherever the pattern was outgrown with a wider one; "" where that converges, else why not."""
         while True:
-            try:
-                return self._run()
-            except OutgrownError:
-                self._renew(self._balanced)
-                self._norms.pop()
+            failure = self._run()
+            if failure or self._snes.reason != OUTGROWN:
+                self.iterations += self._taken
+                return failure
+            self._renew(self._balanced)
+            self._norms.pop()
 
     def _run(self) -> str:
-        """Iterate; "" where that converges, else why not."""
+        """Iterate until that converges or the pattern is outgrown: "", else why it has failed."""
         began, counted = time.perf_counter(), self.system.clock.total
         self._snes.setTolerances(max_it=self.settings.max_iterations - self._taken)
-        try:
-            failure = self._failing(lambda: self._snes.solve(None, self._x), lambda: self._snes.reason == NOT_SOLVED)
-        finally:
-            self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
-        self.iterations += self._taken
+        failure = self._failing(lambda: self._snes.solve(None, self._x), lambda: self._snes.reason == NOT_SOLVED)
+        self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
         return failure or ("" if self._snes.reason > 0 else self._reason(""))
 
     def _failing(self, solve: Callable[[], None], unsolved: Callable[[], bool]) -> str:
@@ -198,6 +193,10 @@ class Newton:
         for part in self._adaptive:
             if part.outgrown:
                 part.rebuild(state)
+        self.renew()
+
+    def renew(self) -> None:
+        """Take a matrix of the pattern that the parts have now."""
         self._snes.destroy()
         self.system.renew_pattern()
         self._snes = self._create()
@@ -252,12 +251,7 @@ class Newton:
         return part != 1.0
 
     def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, jacobian: PETSc.Mat, p: PETSc.Mat) -> None:
-        """A matrix left as it is keeps its factors."""
-        if not self._reusable():
-            self._trial(x)
-            self._assemble(self._balanced)
-            if self._outgrown():
-                raise OutgrownError
+        """The convergence test has assembled it; a matrix that it has left as it was keeps its factors."""
 
     def _assemble(self, state: State) -> None:
         self.system.assemble(state, self._weights)
@@ -292,12 +286,20 @@ class Newton:
         if not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
         if self._taken < self._least_iterations:
-            return ITERATING
+            return self._next_tangent()
         if norm <= max(self.settings.tolerance * self._scale(self._forces), self.settings.floor):
             return CONVERGED
         if self._taken >= 4 and norm > 1e6 * max(self._norms[:2]):
             return DIVERGED
-        return ITERATING
+        return self._next_tangent()
+
+    def _next_tangent(self) -> int:
+        """Assemble that of the next iteration, if there is one with a tangent of its own; whether it has a place."""
+        if self._taken >= self.settings.max_iterations or self._reusable():
+            return ITERATING
+        self._trial(self._x)
+        self._assemble(self._balanced)
+        return OUTGROWN if self._outgrown() else ITERATING
 
     def _norm(self) -> float:
         """Norm of the residual [N]; collective."""

@@ -326,6 +326,17 @@ def test_pattern_is_outgrown_and_rebuilt() -> None:
     assert not case.outgrows(u)
 
 
+def test_a_matrix_of_the_pattern_before_is_refused() -> None:
+    case = level_case(np.array([0.01, 0.01, -1.0, -1.0, 0.01]), top("quad4", nx=4))
+    values = {key: block.zeros() for key, block in case.contact.blocks().items()}
+    u = np.zeros(case.size)
+    u[case.riser.translation_dofs[2, 2]] = -1.01
+    case.contact.tangent(case.state(u), WEIGHTS, values)
+    case.contact.rebuild(case.state(u))
+    with pytest.raises(RuntimeError, match="was rebuilt"):
+        case.contact.tangent(case.state(u), WEIGHTS, values)
+
+
 def test_sliding_within_the_patch_keeps_the_pattern() -> None:
     case = level_case(np.full(3, 0.01), top("quad4"))
     assert case.contact.blocks()["contact.soil"].shape[1:] == (15, 15)
