@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from riser_soil.assembly import build, sized
+from riser_soil.assembly import build
 from riser_soil.checks.mesh_plausibility import missed
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.soil import CellSizes, GeneratedMesh
+from tests.support.automatic_cells import scaled
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import take
 from tests.support.lifted_pipe import ELASTIC, lifted_pipe
@@ -63,19 +63,6 @@ def sinking(steps: int = 10) -> Mapping:
         for w in depths
     ]
     return scene
-
-
-def scaled(scene: Scene, across: float = 1.0, along: float = 1.0) -> Scene:
-    """The scene with its automatic cells so many times as large across, and downwards, and along."""
-    scene = sized(scene)
-    assert scene.soil is not None
-    mesh = scene.soil.mesh
-    assert isinstance(mesh, GeneratedMesh)
-    given = mesh.size_at_riser
-    assert isinstance(given, CellSizes)
-    sizes = CellSizes(along=along * given.along, across=across * given.across, strip=given.strip)
-    mesh = mesh.model_copy(update={"size_at_riser": sizes, "size_far": across * mesh.size_far})
-    return scene.model_copy(update={"soil": scene.soil.model_copy(update={"mesh": mesh})})
 
 
 def pushed(scene: Scene) -> Found:
