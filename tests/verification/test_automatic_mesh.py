@@ -19,7 +19,7 @@ from tests.support.driven_stage import take
 from tests.support.lifted_pipe import ELASTIC, lifted_pipe
 from tests.support.pushed_pipe import D, Pushed, slice_of_soil
 
-EVEN_CLAY = {"kind": "von-mises", "su": 4.0e3, "E_over_su": 300.0, "nu": 0.49}
+EVEN_CLAY: Mapping = {"kind": "von-mises", "su": 4.0e3, "E_over_su": 300.0, "nu": 0.49}
 
 
 class FineSlice(NamedTuple):
