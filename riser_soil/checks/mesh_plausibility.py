@@ -41,8 +41,8 @@ def missed(size: float, width: float, depth: float) -> float:
     """The part of a pipe's settlement that cells of a size across it miss, of a width that touches and a depth [m].
 
     A strip load settles q/(pi E*) (2 ln(4 depth/width) - 1), and cells wider than the pressure spread it over
-    LIKE_CONTACT times their size; cells that grow to 0.6 of the depth miss GRADED (test_automatic_mesh). That is elastic
-    soil: where it yields, wide cells miss more (test_automatic_mesh_on_demo).
+    LIKE_CONTACT times their size; cells that grow to 0.6 of the depth miss GRADED (test_automatic_mesh). That is
+    elastic soil: where it yields, wide cells miss more (test_automatic_mesh_on_demo).
     """
     return float(GRADED + max(0.0, np.log(LIKE_CONTACT * size / width)) / (np.log(4.0 * depth / width) - 0.5))
 
