@@ -20,12 +20,14 @@ from riser_soil.scene.soil import Block, CellSizes, GeneratedMesh, SoilScene
 from riser_soil.soil.grading import PARALLEL
 from riser_soil.soil.law import SoilLaw
 
-# Cells across the width that touches; across the strip where they don't grow; largest size over the block's depth.
-# What they leave of the exact settlement: docs/accuracy.md.
-ACROSS, STRIP, FAR = 4.0, 8.0, 0.6
+# Cells across the width that touches; across the diameter at least, as the resistance of clay that a pipe sinks into
+# climbs cell by cell; largest size over the block's depth. What they leave of the exact settlement: docs/accuracy.md.
+ACROSS, ROUND, FAR = 4.0, 16.0, 0.6
+# The strip where cells don't grow: of their width, and of the width that touches, beside which clay heaves.
+STRIP, BESIDE = 8.0, 1.25
 # Length of the cells: this part of the shorter of the lengths over which tension and the soil bend the pipe, and at
 # most so many diameters.
-ALONG, LONGEST = 0.75, 4.0
+ALONG, LONGEST = 0.55, 4.0
 # The block: to the sides and down, in diameters and in widths that touch; beyond the touchdown points, in bending
 # lengths and diameters; how much farther they go than statics say.
 DIAMETERS, WIDTHS = 8.0, 10.0
@@ -103,8 +105,9 @@ class SoilSizes:
                 "soil.mesh: auto: cells are long along x or y, and the riser runs across both: turn the scene until it "
                 "runs along x, or give mesh: {kind, size_at_riser, size_far}"
             )
-        across = self.width / ACROSS
-        sizes = CellSizes(along=_told(max(self.along, across)), across=_told(across), strip=_told(STRIP * across))
+        across = min(self.width / ACROSS, self.scales.diameter / ROUND)
+        strip = max(STRIP * across, BESIDE * self.width)
+        sizes = CellSizes(along=_told(max(self.along, across)), across=_told(across), strip=_told(strip))
         return GeneratedMesh(kind="hex", size_at_riser=sizes, size_far=_told(max(FAR * block.depth, across)))
 
     @property

@@ -66,6 +66,10 @@ def test_what_cells_miss_grows_with_their_size() -> None:
     told = told_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.012))))
     assert told is not None
     assert "0.5 m along and 0.012 m across, where 0.0236 m touch" in told
+    assert told.endswith("2% too small")
+    wide = told_resolution(built(on_block(LAY, mesh=sizes(0.5, 0.05))))
+    assert wide is not None
+    assert wide.endswith("% too small, by more where it yields")
     assert told_resolution(built({**touchdown(LAY), "contact": {"method": "node"}})) is None
 
 

@@ -13,7 +13,7 @@ from riser_soil.assembly import sized
 from riser_soil.assembly.ground import contact_width
 from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.scales import Scales
-from riser_soil.assembly.soil_sizes import ACROSS, bending_on_soil, touching_width
+from riser_soil.assembly.soil_sizes import ACROSS, BESIDE, bending_on_soil, touching_width
 from riser_soil.assembly.touchdown_forecast import forecast
 from riser_soil.checks.estimate import size_of
 from riser_soil.errors import SceneError
@@ -58,15 +58,17 @@ def test_a_light_pipe_touches_as_hertz_says_a_heavy_one_as_clay_bears() -> None:
     assert touching_width(Scales(1e5, 0.3, 1.0), CLAY) == pytest.approx(0.3)
 
 
-def test_cells_follow_from_what_touches_and_from_what_bends() -> None:
-    scene = automatic()
+@pytest.mark.parametrize(("su", "cells", "strip"), [(6000.0, ACROSS, 2.0), (600.0, None, BESIDE)])
+def test_cells_follow_from_what_touches_and_from_what_bends(su: float, cells: float | None, strip: float) -> None:
+    """A light pipe has so many across the width that touches; a heavy one, which sinks in, D/16."""
+    scene = automatic(soil__law__su=su)
     block, mesh, sizes = chosen(scene)
     assert scene.soil is not None
     elements = elements_of(scene)
-    width = touching_width(Scales(float(elements.weight.max()), 0.3, 1.0), scene.soil.top_law)
-    assert sizes.across == pytest.approx(width / ACROSS, rel=1e-3)
-    assert sizes.strip == pytest.approx(2.0 * width, rel=1e-3)
-    assert sizes.along == pytest.approx(0.75 * bending_on_soil(elements, scene.soil.top_law), rel=1e-3)
+    law, width = scene.soil.top_law, touching_width(Scales(float(elements.weight.max()), 0.3, 1.0), scene.soil.top_law)
+    assert sizes.across == pytest.approx(0.3 / 16.0 if cells is None else width / cells, rel=1e-3)
+    assert sizes.strip == pytest.approx(strip * width, rel=1e-3)
+    assert sizes.along == pytest.approx(0.55 * bending_on_soil(elements, law), rel=1e-3)
     assert mesh.size_far == pytest.approx(0.6 * block.depth, rel=1e-3)
     assert bending_on_soil(elements, SOFT) == pytest.approx((4.0 * 5.0e4 / 1.2e6) ** 0.25)
 
