@@ -113,7 +113,7 @@ class SoilContact(LineContact):
         self._missed = CandidatePairs.none(len(self._soil.facets))
 
     def places(self, values: Array, on_line: IntArray, facet: IntArray) -> IntArray:
-        """Where the pattern, and a matrix' values (mp, nr, nr) of it, have pairs (m,); -1, which is noted, where not."""
+        """Where the pattern has pairs (m,), and the matrix its `values`; -1, which is noted, where it has not."""
         patch = self._present_patch()
         if len(values) != len(patch.pairs):
             raise RuntimeError("contact on soil: its pattern was rebuilt, and the matrix is that of the one before")

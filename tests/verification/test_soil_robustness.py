@@ -18,7 +18,7 @@ from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import Stage
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
-from riser_soil.stages import run_stage
+from riser_soil.stages import LAID_IN, run_stage
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import Watcher, built, take
 from tests.support.falling_on_soil import CLAY, ELASTIC, MIDDLE, D, falling
@@ -46,7 +46,7 @@ def test_riser_is_laid_and_heaves_on_difficult_soil(name: str) -> None:
 
 
 def runs_and_bears(scene: Mapping) -> None:
-    """The grounds bear the part of the weight that does not hang from the end."""
+    """Once the cushion is gone, the grounds bear the part of the weight that does not hang from the end."""
     assembly, borne, iterations = built(scene), list[float](), list[int]()
 
     def watch(system: System, step: AcceptedStep) -> None:
@@ -59,7 +59,8 @@ def runs_and_bears(scene: Mapping) -> None:
         before = take(assembly, stage, before, watch)
     weight = float(assembly.elements.weight @ assembly.line.length)
     print(f"borne {np.array(borne) / weight}, iterations {iterations}")
-    assert np.all((np.array(borne) > 0.2 * weight) & (np.array(borne) < weight))
+    after = np.array(borne[LAID_IN - 1 :])
+    assert np.all((after > 0.2 * weight) & (after < weight))
 
 
 CELL = 0.075  # m
