@@ -26,7 +26,9 @@ from riser_soil.solve.step_control import Control, StepControl
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
 LAID_IN = 8  # load steps on soil, at least
-MOVED_BY, MOST_STEPS = 0.25, 64  # diameters that an end moves in a load step on soil; load steps by themselves
+MOVED_BY, PRESSED_BY = 0.25, 1 / 160  # diameters by which a load step on soil moves an end; presses it in, on clay
+ROUND_OFF = 1e-9  # of a load step
+MOST_STEPS = 64  # of a stage, but for those that the scene asks for
 MOST_RELAXED = 1  # times in a static stage on soil
 MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
 
@@ -252,6 +254,8 @@ def _load_steps(assembly: Assembly, stage: StaticStage) -> int:
     if not assembly.touches_soil_all_along:
         return asked
     moved = assembly.moved_in(stage) / (MOVED_BY * assembly.scales.diameter)
+    if assembly.soil is not None and assembly.soil.path_dependent:
+        moved = max(moved, assembly.pressed_in(stage) / (PRESSED_BY * assembly.scales.diameter) - ROUND_OFF)
     laid = LAID_IN if assembly.cushion is not None and assembly.is_laid_in(stage) else 1
     return max(asked, laid, min(math.ceil(moved), MOST_STEPS))
 

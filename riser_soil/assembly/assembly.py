@@ -194,10 +194,19 @@ class Assembly:
 
     def moved_in(self, stage: StaticStage) -> float:
         """How far a static stage moves the end that it moves farthest [m], from where it was as the stage began."""
+        return max((float(np.linalg.norm(target - origin)) for origin, target in self._moves(stage)), default=0.0)
+
+    def pressed_in(self, stage: StaticStage) -> float:
+        """By how much a static stage changes the embedment of an end's underside [m], in the level soil before it."""
+        axis = self.scene.seabed_level + 0.5 * self.scales.diameter
+        depths = ([max(0.0, axis - float(x[2])) for x in move] for move in self._moves(stage))
+        return max((abs(after - before) for before, after in depths), default=0.0)
+
+    def _moves(self, stage: StaticStage) -> list[tuple[Array, Array]]:
+        """Where the ends that a static stage moves were as it began, and where they go (3,) [m]."""
         origins = self.begun.get(stage.name, end_positions(self.line))
         targets = (getattr(stage.move, name, None) for name in ("start", "end"))
-        ways = [np.subtract(target, x) for target, x in zip(targets, origins, strict=True) if target is not None]
-        return max((float(np.linalg.norm(way)) for way in ways), default=0.0)
+        return [(x, np.asarray(target)) for x, target in zip(origins, targets, strict=True) if target is not None]
 
     def is_laid_in(self, stage: Stage) -> bool:
         """Whether a static stage is the first, in which the riser is laid on the soil."""
