@@ -91,6 +91,7 @@ class Newton:
         start, residual = self._balance(still)
         self.system.numbering.add_to_global(residual + (probed - residual) / PROBE, self._f)
         self._norms.append(self._norm())
+        self._first = 1
         self._assemble(start)
         while self._outgrown():
             self._renew(start)
@@ -202,7 +203,7 @@ class Newton:
         self._snes = self._create()
 
     def _begin(self, step: Step) -> None:
-        self._step, self._norms = step, list[float]()
+        self._step, self._norms, self._first = step, list[float](), 0
         self._weights, self._past = step.scheme.weights(step.dt), step.scheme.past(step.start)
         self._still = step.scheme.trial(step.before, step.t, step.dt, np.zeros_like(step.guess))
         prescribed = State(step.t, *(x.copy() for x in (step.guess, self._still.v, self._still.a)))
@@ -289,7 +290,7 @@ class Newton:
             return self._next_tangent()
         if norm <= max(self.settings.tolerance * self._scale(self._forces), self.settings.floor):
             return CONVERGED
-        if self._taken >= 4 and norm > 1e6 * max(self._norms[:2]):
+        if self._taken >= 4 and norm > 1e6 * self._norms[self._first]:
             return DIVERGED
         return self._next_tangent()
 
