@@ -213,7 +213,7 @@ def _static_step(run: StageRun) -> AcceptedStep:
             return stepper.advance(control, MOST_CUTS if stepper.depends_on(control) else 0)
         except SolveError:
             run.relaxed += 1
-            if assembly.touches_soil_all_along and run.relaxed > MOST_RELAXED:
+            if assembly.soil is not None and run.relaxed > MOST_RELAXED:
                 raise
             if _relaxed(assembly, stepper, control, run.observer):
                 return stepper.advance(control, 0)
@@ -251,10 +251,10 @@ def _load_steps(assembly: Assembly, stage: StaticStage) -> int:
     it or moved.
     """
     asked = assembly.scene.solver.load_steps
-    if not assembly.touches_soil_all_along:
+    if assembly.soil is None:
         return asked
     moved = assembly.moved_in(stage) / (MOVED_BY * assembly.scales.diameter)
-    if assembly.soil is not None and assembly.soil.path_dependent:
+    if assembly.soil.path_dependent:
         moved = max(moved, assembly.pressed_in(stage) / (PRESSED_BY * assembly.scales.diameter) - ROUND_OFF)
     laid = LAID_IN if assembly.cushion is not None and assembly.is_laid_in(stage) else 1
     return max(asked, laid, min(math.ceil(moved), MOST_STEPS))

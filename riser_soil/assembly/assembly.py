@@ -100,11 +100,6 @@ class Assembly:
         return [part for part in both if part is not None]
 
     @property
-    def touches_soil_all_along(self) -> bool:
-        """Whether there is soil that the pipe's surface touches, not the riser's nodes alone."""
-        return self.soil is not None and self.scene.contact is not None and not self.scene.contact.at_nodes
-
-    @property
     def size(self) -> int:
         """Entries of a local array on this rank."""
         return sum(f.size for f in self.fields)
@@ -251,7 +246,7 @@ def _add_ground(assembly: Assembly) -> None:
         assembly.soil_friction = ground.soil_friction_of(scene, settings, contact, elements)
         if assembly.laying is not None or scene.stages[0].kind == "static":
             top = soil.surface.points
-            assembly.cushion = ground.cushion_of(scene, settings, contact, elements, top, assembly.comm)
+            assembly.cushion = ground.cushion_of(scene, contact, elements, top, assembly.comm)
     if scene.seabed is not None:
         law = ground.seabed_law(scene.seabed, settings, elements, stiffness)
         assembly.seabed = ground.seabed_contact_of(scene, settings, line, elements, law, assembly.soil_contact)

@@ -176,15 +176,15 @@ def soil_friction_of(
 
 
 def cushion_of(
-    scene: Scene, settings: ContactScene, contact: SoilContact, elements: Elements, top: Array, comm: MPI.Intracomm
+    scene: Scene, contact: SoilContact, elements: Elements, top: Array, comm: MPI.Intracomm
 ) -> Cushion | None:
-    """What holds the riser at first where the pipe's surface is to touch a level soil; collective.
+    """What holds the riser at first that is to lie on a level soil; collective.
 
     top (np, 3): points of the soil's surface [m], all of it on the first rank.
     """
     scales = scales_of(elements)
     level = bool(np.ptp(top[:, 2]) < LEVEL * scales.diameter) if len(top) else True
-    if not comm.bcast(level) or settings.at_nodes:
+    if not comm.bcast(level):
         return None
     from riser_soil.contact.cushion import Cushion
 
