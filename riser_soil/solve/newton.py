@@ -131,23 +131,22 @@ class Newton:
 
     def _run(self) -> str:
         """Iterate until that converges or the pattern is outgrown: "", else why it has failed."""
-        began, counted = time.perf_counter(), self.system.clock.total
         self._snes.setTolerances(max_it=self.settings.max_iterations - self._taken)
         failure = self._failing(lambda: self._snes.solve(None, self._x), lambda: self._snes.reason == NOT_SOLVED)
-        self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
         return failure or ("" if self._snes.reason > 0 else self._reason(""))
 
     def _failing(self, solve: Callable[[], None], unsolved: Callable[[], bool]) -> str:
         """Call a solver; why its linear systems could not be solved, else "". No factors outlive a failed
         factorisation: MUMPS would refuse all that comes after it.
         """
-        complained = ""
+        began, counted, complained = time.perf_counter(), self.system.clock.total, ""
         try:
             solve()
         except PETSc.Error as err:
             complained = complaint(err)
             if not complained:
                 raise
+        self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
         if not complained and not unsolved():
             return ""
         failure = self._reason(complained)
@@ -214,9 +213,9 @@ class Newton:
 
     def _trial(self, x: PETSc.Vec) -> State:
         """State of the unknowns x; the same object while x stays the same, so that parts need not look twice."""
-        u = np.zeros(self.system.numbering.size)
-        self.system.numbering.to_local(x, u)
-        u = self._with_prescribed(u)
+        found = np.zeros(self.system.numbering.size)
+        self.system.numbering.to_local(x, found)
+        u = self._with_prescribed(found)
         if self._state is None or (u != self._state.u).any():
             self._state = self._follow(u)
             self._balanced = self._step.scheme.balanced_at(self._step.before, self._state, self._step.dt)

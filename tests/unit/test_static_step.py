@@ -35,7 +35,7 @@ class GrowingFloor(Floor):
     def __init__(self, chain: Chain, stiffness: float) -> None:
         super().__init__(chain, stiffness)
         self.held: IntArray = np.empty(0, dtype=np.int64)
-        self._missed = self.held
+        self._missed: IntArray = self.held
         self.grown: list[int] = []
 
     def blocks(self) -> dict[str, MatrixBlock]:
@@ -44,7 +44,7 @@ class GrowingFloor(Floor):
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         touching = np.flatnonzero(self.chain.heights(state) < 0.0)
-        self._missed = np.setdiff1d(touching, self.held)
+        self._missed = np.setdiff1d(touching, self.held).astype(np.int64)
         self.outgrown = bool(len(self._missed))
         values["floor"][np.isin(self.held, touching)] += self.stiffness
 
