@@ -1,0 +1,50 @@
+"""Load steps of static stages on soil: fine enough for clay that a pipe is pressed into, whatever was asked for."""
+
+from __future__ import annotations
+
+import pytest
+
+from riser_soil.core.system import System
+from riser_soil.scene.stages import StaticStage
+from riser_soil.solve.time_stepper import AcceptedStep
+from tests.support.coupled_scenes import Mapping
+from tests.support.driven_stage import built, take
+from tests.support.pushed_pipe import D, slice_of_soil
+
+CLAY: Mapping = {"kind": "von-mises", "su": 4.0e3, "E_over_su": 300.0, "nu": 0.49}
+
+
+def steps(law: Mapping | None, pressed: float, up: float = 0.0, asked: int = 1) -> int:
+    """Of the second stage, in which a pipe that touches is pressed in by so much, or lifted [m]."""
+    scene = slice_of_soil(2)
+    first = scene["stages"][0]
+    ends = {end: [*at[:2], 0.5 * D - pressed + up] for end, at in first["move"].items()}
+    for at in first["move"].values():
+        at[2] = 0.5 * D
+    scene["stages"].append({"name": "then", "kind": "static", "move": ends})
+    scene["solver"] = {"load_steps": asked}
+    if law is not None:
+        scene["soil"]["law"] = law
+    assembly, taken = built(scene), list[float]()
+
+    def watch(system: System, step: AcceptedStep) -> None:
+        taken.append(step.dt)
+
+    before = take(assembly, assembly.scene.stages[0])
+    stage = assembly.scene.stages[1]
+    assert isinstance(stage, StaticStage)
+    take(assembly, stage, before, watch)
+    return len(taken)
+
+
+@pytest.mark.parametrize(("law", "expected"), [(None, 1), (CLAY, 5)], ids=["elastic", "clay"])
+def test_a_pipe_is_pressed_into_clay_by_little_at_a_time(law: Mapping | None, expected: int) -> None:
+    assert steps(law, D / 32.0) == expected
+
+
+def test_a_pipe_is_lifted_by_a_quarter_of_its_diameter_at_a_time() -> None:
+    assert steps(CLAY, 0.0, up=0.6 * D) == 3
+
+
+def test_more_load_steps_are_taken_where_they_are_asked_for() -> None:
+    assert steps(None, D / 32.0, asked=7) == 7
