@@ -13,6 +13,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run, SoilFrame
 
+UP = np.array([0.0, 0.0, 1.0])
 _CELL_TYPES = {4: pv.CellType.TETRA, 8: pv.CellType.HEXAHEDRON, 10: pv.CellType.QUADRATIC_TETRA}
 
 

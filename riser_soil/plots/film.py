@@ -14,6 +14,7 @@ import pyvista as pv
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import ResultsError
 from riser_soil.plots.bodies import (
+    UP,
     carried_down,
     colour_bar,
     exit_status,
@@ -29,7 +30,6 @@ from riser_soil.results.cycles import beginning, cycles, dynamic_stage, period_o
 from riser_soil.results.derived import along
 
 _SIZE = (960, 540)
-_UP = np.array([0.0, 0.0, 1.0])
 _SLACK = 1e-6  # of the time filmed
 
 
@@ -133,7 +133,7 @@ def _pictures(scene: _Film) -> Iterator[Array]:
 
 
 def _draw(plotter: pv.Plotter, scene: _Film, frame: SoilFrame, position: Array, ahead: Array) -> None:
-    soil, side = soil_grid(frame), np.cross(_UP, ahead)
+    soil, side = soil_grid(frame), np.cross(UP, ahead)
     values = scene.field.of(frame.fields[scene.field.output])
     (soil.point_data if len(values) == len(frame.points) else soil.cell_data)[scene.field.title] = values
     opened = soil.clip(normal=-side, origin=scene.focus).warp_by_vector("displacement", factor=scene.factor)
@@ -163,10 +163,10 @@ def _caption(scene: _Film, time: float) -> str:
 def _look(plotter: pv.Plotter, focus: Array, bounds: tuple[float, ...], ahead: Array) -> None:
     """The same for all frames."""
     reach = 0.4 * max(bounds[1] - bounds[0], bounds[3] - bounds[2])
-    side = np.cross(_UP, ahead)
-    plotter.camera.focal_point = focus + 0.05 * reach * _UP
-    plotter.camera.position = focus + reach * (0.6 * _UP - 1.2 * side - 0.2 * ahead)
-    plotter.camera.up = _UP
+    side = np.cross(UP, ahead)
+    plotter.camera.focal_point = focus + 0.05 * reach * UP
+    plotter.camera.position = focus + reach * (0.6 * UP - 1.2 * side - 0.2 * ahead)
+    plotter.camera.up = UP
     plotter.reset_camera_clipping_range()
 
 

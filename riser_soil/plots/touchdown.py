@@ -14,6 +14,7 @@ import pyvista as pv
 from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError
 from riser_soil.plots.bodies import (
+    UP,
     carried_down,
     colour_bar,
     exit_status,
@@ -29,7 +30,6 @@ from riser_soil.results.derived import along
 _SIZE = (1600, 900)
 _MOMENT = "bending moment [kN m]"
 _STRESS = "von Mises stress [kPa]"
-_UP = np.array([0.0, 0.0, 1.0])
 _MOMENT_COLOURS, _STRESS_COLOURS = "viridis", "YlOrBr"
 
 
@@ -122,7 +122,7 @@ def _factor(soil: pv.UnstructuredGrid | None) -> float:
 
 def _draw_close(plotter: pv.Plotter, still: _Frame, factor: float) -> None:
     ahead = along(still.position)
-    side = np.cross(_UP, ahead)
+    side = np.cross(UP, ahead)
     if still.soil is None:
         _add_tube(plotter, still.position, still)
     else:
@@ -134,13 +134,13 @@ def _draw_close(plotter: pv.Plotter, still: _Frame, factor: float) -> None:
     if not math.isnan(still.touchdown_arc):
         _mark(
             plotter,
-            still.touchdown + 4.0 * still.radius * _UP,
+            still.touchdown + 4.0 * still.radius * UP,
             f"touchdown at arc {still.touchdown_arc:.4g} m",
         )
     reach = _reach(still)
-    plotter.camera.focal_point = still.touchdown + 0.05 * reach * _UP
-    plotter.camera.position = still.touchdown + reach * (0.6 * _UP - 1.2 * side - 0.2 * ahead)
-    plotter.camera.up = _UP
+    plotter.camera.focal_point = still.touchdown + 0.05 * reach * UP
+    plotter.camera.position = still.touchdown + reach * (0.6 * UP - 1.2 * side - 0.2 * ahead)
+    plotter.camera.up = UP
     plotter.reset_camera_clipping_range()
 
 
@@ -211,9 +211,9 @@ def _draw_whole(plotter: pv.Plotter, still: _Frame) -> None:
     plotter.enable_parallel_projection()
     plotter.camera.focal_point = 0.5 * (lowest + highest)
     plotter.camera.position = 0.5 * (lowest + highest) - float(size.max()) * np.cross(
-        _UP, along(still.position)
+        UP, along(still.position)
     )
-    plotter.camera.up = _UP
+    plotter.camera.up = UP
     plotter.reset_camera()
     plotter.camera.zoom(1.25)
 

@@ -88,20 +88,14 @@ class Plausibility:
         if contact is not None:
             force = contact.force_per_length(state)
             self._touched = self._touched or bool(force.any())
-            self._load = self._load.or_larger(self._borne(force), arc, t)
+            if self._bearing is not None:
+                borne = over_a_length(force, self._assembly.line, self._assembly.scales.diameter)
+                self._load = self._load.or_larger(borne, arc, t)
             self._beyond = self._beyond.or_larger(self._past_the_block(touch), np.array([touch.touchdown_arc]), t)
             self._stretch = self._stretch.or_larger(np.array([contact.stretch(state)]), np.full(1, np.nan), t)
         down = not math.isnan(touch.touchdown_arc)
         self._where = "touches down at" if down else "hangs with its lowest point at"
         self._lowest = touch.touchdown_position if down else riser.position[riser.position[:, 2].argmin()]
-
-    def _borne(self, force: Array) -> Array:
-        """What the soil bears per length (nn,) [N/m], over a diameter at least; 0 where there is no limit to compare it
-        with. force (nn,): of contact.
-        """
-        if self._bearing is None:
-            return np.zeros(len(force))
-        return over_a_length(force, self._assembly.line, self._assembly.scales.diameter)
 
     def look_around(self, boundary: BoundaryStress | None) -> None:
         """At the stage's end; None without soil."""

@@ -10,9 +10,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.system import System
 
 
-def reason_name(snes: PETSc.SNES) -> str:
-    """PETSc's name of the reason for which a solver has stopped."""
-    reason = snes.getConvergedReason()
+def reason_name(reason: int) -> str:
+    """PETSc's name of a reason for which SNES has stopped."""
     names = (n for n, v in vars(PETSc.SNES.ConvergedReason).items() if v == reason and n.startswith("DIV"))
     return next(names, str(reason)).lower()
 

@@ -133,7 +133,7 @@ class Newton:
         """Iterate until that converges or the pattern is outgrown: "", else why it has failed."""
         self._snes.setTolerances(max_it=self.settings.max_iterations - self._taken)
         failure = self._failing(lambda: self._snes.solve(None, self._x), lambda: self._snes.reason == NOT_SOLVED)
-        return failure or ("" if self._snes.reason > 0 else self._reason(""))
+        return failure or ("" if self._snes.reason > 0 else self._reason(self._snes.reason))
 
     def _failing(self, solve: Callable[[], None], unsolved: Callable[[], bool]) -> str:
         """Call a solver; why its linear systems could not be solved, else "". No factors outlive a failed
@@ -149,7 +149,7 @@ class Newton:
         self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
         if not complained and not unsolved():
             return ""
-        failure = self._reason(complained)
+        failure = self._reason(NOT_SOLVED, complained)
         self._snes.destroy()
         self._snes = self._create()
         return failure
@@ -196,7 +196,9 @@ class Newton:
         self.renew()
 
     def renew(self) -> None:
-        """Take a matrix of the pattern that the parts have now."""
+        """Take a matrix of the pattern that the parts have now, if any can change its own."""
+        if not self._adaptive:
+            return
         self._snes.destroy()
         self.system.renew_pattern()
         self._snes = self._create()
@@ -314,10 +316,10 @@ class Newton:
         mine = [float(f @ f) for f in (reactions, inertia, contact)]
         return math.sqrt(max(system.sum(mine)))
 
-    def _reason(self, complained: str) -> str:
-        """Why the step did not converge. complained: what the linear solver said of it."""
+    def _reason(self, reason: int, complained: str = "") -> str:
+        """Why the step did not converge: PETSc's reason, or what the linear solver has complained of."""
         norms = ", ".join(f"{n:.3g}" for n in self._norms[-3:])
-        why = complained or reason_name(self._snes)
+        why = complained or reason_name(reason)
         place = place_of_largest(self.system, self._weighed(), self._f.getOwnershipRange()[0])
         return f"{why} after {self._taken} iterations (last residual norms {norms} N); {place}"
 

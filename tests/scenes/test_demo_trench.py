@@ -12,6 +12,7 @@ from demos.page import block
 from demos.trench.run import HERE, LEVEL, SCENE, rows
 
 TEXT = (HERE / "README.md").read_text(encoding="utf-8")
+TOUCHDOWN = "at rest: touchdown arc length [m]"
 STATIC = "stages=[{name: lay, kind: static}]"
 
 
@@ -24,10 +25,12 @@ def shown() -> dict[str, list[str]]:
     ("column", "overrides"), [pytest.param(0, (STATIC,), marks=pytest.mark.verify), (1, (STATIC, LEVEL))]
 )
 def test_page_shows_rest_as_computed(column: int, overrides: tuple[str, ...], tmp_path: Path) -> None:
-    """Gmsh's versions make other tetrahedra: Debian 13's move the touchdown point by 0.14 m, 0.5 %."""
-    found = rows(compute(SCENE, tmp_path / "run", *overrides).summary["stages"])
+    """The touchdown point within half an element: gmsh's versions make other tetrahedra, which moves it by 0.14 m."""
+    computed = rows(compute(SCENE, tmp_path / "run", *overrides).summary["stages"])
+    found = {name: float(value) for name, value in computed.items()}
     page = {name: float(shown()[name][column]) for name in found}
-    assert page == pytest.approx({name: float(value) for name, value in found.items()}, rel=0.01)
+    assert page.pop(TOUCHDOWN) == pytest.approx(found.pop(TOUCHDOWN), abs=0.25)
+    assert page == pytest.approx(found, rel=0.005)
 
 
 def test_the_riser_touches_down_later_in_the_trench() -> None:

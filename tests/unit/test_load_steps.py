@@ -1,12 +1,18 @@
-"""Load steps of static stages on soil: fine enough for clay that a pipe is pressed into, whatever was asked for."""
+"""Load steps of static stages on soil: fine enough for clay that a pipe is pressed into; relaxation between them."""
 
 from __future__ import annotations
 
 import pytest
 
+from riser_soil import stages
+from riser_soil.contact.soil_contact import SOIL
+from riser_soil.core.part import State
 from riser_soil.core.system import System
+from riser_soil.errors import SolveError
 from riser_soil.scene.stages import StaticStage
-from riser_soil.solve.time_stepper import AcceptedStep
+from riser_soil.solve.dynamic_relaxation import RelaxationResult
+from riser_soil.solve.step_control import Control
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import built, take
 from tests.support.pushed_pipe import D, slice_of_soil
@@ -48,3 +54,31 @@ def test_a_pipe_is_lifted_by_a_quarter_of_its_diameter_at_a_time() -> None:
 
 def test_more_load_steps_are_taken_where_they_are_asked_for() -> None:
     assert steps(None, D / 32.0, asked=7) == 7
+
+
+def test_relaxation_that_leaves_another_pattern_of_contact_does_no_harm(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first attempt fails, and so does relaxation, after it has chosen candidates for a riser that is lifted."""
+    scene = slice_of_soil(2)
+    assembly, tried = built(scene), list[float]()
+    contact, usual = assembly.soil_contact, TimeStepper.advance
+    assert contact is not None
+
+    def relaxed(*_: object) -> RelaxationResult:
+        lifted = State.at_rest(0.0, assembly.size)
+        lifted.u[assembly.line.translation_dofs[:, -1]] = D
+        candidates = contact.blocks()[SOIL].shape
+        contact.rebuild(lifted)
+        assert contact.blocks()[SOIL].shape != candidates
+        raise SolveError("no rest was found")
+
+    def advance(stepper: TimeStepper, control: Control, most_cuts: int | None = None) -> AcceptedStep:
+        tried.append(control.dt)
+        if len(tried) == 1:
+            raise SolveError("no convergence")
+        return usual(stepper, control, most_cuts)
+
+    monkeypatch.setattr(stages, "relax", relaxed)
+    monkeypatch.setattr(TimeStepper, "advance", advance)
+    state = take(assembly, assembly.scene.stages[0])
+    assert tried[1] == 0.5 * tried[0]
+    assert contact.force_on_soil(state)[2] < 0.0
