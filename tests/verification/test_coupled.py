@@ -156,7 +156,7 @@ def pressed(kind: str) -> list[list[Drop]]:
 
     def tangent(state: State, weights: Weights, values: dict[str, Array]) -> None:
         """At every iterate, and at the solution for its stability."""
-        touching.append(frozenset(contact.evaluate(state).pressed.points.number.tolist()))
+        touching.append(frozenset(int(n) for n in contact.evaluate(state).pressed.points.number))
         usual(state, weights, values)
 
     def watch(system: System, step: AcceptedStep) -> None:
