@@ -96,10 +96,14 @@ def _near_points(
     N, dN = np.empty(nv), np.empty((nv, 2))
     for i, f in enumerate(facets):
         nodes = surface.facets[f]
+        clear_of, clearance = (0.0, 0.0, 0.0), -np.inf
         for k in range(surface.parts[f, 0] * surface.parts[f, 1]):
             xi, eta, share = place(nv, surface.parts[f], k)
             p = _point(surface.deformed, nodes, xi, eta, N, dN)
-            e, along, gap = _nearest(axis, bow, elements[begin[i] : begin[i + 1]], p, within)
+            if _distance(p, clear_of) <= clearance - within:
+                continue
+            e, along, gap, clearance = _nearest(axis, bow, elements[begin[i] : begin[i + 1]], p, within)
+            clear_of = p
             if gap < within:
                 element[n], facet[n], number[n] = e, f, surface.first[f] + k
                 numbers[n, 0], numbers[n, 1], numbers[n, 2], numbers[n, 3] = along, gap, xi, eta
@@ -127,20 +131,27 @@ def _point(
 @njit
 def _nearest(
     axis: Axis, bow: Array, elements: IntArray, p: tuple[float, float, float], within: float
-) -> tuple[int, float, float]:
+) -> tuple[int, float, float, float]:
     """Of some elements the one whose axis comes nearest to a point, the place on it, and the gap [m]; the first where
-    two come as near. -1 where none can come within that gap.
+    two come as near. -1 where none can come within that gap. Last the clearance [m]: no gap is less.
     """
-    nearest, place_on, gap, distance = -1, 0.0, np.inf, np.inf
+    nearest, place_on, gap, distance, clearance = -1, 0.0, np.inf, np.inf, np.inf
     for e in elements:
-        if _from_chord(axis.q[e], p) - bow[e] - axis.radius[e] >= within:
+        beside = _from_chord(axis.q[e], p) - bow[e]
+        clearance = min(clearance, beside - axis.radius[e])
+        if beside - axis.radius[e] >= within or beside >= distance:
             continue
         along = _closest(axis.q[e], axis.length[e], p)
         c = combined(axis.q[e], axis_shape(along, axis.length[e]))
         rho = _signed(c, p, axis.radius[e])
         if abs(rho) < distance:
             nearest, place_on, gap, distance = e, along, rho - axis.radius[e], abs(rho)
-    return nearest, place_on, gap
+    return nearest, place_on, gap, clearance
+
+
+@njit
+def _distance(p: tuple[float, float, float], r: tuple[float, float, float]) -> float:
+    return math.sqrt((p[0] - r[0]) ** 2 + (p[1] - r[1]) ** 2 + (p[2] - r[2]) ** 2)
 
 
 @njit
@@ -151,18 +162,25 @@ def _from_chord(q: Array, p: tuple[float, float, float]) -> float:
         chord = q[2, i] - q[0, i]
         along += (p[i] - q[0, i]) * chord
         square += chord * chord
-    share = min(max(along / square, 0.0), 1.0)
+    share = min(max(along / square, 0.0), 1.0) if square > 0.0 else 0.0
     for i in range(3):
         beside += (p[i] - q[0, i] - share * (q[2, i] - q[0, i])) ** 2
     return math.sqrt(beside)
 
 
 def _bow(axis: Axis) -> Array:
-    """How far (ne,) the axis leaves the chord at most [m]: no farther than its handles, being a Bézier curve."""
+    """How far (ne,) the axis leaves the chord at most [m]: no farther than its handles, being a Bézier curve, stretched
+    as it may be.
+    """
     chord = axis.q[:, 2] - axis.q[:, 0]
     third = axis.length[:, None] / 3.0
-    handles = axis.q[:, 1] * third - chord / 3.0, axis.q[:, 3] * third - chord / 3.0
-    return np.asarray(np.maximum(*(np.linalg.norm(handle, axis=1) for handle in handles)))
+    return np.maximum(_beside(axis.q[:, 1] * third, chord), _beside(axis.q[:, 3] * third, chord))
+
+
+def _beside(handle: Array, chord: Array) -> Array:
+    """Distance (n,) of handles (n, 3) from the chords (n, 3) that begin where they do [m]."""
+    share = np.sum(handle * chord, axis=1) / np.maximum(np.sum(chord * chord, axis=1), np.finfo(float).tiny)
+    return np.asarray(np.linalg.norm(handle - np.clip(share, 0.0, 1.0)[:, None] * chord, axis=1))
 
 
 @njit

@@ -1,0 +1,39 @@
+"""Search for the points of the soil near the pipe: passing over what is clear of it leaves no point out."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from riser_soil.contact.cylinder_gap import Axis, Surface, near_points
+
+RADIUS, WITHIN, PARTS = 0.15, 0.05, 40
+
+
+def plane_of_soil() -> Surface:
+    """Two facets of 2 m side by side, of 40 by 40 points each."""
+    points = np.array([[x, y, 0.0] for x in (0.0, 2.0, 4.0) for y in (-1.0, 1.0)])
+    parts, first = np.full((2, 2), PARTS), np.array([0, PARTS**2])
+    return Surface(np.array([[0, 2, 3, 1], [2, 4, 5, 3]]), parts, first, points, points)
+
+
+def axis_of(stretch: float, bend: float) -> Axis:
+    """Two elements of 2 m above the soil, over stretch times as much of it, with ends that turn by a slope."""
+    half = 2.0 * stretch
+    ends = [[0.1, 0.0, 0.17], [0.1 + half, 0.1, 0.16], [0.1 + 2.0 * half, -0.1, 0.18]]
+    tangents = [[1.0, 0.0, bend], [1.0, bend, -bend], [1.0, 0.0, 0.5 * bend]]
+    q = np.array([[ends[e], tangents[e], ends[e + 1], tangents[e + 1]] for e in range(2)])
+    return Axis(q, np.full(2, 2.0), np.full(2, RADIUS))
+
+
+@pytest.mark.parametrize(("stretch", "bend"), [(0.9, 0.0), (0.9, 0.2), (0.5, 1.0), (0.02, 1.0), (50.0, 0.3)])
+def test_no_point_within_the_gap_is_passed_over(stretch: float, bend: float) -> None:
+    """Beside a search so wide that every point is tried on every element."""
+    axis, surface = axis_of(stretch, bend), plane_of_soil()
+    pairs = np.array([0, 1, 0, 1]), np.array([0, 0, 1, 1])
+    found, tried = (near_points(axis, surface, *pairs, within) for within in (WITHIN, 1e3))
+    assert len(tried.number) == 2 * PARTS**2
+    expected = tried.of(tried.gap < WITHIN)
+    assert 20 < len(expected.number) < 2 * PARTS**2
+    for name in ("number", "element", "along", "gap"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
