@@ -237,11 +237,13 @@ def _with_suction(penalty: Penalty, given: Suction, ground: str, width: float = 
 
 def _ground(scene: Scene, seabed: Seabed) -> Ground:
     """The seabed's shape."""
-    from riser_soil.seabed.grounds import Plane, Profile
+    from riser_soil.seabed.grounds import Plane
 
     plane = vertical_plane(scene)
     origin, direction = np.asarray(plane.origin), np.asarray(plane.direction)
     if seabed.profile is not None:
+        from riser_soil.seabed.profile import Profile
+
         return Profile(origin[:2], direction[:2], *np.array(seabed.profile).T)
     if seabed.slope_deg == 0.0:
         return Plane.level(seabed.level)

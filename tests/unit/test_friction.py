@@ -16,7 +16,8 @@ from riser_soil.core.part import State
 from riser_soil.riser import hermite, shapes, stations
 from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
-from riser_soil.seabed.grounds import Ground, Plane, Profile
+from riser_soil.seabed.grounds import Ground, Plane
+from riser_soil.seabed.profile import Profile
 from tests.support.dense_chain import residual, tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.sample_line import DIRECTION, START, sample

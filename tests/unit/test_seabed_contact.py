@@ -11,7 +11,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
 from riser_soil.riser import hermite, shapes, stations
 from riser_soil.riser.line import End, Line
-from riser_soil.seabed.grounds import Ground, Plane, Profile
+from riser_soil.seabed.grounds import Ground, Plane
+from riser_soil.seabed.profile import Profile
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error, no_operation
 from tests.support.sample_line import DIRECTION, START, Sample, sample

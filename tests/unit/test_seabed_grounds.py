@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from riser_soil.seabed.grounds import Ground, Plane, Profile
+from riser_soil.seabed.grounds import Ground, Plane
+from riser_soil.seabed.profile import Profile
 
 X = np.random.default_rng(4).uniform(-3.0, 12.0, size=(40, 3))
 HILL = Profile(

@@ -5,14 +5,20 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from cProfile import Profile
 from pathlib import Path
+from types import CodeType
 from typing import Any
 
 import numpy as np
 import pytest
 
+from benchmarks.iteration_counter import IterationCounter
+from benchmarks.parts import mapping
 from riser_soil.assembly import Assembly
+from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
+from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built
 from tests.support.on_ranks import HANGS, ROOT, environment
@@ -25,6 +31,7 @@ SLOW_TO_IMPORT = {"pandas", "xarray", "typer"} | {
 OWN_FOR_SOIL = {"riser_soil.soil.soil", "riser_soil.soil.dolfinx_compat"}
 FOR_HEAVE = {False: set[str](), True: {f"riser_soil.motion.{name}" for name in ("harmonic", "ramped")}}
 NODES = 37
+FORMULAS = {"riser", "sea", "seabed", "contact", "soil", "motion"}
 
 
 def hanging(*stages: Mapping, dimension: int = 2) -> Mapping:
@@ -90,6 +97,38 @@ def test_hanging_riser_starts_at_once(tmp_path: Path) -> None:
     assert again["compiled"] == 0
     assert "riser_soil.riser.beam2d" in again["modules"]
     assert not SLOW_TO_IMPORT & set(again["modules"])
+
+
+def test_level_ground_asks_for_no_more_than_the_arithmetic(tmp_path: Path) -> None:
+    """Splines are for profiles of the seabed and tables of motion."""
+    assert not SLOW_TO_IMPORT & set(ran("over springs", tmp_path)["modules"])
+
+
+#: Packages of the formulas that a stage in motion calls, by scene.
+AT_WORK = {
+    "hanging, heaved": {"riser", "motion"},
+    "and damped": {"riser", "motion"},
+    "in water": {"riser", "motion", "sea"},
+    "on springs": {"riser", "motion", "sea", "seabed", "contact"},
+    "on elastic soil": {"riser", "motion", "sea", "seabed", "contact", "soil"},
+}
+
+
+@pytest.mark.parametrize("name", AT_WORK)
+def test_what_a_scene_lacks_takes_part_in_no_step(name: str) -> None:
+    """No function of an absent part is called from the beginning of a stage to its end, not even to find that out: it
+    costs the others nothing.
+    """
+    scene = mapping(name)
+    scene["stages"][1]["duration"] = 0.5
+    assembly = built(scene)
+    first, second = assembly.scene.stages
+    before = run_stage(assembly, first, State.at_rest(0.0, assembly.size), IterationCounter(), Timer.new())
+    profile = Profile()
+    profile.runcall(run_stage, assembly, second, before, IterationCounter(), Timer.new())
+    called = {Path(entry.code.co_filename) for entry in profile.getstats() if isinstance(entry.code, CodeType)}
+    own = {path.relative_to(ROOT / "riser_soil").parts[0] for path in called if ROOT / "riser_soil" in path.parents}
+    assert own & FORMULAS == AT_WORK[name]
 
 
 def system(assembly: Assembly, stage: int) -> System:
