@@ -136,8 +136,8 @@ class TimeStepper:
         """A step that is solved, accounted for and acceptable; else NotConvergedError."""
         solution = self._solve(self.next_step(control))
         step = self._account(solution, control, cuts)
-        self._reject_energy_gain(step)
         self._reject_inaccurate(step, control)
+        self._reject_energy_gain(step)
         return step
 
     def next_step(self, control: Control) -> Step:

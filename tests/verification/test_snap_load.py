@@ -74,6 +74,6 @@ def told(elements: int, time_step: float) -> tuple[float, float, float]:
 def test_no_more_than_the_fall_gives(elements: int, time_step: float) -> None:
     """The slack that bends takes some 7 % of the peak."""
     at_weight, anywhere, created = told(elements, time_step)
-    print(f"{elements} elements, {time_step} s: {at_weight / PEAK:.4f}, {anywhere / PEAK:.4f} of the bound; {created} J")
+    print(f"{elements} elements, {time_step} s: {at_weight / PEAK:.4f}, {anywhere / PEAK:.4f} of it; {created} J")
     assert 0.9 * PEAK < at_weight <= anywhere < PEAK
     assert created < 0.05 * WEIGHT * SLACK
