@@ -133,7 +133,7 @@ def _scaled(value: Any, s: float, power: float = 0.0) -> Any:
     return value * s**power if isinstance(value, float) else value
 
 
-@pytest.mark.parametrize("s", SCALES)
+@pytest.mark.parametrize("s", [1e-6, *(pytest.param(s, marks=pytest.mark.verify) for s in SCALES[1:])])
 @pytest.mark.parametrize("kind", ["hex", "tet"])
 def test_same_riser_on_soil(kind: str, s: float) -> None:
     """Cells, too: gmsh works in lengths of order one. Of hexahedra on clay with, of tetrahedra without strength at the
