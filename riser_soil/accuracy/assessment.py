@@ -44,10 +44,6 @@ class AssessedQuantity:
         return self.reference.relative(self.uncertainty)
 
     @property
-    def known(self) -> bool:
-        return self.doubt <= TELLING
-
-    @property
     def error(self) -> float:
         """Of the scene as it is, relative."""
         return self.error_of(self.scene)
@@ -67,12 +63,16 @@ def assess(ladders: Ladders, outcomes: Outcomes) -> dict[str, AssessedQuantity]:
     return {key: _assessed(each, ladders, outcomes) for key, each in base.headlines.items()}
 
 
+def told(quantities: Mapping[str, AssessedQuantity], doubt: float = TELLING) -> dict[str, AssessedQuantity]:
+    """The quantities whose reference is known to that relative uncertainty, so that such errors of them can be told."""
+    return {key: each for key, each in quantities.items() if each.doubt <= doubt}
+
+
 def worst(quantities: Mapping[str, AssessedQuantity], outcome: PointOutcome) -> tuple[float, str]:
-    """Largest relative error of a point among the quantities known, and its key; inf where one is missing."""
+    """Largest relative error of a point among the quantities, and its key; inf where one is missing in it."""
     errors = [
         (each.error_of(outcome.headlines[key]) if key in outcome.headlines else math.inf, key)
         for key, each in quantities.items()
-        if each.known
     ]
     return max(errors, default=(math.nan, ""))
 

@@ -23,7 +23,7 @@ Quantities = Mapping[str, AssessedQuantity]
 
 @dataclass(frozen=True, eq=False)
 class CostAndError:
-    """What the ladders foretell of settings."""
+    """What the ladders foretell of settings, by the quantities that are to be met."""
 
     ladders: Ladders
     outcomes: Outcomes
@@ -35,9 +35,9 @@ class CostAndError:
         return product(*rungs)
 
     def error(self, point: Factors) -> float:
-        """Largest of the known quantities' relative errors, those of the knobs added without their signs."""
-        known = [each for each in self.quantities.values() if each.known]
-        return max((math.fsum(self._share(each, *at) for at in enumerate(point)) for each in known), default=math.nan)
+        """Largest of the quantities' relative errors, those of the knobs added without their signs."""
+        errors = (math.fsum(self._share(each, *at) for at in enumerate(point)) for each in self.quantities.values())
+        return max(errors, default=math.inf)
 
     def seconds(self, point: Factors) -> float:
         """Processor time [s]."""

@@ -3,68 +3,21 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 from pathlib import Path
 
-from riser_soil.accuracy.assessment import AssessedQuantity, assess, worst
-from riser_soil.accuracy.cheapest import CostAndError, cheapest, next_setting, pareto
+from riser_soil.accuracy.cheapest import next_setting
+from riser_soil.accuracy.findings import TARGETS, Says, Study
 from riser_soil.accuracy.knobs import Knob, knobs_of, resolved
 from riser_soil.accuracy.ladders import Ladders
-from riser_soil.accuracy.study_points import POINTS, Factors, PointOutcome, StudyPoint
-from riser_soil.accuracy.workers import compute
+from riser_soil.accuracy.study_files import write_files
+from riser_soil.accuracy.study_points import POINTS
 from riser_soil.errors import Interruption, ResultsError, SceneError, SolveError
 from riser_soil.results.whole_file import refuse_file, unusable
 from riser_soil.scene.scene import Scene
 
-TARGETS = (0.01, 0.001)
 TRIES = 3  # settings foretold to reach a target that are run
 LEAST_RUNGS, MOST_RUNGS = 3, 9
-
-Says = Callable[[str], None]
-
-
-@dataclass(eq=False)
-class Study:
-    """A study and all that it has found so far. The scene has numbers where it says auto."""
-
-    ladders: Ladders
-    folder: Path
-    says: Says
-    outcomes: dict[Factors, PointOutcome] = field(default_factory=dict)
-
-    def compute(self, points: Iterable[Factors], jobs: int) -> None:
-        """Compute points that are not there yet, `jobs` at a time."""
-        wanted, place = [point for point in points if point not in self.outcomes], self.folder / POINTS
-        runs = [StudyPoint(point, self.ladders.scene_at(point), place) for point in wanted]
-        for outcome in compute(runs, jobs, self._tell):
-            self.outcomes[outcome.factors] = outcome
-
-    def _tell(self, outcome: PointOutcome, before: bool) -> None:
-        how = f"{outcome.cpu:.3g} s" if outcome.done else f"failed: {outcome.reason}"
-        self.says(f"{self.ladders.told(outcome.factors)}: {how}{', computed before' if before else ''}")
-
-    @property
-    def scene(self) -> PointOutcome:
-        """The scene as it is."""
-        return self.outcomes[self.ladders.base]
-
-    def quantities(self) -> dict[str, AssessedQuantity]:
-        return assess(self.ladders, self.outcomes)
-
-    def foretold(self) -> CostAndError:
-        return CostAndError(self.ladders, self.outcomes, self.quantities())
-
-    def front(self) -> list[PointOutcome]:
-        return pareto(self.outcomes, self.quantities())
-
-    def reaching(self, target: float) -> PointOutcome | None:
-        """The cheapest setting run that reaches a relative error in all known quantities."""
-        return cheapest(self.foretold(), target)
-
-    def error(self, outcome: PointOutcome) -> tuple[float, str]:
-        """Largest relative error of a point, and its quantity."""
-        return worst(self.quantities(), outcome)
 
 
 def study(
@@ -77,10 +30,9 @@ def study(
     for the finest points; the others, whose time counts, run one at a time. force: begin anew. Raises SceneError,
     ResultsError, and SolveError where the scene itself fails.
     """
-    from riser_soil.accuracy.study_files import write_files
-
+    ladders = Ladders(resolved(scene), _chosen(scene, knobs), rungs)
     refuse(folder, force)
-    made = Study(Ladders(resolved(scene), _chosen(scene, knobs), rungs), folder, says)
+    made = Study(ladders, folder, says)
     try:
         _compute_all(made, jobs)
         if made.scene.done:
@@ -133,7 +85,7 @@ def _try_settings(made: Study) -> None:
     """Run what should reach the targets at less cost than what has been run."""
     for target in TARGETS:
         for _ in range(TRIES):
-            point = next_setting(made.foretold(), target)
+            point = next_setting(made.foretold(target), target)
             if point is None:
                 break
             made.says(f"foretold to reach {target:.1%}:")
