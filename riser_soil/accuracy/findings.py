@@ -19,12 +19,16 @@ Says = Callable[[str], None]
 
 @dataclass(eq=False)
 class Study:
-    """A study and all that it has found so far. The scene has numbers where it says auto."""
+    """A study and all that it has found so far. The scene has numbers where it says auto.
+
+    failure: why the user's own scene fails, where it does: the study's is a finer one then.
+    """
 
     ladders: Ladders
     folder: Path
     says: Says
     outcomes: dict[Factors, PointOutcome] = field(default_factory=dict)
+    failure: str = ""
 
     def compute(self, points: Iterable[Factors], jobs: int) -> None:
         """Compute points that are not there yet, `jobs` at a time."""

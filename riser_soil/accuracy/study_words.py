@@ -15,12 +15,19 @@ Quantities = dict[str, AssessedQuantity]
 def words(study: Study) -> list[str]:
     """Sentences, in their order."""
     return [
+        *_moved(study),
         *_unknown(study.quantities()),
         *_accuracy(study),
         *_limiting(study),
         *(sentence for target in TARGETS for sentence in _cheapest(study, target)),
         *_failed(study),
     ]
+
+
+def _moved(study: Study) -> Iterator[str]:
+    if study.failure:
+        settings = study.ladders.told(study.ladders.base)
+        yield f"the scene itself fails: {study.failure}; the study is around finer settings: {settings}"
 
 
 def percent(part: float) -> str:
@@ -49,7 +56,8 @@ def _off(quantities: Quantities, error: float, key: str) -> str:
 def _accuracy(study: Study) -> Iterator[str]:
     error, key = study.error(study.scene)
     if key:
-        yield f"as it is, the scene takes {study.scene.cpu:.3g} s and is {_off(study.judged(), error, key)}"
+        scene = "with these settings the scene" if study.failure else "as it is, the scene"
+        yield f"{scene} takes {study.scene.cpu:.3g} s and is {_off(study.judged(), error, key)}"
 
 
 def _limiting(study: Study) -> Iterator[str]:
