@@ -25,7 +25,7 @@ from riser_soil.stress.stressed_run import running
 from riser_soil.stress.table import told
 from tests.stress.case import CASES, StressCase, Trial
 
-SUBJECTS = ("hanging", "lying", "beams")
+SUBJECTS = ("hanging", "lying", "beams", "moving", "falling", "at_sea", "in_soil")
 for subject in SUBJECTS:
     import_module(f"tests.stress.{subject}")
 
