@@ -108,3 +108,8 @@ def bend_radius(curvature: float) -> float:
 def angle_deg(tangent: Array) -> float:
     """Angle of a tangent (3,) from the horizontal [deg]; positive where the riser rises with its arc."""
     return math.degrees(math.atan2(tangent[2], math.hypot(tangent[0], tangent[1])))
+
+
+def resultant(vector: Array) -> float:
+    """Size of a vector (3,)."""
+    return math.hypot(*vector)

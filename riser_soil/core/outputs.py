@@ -19,6 +19,7 @@ from riser_soil.core.output import (
     greatest_in_soil,
     least,
     near_greatest,
+    resultant,
 )
 
 if TYPE_CHECKING:
@@ -129,11 +130,13 @@ ACROSS_RISER: tuple[OutputQuantity[Instant], ...] = (
 OF_MODEL: tuple[OutputQuantity[Instant], ...] = (
     OutputQuantity(
         "start_force", "", "N", "force at the start", "model",
-        lambda i: i.riser.start_force, _ON_RISER, vector=True, figures=(Figure("start.force", size=3),),
+        lambda i: i.riser.start_force, _ON_RISER, vector=True,
+        figures=(Figure("start.force", size=3), Figure("start.resultant_force", resultant)),
     ),
     OutputQuantity(
         "end_force", "", "N", "force at the end", "model",
-        lambda i: i.riser.end_force, _ON_RISER, vector=True, figures=(Figure("end.force", size=3),),
+        lambda i: i.riser.end_force, _ON_RISER, vector=True,
+        figures=(Figure("end.force", size=3), Figure("end.resultant_force", resultant)),
     ),
     OutputQuantity(
         "start_moment", "", "N m", "moment at the start", "model",

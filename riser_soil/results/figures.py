@@ -13,7 +13,7 @@ from riser_soil.core.output import Figure
 from riser_soil.core.saved_state import Saved, values_of
 from riser_soil.core.snapshot import Instant
 
-_END = ("position", "force", "moment", "effective_tension", "angle_deg")
+_END = ("position", "force", "resultant_force", "moment", "effective_tension", "angle_deg")
 # In the order of the file; what the table of outputs has beyond them comes behind.
 _ORDER = (
     *(f"start.{name}" for name in _END),

@@ -29,6 +29,7 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("seating",),
     ("stages", "plots"),
     ("run", "material", "calibration"),
+    ("accuracy",),
     ("commands",),
     ("__main__",),
 ]

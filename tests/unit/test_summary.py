@@ -17,7 +17,7 @@ from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary, record
 
 ARC = np.linspace(0.0, 150.0, 301)
 LINE = Catenary(32.0, 30.0)
-END = {"position", "force", "moment", "effective_tension", "angle_deg"}
+END = {"position", "force", "resultant_force", "moment", "effective_tension", "angle_deg"}
 PLACE = "touchdown_position"
 WHOLE = {
     "touchdown_arc",
@@ -50,6 +50,7 @@ def test_final_state_of_a_catenary() -> None:
     assert set(final["start"]) == set(final["end"]) == END
     assert final["start"]["force"] == pytest.approx([-WEIGHT * 32.0, 0.0, 0.0])
     assert final["end"]["force"] == pytest.approx([WEIGHT * 32.0, 0.0, WEIGHT * 120.0])
+    assert final["end"]["resultant_force"] == pytest.approx(WEIGHT * math.hypot(32.0, 120.0))
     assert final["end"]["effective_tension"] == pytest.approx(WEIGHT * math.hypot(32.0, 120.0))
     assert final["end"]["angle_deg"] == pytest.approx(math.degrees(math.atan2(120.0, 32.0)))
     assert final["start"]["angle_deg"] == 0.0
@@ -148,12 +149,12 @@ def test_never_touching_is_null(tmp_path: Path) -> None:
 
 
 def test_packing_and_unpacking_agree() -> None:
-    vector = np.arange(37.0)
+    vector = np.arange(39.0)
     nested = unpack(vector)
     assert nested["start"]["position"] == [0.0, 1.0, 2.0]
-    assert nested["end"]["angle_deg"] == 21.0
-    assert nested["touchdown_position"] == [23.0, 24.0, 25.0]
-    assert nested["contact_force"] == 36.0
+    assert nested["end"]["angle_deg"] == 23.0
+    assert nested["touchdown_position"] == [25.0, 26.0, 27.0]
+    assert nested["contact_force"] == 38.0
 
 
 def test_plain_json() -> None:

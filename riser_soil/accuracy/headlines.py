@@ -1,0 +1,121 @@
+"""Headline quantities of a run, by stage: what an engineer reads first in its summary, and what its error is part of.
+
+In a static stage they are the values at its end, in a dynamic one the extremes over the stage; the soil's settlement is
+the largest over the stage in both, as far as the soil was recorded.
+
+Errors are told relative to a scale, at least the value's own size and never less than a floor, as a quantity that
+passes through zero has no relative error:
+
+| quantity | floor of its scale |
+|---|---|
+| forces | 0.1 of the largest headline force of the stage |
+| arc length of the touchdown point | the distance of the riser's ends, as an arc counts from anywhere |
+| bending moment | 1e-9 of that largest force times that distance, above round-off alone |
+| curvature, settlement | 1e-6 over that distance, 1e-7 of it, likewise |
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+FORCE_FLOOR = 0.1  # of the largest headline force
+MOMENT_FLOOR, CURVATURE_FLOOR, SETTLEMENT_FLOOR = 1e-9, 1e-6, 1e-7
+
+Told = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Headline:
+    """A headline quantity of one stage: value and floor of its scale in `unit` (SI)."""
+
+    stage: str
+    name: str
+    unit: str
+    value: float
+    floor: float
+
+    @property
+    def scale(self) -> float:
+        """What errors are told relative to, in `unit`."""
+        return max(abs(self.value), self.floor)
+
+    @property
+    def key(self) -> str:
+        """What it is called among those of a run."""
+        return f"{self.stage}: {self.name}"
+
+    def relative(self, difference: float) -> float:
+        """Size of a difference in `unit` over the scale; 0 for none, inf where there is no scale."""
+        if difference == 0.0:
+            return 0.0
+        return abs(difference) / self.scale if self.scale > 0.0 else math.inf
+
+
+def headlines(summary: Told) -> dict[str, Headline]:
+    """Headline quantities by their keys, stage by stage, of a summary.json's content; those that it has."""
+    return {each.key: each for stage in summary["stages"] if stage["final"] is not None for each in _of_stage(stage)}
+
+
+def _of_stage(stage: Told) -> list[Headline]:
+    final, values = stage["final"], list(_values(stage))
+    length = math.dist(final["start"]["position"], final["end"]["position"])
+    force = max((abs(value) for _, unit, value in values if unit == "N"), default=0.0)
+    floors = {"N": FORCE_FLOOR * force, "N.m": MOMENT_FLOOR * force * length, "m": SETTLEMENT_FLOOR * length}
+    floors["1/m"] = CURVATURE_FLOOR / length if length > 0.0 else 0.0
+
+    def floor(name: str, unit: str) -> float:
+        return length if name.endswith("arc") else floors[unit]
+
+    return [Headline(stage["name"], name, unit, value, floor(name, unit)) for name, unit, value in values]
+
+
+def _values(stage: Told) -> Iterator[tuple[str, str, float]]:
+    """Name, unit and value of the known ones."""
+    upper = _upper_end(stage["final"])
+    for name, unit, path, which in (
+        ("top tension", "N", (upper, "effective_tension"), "max"),
+        ("force at start", "N", ("start", "resultant_force"), "max"),
+        ("force at end", "N", ("end", "resultant_force"), "max"),
+        ("largest bending moment", "N.m", ("max_bending_moment",), "max"),
+        ("largest curvature", "1/m", ("max_curvature",), "max"),
+        ("least effective tension", "N", ("min_effective_tension",), "min"),
+    ):
+        yield from _known(name, unit, _value(stage, path, which))
+    yield from _contact(stage)
+
+
+def _contact(stage: Told) -> Iterator[tuple[str, str, float]]:
+    """Those of a riser that touches; one that never does has no touchdown point, and a contact force of 0."""
+    if stage["kind"] == "static":
+        yield from _known("touchdown arc", "m", _value(stage, ("touchdown_arc",), "max"))
+    else:
+        for which, word in (("min", "least"), ("max", "largest")):
+            yield from _known(f"{word} touchdown arc", "m", _value(stage, ("touchdown_arc",), which))
+    force = _value(stage, ("contact_force",), "max")
+    yield from _known("largest contact force", "N", force if force else None)
+    settled = stage.get("soil", {}).get("max_settlement", {}).get("value")
+    yield from _known("soil settlement", "m", settled)
+
+
+def _known(name: str, unit: str, value: float | None) -> Iterator[tuple[str, str, float]]:
+    if value is not None and math.isfinite(value):
+        yield name, unit, value
+
+
+def _value(stage: Told, path: tuple[str, ...], which: str) -> float | None:
+    """A figure at the end of a static stage, or an extreme, min or max, of a dynamic one; None where there is none."""
+    static = stage["kind"] == "static"
+    found: Any = stage["final" if static else "extremes"]
+    for key in path:
+        found = found.get(key) if found is not None else None
+    if isinstance(found, dict):
+        found = found["value" if static else which]
+    return found
+
+
+def _upper_end(final: Told) -> str:
+    """Of two ends at one height the last."""
+    return "start" if final["start"]["position"][2] > final["end"]["position"][2] else "end"

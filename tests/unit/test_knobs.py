@@ -1,0 +1,139 @@
+"""Knobs of scenes: which ones a scene has, and what is left as it was when one is turned."""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from riser_soil.accuracy.knobs import KNOBS, Knob, knobs_of, resolved, varied
+from riser_soil.assembly import sized
+from riser_soil.errors import SceneError
+from riser_soil.scene.dump import dump_scene
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.soil import CellSizes, GeneratedMesh
+from riser_soil.scene.stages import DynamicStage
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+
+ELEMENTS, TIME, SOIL, PENALTY = KNOBS
+
+
+def scene(*stages: Mapping, without: tuple[str, ...] = (), **more: Any) -> Scene:
+    told = touchdown(*stages)
+    return scene_from_mapping({key: value for key, value in told.items() if key not in without} | deepcopy(more))
+
+
+def differing(a: Any, b: Any, path: str = "") -> set[str]:
+    """Paths at which two plain values differ."""
+    if isinstance(a, dict) and isinstance(b, dict) and a.keys() == b.keys():
+        return {found for key in a for found in differing(a[key], b[key], f"{path}.{key}".lstrip("."))}
+    if isinstance(a, list | tuple) and isinstance(b, list | tuple) and len(a) == len(b):
+        return {found for n, (x, y) in enumerate(zip(a, b, strict=True)) for found in differing(x, y, f"{path}.{n}")}
+    return set() if a == b else {path}
+
+
+def changed(before: Scene, after: Scene) -> set[str]:
+    return differing(before.model_dump(), after.model_dump())
+
+
+@pytest.mark.parametrize(
+    ("given", "names"),
+    [
+        (scene(LAY, heave(1.0)), ["elements", "time_step", "soil_mesh", "penalty"]),
+        (scene(LAY), ["elements", "soil_mesh", "penalty"]),
+        (scene(LAY, without=("soil",)), ["elements"]),
+        (scene(LAY, without=("soil", "seabed")), ["elements"]),
+        (scene(LAY, without=("soil",), seabed={"kind": "rigid"}), ["elements", "penalty"]),
+        (scene(heave(1.0), without=("soil",)), ["elements", "time_step"]),
+    ],
+)
+def test_a_scene_has_the_knobs_of_its_parts(given: Scene, names: list[str]) -> None:
+    assert [knob.name for knob in knobs_of(given)] == names
+
+
+def test_a_mesh_file_is_no_knob() -> None:
+    given = scene(LAY)
+    assert given.soil is not None
+    file = Path(__file__)
+    mesh = {"mesh": {"file": file}, "block": None}
+    soil = type(given.soil).model_validate(given.soil.model_dump() | mesh, context={"folder": file.parent})
+    assert [knob.name for knob in knobs_of(given.model_copy(update={"soil": soil}))] == ["elements", "penalty"]
+
+
+@pytest.mark.parametrize(
+    ("knob", "paths"),
+    [
+        (ELEMENTS, {"riser.segments.0.elements", "riser.segments.1.elements"}),
+        (TIME, {"stages.1.time_step"}),
+        (SOIL, {"soil.mesh.size_at_riser", "soil.mesh.size_far"}),
+        (PENALTY, {"contact.stiffness"}),
+    ],
+)
+def test_a_knob_turns_what_is_its_own_and_is_as_much_finer_as_asked(knob: Knob, paths: set[str]) -> None:
+    given = scene(LAY, heave(1.0), contact={"stiffness": 2.0e6})
+    for factor in (0.5, 2.0):
+        turned = varied(given, knob, factor)
+        assert changed(given, turned) == paths
+        assert knob.fineness(turned) / knob.fineness(given) == pytest.approx(factor)
+        assert scene_from_mapping(turned.model_dump(by_alias=True)) == turned
+        assert knob.told(turned) != knob.told(given)
+    assert varied(given, knob, 1.0) is given
+
+
+def test_given_and_graded_lengths_of_elements() -> None:
+    told = touchdown(LAY)
+    told["riser"]["segments"][0] = {"line_type": "flexible", "length": 12.0, "element_length": [0.2, 1.0]}
+    told["riser"]["segments"][1] = {"line_type": "flexible", "length": 18.0, "element_length": 1.5}
+    turned = varied(scene_from_mapping(told), ELEMENTS, 2.0)
+    assert [segment.element_length for segment in turned.riser.segments] == [(0.1, 0.5), 0.75]
+    assert varied(scene_from_mapping(told), ELEMENTS, 1e-3).riser.element_count == 2
+    lengths = turned.riser.segments[0].element_lengths
+    assert lengths[-1] / lengths[0] == pytest.approx(5.0)
+
+
+def test_automatic_steps_are_turned_by_their_tolerance() -> None:
+    stage = heave(1.0) | {"time_step": "auto"}
+    turned = varied(scene(LAY, stage), TIME, 2.0)
+    last = turned.stages[1]
+    assert isinstance(last, DynamicStage)
+    assert last.time_step == "auto"
+    assert last.tolerance == pytest.approx(0.02 * 0.3 / 8.0)
+    assert TIME.fineness(turned) / TIME.fineness(scene(LAY, stage)) == pytest.approx(2.0)
+
+
+def test_a_step_is_no_longer_than_its_stage() -> None:
+    last = varied(scene(LAY, heave(0.3)), TIME, 0.1).stages[1]
+    assert isinstance(last, DynamicStage)
+    assert last.time_step == 0.3
+
+
+def test_the_strip_of_fine_cells_keeps_its_width() -> None:
+    told = touchdown(LAY)
+    told["soil"]["mesh"] |= {"size_at_riser": {"along": 0.6, "across": 0.1}}
+    turned = varied(scene_from_mapping(told), SOIL, 2.0).soil
+    assert turned is not None
+    assert isinstance(turned.mesh, GeneratedMesh)
+    assert turned.mesh.size_at_riser == CellSizes(along=0.3, across=0.05, strip=0.8)
+
+
+def test_automatic_sizes_and_penalties_are_turned_as_the_numbers_that_they_stand_for() -> None:
+    told = touchdown(LAY)
+    told["soil"] |= {"block": "auto", "mesh": "auto"}
+    told["contact"] = {"method": "surface"}
+    given = scene_from_mapping(told)
+    assert changed(sized(given), resolved(given)) == {"contact.stiffness"}
+    turned = varied(given, SOIL, 1.25)
+    assert SOIL.fineness(turned) / SOIL.fineness(given) == pytest.approx(1.25)
+    assert turned.soil is not None
+    assert turned.soil.block == sized(given).soil.block  # type: ignore[union-attr]
+    stiff = varied(given, PENALTY, 10.0)
+    assert PENALTY.fineness(stiff) == pytest.approx(10.0 * PENALTY.fineness(given))
+    assert "stiffness: auto" not in dump_scene(stiff)
+
+
+def test_more_elements_than_a_riser_may_have_are_refused() -> None:
+    with pytest.raises(SceneError, match="elements of the riser, 1e\\+06 times as fine: more than 1000000 elements"):
+        varied(scene(LAY), ELEMENTS, 1e6)
