@@ -83,6 +83,19 @@ class LocalError:
         return scheme.error_constant * (bulk - start.a) + CONTACT.error_constant * change
 
 
+def committed_error(system: System, scheme: Scheme, begun: tuple[State, State], ended: tuple[State, State], dt: float) -> float:
+    """Largest local error of a place [m] in a step just committed: `LocalError.of` without solving for accelerations.
+
+    begun, ended: the states with the bulk's rates alone, and as the riser moves, before and after the step.
+    """
+    (start, moving), (after, now) = begun, ended
+    missed = scheme.error_constant * (after.a - start.a)
+    if now.a is not after.a or moving.a is not start.a:
+        missed = missed + CONTACT.error_constant * ((now.a - after.a) - (moving.a - start.a))
+    missed[system.prescribed_dofs] = 0.0
+    return dt**2 * _farthest(system, missed)
+
+
 def first_step(system: System, moving: State, tolerance: float) -> float:
     """Time [s] in which the accelerations at the start move the riser by the tolerance [m]; inf where it rests."""
     largest = _farthest(system, moving.a)
