@@ -8,7 +8,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Answer:
-    """A quantity with its unit, what a run found for it, and what it may be. exact: None where there are bounds only."""
+    """A quantity with its unit, what a run found for it, and what it may be. exact: None where there are bounds
+    only.
+    """
 
     what: str
     found: float
@@ -35,9 +37,11 @@ class Answer:
         """By which the worst of several answers is found: one that does not hold, else an exact one, else a bound."""
         if not math.isfinite(self.found):
             return True, True, math.inf
-        room = max(self.high - self.low, math.ulp(0.0)) if self.exact is not None else 1.0
-        size = abs(self.found - self.exact) / room if self.exact is not None else self.error
-        return not self.holds, self.exact is not None, size
+        if self.exact is not None:
+            room = self.high - self.low
+            return not self.holds, True, abs(self.found - self.exact) / max(room, math.ulp(0.0))
+        bound = self.high if 0.0 < self.high < math.inf else math.inf
+        return not self.holds, False, self.error if self.error else self.found / bound
 
     def __str__(self) -> str:
         if self.exact is not None:

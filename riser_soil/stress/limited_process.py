@@ -38,7 +38,9 @@ class Limits:
 
 @dataclass(frozen=True)
 class Ending:
-    """How a process ended: a word for it, whether that is one of the program's own ends, its CPU time [s], what it said."""
+    """How a process ended: a word for it, whether that is one of the program's own ends, its CPU time [s], what it
+    said.
+    """
 
     word: str
     well: bool
@@ -78,6 +80,7 @@ def _child(job: Job, place: Path, limits: Limits) -> None:
         out = os.open("output", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         for stream in (1, 2):
             os.dup2(out, stream)
+        sys.stdout, sys.stderr = (os.fdopen(stream, "w") for stream in (1, 2))
         status = job()
     except BaseException:
         traceback.print_exc()

@@ -14,7 +14,7 @@ from riser_soil.stress.answers import Answer
 from riser_soil.stress.bounds import worst_residual
 from riser_soil.stress.limited_process import Ending
 
-PASSED, TOLD, WRONG, BROKEN = "passed", "told plainly", "QUIETLY WRONG", "broken"
+PASSED, TOLD, WRONG, BROKEN, LONG = "passed", "told plainly", "QUIETLY WRONG", "broken", "out of time"
 
 
 @dataclass(frozen=True)
@@ -22,9 +22,9 @@ class StressOutcome:
     """One row of the table.
 
     verdict: passed, told plainly (an error of the program's own, or a warning that says what is wrong with the answer),
-    QUIETLY WRONG, or broken (a traceback, a crash, more time than it may take). as_hoped: whether that is how this
-    scene is to end. answer: the one that is nearest to its bounds, or beyond; error: relative, None without an answer.
-    residual: of the energy, relative, the largest of all stages. seconds: of CPU.
+    QUIETLY WRONG, broken (a traceback, a crash), or out of the time that it may take. as_hoped: whether that is how
+    this scene is to end. answer: the one that is nearest to its bounds, or beyond; error: relative, None without an
+    answer. residual: of the energy, relative, the largest of all stages. seconds: of CPU.
     """
 
     name: str
@@ -82,7 +82,7 @@ def outcome(
 
 def _verdict(ending: Ending, answers: Sequence[Answer], may_tell: str | None) -> str:
     if not ending.well:
-        return BROKEN
+        return LONG if ending.word == "hang" else BROKEN
     if not ending.finished:
         return TOLD
     if all(answer.holds for answer in answers):
@@ -95,10 +95,14 @@ def _says(ending: Ending, pattern: str) -> bool:
 
 
 def _message(ending: Ending, pattern: str | None) -> str:
-    """The line that tells what was wrong: the one that matches, else the last."""
+    """The line that tells what was wrong: the one that matches, else the last; "" where a finished run told nothing."""
+    if ending.finished and pattern is None:
+        return ""
     lines = [line.strip() for line in ending.output.strip().splitlines() if line.strip()]
     matching = [line for line in lines if pattern is not None and re.search(pattern, line)]
-    return (matching or lines or ["nothing was told"])[0 if matching else -1]
+    if ending.finished:
+        return matching[0] if matching else ""
+    return matching[0] if matching else (lines or ["nothing was told"])[-1]
 
 
 def runs_in(place: Path, names: Iterable[str]) -> list[Run]:

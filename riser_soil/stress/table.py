@@ -8,7 +8,6 @@ import platform
 from collections.abc import Iterable, Sequence
 from datetime import date
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
 import riser_soil

@@ -16,8 +16,8 @@ RHO, G = 1025.0, 9.81
 
 @stress_case(quick=True)
 def current_of_10_m_per_s() -> Trial:
-    """A taut vertical line of 50 m, D = 0.2 m, Cd = 1, EA = 1e12 N, in a current of 10 m/s: its ends hold rho D Cd u^2 L/2
-    = 512.5 kN together, less the square of its slope, q L/(2 T) = 0.026.
+    """A taut vertical line of 50 m, D = 0.2 m, Cd = 1, EA = 1e12 N, in a current of 10 m/s: its ends hold rho D Cd u^2
+    L/2 = 512.5 kN together, less the square of its slope, q L/(2 T) = 0.026.
     """
     scene = riser_scene(
         static(),

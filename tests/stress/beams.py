@@ -87,8 +87,8 @@ def buckled(ratio: float, dimension: int) -> Callable[[], Trial]:
         return one(column(40, ratio, 1e7, dimension), answers, NAMED_LOAD)
 
     make.__doc__ = (
-        f"A perfect column of unit length in {dimension}D under {ratio:g} times Euler's load, pi^2 EI/4: the elastica, or "
-        "a failure that names the load."
+        f"A perfect column of unit length in {dimension}D under {ratio:g} times Euler's load, pi^2 EI/4: the elastica, "
+        "or a failure that names the load."
     )
     return make
 
@@ -119,9 +119,9 @@ def lateral_torsional() -> float:
 
 @stress_case()
 def blade_just_below_and_beyond_lateral_torsional_buckling() -> Trial:
-    """A blade's tip loaded across its deep section, P = 4.013 (EI GJ)^0.5/L^2 (Timoshenko & Gere 1961, section 6.3), here
-    from the rod's equations: at 0.995 P it stays in its plane, at 1.0025 P and 1.01 P it leaves it as the root of the
-    excess, twice as far at the latter.
+    """A blade's tip loaded across its deep section, P = 4.013 (EI GJ)^0.5/L^2 (Timoshenko & Gere 1961, section 6.3),
+    here from the rod's equations: at 0.995 P it stays in its plane, at 1.0025 P and 1.01 P it leaves it as the root of
+    the excess, twice as far at the latter.
     """
     ratios = {"below": 0.995, "near": 1.0025, "far": 1.01}
 
@@ -143,8 +143,8 @@ def frame_load() -> float:
 
 @stress_case()
 def right_angle_frame_below_and_beyond_its_buckling_load() -> Trial:
-    """The right-angle frame pushed in its plane, critical at 1.088 N (Simo & Vu-Quoc 1986): at 0.97 of it nothing leaves
-    the plane; at 1.06 it is out of it by more than a twentieth of a leg, alike with 40 and 80 elements.
+    """The right-angle frame pushed in its plane, critical at 1.088 N (Simo & Vu-Quoc 1986): at 0.97 of it nothing
+    leaves the plane; at 1.06 it is out of it by more than a twentieth of a leg, alike with 40 and 80 elements.
     """
 
     def answers(runs: Runs) -> Iterator[Answer]:
@@ -177,7 +177,9 @@ def cantilever(EI: tuple[float, float], elements: int, force: float) -> Mapping:
 
 @stress_case(quick=True)
 def stiffness_that_falls_by_a_million() -> Trial:
-    """A cantilever of unit length, EI = 1e6 then 1: the tip sinks by P [7/(24 EI_1) + 1/(24 EI_2)] (small deflection)."""
+    """A cantilever of unit length, EI = 1e6 then 1: the tip sinks by P [7/(24 EI_1) + 1/(24 EI_2)] (small
+    deflection).
+    """
 
     def answers(run: Run) -> Iterator[Answer]:
         exact = 1e-3 * (7.0 / 24.0e6 + 1.0 / 24.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 
@@ -16,12 +17,15 @@ W, G = 700.0, 9.81
 IMPACT = r"impact|time scheme (took out|put in)|time_step"
 
 
-def level_pipe(height: float, k: float, dt: float, duration: float, length: float = 40.0, **more: object) -> Mapping:
-    """A level pipe, free at both ends, its underside `height` above a rigid ground of stiffness k [N/m2]."""
+def level_pipe(
+    height: float, k: float, dt: float, duration: float, pipe: Mapping | None = None, **more: Any
+) -> Mapping:
+    """40 m of level pipe, free at both ends, its underside `height` above a rigid ground of stiffness k [N/m2]."""
+    usual: Mapping = {"EA": 3e7, "EI": 5e4, "mass": W / G, "outer_diameter": 0.3, "submerged_weight": W}
     return riser_scene(
-        dynamic(duration, dt, "fall", **more.pop("stage", {})),  # type: ignore[arg-type]
-        pipe={"EA": 3e7, "EI": 5e4, "mass": W / G, "outer_diameter": 0.3, "submerged_weight": W} | more.pop("pipe", {}),  # type: ignore[operator]
-        length=length,
+        dynamic(duration, dt, "fall", **more.pop("stage", {})),
+        pipe=usual | (pipe or {}),
+        length=40.0,
         elements=20,
         start="free",
         end="free",
@@ -44,8 +48,8 @@ def impact(dt: float) -> Callable[[], Trial]:
         return one(level_pipe(0.1, 1e6, dt, 0.25), answers, IMPACT)
 
     make.__doc__ = (
-        f"40 m of level pipe fall 0.1 m on a lossless ground of 1e6 N/m2 in steps of {dt:g} s: w + (w^2 + 2 k w h)^0.5 per "
-        "length; or told what impact has lost."
+        f"40 m of level pipe fall 0.1 m on a lossless ground of 1e6 N/m2 in steps of {dt:g} s: w + (w^2 + 2 k w h)^0.5 "
+        "per length; or told what impact has lost."
     )
     return make
 
@@ -56,8 +60,8 @@ for dt in (1e-2, 1e-3, 1e-4):
 
 @stress_case()
 def first_contact_in_mid_step() -> Trial:
-    """A pipe falls 1 m on a ground of 1e5 N/m2 in steps of 0.1 s, in the middle of one of which it meets the ground: never
-    more force than w + (w^2 + 2 k w h)^0.5 per length, never higher than where it began, in the end the weight.
+    """A pipe falls 1 m on a ground of 1e5 N/m2 in steps of 0.1 s, in the middle of one of which it meets the ground:
+    never more force than w + (w^2 + 2 k w h)^0.5 per length, never higher than where it began, in the end the weight.
     """
 
     def answers(run: Run) -> Iterator[Answer]:

@@ -114,7 +114,9 @@ def ten_km_line_of_400_elements() -> Trial:
 
 @stress_case(quick=True)
 def ten_km_line_of_40_elements() -> Trial:
-    """As before with elements of 250 m, a third of a = H/w: right, or told that the elements are too long for the bend."""
+    """As before with elements of 250 m, a third of a = H/w: right, or told that the elements are too long for the
+    bend.
+    """
     return one(long_line(40), _long_line, r"warning: .*element")
 
 
@@ -126,8 +128,8 @@ def thread_of_10_mm() -> Trial:
 
 @stress_case(quick=True)
 def ends_of_a_line_together() -> Trial:
-    """100 m of line hang from two points 1 m apart on one level: each bears half the weight, w L/2 = 25 kN, to (H/V)^2/2
-    of it; H from the catenary to what the bend at the bottom, EI/(w a^3) = 0.1, may change.
+    """100 m of line hang from two points 1 m apart on one level: each bears half the weight, w L/2 = 25 kN, to
+    (H/V)^2/2 of it; H from the catenary to what the bend at the bottom, EI/(w a^3) = 0.1, may change.
     """
     scene = rope(1.0, elements=400)
     scene["riser"] |= {"end": prescribed(1.0, 0.0, 0.0)}
@@ -155,9 +157,9 @@ def line_stretched_by_2_per_cent() -> Trial:
 
 @stress_case(quick=True)
 def vertical_line_of_no_slack() -> Trial:
-    """100 m of line hang straight down between supports 100 m above each other: stretched by its weight, T at the top is
-    w L/2, at the bottom -w L/2, from EA du/ds = T and u = 0 at both ends. Its lower half would buckle, as EI is 1 N.m2:
-    it bows out and bears no more than the bar; so the top bears at least half the weight and at most all of it.
+    """100 m of line hang straight down between supports 100 m above each other: stretched by its weight, T at the top
+    is w L/2, at the bottom -w L/2, from EA du/ds = T and u = 0 at both ends. Its lower half would buckle, as EI is 1
+    N.m2: it bows out and bears no more than the bar; so the top bears at least half the weight and at most all of it.
     """
     scene = rope(1.0)
     scene["riser"] |= {"end": prescribed(0.0, 0.0, 100.0)}
@@ -206,7 +208,9 @@ def stretched_in_zero_gravity() -> Trial:
 
 @stress_case()
 def pressure_of_1000_bar() -> Trial:
-    """Inner pressure of 1e8 Pa in a bore of 0.1 m: the effective tension stays the catenary's, the wall bears p A more."""
+    """Inner pressure of 1e8 Pa in a bore of 0.1 m: the effective tension stays the catenary's, the wall bears p A
+    more.
+    """
     scene = rope(10.0)
     pipe = scene["line_types"]["pipe"]
     pipe["inner_diameter"] = 0.1

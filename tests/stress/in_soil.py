@@ -1,4 +1,6 @@
-"""Stress cases of soil: nearly incompressible, of hardly any strength, yielding all over, under penalties of any size."""
+"""Stress cases of soil: nearly incompressible, of hardly any strength, yielding all over, under penalties of any
+size.
+"""
 
 from __future__ import annotations
 
@@ -46,8 +48,8 @@ def hertz(nu: float) -> float:
 
 @stress_case()
 def poissons_ratio_of_0_4999() -> Trial:
-    """A pipe pressed into elastic soil of nu = 0.4999 meets Hertz's resistance to 15 % (a slice 4 m deep is no half space),
-    and changes from that of nu = 0.49 as Hertz's does: elements that lock would be half as stiff again.
+    """A pipe pressed into elastic soil of nu = 0.4999 meets Hertz's resistance to 15 % (a slice 4 m deep is no half
+    space), and changes from that of nu = 0.49 as Hertz's does: elements that lock would be half as stiff again.
     """
 
     def answers(runs: Runs) -> Iterator[Answer]:
@@ -60,8 +62,8 @@ def poissons_ratio_of_0_4999() -> Trial:
 
 @stress_case(cpu=120)
 def penalty_on_soil_over_six_decades() -> Trial:
-    """Contact stiffness of 1e5, 1e7, 1e9 and 1e11 N/m2 on elastic soil: the resistance grows with it, below that of a pipe
-    which can't sink into the soil's surface; the last two differ by a hundredth at most.
+    """Contact stiffness of 1e5, 1e7, 1e9 and 1e11 N/m2 on elastic soil: the resistance grows with it, below that of a
+    pipe which can't sink into the soil's surface; the last two differ by a hundredth at most.
     """
     ladder = {f"k{n}": pushed(stiffness=10.0**n) for n in (5, 7, 9, 11)}
 

@@ -1,4 +1,6 @@
-"""Stress cases of lines at rest on the ground: penalties, slopes, friction, sizes from millimetres to thousands of km."""
+"""Stress cases of lines at rest on the ground: penalties, slopes, friction, sizes from millimetres to thousands of
+km.
+"""
 
 from __future__ import annotations
 
@@ -37,9 +39,10 @@ def on_floor(k: float | str, s: float = 1.0, **more: object) -> Mapping:
 def catenary(s: float = 1.0, rel: float = 2e-3, sinks: float = 0.0) -> Callable[[Run], Iterator[Answer]]:
     """Answers of `on_floor`; the touchdown point to EI's layer, (EI/H)^0.5 = 0.02 m, and an element.
 
-    sinks: w/k, how deep the line rests [m]. On springs a cable leaves the ground with the slope sinks/l, l = (H/k)^0.5, as
-    z = sinks (exp(x/l) - 1); a catenary of a = H/w has fallen by the height a slope^2/2 = sinks/2 where it is level: so
-    H is that over a rigid floor which lies so much lower. The length changes by sinks^2/l, 3e-5 of it at most.
+    sinks: w/k, how deep the line rests [m]. On springs a cable leaves the ground with the slope sinks/l, l =
+    (H/k)^0.5, as z = sinks (exp(x/l) - 1); a catenary of a = H/w has fallen by the height a slope^2/2 = sinks/2 where
+    it is level: so H is that over a rigid floor which lies so much lower. The length changes by sinks^2/l, 3e-5 of it
+    at most.
     """
 
     def answers(run: Run) -> Iterator[Answer]:
@@ -57,8 +60,8 @@ def penalty(power: int) -> Callable[[], Trial]:
         return one(on_floor(10.0**power), catenary(sinks=W / 10.0**power))
 
     make.__doc__ = (
-        f"Contact stiffness 1e{power} N/m2: the line rests {W / 10.0**power:.2g} m deep: the elastic catenary that comes "
-        "down on a floor half as deep."
+        f"Contact stiffness 1e{power} N/m2: the line rests {W / 10.0**power:.2g} m deep: the elastic catenary that "
+        "comes down on a floor half as deep."
     )
     return make
 

@@ -24,14 +24,11 @@ from riser_soil.stress.outcome import StressOutcome, outcome, runs_in
 from riser_soil.stress.stressed_run import running
 from riser_soil.stress.table import told
 from tests.stress.case import CASES, StressCase, Trial
+from tests.stress.page import publish
 
 SUBJECTS = ("hanging", "lying", "beams", "moving", "falling", "at_sea", "in_soil")
 for subject in SUBJECTS:
     import_module(f"tests.stress.{subject}")
-
-PAGE = Path(__file__).parents[2] / "docs" / "stress.md"
-
-
 def outcomes(cases: Iterable[StressCase], folder: Path, workers: int) -> Iterator[StressOutcome]:
     """Run cases, each in a folder of its own, in their order."""
     import_all()
@@ -80,7 +77,7 @@ def main(arguments: list[str] | None = None) -> int:
             found.append(row)
             print(told(row), flush=True)
     if asked.page:
-        raise SystemExit("no page yet")
+        publish(found)
     open_ends = [row.name for row in found if not row.as_hoped]
     print(f"{len(found)} cases, {sum(row.seconds for row in found):.0f} s of CPU; not as they are to be: {open_ends}")
     return 1 if open_ends else 0

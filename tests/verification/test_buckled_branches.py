@@ -28,6 +28,7 @@ from tests.support.coupled_scenes import Mapping
 from tests.support.on_ranks import mpirun
 from tests.support.rod_reference import Rod, first_buckling
 
+
 def tip(scene: Mapping, folder: Path) -> tuple[Array, int]:
     """Where the free end comes to, and how many unstable equilibria were left on the way."""
     run(scene_from_mapping(scene), folder, force=True)
