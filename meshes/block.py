@@ -36,7 +36,8 @@ def main(arguments: list[str] | None = None) -> None:
         feature=_feature(asked),
     )
     with silent_gmsh():
-        make_block(spec)
+        unit = make_block(spec)
+        gmsh.option.setNumber("Mesh.ScalingFactor", unit)
         gmsh.write(str(asked.file))
 
 

@@ -16,19 +16,26 @@ if TYPE_CHECKING:
     from riser_soil.soil.law import Formula
     from riser_soil.soil.layered import LayeredWeight
 
+SHALLOWEST = 1e-3  # of the mesh's height: soil that gains strength from nothing has at least that of this depth
+
 
 def law_of(given: SoilScene, grid: DistributedMesh) -> Callable[[Array, Array], Formula]:
     """What makes the formula of depths (n,) [m] and initial stress (n, 6) [Pa] of the grid's quadrature points."""
+    shallowest = SHALLOWEST * float(grid.high[2] - grid.low[2])
     if given.layers is None:
-        return given.top_law.at_points
+        law = given.top_law
+        return lambda depth, initial: law.at_points(np.maximum(depth, shallowest), initial)
     from riser_soil.soil.layered import law_by_depth, of_layers
 
     laws, bottoms = [layer.law for layer in given.layers], boundaries(given.layers)
     if volumes(given):
         return lambda depth, initial: of_layers(
-            laws, np.repeat(grid.volume, len(depth) // max(1, len(grid.volume))), depth, initial
+            laws,
+            np.repeat(grid.volume, len(depth) // max(1, len(grid.volume))),
+            np.maximum(depth, shallowest),
+            initial,
         )
-    return lambda depth, initial: law_by_depth(laws, bottoms, depth, initial)
+    return lambda depth, initial: law_by_depth(laws, bottoms, depth, initial, shallowest)
 
 
 def weight_of(given: SoilScene) -> float | LayeredWeight:

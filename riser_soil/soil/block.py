@@ -1,6 +1,7 @@
 """Mesh of a soil block in gmsh: layered hexahedra or tetrahedra, fine under the riser.
 
-Needs a running gmsh; leaves the mesh in gmsh's current model with one physical volume.
+Needs a running gmsh; leaves the mesh in gmsh's current model with one physical volume. gmsh has tolerances in lengths:
+the block is meshed with its longest side as the unit of length.
 """
 
 from __future__ import annotations
@@ -12,11 +13,16 @@ import numpy as np
 
 from riser_soil.errors import MeshError
 from riser_soil.soil.dug_block import dig
-from riser_soil.soil.grading import BlockSpec
+from riser_soil.soil.grading import BlockSpec, in_units
 
 
-def make_block(spec: BlockSpec) -> None:
-    """Build and mesh the block in gmsh's current model."""
+def make_block(spec: BlockSpec) -> float:
+    """Build and mesh the block in gmsh's current model; the model's unit of length [m]."""
+    _mesh(in_units(spec, spec.span))
+    return spec.span
+
+
+def _mesh(spec: BlockSpec) -> None:
     match spec.kind:
         case "hex" if spec.feature is not None:
             raise MeshError("soil mesh: a trench or a groove is meshed in tetrahedra; take kind tet")

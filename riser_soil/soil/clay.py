@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 else:
     np, mandel = LazyModule("numpy"), LazyModule("riser_soil.soil.mandel")
 
-SHALLOWEST = 1e-3  # m; strength that grows from nothing is at least that of this depth
-
 
 class UndrainedClay(SoilLaw, ABC):
     """Clay that fails at q = √3·su: su is the strength in simple shear and plane strain."""
@@ -63,7 +61,7 @@ class UndrainedClay(SoilLaw, ABC):
 
     def _constants(self, depth: Array) -> tuple[Array, Array, Array]:
         """Bulk and shear modulus and the largest equivalent stress √3·su at depths (n,), (n,) each [Pa]."""
-        strength = np.maximum(self._strength.at(depth), SHALLOWEST * self.su_gradient)
+        strength = self._strength.at(depth)
         E = self._modulus(strength)
         return mandel.bulk_modulus(E, self.nu), mandel.shear_modulus(E, self.nu), np.sqrt(3.0) * strength
 

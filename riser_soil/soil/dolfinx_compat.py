@@ -40,12 +40,13 @@ class Nodes:
     owned: int
 
 
-def mesh_from_gmsh(model: Any, comm: MPI.Intracomm) -> tuple[Any, IntArray]:
-    """dolfinx mesh of the gmsh model that lives on rank 0, distributed over the ranks, and the physical group of each
-    cell that this rank owns (nc,); collective.
+def mesh_from_gmsh(model: Any, comm: MPI.Intracomm, unit: float = 1.0) -> tuple[Any, IntArray]:
+    """dolfinx mesh [m] of the gmsh model that lives on rank 0, distributed over the ranks, and the physical group of
+    each cell that this rank owns (nc,); collective. unit: the model's, of length [m].
     """
     made = _gmsh_module().model_to_mesh(model, comm, 0, gdim=3)
     mesh, tags = (made.mesh, made.cell_tags) if hasattr(made, "mesh") else made[:2]
+    mesh.geometry.x[:] *= unit
     group = np.zeros(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int64)
     owned = tags.indices < len(group)
     group[tags.indices[owned]] = tags.values[owned]

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, fields
+from typing import Any, Literal
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.soil.seabed_feature import FeatureSpec, GrooveSpec
+from riser_soil.soil.seabed_feature import FeatureSpec, GrooveSpec, TrenchSpec
 
 _PIECES = 16  # on either side of the riser, to count cells by
 _EQUAL = 1e-9  # difference of two sizes, over either, that is none
+_ROUNDED = 9  # decimals of a number of cells before it is rounded: halves stay halves in any unit of length
+_DIGITS = 13  # decimals of a block's lengths over its span: beyond them is round-off, by which tetrahedra differ
 PARALLEL = 1e-6  # slope in plan of a riser that runs along an axis
 
 Point = tuple[float, float]
@@ -108,8 +110,13 @@ class BlockSpec:
         far = max(size, self.size_far)
         if axis < 2:
             return *(self.x, self.y)[axis], self.fine_range(axis), size, far
-        fine = min(self.depth, size * round(0.5 * self.strip / size))
+        fine = min(self.depth, size * _nearest(0.5 * self.strip / size))
         return self.level - self.depth, self.level, (self.level - fine, self.level), size, far
+
+    @property
+    def span(self) -> float:
+        """The longest side [m]."""
+        return float(max(self.x[1] - self.x[0], self.y[1] - self.y[0], self.depth))
 
     @property
     def reach(self) -> float:
@@ -131,14 +138,36 @@ class BlockSpec:
         return np.concatenate((below[0], [0.0], above[0])), np.concatenate((below[1], [last - first], above[1]))
 
 
+def in_units(spec: BlockSpec, unit: float) -> BlockSpec:
+    """The block in units of length of so many metres."""
+    found: BlockSpec = _in_units(spec, unit)
+    return found
+
+
+def _in_units(lengths: Any, unit: float) -> Any:
+    match lengths:
+        case float() | int():
+            return round(lengths / unit, _DIGITS)
+        case tuple():
+            return tuple(_in_units(each, unit) for each in lengths)
+        case BlockSpec() | TrenchSpec() | GrooveSpec():
+            return type(lengths)(**{f.name: _in_units(getattr(lengths, f.name), unit) for f in fields(lengths)})
+        case _:
+            return lengths
+
+
 def _odd(cells: float) -> int:
     """The odd number nearest to a number of cells."""
-    return max(1, 2 * round(0.5 * (cells - 1.0)) + 1)
+    return max(1, 2 * _nearest(0.5 * (cells - 1.0)) + 1)
+
+
+def _nearest(cells: float) -> int:
+    return round(round(cells, _ROUNDED))
 
 
 def graded(low: float, high: float, fine: Point, size: float, size_far: float) -> Array:
     """Coordinates from low to high: cells of `size` in the fine range, growing to `size_far` at the ends."""
-    count = max(1, round((fine[1] - fine[0]) / size))
+    count = max(1, _nearest((fine[1] - fine[0]) / size))
     middle = np.linspace(fine[0], fine[1], count + 1) if fine[1] > fine[0] else np.array([fine[0]])
     below = fine[0] - growing(fine[0] - low, size, size_far)[:0:-1]
     above = fine[1] + growing(high - fine[1], size, size_far)[1:]
@@ -149,7 +178,7 @@ def landing(x: Array, places: Sequence[float]) -> Array:
     """Coordinates that grow like x (n,) and have all of the places, increasing and within x, among them."""
     number = np.arange(len(x), dtype=float)
     at = np.interp(np.array([x[0], *places, x[-1]]), x, number)
-    cells = np.maximum(1, np.round(np.diff(at))).astype(int)
+    cells = np.maximum(1, np.round(np.round(np.diff(at), _ROUNDED))).astype(int)
     pieces = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(at, at[1:], cells, strict=False)]
     out: Array = np.interp(np.append(np.concatenate(pieces), at[-1]), number, x)
     out[np.cumsum(cells[:-1])] = places
@@ -180,5 +209,5 @@ def steps(length: float, size: float, size_far: float) -> int:
     if length <= 1e-9 * size:
         return 0
     if abs(size_far / size - 1.0) < _EQUAL:
-        return max(1, round(length / size))
+        return max(1, _nearest(length / size))
     return max(1, math.ceil(length * math.log(size_far / size) / (size_far - size) - 1e-9))

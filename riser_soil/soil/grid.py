@@ -85,20 +85,20 @@ def silent_gmsh() -> Iterator[None]:
             gmsh.finalize()
 
 
-def _grid(comm: MPI.Intracomm, make: Callable[[], None]) -> DistributedMesh:
+def _grid(comm: MPI.Intracomm, make: Callable[[], float]) -> DistributedMesh:
     if comm.rank == 0:
         with silent_gmsh():
             return _distribute(comm, make)
     return _distribute(comm, make)
 
 
-def _distribute(comm: MPI.Intracomm, make: Callable[[], None]) -> DistributedMesh:
+def _distribute(comm: MPI.Intracomm, make: Callable[[], float]) -> DistributedMesh:
     """Make the model on rank 0; a failure there is raised on every rank, before the collective calls."""
-    hexahedra, failure = comm.bcast(_outcome(make) if comm.rank == 0 else None)
+    hexahedra, unit, failure = comm.bcast(_outcome(make) if comm.rank == 0 else None)
     if failure:
         raise MeshError(failure)
     family = HEX8 if hexahedra else TET10
-    mesh, group = dolfinx_compat.mesh_from_gmsh(gmsh.model, comm)
+    mesh, group = dolfinx_compat.mesh_from_gmsh(gmsh.model, comm, unit)
     nodes = dolfinx_compat.lagrange_nodes(mesh, family.degree, comm)
     low = np.array([comm.allreduce(x, MPI.MIN) for x in nodes.points.min(axis=0, initial=np.inf)])
     high = np.array([comm.allreduce(x, MPI.MAX) for x in nodes.points.max(axis=0, initial=-np.inf)])
@@ -121,12 +121,12 @@ def _check_box(grid: DistributedMesh) -> None:
             )
 
 
-def _outcome(make: Callable[[], None]) -> tuple[bool, str]:
-    """Whether the cells are hexahedra, and why the model can't be used ("" if it can)."""
+def _outcome(make: Callable[[], float]) -> tuple[bool, float, str]:
+    """Whether the cells are hexahedra, the model's unit of length [m], and why it can't be used ("" if it can)."""
     try:
-        make()
-        return cell_type() == HEXAHEDRON, ""
+        unit = make()
+        return cell_type() == HEXAHEDRON, unit, ""
     except MeshError as err:
-        return False, str(err)
+        return False, 1.0, str(err)
     except Exception as err:  # gmsh raises nothing more specific, and the other ranks wait
-        return False, f"soil mesh: gmsh failed ({err})"
+        return False, 1.0, f"soil mesh: gmsh failed ({err})"

@@ -37,10 +37,14 @@ def layer_at(bottoms: Sequence[float], depth: Array) -> IntArray:
     return np.searchsorted(np.asarray(bottoms), depth, side="left").astype(np.int64)
 
 
-def law_by_depth(laws: Sequence[SoilLaw], bottoms: Sequence[float], depth: Array, initial: Array) -> Formula:
-    """The formula at depths (n,) below the seabed [m]; each law counts depth from the top of its layer."""
+def law_by_depth(
+    laws: Sequence[SoilLaw], bottoms: Sequence[float], depth: Array, initial: Array, shallowest: float = 0.0
+) -> Formula:
+    """The formula at depths (n,) below the seabed [m]; each law counts depth from the top of its layer, and at least
+    `shallowest`.
+    """
     layer = layer_at(bottoms, depth)
-    return of_layers(laws, layer, depth - np.array([0.0, *bottoms])[layer], initial)
+    return of_layers(laws, layer, np.maximum(depth - np.array([0.0, *bottoms])[layer], shallowest), initial)
 
 
 def of_layers(laws: Sequence[SoilLaw], layer: IntArray, depth: Array, initial: Array) -> Formula:

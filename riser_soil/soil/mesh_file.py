@@ -41,8 +41,8 @@ class Mesh:
     volume: IntArray
 
 
-def read_mesh(path: Path, volumes: Sequence[str] = ()) -> None:
-    """Leave a file's mesh in gmsh's current model; MeshError if it won't do.
+def read_mesh(path: Path, volumes: Sequence[str] = ()) -> float:
+    """Leave a file's mesh in gmsh's current model; the model's unit of length [m]; MeshError if it won't do.
 
     volumes: names of physical groups, one physical group each from 1 on in the model; without them there is one.
     """
@@ -51,6 +51,7 @@ def read_mesh(path: Path, volumes: Sequence[str] = ()) -> None:
     _check_nodes(mesh)
     _check_faces(mesh)
     _replace_model(mesh)
+    return 1.0
 
 
 def cell_type() -> int:

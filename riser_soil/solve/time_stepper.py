@@ -13,6 +13,7 @@ from riser_soil.core.roles import MomentumCorrecting, Predictor, with_role
 from riser_soil.core.saved_state import Saved, Stateful, gathered, record_of, under, values_of, within
 from riser_soil.core.system import System, total
 from riser_soil.errors import SolveError
+from riser_soil.solve.energy_gain import LARGEST, EnergyGain
 from riser_soil.solve.local_error import LocalError, committed_error
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.predictor import Extrapolation
@@ -22,7 +23,6 @@ from riser_soil.solve.step_control import Control
 from riser_soil.solve.step_end import CommittedStep
 from riser_soil.solve.time_scheme import Scheme
 
-LARGEST_ENERGY_GAIN = 0.2  # of the energy in motion: what a step may make out of nothing
 ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away
 EASY = 6  # Newton iterations up to which a step that was cut may grow again
 
@@ -58,7 +58,7 @@ class TimeStepper:
     before: the accepted state that the next step starts from, its increments zero; its rates leave out what contact
     adds to them (see `time_scheme`). now: the same state as the riser moves; energy: stored in it [J].
     local_error: largest of a place in the last step [m], see `local_error`; 0 in statics.
-    largest_gain: share of the kinetic energy that a step may create.
+    largest_gain: share of the energy in motion that a step may create, see `energy_gain`.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class TimeStepper:
         newton: Newton,
         scheme: Scheme,
         before: State | Saved,
-        largest_gain: float = LARGEST_ENERGY_GAIN,
+        largest_gain: float = LARGEST,
     ) -> None:
         self.system, self.newton, self.scheme, self._largest_gain = system, newton, scheme, largest_gain
         self._mass = RiserMass(system) if scheme.dynamic else None
@@ -89,6 +89,7 @@ class TimeStepper:
         self._begin_step()
         self._history = self.system.forces(self.before) if self._renews_history else None
         self.energy = self.system.energy(self.before)
+        self._gain = EnergyGain(self._largest_gain, self.energy)
 
     def restart(self) -> None:
         """Start anew from the configuration that the parts hold now."""
@@ -137,8 +138,8 @@ class TimeStepper:
         """A step that is solved, accounted for and acceptable; else NotConvergedError."""
         solution = self._solve(self.next_step(control))
         step = self._account(solution, control, cuts)
-        self._reject_energy_gain(step)
         self._reject_inaccurate(step, control)
+        self._reject_energy_gain(step)
         return step
 
     def next_step(self, control: Control) -> Step:
@@ -184,22 +185,17 @@ class TimeStepper:
         return AcceptedStep(control.target, control.dt, solution, cuts, self.system.energy(state), turned, braking)
 
     def _reject_energy_gain(self, step: AcceptedStep) -> None:
-        """A dynamic step that creates much kinetic energy is a root of the equations far from the motion that it
-        continues, or too long: NotConvergedError, so that it is cut.
-        """
+        """NotConvergedError for a dynamic step that creates energy, so that it is cut."""
         if not self.scheme.dynamic:
             return
-        was, now = self.energy, step.energy
-        appeared = now.total - was.total + step.dissipated - step.work
-        in_motion = was.kinetic + was.strain + max(0.0, was.potential - now.potential) + abs(step.work)
         # Over an element's length the least force that counts does negligible work, as where a motion starts from rest.
-        negligible = ENERGY_ROUND_OFF * abs(was.potential) + self.newton.settings.floor * self.system.lever
-        if appeared > self._largest_gain * in_motion + negligible:
-            appeared += self._kinetic(step) - now.kinetic
-        if appeared > self._largest_gain * in_motion + negligible:
-            raise NotConvergedError(
-                f"the step's solution makes {appeared:.3g} J out of nothing, beside {in_motion:.3g} J in motion"
-            )
+        negligible = ENERGY_ROUND_OFF * abs(self.energy.potential) + self.newton.settings.floor * self.system.lever
+
+        def rejection(now: Energy) -> str:
+            return self._gain.rejection(self.energy, now, step.dissipated, step.work, negligible)
+
+        if rejection(step.energy) and (reason := rejection(replace(step.energy, kinetic=self._kinetic(step)))):
+            raise NotConvergedError(reason)
 
     def _kinetic(self, step: AcceptedStep) -> float:
         """Kinetic energy [J] after a step, not yet committed, as the riser moves: in the step's own energy contact has
@@ -230,7 +226,7 @@ class TimeStepper:
             self._error.accept(start, self.before, step.dt)
         self._begin_step()
         self._forces, self._history = forces, self._forces_after(step) if self._renews_history else None
-        self.energy = self._energy_after(step)
+        self._keep_energy(step)
         self._past.accept(state.u, step.dt)
         control.accept(easy=step.solution.iterations <= EASY)
 
@@ -243,6 +239,10 @@ class TimeStepper:
     def _begin_step(self) -> None:
         for part in self._momentum_correcting:
             part.begin(self.before)
+
+    def _keep_energy(self, step: AcceptedStep) -> None:
+        was, self.energy = self.energy, self._energy_after(step)
+        self._gain.accept(was, self.energy, step.dissipated, step.work)
 
     def _energy_after(self, step: AcceptedStep) -> Energy:
         """Stored energy of the accepted state: the step's, but kinetic as the riser moves."""
@@ -272,6 +272,7 @@ class TimeStepper:
     def state(self) -> Saved:
         """The accepted state with its forces and energy, and what the next step is foreseen and judged by."""
         owners: dict[str, Stateful | None] = {"predictor": self._past, "mass": self._mass, "error": self._error}
+        owners["gain"] = self._gain
         kept = {"before": self.before, "forces": self._forces, "history": self._history, "energy": self.energy}
         if self.now is not self.before:
             kept["now"] = self.now
@@ -287,6 +288,8 @@ class TimeStepper:
         self._forces = record_of(Forces, within(saved, "forces"))
         self._history = record_of(Forces, history) if (history := within(saved, "history")) else None
         self.energy = record_of(Energy, within(saved, "energy"))
+        self._gain = EnergyGain(self._largest_gain, self.energy)
+        self._gain.restore(within(saved, "gain"))
         self._past = self._new_predictor()
         self._past.restore(within(saved, "predictor"))
         if self._mass is not None:

@@ -27,8 +27,8 @@ REFERENCE_EDGES = {4: (2, 3), 5: (1, 3), 6: (1, 2), 7: (0, 3), 8: (0, 2), 9: (0,
 
 def nodes_of(kind: str, degree: int) -> Nodes:
     with silent_gmsh():
-        make_block(BlockSpec((0.0, 2.0), (0.0, 1.0), 1.0, 0.5, 0.5, kind="tet" if kind == "tet" else "hex"))
-        mesh, group = dolfinx_compat.mesh_from_gmsh(gmsh.model, MPI.COMM_SELF)
+        unit = make_block(BlockSpec((0.0, 2.0), (0.0, 1.0), 1.0, 0.5, 0.5, kind="tet" if kind == "tet" else "hex"))
+        mesh, group = dolfinx_compat.mesh_from_gmsh(gmsh.model, MPI.COMM_SELF, unit)
     assert group.size > 0
     assert np.all(group == 1)
     return dolfinx_compat.lagrange_nodes(mesh, degree, MPI.COMM_SELF)

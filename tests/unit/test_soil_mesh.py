@@ -14,7 +14,7 @@ from meshes.block import main as write_block
 from riser_soil.core.part import State
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil.element import cell_gradients
-from riser_soil.soil.grading import BlockSpec, graded
+from riser_soil.soil.grading import BlockSpec, graded, in_units
 from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid, silent_gmsh
 from riser_soil.soil.soil import Soil
 from tests.support.soil_cases import CLAY, ELASTIC, KINDS, clay_block, small_block
@@ -285,3 +285,11 @@ def test_missing_and_broken_files_are_refused_in_one_line(
             file_grid(COMM, tmp_path / name)
         assert "\n" not in str(caught.value)
     assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("unit", [1e-3, 0.3048, 1.0, 1e3])
+def test_as_many_layers_in_any_unit_of_length(unit: float) -> None:
+    """A strip of two, four or six cells stands between two odd numbers of them: round-off must not choose."""
+    for cells in (2, 4, 6):
+        spec = BlockSpec((0.0, 0.7), (0.0, 0.9), 0.3, 0.01, 0.05, riser=((0.1, 0.4), (0.6, 0.4)), strip=0.01 * cells)
+        assert in_units(spec, unit).layers() == spec.layers()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from copy import deepcopy
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,11 +22,16 @@ from riser_soil.results.observer import riser_snapshot
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
-from tests.support.coupled_scenes import Mapping
+from tests.support.coupled_scenes import LAY, Mapping, touchdown
+from tests.support.coupled_scenes import heave as heaved
 from tests.support.driven_stage import Watcher
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 
 SCALES = (1e-6, 1e-3, 1e3, 1e6)
+ON_SOIL: dict[str, float] = {"outer_diameter": 1, "inner_diameter": 1, "mass": 2, "EA": 3, "EI": 5, "GJ": 5}
+ON_SOIL |= {"position": 1, "length": 1}
+ON_SOIL |= {"stiffness": 1, "x": 1, "y": 1, "depth": 1, "size_at_riser": 1, "size_far": 1, "su": 1, "amplitude": 1}
+ON_SOIL |= {"duration": 0.5, "time_step": 0.5, "period": 0.5, "ramp": 0.5}
 SEABEDS: dict[str, Mapping] = {
     "rigid": {"kind": "rigid"},
     "springs": {"kind": "spring", "stiffness": 1.0e4},
@@ -66,11 +72,15 @@ def hose(s: float, seabed: str, dimension: int, time_step: float | str) -> Mappi
 
 def told(s: float, seabed: str, dimension: int = 2, time_step: float | str = 0.1) -> Array:
     """By step, without units: time; H and top tension, largest moment, touchdown arc, lowest node; iterations."""
-    assembly = build(scene_from_mapping(hose(s, seabed, dimension, time_step)), MPI.COMM_SELF)
+    return told_of(hose(s, seabed, dimension, time_step), s)
+
+
+def told_of(scene: Mapping, s: float) -> Array:
+    assembly = build(scene_from_mapping(scene), MPI.COMM_SELF)
     rows = list[list[float]]()
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        riser, contact = riser_snapshot(assembly, stepper), assembly.seabed
+        riser, contact = riser_snapshot(assembly, stepper), assembly.soil_contact or assembly.seabed
         assert contact is not None
         forces = [riser.start_force[0] / s**3, riser.effective_tension[-1] / s**3, riser.bending_moment.max() / s**4]
         places = [contact.touchdown_arc(stepper.now) / s, float(riser.position[:, 2].min()) / s]
@@ -103,3 +113,36 @@ def test_same_hose_in_space(s: float) -> None:
 @pytest.mark.parametrize("s", SCALES)
 def test_same_automatic_steps(s: float) -> None:
     np.testing.assert_allclose(told(s, "springs", time_step="auto"), usual("springs", 2, "auto"), rtol=1e-5, atol=1e-9)
+
+
+def on_soil(s: float, kind: str) -> Mapping:
+    """A riser that comes down on a small block of clay that yields, and heaves, s times as long."""
+    scene = touchdown(LAY, heaved(0.2), kind=kind)
+    if kind == "tet":
+        scene["soil"]["law"] |= {"su": 0.0, "su_gradient": 2.0e3}
+    scaled: Mapping = _scaled(scene, s)
+    return scaled
+
+
+def _scaled(value: Any, s: float, power: float = 0.0) -> Any:
+    """Lengths, times, forces of a scene and what is made of them by the powers of s that their keys have."""
+    if isinstance(value, dict):
+        return {key: _scaled(each, s, ON_SOIL.get(key, 0.0)) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_scaled(each, s, power) for each in value]
+    return value * s**power if isinstance(value, float) else value
+
+
+@pytest.mark.parametrize("s", [1e-6, *(pytest.param(s, marks=pytest.mark.verify) for s in SCALES[1:])])
+@pytest.mark.parametrize("kind", ["hex", "tet"])
+def test_same_riser_on_soil(kind: str, s: float) -> None:
+    """Cells, too: gmsh works in lengths of order one. Of hexahedra on clay with, of tetrahedra without strength at the
+    seabed.
+    """
+    found, usual = (rows[-2:, :-1] for rows in (told_of(on_soil(s, kind), s), usual_on_soil(kind)))
+    np.testing.assert_allclose(found, usual, rtol=1e-6, atol=1e-9)
+
+
+@cache
+def usual_on_soil(kind: str) -> Array:
+    return told_of(on_soil(1.0, kind), 1.0)

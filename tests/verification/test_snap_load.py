@@ -1,0 +1,79 @@
+"""A weight falls until its slack line snaps taut, is thrown up, and crushes the line; nothing gets more than it had.
+
+While the line is slack it buckles in as many waves as it has elements. In steps of 1/50 of the weight's period on the
+line each of them may create a little energy, and the sum once tore the line.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from scipy.optimize import brentq
+
+from riser_soil.assembly import build
+from riser_soil.core.part import State
+from riser_soil.core.system import Timer
+from riser_soil.results.observer import riser_snapshot
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
+from riser_soil.stages import run_stage
+from tests.support.coupled_scenes import Mapping
+from tests.support.driven_stage import Watcher
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene
+
+L, SLACK, MASS, EA, g = 20.0, 1.0, 500.0, 1.0e7, 9.81
+WEIGHT = MASS * g
+PEAK = WEIGHT + np.sqrt(WEIGHT**2 + 2.0 * EA / L * WEIGHT * SLACK)
+"""Tension [N] where all that the weight has fallen stretches the line."""
+
+
+def bow(points: int = 41) -> list[list[float]]:
+    """An arc of the line's length between ends that are nearer by the slack, downwards."""
+    half = brentq(lambda a: np.sin(a) / a - (L - SLACK) / L, 0.01, 3.0)
+    radius, angle = 0.5 * L / half, np.linspace(-half, half, points)
+    aside, along = radius * (np.cos(angle) - np.cos(half)), radius * np.sin(angle) + 0.5 * (L - SLACK)
+    return [[float(x), 0.0, -float(z)] for x, z in zip(aside, along, strict=True)]
+
+
+def dropped(elements: int, time_step: float) -> Mapping:
+    pipe = {"EA": EA, "EI": 10.0, "GJ": 10.0, "mass": 1.0, "outer_diameter": 0.03}
+    riser = {"attachments": [{"at": L, "mass": MASS}], "initial": {"points": bow()}}
+    riser["unstressed"] = {"points": [[0.0, 0.0, 0.0], [0.0, 0.0, -L]]}
+    start = prescribed(0.0, 0.0, 0.0)
+    ends: Mapping = {"start": start, "end": "free", "riser": riser, "gravity": g}
+    return riser_scene(dynamic(1.2, time_step), pipe=pipe, length=L, elements=elements, **ends)
+
+
+def told(elements: int, time_step: float) -> tuple[float, float, float]:
+    """Largest tension at the weight and anywhere [N], and the most energy above that of the start [J]."""
+    assembly = build(scene_from_mapping(dropped(elements, time_step)), MPI.COMM_SELF)
+    tension, energy = list[tuple[float, float]](), list[float]()
+
+    def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
+        found = riser_snapshot(assembly, stepper).effective_tension
+        tension.append((float(found[-1]), float(found.max())))
+        energy.append(stepper.energy.total)
+
+    watcher = Watcher(watch)
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), watcher, Timer.new())
+    at_weight, anywhere = np.array(tension).max(axis=0)
+    return at_weight, anywhere, max(energy) - watcher.energy_at_start.total
+
+
+@pytest.mark.parametrize(
+    ("elements", "time_step"),
+    [
+        (40, 4e-3),
+        pytest.param(80, 4e-3, marks=pytest.mark.verify),
+        pytest.param(40, 1e-2, marks=pytest.mark.verify),
+        pytest.param(80, 2e-3, marks=pytest.mark.verify),
+        pytest.param(80, 1e-3, marks=pytest.mark.verify),
+    ],
+)
+def test_no_more_than_the_fall_gives(elements: int, time_step: float) -> None:
+    """The slack that bends takes some 7 % of the peak."""
+    at_weight, anywhere, created = told(elements, time_step)
+    print(f"{elements} elements, {time_step} s: {at_weight / PEAK:.4f}, {anywhere / PEAK:.4f} of it; {created} J")
+    assert 0.9 * PEAK < at_weight <= anywhere < PEAK
+    assert created < 0.05 * WEIGHT * SLACK
