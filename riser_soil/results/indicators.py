@@ -35,6 +35,8 @@ JUDGED = {
 AT = np.array([index_of(name) for name in JUDGED])
 # Share of a figure's largest size from which its estimated error is a warning, and the share that steps are advised for.
 LARGE_ERROR, FINE = 0.03, 0.01
+# Local error of a step, over the diameter, from which the motion is not followed; automatic steps keep to 0.02.
+LARGE_LOCAL_ERROR = 2.0
 # Share of the riser's kinetic energy that one impact may lose to the time step.
 LARGE_LOSS = 0.1
 STEPS_OF_IMPACT = 50.0  # in a period of the riser on its contact: some per cent of the force of an impact
@@ -138,6 +140,7 @@ class StageIndicators:
     def warnings(self) -> Iterator[str]:
         """Of a dynamic stage, with numbers and a remedy."""
         yield from self._coarse_steps()
+        yield from self._jumps()
         yield from self._lost_impact()
 
     def _coarse_steps(self) -> Iterator[str]:
@@ -152,6 +155,16 @@ class StageIndicators:
                     f"{scales[n]:.4g} {unit} (told above {LARGE_ERROR:g}): that sharply it turns between steps of "
                     f"{self.step.dt:.3g} s; take a time_step of {self.step.dt * math.sqrt(FINE / share[n]):.2g} s, or auto"
                 )
+
+    def _jumps(self) -> Iterator[str]:
+        step, allowed = self.step, LARGE_LOCAL_ERROR * self.diameter
+        if step.local_error > allowed:
+            yield (
+                f"the step at {step.time:.5g} s misplaces the riser by some {step.local_error:.3g} m of its own, "
+                f"{step.local_error / self.diameter:.2g} diameters (told above {LARGE_LOCAL_ERROR:g}), by the change of "
+                f"its accelerations: take a time_step of {step.dt * (allowed / step.local_error) ** (1 / 3):.2g} s or "
+                "less, or auto"
+            )
 
     def _lost_impact(self) -> Iterator[str]:
         impact = self.impact
