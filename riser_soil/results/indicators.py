@@ -39,7 +39,8 @@ LARGE_ERROR, FINE = 0.03, 0.01
 LARGE_LOCAL_ERROR = 2.0
 # Share of the riser's kinetic energy that one impact may lose to the time step.
 LARGE_LOSS = 0.1
-STEPS_OF_IMPACT = 50.0  # in a period of the riser on its contact: some per cent of the force of an impact
+STEPS_OF_IMPACT = 100.0  # in a period of the riser on its contact, which cost 2 to 3 % of the force of an impact
+NEGLIGIBLE = 1e-2  # of the riser's weight: a tension too small to judge; times a diameter, a moment
 LOSSES = ("seabed_time_scheme", "contact_time_scheme")
 
 
@@ -61,7 +62,7 @@ class WorstStep:
 class ImpactLoss:
     """Energy [J] that contact has lost to the time step, and its part in one impact.
 
-    lost: of the stage. recent: of late, fading within a contact's period. largest: of it, with its time [s].
+    lost: of the stage. recent: of late, fading within two of a contact's periods. largest: of it, with its time [s].
     kinetic: the largest of the riser yet.
     """
 
@@ -73,7 +74,7 @@ class ImpactLoss:
 
     def follow(self, t: float, dt: float, period: float, ledger: Ledger) -> None:
         lost = sum(ledger.dissipated_by.get(name, 0.0) for name in LOSSES)
-        fading = max(4.0 * dt, period if math.isfinite(period) else 0.0)
+        fading = max(4.0 * dt, 2.0 * period if math.isfinite(period) else 0.0)
         self.recent = self.recent * math.exp(-dt / fading) + lost - self.lost
         self.lost, self.kinetic = lost, max(self.kinetic, ledger.kinetic)
         if self.recent > self.largest:
@@ -94,11 +95,12 @@ class ImpactLoss:
 class StageIndicators:
     """Indicators of one stage, gathered while it runs.
 
-    diameter: of the riser [m]; contact_period: of the riser on its contact's stiffness [s], nan where there is none.
+    diameter, weight: of the riser [m], [N]; contact_period: of the riser on its contact's stiffness [s], nan where there is none.
     bending: the largest misfit of the elements, see `Plausibility`.
     """
 
     diameter: float = math.nan
+    weight: float = math.nan
     contact_period: float = math.nan
     step: WorstStep = field(default_factory=WorstStep)
     impact: ImpactLoss = field(default_factory=ImpactLoss)
@@ -144,8 +146,9 @@ class StageIndicators:
         yield from self._lost_impact()
 
     def _coarse_steps(self) -> Iterator[str]:
-        tension = max(self.largest[:2])
-        scales = np.array([tension, tension, tension, self.largest[3], math.inf])
+        tension, least = max(self.largest[:2]), NEGLIGIBLE * self.weight
+        moment = max(self.largest[3], least * self.diameter)
+        scales = np.array([max(tension, least)] * 3 + [moment, math.inf])
         share = self.resolution.of_most / np.where(scales > 0.0, scales, math.inf)
         for n, (name, words) in enumerate(JUDGED.items()):
             if words and share[n] > LARGE_ERROR and share[n] == share[[0, 1, 3]].max():
@@ -185,7 +188,7 @@ class StageIndicators:
 
     def state(self) -> Saved:
         told = {"step": asdict(self.step), "impact": asdict(self.impact), "bending": self.bending}
-        plain = {"largest": self.largest, "diameter": self.diameter, "contact_period": self.contact_period}
+        plain = {"largest": self.largest, "diameter": self.diameter, "weight": self.weight, "contact_period": self.contact_period}
         return gathered({"resolution": self.resolution}) | {"told": packed(told | plain)}
 
     def restore(self, saved: Saved) -> None:

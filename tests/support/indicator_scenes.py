@@ -105,7 +105,7 @@ STEPPED = {
     "first scene": stepped(heaved(1.5, 10.0, 20.0), (0.8, 0.4, 0.1), 0.025),
     "first scene, heave 3 m, 8 s": stepped(heaved(3.0, 8.0, 16.0), (0.4, 0.2, 0.1), 0.025),
     "first scene, heave 10 m, 4 s": stepped(heaved(10.0, 4.0, 4.0), (0.2, 0.1, 0.05), 0.0125),
-    "let down by 10 m in 4 s": stepped(moved(-10.0, 4.0, 6.0), (0.1, 0.05, 0.025), 0.00625),
+    "let down by 5 m in 4 s": stepped(moved(-5.0, 4.0, 5.0), (0.2, 0.1, 0.05), 0.0125),
     "pulled up by 10 m in 4 s": stepped(moved(10.0, 4.0, 6.0), (0.2, 0.1, 0.05), 0.0125),
     "pulled up by 5 m in 6 s": stepped(moved(5.0, 6.0, 8.0), (0.4, 0.2, 0.1), 0.025),
     "surge": swung([2.01, 0.0, 0.0], 14.0, (3.5, 1.75, 0.7, 0.35), GENERALISED),
