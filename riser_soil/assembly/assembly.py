@@ -119,7 +119,8 @@ class Assembly:
         """
         found = dict(self.contact_stiffness)
         if "soil" in found and self.scene.soil is not None:
-            found["soil"] = 1.0 / (1.0 / found["soil"] + 1.0 / self.scene.soil.top_law.surface_modulus(self.scales.diameter))
+            E = self.scene.soil.top_law.surface_modulus(self.scales.diameter)
+            found["soil"] *= E / (E + found["soil"])
         stiffest = max(found.values(), default=math.nan)
         return 2.0 * math.pi * math.sqrt(float(self.elements.mass.min()) / stiffest)
 

@@ -205,7 +205,8 @@ class SurfaceContact(SoilContact):
         first, last = self.evaluate(before).pressed, self.evaluate(after).pressed
         taken = float(np.sum(last.gradient * self.moved(before, after)))
         lost = taken - last.potential + first.potential
-        return Work(dissipated=lost, by_scheme=taken - self._by_law(first.points, last.points) if self.law.columns else lost)
+        by_scheme = taken - self._by_law(first.points, last.points) if self.law.columns else lost
+        return Work(dissipated=lost, by_scheme=by_scheme)
 
     def _by_law(self, first: NearPoints, last: NearPoints) -> float:
         """Work [J] of the law along a step, at points that touch before or after it."""
@@ -214,7 +215,7 @@ class SurfaceContact(SoilContact):
         for way, points in zip(ways, (first, last), strict=True):
             at = np.searchsorted(numbers, points.number)
             area[at], way[at] = points.area, -points.gap
-        return float(area @ work_along_step(self.law, *ways, self._memory.at(numbers)))
+        return float(area @ work_along_step(self.law, ways[0], ways[1], self._memory.at(numbers)))
 
     def moved(self, before: State, after: State) -> Array:
         """Movement (m, nz) in a step of what touches at its end: q of the elements, then the facets' nodes [m]."""

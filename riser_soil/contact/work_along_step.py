@@ -7,28 +7,29 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.seabed.law import NormalLaw
 
-PANELS = 4  # of the way above the undisturbed ground, and of that below it
+#: Panels of the way within the ground, where the laws are smooth, and of that above it, where suction has corners.
+WITHIN, ABOVE = 2, 4
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
-#: Places 0 to 1 along a way in panels, and their weights, which add up to 1.
-_PLACES = ((np.arange(PANELS)[:, None] + 0.5 * (_GAUSS + 1.0)) / PANELS).ravel()
-_SHARES = np.tile(0.5 * _WEIGHTS / PANELS, PANELS)
 
 
 def work_along_step(law: NormalLaw, before: Array, after: Array, history: Array) -> Array:
     """Work per length (...) [N] of the force against the penetration, from `before` to `after` (...) [m] by one way.
 
     history (..., nh): at the beginning. Without a history the force has a potential and the work is its change, so
-    that such ground dissipates nothing. Else the law is integrated by Gauss points, in panels above the ground and
-    below it, from where there is a force.
+    that such ground dissipates nothing. Else the law is integrated by Gauss points, in panels within the ground and
+    above it, as far as there is a force.
     """
     if not law.columns:
         return np.asarray(law.update(after, history).stored - law.update(before, history).stored)
-    first, last = (np.maximum(z, -law.reach) for z in (before, after))
-    turn = np.clip(0.0, np.minimum(first, last), np.maximum(first, last))
-    return _between(law, first, turn, history) + _between(law, turn, last, history)
+    work = _between(law, np.maximum(before, 0.0), np.maximum(after, 0.0), history, WITHIN)
+    if law.reach > 0.0:
+        first, last = (np.clip(z, -law.reach, 0.0) for z in (before, after))
+        work += _between(law, first, last, history, ABOVE)
+    return work
 
 
-def _between(law: NormalLaw, first: Array, last: Array, history: Array) -> Array:
-    z = first + _PLACES.reshape(-1, *(1,) * first.ndim) * (last - first)
+def _between(law: NormalLaw, first: Array, last: Array, history: Array, panels: int) -> Array:
+    places = ((np.arange(panels)[:, None] + 0.5 * (_GAUSS + 1.0)) / panels).ravel()
+    z = first + places.reshape(-1, *(1,) * first.ndim) * (last - first)
     force = law.update(z, np.broadcast_to(history, (*z.shape, history.shape[-1]))).force
-    return np.asarray(np.tensordot(_SHARES, force, 1) * (last - first))
+    return np.asarray(np.tensordot(np.tile(0.5 * _WEIGHTS / panels, panels), force, 1) * (last - first))

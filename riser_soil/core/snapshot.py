@@ -155,6 +155,7 @@ class RunFacts:
     riser_dofs: int = 0
     soil_dofs: int = 0
     diameter: float = float("nan")  # m, the riser's largest
+    weight: float = float("nan")  # N, of the whole riser by its heaviest part
     contact_period: float = float("nan")  # s, of the riser on its contact's stiffness; nan where nothing touches
     sections: int = 0  # across the riser in which the soil's settlement is recorded
     offsets: tuple[float, ...] = ()  # m, places along the sections

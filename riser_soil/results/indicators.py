@@ -33,11 +33,14 @@ JUDGED = {
     "touchdown_arc": "",
 }
 AT = np.array([index_of(name) for name in JUDGED])
-# Share of a figure's largest size from which its estimated error is a warning, and the share that steps are advised for.
+# Share of a figure's largest size from which its estimated error is a warning, and that which is advised.
 LARGE_ERROR, FINE = 0.03, 0.01
+# Local error of a step, over the diameter, from which the motion is not followed; automatic steps keep to 0.02.
+LARGE_LOCAL_ERROR = 2.0
 # Share of the riser's kinetic energy that one impact may lose to the time step.
 LARGE_LOSS = 0.1
-STEPS_OF_IMPACT = 50.0  # in a period of the riser on its contact: some per cent of the force of an impact
+STEPS_OF_IMPACT = 100.0  # in a period of the riser on its contact, which cost 2 to 3 % of the force of an impact
+NEGLIGIBLE = 1e-2  # of the riser's weight: a tension too small to judge; times a diameter, a moment
 LOSSES = ("seabed_time_scheme", "contact_time_scheme")
 
 
@@ -59,7 +62,7 @@ class WorstStep:
 class ImpactLoss:
     """Energy [J] that contact has lost to the time step, and its part in one impact.
 
-    lost: of the stage. recent: of late, fading within a contact's period. largest: of it, with its time [s].
+    lost: of the stage. recent: of late, fading within two of a contact's periods. largest: of it, with its time [s].
     kinetic: the largest of the riser yet.
     """
 
@@ -71,7 +74,7 @@ class ImpactLoss:
 
     def follow(self, t: float, dt: float, period: float, ledger: Ledger) -> None:
         lost = sum(ledger.dissipated_by.get(name, 0.0) for name in LOSSES)
-        fading = max(4.0 * dt, period if math.isfinite(period) else 0.0)
+        fading = max(4.0 * dt, 2.0 * period if math.isfinite(period) else 0.0)
         self.recent = self.recent * math.exp(-dt / fading) + lost - self.lost
         self.lost, self.kinetic = lost, max(self.kinetic, ledger.kinetic)
         if self.recent > self.largest:
@@ -92,17 +95,18 @@ class ImpactLoss:
 class StageIndicators:
     """Indicators of one stage, gathered while it runs.
 
-    diameter: of the riser [m]; contact_period: of the riser on its contact's stiffness [s], nan where there is none.
+    diameter, weight: of the riser [m], [N]. contact_period: of the riser on its contact's stiffness [s], nan without.
     bending: the largest misfit of the elements, see `Plausibility`.
     """
 
     diameter: float = math.nan
+    weight: float = math.nan
     contact_period: float = math.nan
     step: WorstStep = field(default_factory=WorstStep)
     impact: ImpactLoss = field(default_factory=ImpactLoss)
     bending: dict[str, float] = field(default_factory=dict)
     resolution: TimeResolution = field(default_factory=lambda: TimeResolution(len(AT)))
-    largest: list[float] = field(default_factory=lambda: [0.0] * len(AT))
+    largest: Array = field(default_factory=lambda: np.zeros(len(AT)))
 
     def begin(self, t: float, vector: Array) -> None:
         """The figures, from `figures.pack`, that a dynamic stage begins with."""
@@ -110,8 +114,9 @@ class StageIndicators:
 
     def follow(self, t: float, vector: Array, health: StepStatistics, ledger: Ledger) -> None:
         """After a step of a dynamic stage; t: s of the run."""
-        self.resolution.update(t, vector[AT])
-        self.largest = np.fmax(self.largest, np.abs(vector[AT])).tolist()
+        values = vector[AT]
+        self.resolution.update(t, values)
+        self.largest = np.fmax(self.largest, np.abs(values))
         self.step.follow(t, health)
         self.impact.follow(t, health.time_step, self.contact_period, ledger)
 
@@ -138,45 +143,68 @@ class StageIndicators:
     def warnings(self) -> Iterator[str]:
         """Of a dynamic stage, with numbers and a remedy."""
         yield from self._coarse_steps()
+        yield from self._jumps()
         yield from self._lost_impact()
 
     def _coarse_steps(self) -> Iterator[str]:
-        tension = max(self.largest[:2])
-        scales = np.array([tension, tension, tension, self.largest[3], math.inf])
-        share = self.resolution.of_most / np.where(scales > 0.0, scales, math.inf)
-        for n, (name, words) in enumerate(JUDGED.items()):
-            if words and share[n] > LARGE_ERROR and share[n] == share[[0, 1, 3]].max():
-                unit = "N.m" if name == "max_bending_moment" else "N"
-                yield (
-                    f"the largest {words} may be off by some {self.resolution.of_most[n]:.3g} {unit}, {share[n]:.2g} of "
-                    f"{scales[n]:.4g} {unit} (told above {LARGE_ERROR:g}): that sharply it turns between steps of "
-                    f"{self.step.dt:.3g} s; take a time_step of {self.step.dt * math.sqrt(FINE / share[n]):.2g} s, or auto"
-                )
+        """Of tensions and moment the one that is most in doubt."""
+        share, scale = self._doubt()
+        n = int(share.argmax())
+        if share[n] > LARGE_ERROR:
+            name, unit = list(JUDGED)[n], "N.m" if "moment" in list(JUDGED)[n] else "N"
+            fine = self.step.dt * math.sqrt(FINE / share[n])
+            error = self.resolution.of_most[n]
+            yield (
+                f"the largest {JUDGED[name]} may be off by some {error:.3g} {unit}, {share[n]:.2g} "
+                f"of {scale[n]:.4g} {unit} (told above {LARGE_ERROR:g}): that sharply it turns between steps of"
+                f" {self.step.dt:.3g} s; take a time_step of {fine:.2g} s, or auto"
+            )
+
+    def _doubt(self) -> tuple[Array, Array]:
+        """Estimated errors over their scales, and these scales; 0 for figures that have no words."""
+        tension, least = float(self.largest[:2].max()), NEGLIGIBLE * self.weight
+        moment = max(self.largest[3], least * self.diameter)
+        scale = np.array([max(tension, least)] * 3 + [moment, math.inf])
+        spoken = np.array([bool(words) for words in JUDGED.values()])
+        share = self.resolution.of_most / np.where(scale > 0.0, scale, math.inf)
+        return np.where(spoken, share, 0.0), scale
+
+    def _jumps(self) -> Iterator[str]:
+        step, allowed = self.step, LARGE_LOCAL_ERROR * self.diameter
+        if step.local_error > allowed:
+            fine = step.dt * (allowed / step.local_error) ** (1 / 3)
+            yield (
+                f"the step at {step.time:.5g} s misplaces the riser by some {step.local_error:.3g} m of its own, "
+                f"{step.local_error / self.diameter:.2g} diameters (told above {LARGE_LOCAL_ERROR:g}), by the change "
+                f"of its accelerations: take a time_step of {fine:.2g} s or less, or auto"
+            )
 
     def _lost_impact(self) -> Iterator[str]:
         impact = self.impact
         if impact.share > LARGE_LOSS:
-            period = ""
-            if math.isfinite(self.contact_period):
-                steps, fine = self.contact_period / self.step.dt, self.contact_period / STEPS_OF_IMPACT
-                period = (
-                    f"the riser bounces on its contact with a period of {self.contact_period:.3g} s, {steps:.2g} steps; "
-                    f"take a time_step of {fine:.2g} s, or a softer contact"
-                )
             yield (
                 f"at {impact.time:.5g} s impact lost {impact.largest:.3g} J to the time step and not to the ground, "
                 f"{impact.share:.0%} of the {impact.kinetic:.3g} J of the motion (told above {LARGE_LOSS:.0%}): forces "
-                f"of impact may be {impact.force_error:.0%} too small, and rebounds too low; "
-                f"{period or 'take a smaller time_step'}"
+                f"of impact may be {impact.force_error:.0%} too small, and rebounds too low; {self._shorter()}"
             )
+
+    def _shorter(self) -> str:
+        if math.isnan(self.contact_period):
+            return "take a smaller time_step"
+        steps, fine = self.contact_period / self.step.dt, self.contact_period / STEPS_OF_IMPACT
+        return (
+            f"the riser bounces on its contact with a period of {self.contact_period:.3g} s, {steps:.2g} steps; "
+            f"take a time_step of {fine:.2g} s, or a softer contact"
+        )
 
     def state(self) -> Saved:
         told = {"step": asdict(self.step), "impact": asdict(self.impact), "bending": self.bending}
-        plain = {"largest": self.largest, "diameter": self.diameter, "contact_period": self.contact_period}
-        return gathered({"resolution": self.resolution}) | {"told": packed(told | plain)}
+        plain = {name: getattr(self, name) for name in ("diameter", "weight", "contact_period")}
+        return gathered({"resolution": self.resolution}) | {"told": packed(told | plain), "largest": self.largest}
 
     def restore(self, saved: Saved) -> None:
         told: Mapping[str, Any] = unpacked(saved["told"])
         vars(self).update(told)
+        self.largest = saved["largest"].copy()
         self.step, self.impact = WorstStep(**told["step"]), ImpactLoss(**told["impact"])
         restore_all({"resolution": self.resolution}, saved)

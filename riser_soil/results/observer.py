@@ -285,6 +285,7 @@ def facts(assembly: Assembly) -> RunFacts:
         riser_dofs=unknowns(assembly.comm, assembly.line),
         soil_dofs=unknowns(assembly.comm, assembly.soil.field) if assembly.soil is not None else 0,
         diameter=assembly.scales.diameter,
+        weight=assembly.scales.weight * float(assembly.line.arc[-1] - assembly.line.arc[0]),
         contact_period=assembly.contact_period,
         sections=count_of(assembly) if across else 0,
         offsets=offsets_of(assembly) if across else (),

@@ -74,7 +74,7 @@ class Recorder:
     ) -> None:
         self.summary = Summary(facts)
         self._lock, self._folder = lock, folder
-        self._scales = facts.diameter, facts.contact_period
+        self._scales = facts.diameter, facts.weight, facts.contact_period
         self._arc = arc
         self._fields = fields
         left_out = outputs.left_out(fields)

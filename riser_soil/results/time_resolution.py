@@ -11,6 +11,8 @@ phase, is not seen; a corner that the motion itself has counts like one that the
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from riser_soil.core.arrays import Array
@@ -18,6 +20,7 @@ from riser_soil.core.saved_state import Saved, values_of
 
 # Of the largest second difference around an extreme, from the calibration in `tests/verification/test_indicators.py`.
 SHARE = 0.3
+_SIGNS = np.array([[-1.0], [1.0]])
 AFTER = 2  # steps after an extreme that still belong to it
 
 
@@ -25,47 +28,39 @@ class TimeResolution:
     """Estimates of the time step's error in the extremes of n figures."""
 
     def __init__(self, n: int) -> None:
-        self._values, self._t = np.full((3, n), np.nan), np.full(3, np.nan)
-        self._bend, self._past = np.zeros(n), np.zeros(n)  # |D| of the last two steps
-        self._least, self._most = np.full(n, np.inf), np.full(n, -np.inf)
-        self._of_least, self._of_most = np.zeros(n), np.zeros(n)
-        self._since_least, self._since_most = np.full(n, np.inf), np.full(n, np.inf)
+        self._values, self._slope, self._t, self._dt = np.full(n, np.nan), np.full(n, np.nan), math.nan, math.nan
+        self._past = np.zeros(n)  # |D| of the step before
+        # Of the least values, negative, and of the largest: the value, the largest |D| around it, steps since.
+        self._extreme, self._around = np.full((2, n), -np.inf), np.zeros((2, n))
+        self._since = np.full((2, n), np.inf)
 
     def update(self, t: float, values: Array) -> None:
         """t: s; values (n,) after a step. nan does not count."""
-        self._values, self._t = np.vstack([self._values[1:], values]), np.append(self._t[1:], t)
-        self._past, self._bend = self._bend, self._second_difference()
-        near = np.maximum(self._past, self._bend)
-        for side, sign in (("least", -1.0), ("most", 1.0)):
-            self._follow(side, sign, values, near)
-
-    def _follow(self, side: str, sign: float, values: Array, near: Array) -> None:
-        extreme, error, since = (getattr(self, f"_{name}{side}") for name in ("", "of_", "since_"))
-        new = sign * values > sign * extreme
-        extreme[new], error[new], since[new] = values[new], near[new], 0.0
-        after = ~new & (since < AFTER)
-        since[~new] += 1.0
-        error[after] = np.maximum(error[after], self._bend[after])
-
-    def _second_difference(self) -> Array:
-        """|D| over the last two steps, of the longer one where they differ; 0 where it is not known."""
-        first, second = np.diff(self._t)
-        slopes = np.diff(self._values, axis=0) / np.array([[first], [second]])
-        found = 2.0 * max(first, second) ** 2 / (first + second) * np.abs(slopes[1] - slopes[0])
-        return np.nan_to_num(found, nan=0.0, posinf=0.0)
+        dt = t - self._t
+        slope = (values - self._values) / dt
+        bend = (2.0 * max(dt, self._dt) ** 2 / (dt + self._dt)) * np.abs(slope - self._slope)
+        bend = np.where(bend >= 0.0, bend, 0.0)
+        self._values, self._slope, self._t, self._dt = values.copy(), slope, t, dt
+        signed = _SIGNS * values
+        new = signed > self._extreme
+        self._since = np.where(new, 0.0, self._since + 1.0)
+        self._extreme = np.where(new, signed, self._extreme)
+        near = np.where(self._since <= AFTER, np.maximum(self._around, bend), self._around)
+        self._around = np.where(new, np.maximum(self._past, bend), near)
+        self._past = bend
 
     @property
     def of_least(self) -> Array:
         """Estimated error (n,) of the least values."""
-        return SHARE * self._of_least
+        return SHARE * self._around[0]
 
     @property
     def of_most(self) -> Array:
         """Estimated error (n,) of the largest values."""
-        return SHARE * self._of_most
+        return SHARE * self._around[1]
 
     def state(self) -> Saved:
         return values_of(self)
 
     def restore(self, saved: Saved) -> None:
-        vars(self).update({name: value.copy() for name, value in saved.items()})
+        vars(self).update({name: value.copy() if value.ndim else float(value) for name, value in saved.items()})
