@@ -44,13 +44,13 @@ class AssessedQuantity:
         return self.reference.relative(self.uncertainty)
 
     @property
-    def known(self) -> bool:
-        return self.doubt <= TELLING
-
-    @property
     def error(self) -> float:
         """Of the scene as it is, relative."""
         return self.error_of(self.scene)
+
+    def allowed(self, target: float) -> float:
+        """Relative error that counts as the target: errors less than the reference's uncertainty can't be told."""
+        return max(target, self.doubt)
 
     def error_of(self, found: Headline) -> float:
         """Relative error of the quantity in another run."""
@@ -67,12 +67,16 @@ def assess(ladders: Ladders, outcomes: Outcomes) -> dict[str, AssessedQuantity]:
     return {key: _assessed(each, ladders, outcomes) for key, each in base.headlines.items()}
 
 
+def told(quantities: Mapping[str, AssessedQuantity]) -> dict[str, AssessedQuantity]:
+    """The quantities whose reference is known well enough to tell errors."""
+    return {key: each for key, each in quantities.items() if each.doubt <= TELLING}
+
+
 def worst(quantities: Mapping[str, AssessedQuantity], outcome: PointOutcome) -> tuple[float, str]:
-    """Largest relative error of a point among the quantities known, and its key; inf where one is missing."""
+    """Largest relative error of a point among the quantities, and its key; inf where one is missing in it."""
     errors = [
         (each.error_of(outcome.headlines[key]) if key in outcome.headlines else math.inf, key)
         for key, each in quantities.items()
-        if each.known
     ]
     return max(errors, default=(math.nan, ""))
 

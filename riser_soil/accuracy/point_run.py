@@ -6,12 +6,13 @@ interpreter's start, imports of what each run needs, and the compilation of kern
 
 from __future__ import annotations
 
+import argparse
 import json
 import sys
 import time
 from pathlib import Path
 
-from riser_soil.core.compiled import seconds_compiling
+from riser_soil.core import compiled
 from riser_soil.errors import Interruption, RiserSoilError
 from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
@@ -22,17 +23,21 @@ COST = "cost.json"
 def main(file: Path, folder: Path) -> int:
     """Run the scene and leave its cost beside its results; the exit status is that of `riser-soil run`."""
     scene = read_scene(file)
-    since, compiled = time.process_time(), seconds_compiling()
+    since, before = time.process_time(), compiled.seconds_compiling()
     status, reason = 0, ""
     try:
         run(scene, folder, force=True)
     except (RiserSoilError, Interruption) as err:
         status, reason = err.exit_status, str(err)
-    seconds = time.process_time() - since - (seconds_compiling() - compiled)
+    seconds = time.process_time() - since - (compiled.seconds_compiling() - before)
     cost = {"status": status, "reason": reason, "cpu": seconds}
     (folder / COST).write_text(json.dumps(cost), encoding="utf-8")
     return status
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1]), Path(sys.argv[2])))
+    arguments = argparse.ArgumentParser(description="one run of a study, and its processor time")
+    arguments.add_argument("scene", type=Path, help="scene file")
+    arguments.add_argument("folder", type=Path, help="folder for its results")
+    given = arguments.parse_args()
+    sys.exit(main(given.scene, given.folder))

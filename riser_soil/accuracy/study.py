@@ -3,68 +3,24 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from riser_soil.accuracy.assessment import AssessedQuantity, assess, worst
-from riser_soil.accuracy.cheapest import CostAndError, cheapest, next_setting, pareto
+from riser_soil.accuracy.cheapest import next_setting
+from riser_soil.accuracy.findings import TARGETS, Says, Study
 from riser_soil.accuracy.knobs import Knob, knobs_of, resolved
-from riser_soil.accuracy.ladders import Ladders
-from riser_soil.accuracy.study_points import POINTS, Factors, PointOutcome, StudyPoint
-from riser_soil.accuracy.workers import compute
+from riser_soil.accuracy.ladders import RATIOS, Ladders
+from riser_soil.accuracy.study_files import write_files
+from riser_soil.accuracy.study_points import POINTS
 from riser_soil.errors import Interruption, ResultsError, SceneError, SolveError
 from riser_soil.results.whole_file import refuse_file, unusable
 from riser_soil.scene.scene import Scene
 
-TARGETS = (0.01, 0.001)
 TRIES = 3  # settings foretold to reach a target that are run
+FINER = 2  # rungs at most by which a scene that fails is made finer
+HELPING = ("elements", "time_step")  # knobs that may help it
 LEAST_RUNGS, MOST_RUNGS = 3, 9
-
-Says = Callable[[str], None]
-
-
-@dataclass(eq=False)
-class Study:
-    """A study and all that it has found so far. The scene has numbers where it says auto."""
-
-    ladders: Ladders
-    folder: Path
-    says: Says
-    outcomes: dict[Factors, PointOutcome] = field(default_factory=dict)
-
-    def compute(self, points: Iterable[Factors], jobs: int) -> None:
-        """Compute points that are not there yet, `jobs` at a time."""
-        wanted, place = [point for point in points if point not in self.outcomes], self.folder / POINTS
-        runs = [StudyPoint(point, self.ladders.scene_at(point), place) for point in wanted]
-        for outcome in compute(runs, jobs, self._tell):
-            self.outcomes[outcome.factors] = outcome
-
-    def _tell(self, outcome: PointOutcome, before: bool) -> None:
-        how = f"{outcome.cpu:.3g} s" if outcome.done else f"failed: {outcome.reason}"
-        self.says(f"{self.ladders.told(outcome.factors)}: {how}{', computed before' if before else ''}")
-
-    @property
-    def scene(self) -> PointOutcome:
-        """The scene as it is."""
-        return self.outcomes[self.ladders.base]
-
-    def quantities(self) -> dict[str, AssessedQuantity]:
-        return assess(self.ladders, self.outcomes)
-
-    def foretold(self) -> CostAndError:
-        return CostAndError(self.ladders, self.outcomes, self.quantities())
-
-    def front(self) -> list[PointOutcome]:
-        return pareto(self.outcomes, self.quantities())
-
-    def reaching(self, target: float) -> PointOutcome | None:
-        """The cheapest setting run that reaches a relative error in all known quantities."""
-        return cheapest(self.foretold(), target)
-
-    def error(self, outcome: PointOutcome) -> tuple[float, str]:
-        """Largest relative error of a point, and its quantity."""
-        return worst(self.quantities(), outcome)
 
 
 def study(
@@ -74,24 +30,47 @@ def study(
     """Run the study and leave its files in a folder; one that was interrupted goes on where it was.
 
     knobs: names of those to vary, all that the scene has by default. rungs: of each ladder. jobs: processes at a time
-    for the finest points; the others, whose time counts, run one at a time. force: begin anew. Raises SceneError,
-    ResultsError, and SolveError where the scene itself fails.
+    for the finest points; the others, whose time counts, run one at a time. force: begin anew. Where the scene fails,
+    the study is around one with more elements and shorter steps. Raises SceneError, ResultsError, and SolveError where
+    those fail, too.
     """
-    from riser_soil.accuracy.study_files import write_files
-
+    ladders = Ladders(resolved(scene), _chosen(scene, knobs), rungs)
     refuse(folder, force)
-    made = Study(Ladders(resolved(scene), _chosen(scene, knobs), rungs), folder, says)
     try:
-        _compute_all(made, jobs)
-        if made.scene.done:
-            _try_settings(made)
+        made = _around_what_runs(Study(ladders, folder, says))
+        _compute_ladders(made, jobs)
+        _try_settings(made)
     except Interruption as end:
-        end.place = f"in a study; call again to go on, {folder} keeps {len(made.outcomes)} point(s) and more"
+        end.place = f"in a study; call again to go on, {folder} keeps what was computed"
         raise
-    if not made.scene.done:
-        raise SolveError(f"the scene itself fails, and a study varies one that runs: {made.scene.reason}")
     write_files(made)
     return made
+
+
+def _around_what_runs(made: Study) -> Study:
+    """The study, or one around a finer scene, whose scene has been run."""
+    made.compute([made.ladders.base], 1)
+    for _ in range(FINER):
+        if made.scene.done or not any(knob.name in HELPING for knob in made.ladders.knobs):
+            break
+        made = _finer(made)
+    if made.scene.status == SceneError.exit_status:
+        raise SceneError(made.scene.reason)
+    if not made.scene.done:
+        raise SolveError(f"the scene itself fails, and a study varies one that runs: {made.scene.reason}")
+    return made
+
+
+def _finer(made: Study) -> Study:
+    """A rung finer in what may help a scene that fails; what has been run is known in its terms."""
+    step = tuple(RATIOS[knob.name] if knob.name in HELPING else 1.0 for knob in made.ladders.knobs)
+    ladders = Ladders(made.ladders.scene_at(step), made.ladders.knobs, made.ladders.rungs)
+    finer = Study(ladders, made.folder, made.says, failure=made.failure or made.scene.reason)
+    for before in made.outcomes.values():
+        factors = tuple(factor / ratio for factor, ratio in zip(before.factors, step, strict=True))
+        finer.outcomes[factors] = replace(before, factors=factors)
+    finer.compute([ladders.base], 1)
+    return finer
 
 
 def refuse(folder: Path, force: bool) -> None:
@@ -117,12 +96,9 @@ def _chosen(scene: Scene, names: Sequence[str]) -> tuple[Knob, ...]:
     return tuple(knob for knob in there if not names or knob.name in names)
 
 
-def _compute_all(made: Study, jobs: int) -> None:
-    """The scene, then the finest of each ladder and the corner, which take longest, then the rest one at a time."""
+def _compute_ladders(made: Study, jobs: int) -> None:
+    """The finest of each ladder and the corner, which take longest, then the rest one at a time."""
     ladders = made.ladders
-    made.compute([ladders.base], 1)
-    if not made.scene.done:
-        return
     along = [ladders.along(number) for number in range(len(ladders.knobs))]
     finest = [points[-1] for points in along]
     made.compute([*finest, *([ladders.corner] if ladders.corner is not None else [])], jobs)
@@ -133,7 +109,7 @@ def _try_settings(made: Study) -> None:
     """Run what should reach the targets at less cost than what has been run."""
     for target in TARGETS:
         for _ in range(TRIES):
-            point = next_setting(made.foretold(), target)
+            point = next_setting(made.foretold(target))
             if point is None:
                 break
             made.says(f"foretold to reach {target:.1%}:")

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from riser_soil import __version__
-from riser_soil.accuracy.assessment import AssessedQuantity
-from riser_soil.accuracy.study import TARGETS, Study
+from riser_soil.accuracy.assessment import TELLING, AssessedQuantity
+from riser_soil.accuracy.findings import TARGETS, Study
 from riser_soil.accuracy.study_page import page
 from riser_soil.accuracy.study_points import PointOutcome
 from riser_soil.accuracy.study_words import words
@@ -68,7 +68,7 @@ def _quantity(study: Study, each: AssessedQuantity) -> dict[str, Any]:
         "reference": each.reference.value,
         "uncertainty": each.uncertainty,
         "scale": each.reference.scale,
-        "known": each.known,
+        "judged": each.doubt <= TELLING,
         "error": each.error,
         "knobs": {
             knob.name: {"share": each.share(n), "order": lim.order, "limit": lim.value, "uncertainty": lim.uncertainty}

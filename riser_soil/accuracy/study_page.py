@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from typing import Any
 
-from riser_soil.accuracy.study import TARGETS, Study
+from riser_soil.accuracy.findings import TARGETS, Study
 from riser_soil.accuracy.study_words import percent
 from riser_soil.plots.work_precision import KnobLine, WorkPrecision, drawn_work_precision
 
@@ -55,6 +55,9 @@ def _list(sentences: Iterable[str]) -> list[str]:
 
 
 def _image(study: Study, told: Mapping[str, Any]) -> str:
+    """Where no quantity can be judged, there are no errors to plot."""
+    if not any(each["judged"] for each in told["quantities"].values()):
+        return ""
     svg = base64.b64encode(drawn_work_precision(plotted(study, told)).encode()).decode()
     return f'<img alt="Error against processor time" src="data:image/svg+xml;base64,{svg}">'
 
@@ -68,12 +71,12 @@ def plotted(study: Study, told: Mapping[str, Any]) -> WorkPrecision:
         points = [point for point in ladders.along(number) if point in places]
         seen.update(points)
         found = [places[point] for point in points]
-        orders = [each["knobs"][knob.name]["order"] for each in told["quantities"].values() if each["known"]]
+        orders = [each["knobs"][knob.name]["order"] for each in told["quantities"].values() if each["judged"]]
         lines.append(KnobLine(knob.words, _order_s([each for each in orders if each is not None]), *_places(found)))
     others = [each for point, each in places.items() if point not in seen]
-    front = [each for each in told["points"] if each["pareto"]]
+    front = [places[tuple(point)] for point in told["pareto_front"]]
     scene = places[ladders.base]
-    doubts = [each["uncertainty"] / each["scale"] for each in told["quantities"].values() if each["known"]]
+    doubts = [each["uncertainty"] / each["scale"] for each in told["quantities"].values() if each["judged"]]
     here, doubt = (scene["cpu"], scene["error"]), max(doubts, default=0.0)
     return WorkPrecision(lines, *_places(others)[:2], *_places(front)[:2], here, doubt, TARGETS)
 
@@ -95,7 +98,7 @@ def _quantities(told: Mapping[str, Any]) -> str:
     rows = []
     for key, each in told["quantities"].items():
         shares = (f"{percent(knob['share'])}, {_order(knob['order'])}" for knob in each["knobs"].values())
-        error = percent(each["error"]) if each["known"] else "not told"
+        error = percent(each["error"]) if each["judged"] else "not told"
         numbers = (f"{each[name]:.5g}" for name in ("value", "reference"))
         rows.append([key, *numbers, f"{each['uncertainty']:.2g}", each["unit"], error, *shares])
     return _table(head, rows)

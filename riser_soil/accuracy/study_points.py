@@ -101,7 +101,7 @@ class StudyPoint:
         summary = self._summary()
         steps = sum(stage["steps"] for stage in summary["stages"])
         known = headlines(summary) if status == 0 else {}
-        outcome = PointOutcome(self.factors, status, cost["reason"], cost["cpu"], alone, steps, known)
+        outcome = PointOutcome(self.factors, status, _line(cost["reason"]), cost["cpu"], alone, steps, known)
         for name in set(NAMES) - {SUMMARY, RESOLVED}:
             (self.folder / name).unlink(missing_ok=True)
         told = asdict(outcome) | {"cpu": None if math.isnan(outcome.cpu) else outcome.cpu}
@@ -133,6 +133,10 @@ def _environment() -> dict[str, str]:
     """One thread, so that processor time is the time of one core."""
     own = {"OMP_NUM_THREADS": "1", "PETSC_OPTIONS": f"-no_signal_handler {os.environ.get('PETSC_OPTIONS', '')}"}
     return environment_alone() | own
+
+
+def _line(text: str) -> str:
+    return " ".join(text.split())
 
 
 def _number(value: float | None) -> float:

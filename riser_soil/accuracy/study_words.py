@@ -5,22 +5,28 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from riser_soil.accuracy.assessment import AssessedQuantity
-from riser_soil.accuracy.study import TARGETS, Study
+from riser_soil.accuracy.assessment import TELLING, AssessedQuantity
+from riser_soil.accuracy.findings import TARGETS, Study
 
 Quantities = dict[str, AssessedQuantity]
 
 
 def words(study: Study) -> list[str]:
     """Sentences, in their order."""
-    quantities = study.quantities()
     return [
-        *_unknown(quantities),
-        *_accuracy(study, quantities),
-        *_limiting(study, quantities),
-        *(_cheapest(study, quantities, target) for target in TARGETS),
+        *_moved(study),
+        *_unknown(study.quantities()),
+        *_accuracy(study),
+        *_limiting(study),
+        *(sentence for target in TARGETS for sentence in _cheapest(study, target)),
         *_failed(study),
     ]
+
+
+def _moved(study: Study) -> Iterator[str]:
+    if study.failure:
+        settings = study.ladders.told(study.ladders.base)
+        yield f"the scene itself fails: {study.failure}; the study is around finer settings: {settings}"
 
 
 def percent(part: float) -> str:
@@ -29,61 +35,62 @@ def percent(part: float) -> str:
 
 
 def _unknown(quantities: Quantities) -> Iterator[str]:
-    unknown = [f"{key} (± {percent(each.doubt)})" for key, each in quantities.items() if not each.known]
+    unknown = _doubtful(quantities, TELLING)
     if unknown:
         yield (
-            f"no error can be told of {', '.join(unknown)}: the ladders do not close in on a value; they are left out "
-            "of what follows"
+            f"no error can be told of {unknown}, as the ladders do not close in on a value; they are left out of what "
+            "follows"
         )
 
 
-def _accuracy(study: Study, quantities: Quantities) -> Iterator[str]:
+def _doubtful(quantities: Quantities, doubt: float) -> str:
+    """Quantities whose reference is not known to a relative uncertainty."""
+    return ", ".join(f"{key} (± {percent(each.doubt)})" for key, each in quantities.items() if not each.doubt <= doubt)
+
+
+def _off(quantities: Quantities, error: float, key: str) -> str:
+    return f"{percent(error)} off at most (± {percent(quantities[key].doubt)}), in {key}"
+
+
+def _accuracy(study: Study) -> Iterator[str]:
     error, key = study.error(study.scene)
     if key:
-        doubt = percent(quantities[key].doubt)
-        yield (
-            f"as it is, the scene takes {study.scene.cpu:.3g} s and is {percent(error)} off at most (± {doubt}), in "
-            f"{key}"
-        )
+        scene = "with these settings the scene" if study.failure else "as it is, the scene"
+        yield f"{scene} takes {study.scene.cpu:.3g} s and is {_off(study.judged(), error, key)}"
 
 
-def _limiting(study: Study, quantities: Quantities) -> Iterator[str]:
+def _limiting(study: Study) -> Iterator[str]:
     """Which knob has the largest share in an error."""
-    shares = [_largest_share(quantities, number) for number in range(len(study.ladders.knobs))]
-    if not shares or not any(key for _, key in shares):
+    quantities = study.judged()
+    if not quantities:
         return
-    told = [
-        f"{knob.words} {percent(share)} ({key})"
-        for knob, (share, key) in sorted(zip(study.ladders.knobs, shares, strict=True), key=lambda each: -each[1][0])
-    ]
-    most, key = max(shares)
+    shares = [(*_largest_share(quantities, n), knob.words) for n, knob in enumerate(study.ladders.knobs)]
+    largest = "; ".join(f"{knob} {percent(share)} ({key})" for share, key, knob in sorted(shares, reverse=True))
+    most, key, knob = max(shares)
     if most <= quantities[key].doubt:
-        yield f"no knob limits the accuracy by more than the study can tell: largest shares are {'; '.join(told)}"
+        yield f"no knob limits the accuracy by more than the study can tell; largest shares of error: {largest}"
     else:
-        knob = study.ladders.knobs[shares.index((most, key))]
-        yield f"the {knob.words} limits the accuracy; largest shares of error: {'; '.join(told)}"
+        yield f"what limits the accuracy is the {knob}; largest shares of error: {largest}"
 
 
 def _largest_share(quantities: Quantities, number: int) -> tuple[float, str]:
-    return max(((each.share(number), key) for key, each in quantities.items() if each.known), default=(0.0, ""))
+    return max((each.share(number), key) for key, each in quantities.items())
 
 
-def _cheapest(study: Study, quantities: Quantities, target: float) -> str:
-    found = study.reaching(target)
+def _cheapest(study: Study, target: float) -> Iterator[str]:
+    quantities, found = study.judged(), study.reaching(target)
+    if not quantities:
+        return
+    best = found if found is not None else study.front()[-1]
+    settings, off = study.ladders.told(best.factors), _off(quantities, *study.error(best))
+    where = "" if len(quantities) == len(study.quantities()) else f" in {len(quantities)} quantities"
     if found is not None:
-        error, key = study.error(found)
-        return (
-            f"{percent(target)} is reached at the least cost, {found.cpu:.3g} s, with "
-            f"{study.ladders.told(found.factors)}: {percent(error)} off (± {percent(quantities[key].doubt)}), in {key}"
-        )
-    least = [(*study.error(each), each) for each in study.front()]
-    if not least:
-        return f"{percent(target)}: no setting could be judged"
-    error, key, best = least[-1]
-    return (
-        f"{percent(target)} is reached by no setting that was run: the best, {study.ladders.told(best.factors)}, is "
-        f"{percent(error)} off (± {percent(quantities[key].doubt)}), in {key}"
-    )
+        yield f"{percent(target)} is reached{where} at the least cost, {best.cpu:.3g} s, with {settings}: {off}"
+    else:
+        yield f"{percent(target)} is reached{where} by no setting that was run; the best, {settings}, is {off}"
+    beside = _doubtful(quantities, target)
+    if found is not None and beside:
+        yield f"as {percent(target)} counts what the study can tell, where that is more: {beside}"
 
 
 def _failed(study: Study) -> Iterator[str]:
