@@ -10,7 +10,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.scene import Scene
 
-FORCE_FLOOR = 1e-14  # of EA, for each element: a residual below this is round-off even where all forces vanish
+FORCE_FLOOR = 1e-14  # of EA: a residual below this is round-off even where all forces vanish
 LEAST_WEIGHT = 1e-6  # of EA/L: stands for the weight of a line that has none
 
 
@@ -30,9 +30,7 @@ def scales_of(elements: Elements) -> Scales:
     EA = float(elements.EA.max())
     bar = float(4.0 * np.sqrt((elements.EI_y / elements.EA).max()))
     weight = max(float(np.abs(elements.weight).max()), LEAST_WEIGHT * EA / float(elements.arc[-1]))
-    # Round-off of a strain goes with places over the length of an element, and so with the number of elements.
-    floor = FORCE_FLOOR * elements.EA.size * EA
-    return Scales(weight, float(elements.outer_diameter.max()) or bar, floor)
+    return Scales(weight, float(elements.outer_diameter.max()) or bar, FORCE_FLOOR * EA)
 
 
 def contact_radius(scene: Scene, elements: Elements) -> Array:

@@ -66,7 +66,7 @@ def circle(turns: float, dimension: int, load_steps: int) -> Callable[[], Trial]
 for n, dimension, steps in ((1, 2, 1), (1, 3, 1), (4, 2, 16), (4, 3, 16)):
     for way, sign in (("anticlockwise", 1), ("clockwise", -1)):
         title = f"rolled_up_{n}_times_{way}_in_{dimension}D"
-        stress_case(name=title, quick=n == 1 and dimension == 2)(circle(sign * n, dimension, steps))
+        stress_case(name=title, quick=n == 1 and dimension == 2 and sign > 0)(circle(sign * n, dimension, steps))
 
 
 def elastica(ratio: float) -> tuple[float, float]:
@@ -135,12 +135,6 @@ def blade_just_below_and_beyond_lateral_torsional_buckling() -> Trial:
     return Trial(scenes, answers, NAMED_LOAD)
 
 
-@cache
-def frame_load() -> float:
-    """Of the right-angle frame of sharp corner, N (Argyris et al. 1979), from the rod's equations."""
-    return 1.0878
-
-
 @stress_case()
 def right_angle_frame_below_and_beyond_its_buckling_load() -> Trial:
     """The right-angle frame pushed in its plane, critical at 1.088 N (Simo & Vu-Quoc 1986): at 0.97 of it nothing
@@ -196,3 +190,13 @@ def cantilever_of_5000_elements() -> Trial:
         yield near("tip deflection [m]", tip(run)[2], 1e-3 / 3.0, rel=1e-3)
 
     return one(cantilever((1.0, 1.0), 5000, 1e-3), answers)
+
+
+@stress_case(not_yet="residuals below 1e-14 EA = 1e-5 N count as zero, and so does the load")
+def load_below_the_round_off_of_EA() -> Trial:
+    """A tip force of 1e-6 N, EA = 1e9 N: P L^3/(3 EI) = 0.33 um, a billion times the round-off of places."""
+
+    def answers(run: Run) -> Iterator[Answer]:
+        yield near("tip deflection [m]", tip(run)[2], 1e-6 / 3.0, rel=1e-3)
+
+    return one(cantilever((1.0, 1.0), 20, 1e-6), answers)

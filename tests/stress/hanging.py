@@ -63,7 +63,7 @@ def hanging_line_EI_0() -> Trial:
     return one(rope(0.0), catenary(), REFUSED_EI)
 
 
-@stress_case(quick=True)
+@stress_case()
 def EA_over_EI_of_1e12() -> Trial:
     """EA = 1e12 N, EI = 1 N.m2: the catenary, hardly elastic (T/EA = 5e-8)."""
     return one(rope(1.0, EA=1e12), catenary(EA=1e12))
@@ -106,7 +106,7 @@ def _long_line(run: Run) -> Iterator[Answer]:
     yield near("largest moment [N.m]", moment, 5e4 * W / exact.H, rel=0.03)
 
 
-@stress_case(quick=True)
+@stress_case()
 def ten_km_line_of_400_elements() -> Trial:
     """10 km: H and top tension of the catenary, moment EI w/H in the sag bend."""
     return one(long_line(400), _long_line)
@@ -155,7 +155,7 @@ def line_stretched_by_2_per_cent() -> Trial:
     return one(scene, answers)
 
 
-@stress_case(quick=True)
+@stress_case()
 def vertical_line_of_no_slack() -> Trial:
     """100 m of line hang straight down between supports 100 m above each other: stretched by its weight, T at the top
     is w L/2, at the bottom -w L/2, from EA du/ds = T and u = 0 at both ends. Its lower half would buckle, as EI is 1
@@ -189,7 +189,7 @@ def line_that_floats_up() -> Trial:
     return one(scene, answers, r"lighter|buoyan|float")
 
 
-@stress_case(quick=True)
+@stress_case()
 def stretched_in_zero_gravity() -> Trial:
     """No gravity: ends moved 0.1 % apart, T = EA/1000 exactly along the whole line."""
     scene = rope(1e5)

