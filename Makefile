@@ -20,7 +20,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test lint verify fuzz bench parts verify-fresh docker pins clean
+.PHONY: help setup demo demos test lint verify stress fuzz bench parts verify-fresh docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -47,6 +47,9 @@ lint: setup
 
 verify: setup ## the long comparisons with closed forms, references and finer meshes
 	$(PYTHON) -m pytest -m verify
+
+stress: setup ## stiff and extreme scenes with known answers, each in a process with limits: docs/stress.md; also among those of verify
+	$(PYTHON) -m tests.stress.run --page
 
 fuzz: setup ## 600 mutated scenes, each in a process with limits: how they end; also among those of verify
 	$(PYTHON) -m tests.fuzz.run --count 600 --seed 1

@@ -71,6 +71,10 @@ class DiscreteGradient:
     def start(self) -> float:
         return self.penalty.start
 
+    @property
+    def reach(self) -> float:
+        return self.penalty.reach
+
     def initial_history(self, shape: tuple[int, ...]) -> Array:
         return np.full((*shape, 1), -1e3)
 

@@ -48,6 +48,10 @@ class AssessedQuantity:
         """Of the scene as it is, relative."""
         return self.error_of(self.scene)
 
+    def allowed(self, target: float) -> float:
+        """Relative error that counts as the target: errors less than the reference's uncertainty can't be told."""
+        return max(target, self.doubt)
+
     def error_of(self, found: Headline) -> float:
         """Relative error of the quantity in another run."""
         return self.reference.relative(found.value - self.reference.value)
@@ -63,9 +67,9 @@ def assess(ladders: Ladders, outcomes: Outcomes) -> dict[str, AssessedQuantity]:
     return {key: _assessed(each, ladders, outcomes) for key, each in base.headlines.items()}
 
 
-def told(quantities: Mapping[str, AssessedQuantity], doubt: float = TELLING) -> dict[str, AssessedQuantity]:
-    """The quantities whose reference is known to that relative uncertainty, so that such errors of them can be told."""
-    return {key: each for key, each in quantities.items() if each.doubt <= doubt}
+def told(quantities: Mapping[str, AssessedQuantity]) -> dict[str, AssessedQuantity]:
+    """The quantities whose reference is known well enough to tell errors."""
+    return {key: each for key, each in quantities.items() if each.doubt <= TELLING}
 
 
 def worst(quantities: Mapping[str, AssessedQuantity], outcome: PointOutcome) -> tuple[float, str]:

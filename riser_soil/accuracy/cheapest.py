@@ -23,21 +23,34 @@ Quantities = Mapping[str, AssessedQuantity]
 
 @dataclass(frozen=True, eq=False)
 class CostAndError:
-    """What the ladders foretell of settings, by the quantities that are to be met."""
+    """What the ladders foretell of settings that are to meet a target in the quantities."""
 
     ladders: Ladders
     outcomes: Outcomes
     quantities: Quantities
+    target: float
 
     def settings(self) -> Iterator[Factors]:
         """All combinations of rungs, with one beyond each ladder."""
         rungs = [(*self._rungs(n), self._beyond(n)) for n in range(len(self.ladders.knobs))]
         return product(*rungs)
 
-    def error(self, point: Factors) -> float:
-        """Largest of the quantities' relative errors, those of the knobs added without their signs."""
-        errors = (math.fsum(self._share(each, *at) for at in enumerate(point)) for each in self.quantities.values())
-        return max(errors, default=math.inf)
+    def excess(self, point: Factors) -> float:
+        """Largest of the errors over what is allowed, those of the knobs added without their signs."""
+        parts = (
+            math.fsum(self._share(each, *at) for at in enumerate(point)) / each.allowed(self.target)
+            for each in self.quantities.values()
+        )
+        return max(parts, default=math.inf)
+
+    def reached_by(self, outcome: PointOutcome) -> bool:
+        """Whether a setting that was run reaches the target, and not by errors that happen to cancel."""
+        found = outcome.headlines
+        missed = [
+            key not in found or each.error_of(found[key]) > each.allowed(self.target)
+            for key, each in self.quantities.items()
+        ]
+        return outcome.done and not any(missed) and self.excess(outcome.factors) <= LUCK
 
     def seconds(self, point: Factors) -> float:
         """Processor time [s]."""
@@ -72,28 +85,23 @@ class CostAndError:
         return growth * costs[-1] / base
 
 
-def next_setting(foretold: CostAndError, target: float) -> Factors | None:
+def next_setting(foretold: CostAndError) -> Factors | None:
     """The cheapest setting not yet run that should reach the target at less than the cheapest that does."""
-    reached = cheapest(foretold, target)
+    reached = cheapest(foretold)
     most = reached.cpu if reached is not None else math.inf
     able = [
         (foretold.seconds(point), point)
         for point in foretold.settings()
-        if point not in foretold.outcomes and foretold.error(point) <= target
+        if point not in foretold.outcomes and foretold.excess(point) <= 1.0
     ]
     seconds, point = min(able, default=(math.inf, None))
     return point if seconds < most else None
 
 
-def cheapest(foretold: CostAndError, target: float) -> PointOutcome | None:
+def cheapest(foretold: CostAndError) -> PointOutcome | None:
     """Of the settings that have been run, the one that reaches the target at the least cost."""
-    able = [outcome for outcome in foretold.outcomes.values() if outcome.done and _reaches(foretold, outcome, target)]
+    able = [outcome for outcome in foretold.outcomes.values() if foretold.reached_by(outcome)]
     return min(able, key=lambda outcome: outcome.cpu, default=None)
-
-
-def _reaches(foretold: CostAndError, outcome: PointOutcome, target: float) -> bool:
-    error, _ = worst(foretold.quantities, outcome)
-    return error <= target and foretold.error(outcome.factors) <= LUCK * target
 
 
 def pareto(outcomes: Outcomes, quantities: Quantities) -> list[PointOutcome]:

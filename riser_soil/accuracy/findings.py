@@ -54,15 +54,14 @@ class Study:
         return told(self.quantities())
 
     def foretold(self, target: float) -> CostAndError:
-        """By the quantities of which such an error can be told."""
-        return CostAndError(self.ladders, self.outcomes, told(self.quantities(), target))
+        return CostAndError(self.ladders, self.outcomes, self.judged(), target)
 
     def front(self) -> list[PointOutcome]:
         return pareto(self.outcomes, self.judged())
 
     def reaching(self, target: float) -> PointOutcome | None:
-        """The cheapest setting run that reaches a relative error in all quantities of which it can be told."""
-        return cheapest(self.foretold(target), target)
+        """The cheapest setting run that reaches a relative error in all quantities judged, as far as can be told."""
+        return cheapest(self.foretold(target))
 
     def error(self, outcome: PointOutcome) -> tuple[float, str]:
         """Largest relative error of a point, and its quantity."""

@@ -109,7 +109,7 @@ def _try_settings(made: Study) -> None:
     """Run what should reach the targets at less cost than what has been run."""
     for target in TARGETS:
         for _ in range(TRIES):
-            point = next_setting(made.foretold(target), target)
+            point = next_setting(made.foretold(target))
             if point is None:
                 break
             made.says(f"foretold to reach {target:.1%}:")

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from riser_soil.accuracy.assessment import TELLING, AssessedQuantity, told, worst
-from riser_soil.accuracy.cheapest import pareto
+from riser_soil.accuracy.assessment import TELLING, AssessedQuantity
 from riser_soil.accuracy.findings import TARGETS, Study
 
 Quantities = dict[str, AssessedQuantity]
@@ -79,20 +78,19 @@ def _largest_share(quantities: Quantities, number: int) -> tuple[float, str]:
 
 
 def _cheapest(study: Study, target: float) -> Iterator[str]:
-    quantities, found = told(study.quantities(), target), study.reaching(target)
-    beside = _doubtful(study.judged(), target)
+    quantities, found = study.judged(), study.reaching(target)
     if not quantities:
-        yield f"{percent(target)}: no reference is known so well"
         return
+    best = found if found is not None else study.front()[-1]
+    settings, off = study.ladders.told(best.factors), _off(quantities, *study.error(best))
+    where = "" if len(quantities) == len(study.quantities()) else f" in {len(quantities)} quantities"
     if found is not None:
-        settings, off = study.ladders.told(found.factors), _off(quantities, *worst(quantities, found))
-        yield f"{percent(target)} is reached at the least cost, {found.cpu:.3g} s, with {settings}: {off}"
+        yield f"{percent(target)} is reached{where} at the least cost, {best.cpu:.3g} s, with {settings}: {off}"
     else:
-        least = pareto(study.outcomes, quantities)[-1]
-        settings, off = study.ladders.told(least.factors), _off(quantities, *worst(quantities, least))
-        yield f"{percent(target)} is reached by no setting that was run; the best, {settings}, is {off}"
-    if beside:
-        yield f"whether {percent(target)} is reached can't be told of {beside}"
+        yield f"{percent(target)} is reached{where} by no setting that was run; the best, {settings}, is {off}"
+    beside = _doubtful(quantities, target)
+    if found is not None and beside:
+        yield f"as {percent(target)} counts what the study can tell, where that is more: {beside}"
 
 
 def _failed(study: Study) -> Iterator[str]:

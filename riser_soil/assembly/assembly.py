@@ -112,6 +112,18 @@ class Assembly:
         """Largest local error of an automatic step [m]."""
         return AUTO_TOLERANCE * self.scales.diameter if stage.tolerance is None else stage.tolerance
 
+    @property
+    def contact_period(self) -> float:
+        """Shortest period [s] of the riser on the stiffness of its contact, on soil in series with the soil's own; nan
+        where it touches nothing.
+        """
+        found = dict(self.contact_stiffness)
+        if "soil" in found and self.scene.soil is not None:
+            E = self.scene.soil.top_law.surface_modulus(self.scales.diameter)
+            found["soil"] *= E / (E + found["soil"])
+        stiffest = max(found.values(), default=math.nan)
+        return 2.0 * math.pi * math.sqrt(float(self.elements.mass.min()) / stiffest)
+
     def smallest_step(self, stage: DynamicStage) -> float:
         """Down to which time steps are cut [s]."""
         given = self.scene.solver.min_time_step

@@ -49,7 +49,11 @@ def _reasons(scene: Scene) -> dict[str, str]:
 
 DISSIPATING = ("morison", "structural damping", "contact", "seabed", "friction", "soil friction", "soil", "cushion")
 #: Accounts of a part that tells what is its own and what is the time scheme's.
-SPLIT = {"soil": ("soil_plasticity", "soil_time_scheme")}
+SPLIT = {
+    "soil": ("soil_plasticity", "soil_time_scheme"),
+    "seabed": ("seabed", "seabed_time_scheme"),
+    "contact": ("contact", "contact_time_scheme"),
+}
 WORKING = ("loads", "morison", "buoyancy")
 
 

@@ -9,6 +9,7 @@ from riser_soil.commands.accuracy import study
 from riser_soil.commands.ground import calibrate, material
 from riser_soil.commands.results import film, stiffness
 from riser_soil.commands.run import check, run, schema
+from riser_soil.commands.stress import stress
 
 app = typer.Typer(
     help="Static and dynamic analysis of a riser on the seabed.",
@@ -18,7 +19,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, check, study, material, calibrate, schema, stiffness, film):
+for command in (run, check, study, stress, material, calibrate, schema, stiffness, film):
     app.command()(command)
 
 

@@ -89,14 +89,16 @@ class NodeContact(SoilContact):
         return Energy(potential=self.detect(state).touching.potential)
 
     def work(self, before: State, after: State) -> Work:
-        """Energy dissipated: the work of the force at the end of the step less the change of its potential.
+        """Energy dissipated: the work of the force at the end of the step less the change of its potential, all of it
+        by the time scheme.
 
         ψ is convex in the gap, so this is ≥ 0 where the gap is linear in the step, as where soil and riser move
         vertically. Sliding along a sloping ground adds terms of second order in the sliding distance, of either sign.
         """
         touching = self.detect(after).touching
         taken = float(np.sum(touching.gradient * (after.u - before.u)[touching.rows]))
-        return Work(dissipated=taken - self.energy(after).potential + self.energy(before).potential)
+        lost = taken - self.energy(after).potential + self.energy(before).potential
+        return Work(dissipated=lost, by_scheme=lost)
 
     def commit(self, state: State) -> None:
         """Nothing is kept but the pattern."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from riser_soil.contact.line_contact import ContactAlongLine, LineContact
 from riser_soil.contact.station_forces import StationForces
+from riser_soil.contact.work_along_step import work_along_step
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
 from riser_soil.core.roles import Predictor
@@ -142,13 +143,21 @@ class SeabedContact(LineContact):
     def work(self, before: State, after: State) -> Work:
         """Energy dissipated: the work of the force at the end of the step less the change of the energy stored.
 
-        Never negative on a plane, where the stored energy is convex in the penetration.
+        Never negative on a plane, where the stored energy is convex in the penetration. What that force takes beyond
+        the work of the law along the step is the time scheme's; on ground without a history it is all.
         """
         first, last = (self.evaluate(self.line.trial(state)) for state in (before, after))
         at = last.touching.elements
         moved = last.position[at] - first.position[at]
         taken = float(np.sum(self.share[at] * np.sum(last.touching.resistance * moved, axis=2)))
-        return Work(dissipated=taken - self.energy(after).potential + self.energy(before).potential)
+        lost = taken - self.energy(after).potential + self.energy(before).potential
+        return Work(dissipated=lost, by_scheme=taken - self._by_law(first, last) if self.law.columns else lost)
+
+    def _by_law(self, first: StationContact, last: StationContact) -> float:
+        """Work [J] of the law along a step."""
+        at = np.union1d(first.touching.elements, last.touching.elements)
+        work = work_along_step(self.law, first.penetration[at], last.penetration[at], self.memory[at])
+        return float(np.sum(self.share[at] * work))
 
     def commit(self, state: State) -> None:
         """Keep the law's history: known where something touches, asked for elsewhere."""

@@ -16,6 +16,7 @@ from riser_soil.contact.law import Penalty
 from riser_soil.contact.point_memory import PointMemory
 from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
 from riser_soil.contact.suction import SuctionLaw
+from riser_soil.contact.work_along_step import work_along_step
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Weights, Work
 from riser_soil.core.saved_state import Saved, gathered, within
@@ -198,10 +199,23 @@ class SurfaceContact(SoilContact):
         return Energy(potential=self.evaluate(state).pressed.potential)
 
     def work(self, before: State, after: State) -> Work:
-        """What the force at the end of the step took out beyond the change of its potential."""
-        last = self.evaluate(after)
-        taken = float(np.sum(last.pressed.gradient * self.moved(before, after)))
-        return Work(dissipated=taken - self.energy(after).potential + self.energy(before).potential)
+        """What the force at the end of the step took out beyond the change of its potential; by the time scheme what
+        it took beyond the work of the law along the step, all of it without suction.
+        """
+        first, last = self.evaluate(before).pressed, self.evaluate(after).pressed
+        taken = float(np.sum(last.gradient * self.moved(before, after)))
+        lost = taken - last.potential + first.potential
+        by_scheme = taken - self._by_law(first.points, last.points) if self.law.columns else lost
+        return Work(dissipated=lost, by_scheme=by_scheme)
+
+    def _by_law(self, first: NearPoints, last: NearPoints) -> float:
+        """Work [J] of the law along a step, at points that touch before or after it."""
+        numbers = np.union1d(first.number, last.number)
+        area, ways = np.zeros(len(numbers)), np.full((2, len(numbers)), -self.law.reach)
+        for way, points in zip(ways, (first, last), strict=True):
+            at = np.searchsorted(numbers, points.number)
+            area[at], way[at] = points.area, -points.gap
+        return float(area @ work_along_step(self.law, ways[0], ways[1], self._memory.at(numbers)))
 
     def moved(self, before: State, after: State) -> Array:
         """Movement (m, nz) in a step of what touches at its end: q of the elements, then the facets' nodes [m]."""

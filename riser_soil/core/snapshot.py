@@ -97,6 +97,7 @@ class StepStatistics:
     time_step: float  # s; in a static stage the increment of the load factor
     energy_residual: float  # J, of this step's energy balance; nan in a static stage
     step_cuts: int  # failed attempts before this step was accepted
+    local_error: float = 0.0  # m, largest local error of a place in this step; 0 in a static stage
 
 
 @dataclass(frozen=True)
@@ -153,5 +154,8 @@ class RunFacts:
     working: tuple[str, ...] = ()  # names that may stand in the ledger's work_by
     riser_dofs: int = 0
     soil_dofs: int = 0
+    diameter: float = float("nan")  # m, the riser's largest
+    weight: float = float("nan")  # N, of the whole riser by its heaviest part
+    contact_period: float = float("nan")  # s, of the riser on its contact's stiffness; nan where nothing touches
     sections: int = 0  # across the riser in which the soil's settlement is recorded
     offsets: tuple[float, ...] = ()  # m, places along the sections

@@ -111,7 +111,8 @@ class Observer:
         if last:
             self._plausibility.look_around(self._boundary())
         if self._recorder is not None:
-            health = StepStatistics(step.solution.iterations + self._relaxed, step.dt, change, step.cuts)
+            iterations = step.solution.iterations + self._relaxed
+            health = StepStatistics(iterations, step.dt, change, step.cuts, stepper.local_error)
             at_rest = due.series and isinstance(self._stage, StaticStage)
             riser, touching = riser_snapshot(self._assembly, stepper), self._zone.look(stepper.now, at_rest)
             self._recorder.accept(step.t, due, riser, touching, health, self._balance.ledger, soil)
@@ -127,7 +128,8 @@ class Observer:
         self._plausibility.look(recorder.now, stepper.now, riser, touching)
         if closely:
             self._plausibility.look_closely(recorder.now, stepper.now, elastic_residual(self._assembly, stepper))
-        recorder.summary.stages[-1].implausible = self._plausibility.warnings()
+        stage = recorder.summary.stages[-1]
+        stage.implausible, stage.indicators.bending = self._plausibility.warnings(), self._plausibility.bending()
 
     def record_last(self, end: SolveError | Interruption) -> None:
         """The run ends before its time: write the last accepted step; collective where the ranks end together."""
@@ -282,6 +284,9 @@ def facts(assembly: Assembly) -> RunFacts:
         working=working(assembly.scene),
         riser_dofs=unknowns(assembly.comm, assembly.line),
         soil_dofs=unknowns(assembly.comm, assembly.soil.field) if assembly.soil is not None else 0,
+        diameter=assembly.scales.diameter,
+        weight=assembly.scales.weight * float(assembly.line.arc[-1] - assembly.line.arc[0]),
+        contact_period=assembly.contact_period,
         sections=count_of(assembly) if across else 0,
         offsets=offsets_of(assembly) if across else (),
     )

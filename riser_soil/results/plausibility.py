@@ -76,7 +76,7 @@ class Plausibility:
         self._largest = 0.0  # moment [N.m]
         self._boundary: BoundaryStress | None = None
         self._axial = self._bending = self._smooth = self._steep = self._stretch = self._beyond = LargestValue()
-        self._load = LargestValue()
+        self._load = self._misfit = LargestValue()
 
     def look(self, t: float, state: State, riser: RiserSnapshot, touch: ContactSnapshot) -> None:
         """t: s of the run (static stages: load factor)."""
@@ -111,6 +111,7 @@ class Plausibility:
     def look_closely(self, t: float, state: State, elastic: Array) -> None:
         """elastic: residual of the elements less its viscous share (ne, 2 ndof)."""
         found = misfit(self._assembly.line, self._assembly.elements, state, elastic)
+        self._misfit = self._misfit.or_larger(np.array([found.smooth]), self._middle[[found.smooth_at]], t)
         self._smooth = self._grown(self._smooth, found.smooth, found.smooth_at, t)
         self._steep = self._grown(self._steep, found.steep, found.steep_at, t)
 
@@ -118,6 +119,15 @@ class Plausibility:
         elements = self._assembly.elements
         small = moment * elements.length[e] < SMALL_TURN * max(elements.EI_y[e], elements.EI_z[e])
         return worst if small else worst.or_larger(np.array([moment]), self._middle[[e]], t)
+
+    def bending(self) -> dict[str, float]:
+        """The largest misfit of the elements' bending, an estimate of the moment's error [N.m]: its size, share of the
+        stage's largest moment, arc [m] and time [s] or load factor. Empty before it has been looked at.
+        """
+        found, largest = self._misfit, max(self._misfit.value, self._largest)
+        if math.isnan(found.t):
+            return {}
+        return {"moment_error": found.value, "share": found.value / largest, "arc": found.arc, "time": found.t}
 
     def warnings(self) -> tuple[str, ...]:
         """With numbers and a remedy."""
@@ -216,7 +226,8 @@ class Plausibility:
 
     @property
     def _largest_values(self) -> tuple[LargestValue, ...]:
-        return self._axial, self._bending, self._smooth, self._steep, self._stretch, self._beyond, self._load
+        of_soil = self._stretch, self._beyond, self._load
+        return self._axial, self._bending, self._smooth, self._steep, *of_soil, self._misfit
 
     def state(self) -> Saved:
         worst = [astuple(found) for found in self._largest_values]
@@ -227,5 +238,6 @@ class Plausibility:
         """In the stage that has begun."""
         self._largest, self._touched = float(saved["largest"]), bool(saved["touched"])
         found = (LargestValue(*row) for row in saved["worst"].tolist())
-        self._axial, self._bending, self._smooth, self._steep, self._stretch, self._beyond, self._load = found
+        self._axial, self._bending, self._smooth, self._steep, *of_soil, self._misfit = found
+        self._stretch, self._beyond, self._load = of_soil
         self._where, self._lowest = unpacked(saved["where"]), saved["lowest"]

@@ -30,6 +30,7 @@ from riser_soil.errors import SceneError, WriteError
 from riser_soil.results import folder as run_folder
 from riser_soil.results.figures import final_state, pack
 from riser_soil.results.folder import FolderLock
+from riser_soil.results.indicators import StageIndicators
 from riser_soil.results.netcdf import SeriesFile, ledger_variables
 from riser_soil.results.ownership import prepare, sealed
 from riser_soil.results.record_rows import series_row, soil_frame, step_row
@@ -73,6 +74,7 @@ class Recorder:
     ) -> None:
         self.summary = Summary(facts)
         self._lock, self._folder = lock, folder
+        self._scales = facts.diameter, facts.weight, facts.contact_period
         self._arc = arc
         self._fields = fields
         left_out = outputs.left_out(fields)
@@ -145,9 +147,10 @@ class Recorder:
         if self.summary.stages:
             self.flush()
         self._time.begin_stage(kind)
-        stage = StageTally(name, kind)
+        stage = StageTally(name, kind, indicators=StageIndicators(*self._scales))
         if kind == "dynamic" and self._latest is not None:
             stage.extremes.update(self._time.now, self._latest)
+            stage.indicators.begin(self._time.now, self._latest)
         self.summary.stages.append(stage)
         self._series.begin_stage(name)
 
@@ -156,6 +159,7 @@ class Recorder:
         seen = Instant(self._arc, riser, touch)
         self._latest = pack(seen)
         self.summary.stages[-1].extremes.update(self._time.now, self._latest)
+        self.summary.stages[-1].indicators.begin(self._time.now, self._latest)
         self._record(seen, DueOutputs(series=True, pictures=True), soil)
 
     def accept(
@@ -252,6 +256,8 @@ class Recorder:
         stage.balance(self._time.now, step.ledger)
         self.now = now = t if stage.kind == "static" else self._time.now
         stage.extremes.update(now, self._latest)
+        if stage.kind == "dynamic":
+            stage.indicators.follow(now, self._latest, step.health, step.ledger)
         stage.final = final_state(seen)
         stage.bend(now, self._arc, seen.riser)
 

@@ -14,12 +14,13 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.output import bend_radius
-from riser_soil.core.saved_state import Saved, gathered, packed, restore_all, under, unpacked, within
+from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, under, unpacked, within
 from riser_soil.core.snapshot import Ledger, RiserSnapshot, RunFacts, StepStatistics
 from riser_soil.results.figures import Extremes
 from riser_soil.results.folder import write_atomically
+from riser_soil.results.indicators import StageIndicators
 
-_NOT_PLAIN = ("extremes", "energy", "worst_residual", "tightest", "implausible", "soil")
+_NOT_PLAIN = ("extremes", "energy", "worst_residual", "tightest", "implausible", "soil", "indicators")
 DOUBTFUL = 0.01  # share of the energy turned over above which what is wrong in its balance is a warning
 
 
@@ -37,7 +38,7 @@ def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
             f"the time scheme {done} {own:.3g} J, {own / ledger.turned_over:.2%} of the {ledger.turned_over:.3g} J "
             "turned over: take a smaller time_step"
         )
-    given = -ledger.dissipated_by.get("contact", 0.0)
+    given = -sum(ledger.dissipated_by.get(name, 0.0) for name in ("contact", "contact_time_scheme"))
     if given > allowed:
         yield (
             f"contact with the soil gave {given:.3g} J, {given / ledger.turned_over:.2%} of the "
@@ -83,6 +84,7 @@ class StageTally:
     tightest: TightestBend = TightestBend()
     worst_residual: tuple[float, float] = (0.0, math.nan)  # of the energy balance [J], and its time [s]
     implausible: tuple[str, ...] = ()  # what is not plausible about the riser's shape, forces and surroundings
+    indicators: StageIndicators = field(default_factory=StageIndicators)
     soil: dict[str, Any] = field(default_factory=dict)  # largest values in the soil, see `soil_extremes`
 
     def balance(self, t: float, ledger: Ledger) -> None:
@@ -117,6 +119,7 @@ class StageTally:
         plain = {k: v for k, v in vars(self).items() if k not in _NOT_PLAIN}
         extremes = self.extremes.nested() if self.steps else None
         told = {"method": self.method, "extremes": extremes, "energy": self._energy, "warnings": self.warnings}
+        told["indicators"] = self.indicators.as_dict(self.kind == "dynamic")
         return plain | told | ({"soil": self.soil} if self.soil else {})
 
     @property
@@ -129,20 +132,27 @@ class StageTally:
     @property
     def warnings(self) -> list[str]:
         """Warnings about the stage's results, with numbers and a remedy."""
-        off = energy_warnings(self.energy, *self.worst_residual) if self.kind == "dynamic" else ()
-        return [*self.tightest.warnings("s" if self.kind == "dynamic" else "of the load"), *self.implausible, *off]
+        tight = self.tightest.warnings("s" if self.kind == "dynamic" else "of the load")
+        if self.kind != "dynamic":
+            return [*tight, *self.implausible]
+        off = energy_warnings(self.energy, *self.worst_residual)
+        return [*tight, *self.implausible, *off, *self.indicators.warnings()]
 
     def state(self) -> Saved:
-        plain = {name: value for name, value in vars(self).items() if name != "extremes"}
+        plain = {name: value for name, value in vars(self).items() if name not in ("extremes", "indicators")}
         told = plain | {"energy": asdict(self.energy), "tightest": asdict(self.tightest)}
-        return gathered({"extremes": self.extremes}) | {"told": packed(told)}
+        return gathered(self._followers) | {"told": packed(told)}
 
     def restore(self, saved: Saved) -> None:
         vars(self).update(unpacked(saved["told"]))
-        restore_all({"extremes": self.extremes}, saved)
+        restore_all(self._followers, saved)
         self.energy, self.tightest = Ledger(**vars(self)["energy"]), TightestBend(**vars(self)["tightest"])
         worst, t = self.worst_residual
         self.worst_residual, self.implausible = (worst, t), tuple(self.implausible)
+
+    @property
+    def _followers(self) -> dict[str, Stateful]:
+        return {"extremes": self.extremes, "indicators": self.indicators}
 
 
 class Summary:
@@ -180,7 +190,7 @@ class Summary:
     def restore(self, saved: Saved) -> None:
         self.laying, self.seconds = unpacked(saved["laying"]), Counter(unpacked(saved["seconds"]))
         stages = within(saved, "stages")
-        self.stages = [StageTally("", "") for name in stages if name.endswith("/told")]
+        self.stages = [StageTally("", "") for name in stages if name.count("/") == 1 and name.endswith("/told")]
         restore_all({str(n): stage for n, stage in enumerate(self.stages)}, stages)
 
 

@@ -117,6 +117,10 @@ class AubenyBiscontinFormula:
     def start(self) -> float:
         return 0.0
 
+    @property
+    def reach(self) -> float:
+        return 0.0
+
     def initial_history(self, shape: tuple[int, ...]) -> Array:
         history = np.zeros((*shape, len(self.columns)))
         history[..., 0] = 1.0

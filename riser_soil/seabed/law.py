@@ -45,6 +45,11 @@ class NormalLaw(Protocol):
         ...
 
     @property
+    def reach(self) -> float:
+        """Gap [m] from which on there is no force."""
+        ...
+
+    @property
     def capacity(self) -> float:
         """Force per length [N/m] that it bears at a penetration of one diameter; inf without a limit."""
         ...

@@ -114,6 +114,10 @@ class RandolphQuigginFormula:
     def start(self) -> float:
         return 0.0
 
+    @property
+    def reach(self) -> float:
+        return 0.0
+
     def initial_history(self, shape: tuple[int, ...]) -> Array:
         return _out_of_contact(np.zeros(shape))
 

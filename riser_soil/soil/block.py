@@ -1,6 +1,6 @@
 """Mesh of a soil block in gmsh: layered hexahedra or tetrahedra, fine under the riser.
 
-Needs a running gmsh; leaves the mesh in its current model with one physical volume. gmsh knows tolerances as lengths:
+Needs a running gmsh; leaves the mesh in gmsh's current model with one physical volume. gmsh has tolerances in lengths:
 the block is meshed with its longest side as the unit of length.
 """
 

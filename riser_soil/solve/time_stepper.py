@@ -14,7 +14,7 @@ from riser_soil.core.saved_state import Saved, Stateful, gathered, record_of, un
 from riser_soil.core.system import System, total
 from riser_soil.errors import SolveError
 from riser_soil.solve.energy_gain import LARGEST, EnergyGain
-from riser_soil.solve.local_error import LocalError
+from riser_soil.solve.local_error import LocalError, committed_error
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.predictor import Extrapolation
 from riser_soil.solve.riser_mass import RiserMass
@@ -57,6 +57,7 @@ class TimeStepper:
 
     before: the accepted state that the next step starts from, its increments zero; its rates leave out what contact
     adds to them (see `time_scheme`). now: the same state as the riser moves; energy: stored in it [J].
+    local_error: largest of a place in the last step [m], see `local_error`; 0 in statics.
     largest_gain: share of the energy in motion that a step may create, see `energy_gain`.
     """
 
@@ -71,6 +72,7 @@ class TimeStepper:
         self.system, self.newton, self.scheme, self._largest_gain = system, newton, scheme, largest_gain
         self._mass = RiserMass(system) if scheme.dynamic else None
         self._error: LocalError | None = None
+        self.local_error = 0.0
         parts = system.model.parts
         self._predictors: list[Predictor] = [*system.model.lines, *with_role(parts, Predictor)]
         self._momentum_correcting: list[MomentumCorrecting] = with_role(parts, MomentumCorrecting)
@@ -216,8 +218,10 @@ class TimeStepper:
         """Accept the step and get ready for the next."""
         state, forces = step.solution.state, step.solution.forces
         self.system.commit(state)
-        start = self._start(step.dt)
+        start, begun = self._start(step.dt), (self.before, self.now)
         self.before, self.now = self._rates_after(step)
+        if self.scheme.dynamic:
+            self.local_error = committed_error(self.system, self.scheme, begun, (self.before, self.now), step.dt)
         if self._error is not None:
             self._error.accept(start, self.before, step.dt)
         self._begin_step()

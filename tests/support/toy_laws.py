@@ -128,6 +128,7 @@ class PlasticBed:
     columns: ClassVar[tuple[str, ...]] = ("plastic",)
     capacity: ClassVar[float] = math.inf
     start: ClassVar[float] = 0.0
+    reach: ClassVar[float] = 0.0
 
     def initial_history(self, shape: tuple[int, ...]) -> Array:
         return np.zeros((*shape, 1))

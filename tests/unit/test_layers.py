@@ -30,6 +30,7 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("stages", "plots"),
     ("run", "material", "calibration"),
     ("accuracy",),
+    ("stress",),
     ("commands",),
     ("__main__",),
 ]

@@ -147,6 +147,22 @@ def test_what_does_not_close_in_is_not_judged(monkeypatch: pytest.MonkeyPatch, t
     assert made.reaching(0.01) is None
 
 
+def test_a_target_finer_than_the_reference_counts_what_can_be_told(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Steps make a noise of 2 %, elements an error of 4 % at their coarsest: those must be as fine as for 1 %."""
+    made = manufactured(
+        monkeypatch, tmp_path / "s", lambda h, dt: 100.0 + (-1.0) ** round(math.log2(dt)) + 0.5 * h**2
+    )
+    tension = made.quantities()["heave: top tension"]
+    assert 0.015 < tension.doubt < 0.05
+    reached = made.reaching(0.001)
+    assert reached is not None
+    assert tension.error_of(reached.headlines["heave: top tension"]) <= tension.doubt
+    assert made.foretold(0.001).excess((0.25, 0.25)) > 1.0
+    assert words(made)[-1].startswith("as 0.1 % counts what the study can tell, where that is more: heave: top tension")
+
+
 def test_a_scene_that_fails_is_studied_around_finer_settings(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """It runs with steps of a quarter: 0.0025 s, elements of a quarter, too. What failed is a row."""
     found = {"heave: top tension": Headline("heave", "top tension", "N", 100.0, 0.0)}

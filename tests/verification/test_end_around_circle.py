@@ -23,41 +23,16 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher
-from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
-
-R, LENGTH, DURATION = 30.0, 60.0, 40.0
-PIPE = {"EA": 3e8, "EI": 5e4, "GJ": 4e4, "mass": 120.0, "outer_diameter": 0.3}
-PIPE |= {"drag": {"normal": 1.1}, "added_mass": {"normal": 1.0}}  # type: ignore[dict-item]
-
-
-def _way(file: Path, way: int, side: int) -> Path:
-    """Once around, up (+1) or down (-1) first, from a side, +x or -x, with a smooth start and end."""
-    t = np.linspace(0.0, DURATION, 161)
-    s = t / DURATION
-    angle = 2.0 * np.pi * way * (10.0 * s**3 - 15.0 * s**4 + 6.0 * s**5)
-    x, z = side * R * (np.cos(angle) - 1.0), R * np.sin(angle)
-    rows = (f"{a:.9g},{b:.15g},0,{c:.15g}" for a, b, c in zip(t, x, z, strict=True))
-    file.write_text("\n".join(("t [s],x [m],y [m],z [m]", *rows)) + "\n")
-    return file
+from tests.support.end_around_circle import LARGEST, end_led_around, way_around
 
 
 @cache
 def led_around(way: int, side: int, time_step: float, elements: int = 60, dimension: int = 2) -> Array:
     """Effective tension at both ends and largest moment, step by step."""
     with TemporaryDirectory() as folder:
-        motion = {"end": {"table": str(_way(Path(folder) / "way.csv", way, side))}}
-        scene = riser_scene(
-            static(),
-            dynamic(DURATION, time_step, motion=motion),
-            pipe=PIPE,
-            length=LENGTH,
-            elements=elements,
-            start=prescribed(0.0, 0.0, 0.0),
-            end=prescribed(side * R, 0.0, 0.0),
-            gravity=9.81,
-            water={"density": 1025.0},
-            dimension=dimension,
-        )
+        table = Path(folder) / "way.csv"
+        table.write_text(way_around(way, side))
+        scene = end_led_around(str(table), side, time_step, elements, dimension)
         assembly = build(scene_from_mapping(scene), MPI.COMM_SELF)
     rows, before = list[tuple[float, float, float]](), State.at_rest(0.0, assembly.size)
 
@@ -79,13 +54,11 @@ def test_mirror_images_move_as_such(way: int) -> None:
 @pytest.mark.parametrize(("way", "off"), [(1, 0.002), (-1, 0.03)])
 def test_both_ways_in_long_steps(way: int, off: float) -> None:
     """Largest tension at the start, above what 2,000 steps find: 34.375 kN one way, 47.563 kN the other."""
-    right = {1: 34375.0, -1: 47563.0}[way]
-    assert led_around(way, 1, 0.2)[:, 0].max() == pytest.approx(right, rel=off)
+    assert led_around(way, 1, 0.2)[:, 0].max() == pytest.approx(LARGEST[way], rel=off)
 
 
 @pytest.mark.verify
 @pytest.mark.parametrize("way", [1, -1])
 @pytest.mark.parametrize(("elements", "dimension"), [(60, 2), (120, 2), (60, 3)])
 def test_both_ways_converge(way: int, elements: int, dimension: int) -> None:
-    right = {1: 34375.0, -1: 47563.0}[way]
-    assert led_around(way, 1, 0.05, elements, dimension)[:, 0].max() == pytest.approx(right, rel=0.002)
+    assert led_around(way, 1, 0.05, elements, dimension)[:, 0].max() == pytest.approx(LARGEST[way], rel=0.002)

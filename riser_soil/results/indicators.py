@@ -1,0 +1,210 @@
+"""Indicators of a stage's numerical error that cost no other run: time step, impact, bending of the elements.
+
+Each is an estimate of size, calibrated in `tests/verification/test_indicators.py`; none is a bound.
+
+- time step: `time_resolution`, in the extremes of some figures, and the largest local error of a step;
+- impact: what contact's force at the end of the step takes beyond what the ground does. A share s of the energy of an
+  impact, lost while the riser is brought to rest and thrown back, lowers the force of it by some 1 - (1 - s)^(1/4), as
+  half of the loss comes before the peak and the force goes with the root of the energy;
+- bending: the largest misfit of the elements, `riser.resolution`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.saved_state import Saved, gathered, packed, restore_all, unpacked
+from riser_soil.core.snapshot import Ledger, StepStatistics
+from riser_soil.results.figures import index_of
+from riser_soil.results.time_resolution import TimeResolution
+
+#: Figures whose extremes are judged, with what a warning calls them; those without words have none.
+JUDGED = {
+    "start.effective_tension": "tension at the start",
+    "end.effective_tension": "tension at the end",
+    "min_effective_tension": "",
+    "max_bending_moment": "bending moment",
+    "touchdown_arc": "",
+}
+AT = np.array([index_of(name) for name in JUDGED])
+# Share of a figure's largest size from which its estimated error is a warning, and that which is advised.
+LARGE_ERROR, FINE = 0.03, 0.01
+# Local error of a step, over the diameter, from which the motion is not followed; automatic steps keep to 0.02.
+LARGE_LOCAL_ERROR = 2.0
+# Share of the riser's kinetic energy that one impact may lose to the time step.
+LARGE_LOSS = 0.1
+STEPS_OF_IMPACT = 100.0  # in a period of the riser on its contact, which cost 2 to 3 % of the force of an impact
+NEGLIGIBLE = 1e-2  # of the riser's weight: a tension too small to judge; times a diameter, a moment
+LOSSES = ("seabed_time_scheme", "contact_time_scheme")
+
+
+@dataclass
+class WorstStep:
+    """The largest local error [m] of a step, and its time [s]; the longest step [s]."""
+
+    local_error: float = 0.0
+    time: float = math.nan
+    dt: float = 0.0
+
+    def follow(self, t: float, health: StepStatistics) -> None:
+        self.dt = max(self.dt, health.time_step)
+        if health.local_error > self.local_error:
+            self.local_error, self.time = health.local_error, t
+
+
+@dataclass
+class ImpactLoss:
+    """Energy [J] that contact has lost to the time step, and its part in one impact.
+
+    lost: of the stage. recent: of late, fading within two of a contact's periods. largest: of it, with its time [s].
+    kinetic: the largest of the riser yet.
+    """
+
+    lost: float = 0.0
+    recent: float = 0.0
+    largest: float = 0.0
+    time: float = math.nan
+    kinetic: float = 0.0
+
+    def follow(self, t: float, dt: float, period: float, ledger: Ledger) -> None:
+        lost = sum(ledger.dissipated_by.get(name, 0.0) for name in LOSSES)
+        fading = max(4.0 * dt, 2.0 * period if math.isfinite(period) else 0.0)
+        self.recent = self.recent * math.exp(-dt / fading) + lost - self.lost
+        self.lost, self.kinetic = lost, max(self.kinetic, ledger.kinetic)
+        if self.recent > self.largest:
+            self.largest, self.time = self.recent, t
+
+    @property
+    def share(self) -> float:
+        """Of the largest kinetic energy, 0 to 1, that one impact lost."""
+        return min(1.0, self.largest / self.kinetic) if self.kinetic > 0.0 else 0.0
+
+    @property
+    def force_error(self) -> float:
+        """Share by which the force of such an impact is too small."""
+        return 1.0 - float((1.0 - self.share) ** 0.25)
+
+
+@dataclass
+class StageIndicators:
+    """Indicators of one stage, gathered while it runs.
+
+    diameter, weight: of the riser [m], [N]. contact_period: of the riser on its contact's stiffness [s], nan without.
+    bending: the largest misfit of the elements, see `Plausibility`.
+    """
+
+    diameter: float = math.nan
+    weight: float = math.nan
+    contact_period: float = math.nan
+    step: WorstStep = field(default_factory=WorstStep)
+    impact: ImpactLoss = field(default_factory=ImpactLoss)
+    bending: dict[str, float] = field(default_factory=dict)
+    resolution: TimeResolution = field(default_factory=lambda: TimeResolution(len(AT)))
+    largest: Array = field(default_factory=lambda: np.zeros(len(AT)))
+
+    def begin(self, t: float, vector: Array) -> None:
+        """The figures, from `figures.pack`, that a dynamic stage begins with."""
+        self.resolution.update(t, vector[AT])
+
+    def follow(self, t: float, vector: Array, health: StepStatistics, ledger: Ledger) -> None:
+        """After a step of a dynamic stage; t: s of the run."""
+        values = vector[AT]
+        self.resolution.update(t, values)
+        self.largest = np.fmax(self.largest, np.abs(values))
+        self.step.follow(t, health)
+        self.impact.follow(t, health.time_step, self.contact_period, ledger)
+
+    def as_dict(self, dynamic: bool) -> dict[str, Any]:
+        told: dict[str, Any] = {"bending": self.bending} if self.bending else {}
+        if dynamic:
+            told |= {"time_step": self._time_step(), "impact": self._impact()}
+        return told
+
+    def _time_step(self) -> dict[str, Any]:
+        errors = zip(JUDGED, self.resolution.of_least, self.resolution.of_most, strict=True)
+        local = {"value": self.step.local_error, "time": self.step.time}
+        return {"local_error": local, **{name: {"min": float(a), "max": float(b)} for name, a, b in errors}}
+
+    def _impact(self) -> dict[str, float]:
+        steps = self.contact_period / self.step.dt if self.step.dt else math.nan
+        found = {"lost": self.impact.lost, "largest": self.impact.largest, "time": self.impact.time}
+        return found | {
+            "share_of_kinetic": self.impact.share,
+            "force_error": self.impact.force_error,
+            "steps_in_contact_period": steps,
+        }
+
+    def warnings(self) -> Iterator[str]:
+        """Of a dynamic stage, with numbers and a remedy."""
+        yield from self._coarse_steps()
+        yield from self._jumps()
+        yield from self._lost_impact()
+
+    def _coarse_steps(self) -> Iterator[str]:
+        """Of tensions and moment the one that is most in doubt."""
+        share, scale = self._doubt()
+        n = int(share.argmax())
+        if share[n] > LARGE_ERROR:
+            name, unit = list(JUDGED)[n], "N.m" if "moment" in list(JUDGED)[n] else "N"
+            fine = self.step.dt * math.sqrt(FINE / share[n])
+            error = self.resolution.of_most[n]
+            yield (
+                f"the largest {JUDGED[name]} may be off by some {error:.3g} {unit}, {share[n]:.2g} "
+                f"of {scale[n]:.4g} {unit} (told above {LARGE_ERROR:g}): that sharply it turns between steps of"
+                f" {self.step.dt:.3g} s; take a time_step of {fine:.2g} s, or auto"
+            )
+
+    def _doubt(self) -> tuple[Array, Array]:
+        """Estimated errors over their scales, and these scales; 0 for figures that have no words."""
+        tension, least = float(self.largest[:2].max()), NEGLIGIBLE * self.weight
+        moment = max(self.largest[3], least * self.diameter)
+        scale = np.array([max(tension, least)] * 3 + [moment, math.inf])
+        spoken = np.array([bool(words) for words in JUDGED.values()])
+        share = self.resolution.of_most / np.where(scale > 0.0, scale, math.inf)
+        return np.where(spoken, share, 0.0), scale
+
+    def _jumps(self) -> Iterator[str]:
+        step, allowed = self.step, LARGE_LOCAL_ERROR * self.diameter
+        if step.local_error > allowed:
+            fine = step.dt * (allowed / step.local_error) ** (1 / 3)
+            yield (
+                f"the step at {step.time:.5g} s misplaces the riser by some {step.local_error:.3g} m of its own, "
+                f"{step.local_error / self.diameter:.2g} diameters (told above {LARGE_LOCAL_ERROR:g}), by the change "
+                f"of its accelerations: take a time_step of {fine:.2g} s or less, or auto"
+            )
+
+    def _lost_impact(self) -> Iterator[str]:
+        impact = self.impact
+        if impact.share > LARGE_LOSS:
+            yield (
+                f"at {impact.time:.5g} s impact lost {impact.largest:.3g} J to the time step and not to the ground, "
+                f"{impact.share:.0%} of the {impact.kinetic:.3g} J of the motion (told above {LARGE_LOSS:.0%}): forces "
+                f"of impact may be {impact.force_error:.0%} too small, and rebounds too low; {self._shorter()}"
+            )
+
+    def _shorter(self) -> str:
+        if math.isnan(self.contact_period):
+            return "take a smaller time_step"
+        steps, fine = self.contact_period / self.step.dt, self.contact_period / STEPS_OF_IMPACT
+        return (
+            f"the riser bounces on its contact with a period of {self.contact_period:.3g} s, {steps:.2g} steps; "
+            f"take a time_step of {fine:.2g} s, or a softer contact"
+        )
+
+    def state(self) -> Saved:
+        told = {"step": asdict(self.step), "impact": asdict(self.impact), "bending": self.bending}
+        plain = {name: getattr(self, name) for name in ("diameter", "weight", "contact_period")}
+        return gathered({"resolution": self.resolution}) | {"told": packed(told | plain), "largest": self.largest}
+
+    def restore(self, saved: Saved) -> None:
+        told: Mapping[str, Any] = unpacked(saved["told"])
+        vars(self).update(told)
+        self.largest = saved["largest"].copy()
+        self.step, self.impact = WorstStep(**told["step"]), ImpactLoss(**told["impact"])
+        restore_all({"resolution": self.resolution}, saved)

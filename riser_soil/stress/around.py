@@ -1,0 +1,117 @@
+"""Stress around a scene: its extremes, each run in a process with limits and judged by bounds and by its neighbours."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from riser_soil.accuracy.headlines import Headline, headlines
+from riser_soil.results.folder import write_atomically
+from riser_soil.results.read import Run
+from riser_soil.scene.dump import dump_scene
+from riser_soil.scene.scene import Scene
+from riser_soil.stress.answers import Answer, between
+from riser_soil.stress.bounds import bounds
+from riser_soil.stress.extremes import ExtremeScene, extremes, is_at_rest
+from riser_soil.stress.limited_process import Ending, Limits, ended, import_all
+from riser_soil.stress.outcome import PASSED, TOLD, StressOutcome, outcome
+from riser_soil.stress.stressed_run import running
+from riser_soil.stress.table import as_json, markdown, told
+
+AT_REST = 1e-3  # of a headline: what time steps without motion may change
+
+
+@dataclass(frozen=True)
+class StressedScene:
+    """One of the scenes after its run. place: its folder."""
+
+    extreme: ExtremeScene
+    place: Path
+    ending: Ending
+
+    @property
+    def run(self) -> Run | None:
+        """Its results, where it left some."""
+        folder = self.place / "scene"
+        return Run(folder) if (folder / "summary.json").is_file() else None
+
+
+def stress(
+    scene: Scene, folder: Path, limits: Limits, jobs: int, command: str, says: Callable[[str], None]
+) -> list[StressOutcome]:
+    """Run all extremes of a scene, results to folders in `folder`, and tell each; table and figures go there, too."""
+    import_all()
+    places = [(extreme, folder / f"{n:02d}") for n, extreme in enumerate(extremes(scene))]
+    with ThreadPoolExecutor(jobs) as pool:
+        done = list(pool.map(lambda item: _run(item[0], item[1], limits), places))
+    rows = [_judged(each, done) for each in done]
+    for row in rows:
+        says(told(row))
+    write_atomically(folder / "stress.json", as_json(rows, command))
+    write_atomically(folder / "stress.md", markdown(rows) + "\n")
+    return rows
+
+
+def _run(extreme: ExtremeScene, place: Path, limits: Limits) -> StressedScene:
+    place.mkdir(parents=True, exist_ok=True)
+    (place / "scene.yaml").write_text(dump_scene(extreme.scene), encoding="utf-8")
+    return StressedScene(extreme, place, ended(running(["scene"]), place, limits))
+
+
+def _judged(stressed: StressedScene, done: list[StressedScene]) -> StressOutcome:
+    run, name = stressed.run, stressed.extreme.name
+    runs = [] if run is None else [run]
+    answers = list(_answers(stressed, done)) if run is not None and stressed.ending.finished else []
+    row = outcome(name, "", stressed.ending, runs, answers, may_tell=_own_warnings(stressed, done[0]))
+    return replace(row, as_hoped=row.verdict in (PASSED, TOLD))
+
+
+def _answers(stressed: StressedScene, done: list[StressedScene]) -> Iterator[Answer]:
+    run, extreme = stressed.run, stressed.extreme
+    assert run is not None
+    yield from bounds(run)
+    if is_at_rest(extreme):
+        yield from _at_rest(run)
+        return
+    other = next((each for each in done if each.extreme.name == extreme.against), None)
+    if other is None or other.run is None or not other.ending.finished or extreme.apart is None:
+        return
+    theirs = headlines(other.run.summary)
+    for key, mine in headlines(run.summary).items():
+        if key in theirs and mine.unit == "N":
+            apart = theirs[key].relative(mine.value - theirs[key].value)
+            yield between(f"{key}, apart from that {other.extreme.name} [-]", apart, 0.0, extreme.apart)
+
+
+def _at_rest(run: Run) -> Iterator[Answer]:
+    """Dynamic stages without motion: their extremes are the static stage's values."""
+    found = headlines(run.summary)
+    static = next(stage["name"] for stage in run.summary["stages"] if stage["kind"] == "static")
+    for stage in (each["name"] for each in run.summary["stages"] if each["kind"] == "dynamic"):
+        for name in ("top tension", "force at end", "force at start"):
+            before, now = found.get(f"{static}: {name}"), found.get(f"{stage}: {name}")
+            if before is not None and now is not None:
+                yield between(f"{now.key}, apart from rest [-]", _apart(now, before), 0.0, AT_REST)
+
+
+def _apart(now: Headline, before: Headline) -> float:
+    return before.relative(now.value - before.value)
+
+
+def _own_warnings(stressed: StressedScene, base: StressedScene) -> str | None:
+    """Pattern of the warnings that the scene as it is has not, by their first words; None without any."""
+    known = {_begin(line) for line in _warnings(base.ending)} if stressed is not base else set()
+    own = [line for line in _warnings(stressed.ending) if _begin(line) not in known]
+    return "|".join(re.escape(line.strip()) for line in own) or None
+
+
+def _warnings(ending: Ending) -> list[str]:
+    return [line for line in ending.output.splitlines() if line.strip().startswith("warning:")]
+
+
+def _begin(line: str) -> str:
+    """A warning without its numbers."""
+    return re.sub(r"[-+\d.e]+", "#", line)[:60]

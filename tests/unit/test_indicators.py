@@ -1,0 +1,126 @@
+"""Indicators of numerical error: figures that turn sharply between steps, energy lost in impact, their warnings."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from riser_soil.core.snapshot import Ledger, StepStatistics
+from riser_soil.results.figures import index_of
+from riser_soil.results.indicators import AT, JUDGED, ImpactLoss, StageIndicators
+from riser_soil.results.time_resolution import SHARE, TimeResolution
+
+SIZE = int(AT.max()) + 1
+TENSION = index_of("end.effective_tension")
+
+
+def resolved(dt: float, start: float = 0.0) -> TimeResolution:
+    """A sine of amplitude 2 and its third harmonic, one period of 2 pi; steps of dt."""
+    found = TimeResolution(2)
+    for t in np.arange(start, 2.0 * np.pi + start, dt):
+        found.update(float(t), np.array([2.0 * np.sin(t), np.sin(3.0 * t)]))
+    return found
+
+
+def test_estimate_is_the_second_difference_at_the_extreme() -> None:
+    """dt^2 q'': 2 dt^2 at the crest of the sine, 9 dt^2 at those of its harmonic."""
+    found = resolved(0.01)
+    for estimate in (found.of_most, found.of_least):
+        np.testing.assert_allclose(estimate, SHARE * 1e-4 * np.array([2.0, 9.0]), rtol=1e-2)
+
+
+def test_estimate_is_of_second_order() -> None:
+    np.testing.assert_allclose(resolved(0.02).of_most / resolved(0.01).of_most, 4.0, rtol=2e-2)
+
+
+def test_steps_of_changing_size_count_as_the_longer_ones() -> None:
+    found, t = TimeResolution(1), 0.0
+    for n in range(400):
+        found.update(t, np.array([t**2]))
+        t += 0.01 if n % 2 else 0.02
+    np.testing.assert_allclose(found.of_most, SHARE * 2.0 * 0.02**2, rtol=1e-9)
+
+
+def test_a_corner_after_the_extreme_belongs_to_it() -> None:
+    """A figure that falls off at once: its largest value is the last before the fall."""
+    found = TimeResolution(1)
+    for n, q in enumerate((0.0, 1.0, 2.0, -5.0, -5.0, -5.0, 30.0)):
+        found.update(0.1 * n, np.array([q]))
+    first = TimeResolution(1)
+    for n, q in enumerate((0.0, 1.0, 2.0, -5.0, -5.0)):
+        first.update(0.1 * n, np.array([q]))
+    assert first.of_most[0] == pytest.approx(SHARE * 8.0)
+    assert found.of_most[0] == pytest.approx(SHARE * 35.0)
+
+
+def test_what_is_not_known_is_not_judged() -> None:
+    found = TimeResolution(1)
+    for n, q in enumerate((math.nan, 1.0, 2.0, math.nan, 5.0)):
+        found.update(0.1 * n, np.array([q]))
+    assert found.of_most[0] == 0.0
+
+
+def followed(tensions: list[float], dt: float = 0.1, lost: float = 0.0, local_error: float = 0.0) -> StageIndicators:
+    """Indicators of steps with these tensions at the end and a loss by impact in each [J], 100 J of motion."""
+    found, vector = StageIndicators(0.3, 1e3, 0.5), np.zeros(SIZE)
+    for n, tension in enumerate(tensions):
+        vector[TENSION] = tension
+        ledger = Ledger(kinetic=100.0, dissipated_by={"seabed": 7.0, "seabed_time_scheme": lost * n})
+        found.follow(n * dt, vector, StepStatistics(3, dt, 0.0, 0, local_error), ledger)
+    return found
+
+
+def test_a_tension_that_turns_sharply_is_a_warning() -> None:
+    """Up and down by 200 N at 1000 N: 0.3 times 400 N of 1000 N; steps of 0.1 s sqrt(0.01/0.12)."""
+    found = followed([600.0, 800.0, 1000.0, 800.0, 600.0])
+    assert list(found.warnings()) == [
+        "the largest tension at the end may be off by some 120 N, 0.12 of 1000 N (told above 0.03): that sharply it "
+        "turns between steps of 0.1 s; take a time_step of 0.029 s, or auto"
+    ]
+    assert list(followed([980.0, 995.0, 1000.0, 995.0, 980.0]).warnings()) == []
+
+
+def test_tension_beside_the_weight_is_too_small_to_judge() -> None:
+    assert list(followed([0.0, 1e-6, -1e-6, 1e-6]).warnings()) == []
+
+
+def test_impact_that_loses_the_motion_is_a_warning() -> None:
+    told = list(followed([1000.0] * 3, lost=20.0).warnings())
+    assert len(told) == 1
+    assert "impact lost 38.1 J to the time step and not to the ground, 38% of the 100 J" in told[0]
+    assert "a period of 0.5 s, 5 steps; take a time_step of 0.005 s" in told[0]
+    assert list(followed([1000.0] * 3, lost=2.0).warnings()) == []
+
+
+def test_losses_fade_within_two_periods_of_the_contact() -> None:
+    """Landings long after each other are no one impact; the sum of all stays."""
+    loss = ImpactLoss()
+    for n in range(100):
+        loss.follow(10.0 * n, 10.0, 0.5, Ledger(kinetic=100.0, dissipated_by={"contact_time_scheme": 6.0 * n}))
+    assert loss.lost == 594.0
+    assert loss.share == pytest.approx(0.06 / (1.0 - math.exp(-0.25)), rel=1e-6)
+
+
+def test_steps_that_misplace_the_riser_are_a_warning() -> None:
+    told = list(followed([1000.0] * 3, local_error=0.9).warnings())
+    assert len(told) == 1
+    assert "by some 0.9 m of its own, 3 diameters" in told[0]
+    assert list(followed([1000.0] * 3, local_error=0.5).warnings()) == []
+
+
+def test_indicators_come_back_as_they_were() -> None:
+    first, again = followed([600.0, 800.0, 1000.0], lost=5.0, local_error=0.1), StageIndicators()
+    first.bending = {"moment_error": 3.0}
+    again.restore(first.state())
+    assert again.as_dict(True) == first.as_dict(True)
+    assert [*again.warnings()] == [*first.warnings()]
+
+
+def test_statics_tell_of_bending_alone() -> None:
+    found = StageIndicators()
+    assert found.as_dict(False) == {}
+    found.bending = {"moment_error": 3.0}
+    assert found.as_dict(False).keys() == {"bending"}
+    assert set(found.as_dict(True)["time_step"]) == {"local_error", *JUDGED}

@@ -1,0 +1,87 @@
+"""Stress suite: verdicts on runs with known answers, limits of processes, extremes of a scene, the cheapest cases."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from riser_soil.scene.reader import read_scene
+from riser_soil.stress.answers import Answer, between, near
+from riser_soil.stress.extremes import BASE, extremes
+from riser_soil.stress.limited_process import Ending, Limits, ended
+from riser_soil.stress.outcome import BROKEN, LONG, PASSED, TOLD, WRONG, outcome
+from tests.support.on_ranks import ROOT, environment
+
+FIRST_SCENE = ROOT / "demos" / "first_scene.yaml"
+RIGHT, OFF = near("T [N]", 101.0, 100.0, rel=0.02), near("T [N]", 103.0, 100.0, rel=0.02)
+
+
+def test_answers_hold_within_what_they_may_miss() -> None:
+    assert (RIGHT.holds, OFF.holds) == (True, False)
+    assert RIGHT.error == pytest.approx(0.01)
+    assert between("x", 3.0, 0.0, 2.0).error == pytest.approx(0.5)
+    assert not near("x", float("nan"), 1.0, rel=1.0).holds
+    assert near("x", float("nan"), 1.0, rel=1.0).error == float("inf")
+
+
+@pytest.mark.parametrize(
+    ("ending", "answer", "may_tell", "verdict", "hoped"),
+    [
+        (Ending("done", True, 1.0, ""), RIGHT, None, PASSED, True),
+        (Ending("done", True, 1.0, "warning: too coarse"), OFF, None, WRONG, False),
+        (Ending("done", True, 1.0, "warning: too coarse"), OFF, "coarse", TOLD, True),
+        (Ending("done", True, 1.0, "warning: too coarse"), OFF, "too long", WRONG, False),
+        (Ending("solve failed", True, 1.0, "no convergence"), OFF, None, TOLD, False),
+        (Ending("solve failed", True, 1.0, "no convergence"), OFF, "no conv", TOLD, True),
+        (Ending("traceback", False, 1.0, "Traceback"), OFF, "Trace", BROKEN, False),
+        (Ending("hang", False, 60.0, ""), OFF, None, LONG, False),
+    ],
+)
+def test_verdicts(ending: Ending, answer: Answer, may_tell: str | None, verdict: str, hoped: bool) -> None:
+    row = outcome("case", "", ending, [], [RIGHT, answer], may_tell=may_tell)
+    assert (row.verdict, row.as_hoped) == (verdict, hoped)
+    if ending.finished:
+        assert row.answer == str(answer)
+
+
+def test_a_process_ends_at_its_limits(tmp_path: Path) -> None:
+    def busy() -> int:
+        while True:
+            pass
+
+    def greedy() -> int:
+        return len(bytearray(2**33))
+
+    def fails() -> int:
+        print("no convergence")
+        return 3
+
+    begun = time.monotonic()
+    assert ended(busy, tmp_path, Limits(cpu=1)).word == "hang"
+    assert time.monotonic() - begun < 20.0
+    assert ended(greedy, tmp_path, Limits()).word == "traceback"
+    told = ended(fails, tmp_path, Limits())
+    assert (told.word, told.well, told.output) == ("solve failed", True, "no convergence\n")
+    assert ended(lambda: os.abort(), tmp_path, Limits()).word == "killed by SIGABRT"
+
+
+def test_extremes_of_the_first_scene() -> None:
+    found = {each.name: each for each in extremes(read_scene(FIRST_SCENE))}
+    assert next(iter(found)) == BASE
+    pipe = found["EA times 1000"].scene.line_types["flexible"]
+    assert pytest.approx(3e11) == pipe.EA
+    assert found["time step, 0.1 times as fine"].scene.stages[1].time_step == pytest.approx(1.0)  # type: ignore[union-attr]
+    assert all(each.against in (None, "at rest", *found) for each in found.values())
+    assert not [name for name in found if "soil" in name or "penalty" in name], "it has springs alone"
+
+
+def test_the_cheapest_cases_end_as_they_are_to() -> None:
+    call = [sys.executable, "-m", "tests.stress.run", "--quick", "--workers", "1"]
+    done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.count("passed: ") > 5

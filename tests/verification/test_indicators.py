@@ -1,0 +1,136 @@
+"""Indicators of a run against the true error of time step, impact and elements, over scenes with known answers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from riser_soil.results.indicators import LARGE_ERROR, LARGE_LOSS
+from riser_soil.results.plausibility import SMOOTH_MISFIT
+from tests.support.indicator_scenes import STEPPED, falling, hung, last_stage
+
+# Of the largest tension: errors that must be told, and that should not be; those that are no round-off of a reference.
+WRONG, RIGHT, KNOWN = 0.05, 0.005, 0.003
+stepped_scenes = pytest.mark.parametrize(
+    "name", [name if name == "surge" else pytest.param(name, marks=pytest.mark.verify) for name in STEPPED]
+)
+
+
+def tensions(stage: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Largest tensions at both ends [N]."""
+    return np.array([stage["extremes"][end]["effective_tension"]["max"] for end in ("start", "end")])
+
+
+def told(stage: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Their errors as estimated."""
+    return np.array([stage["indicators"]["time_step"][f"{end}.effective_tension"]["max"] for end in ("start", "end")])
+
+
+@cache
+def tension_errors(name: str) -> list[tuple[float, float, float, float, bool]]:
+    """Step [s]; of the end that is farthest off, the error and its estimate, over the largest tension; the largest
+    estimate; whether any warning tells of it.
+    """
+    case, rows = STEPPED[name], []
+    exact = tensions(last_stage(case.fine()))
+    for dt in case.steps:
+        stage = last_stage(case.scene(dt))
+        error, estimate = abs(tensions(stage) - exact) / exact.max(), told(stage) / exact.max()
+        worst = int(error.argmax())
+        rows.append((dt, error[worst], estimate[worst], estimate.max(), bool(stage["warnings"])))
+        print(f"| {name} | {dt:g} | {error[worst]:.2%} | {estimate[worst]:.2%} | {'yes' if rows[-1][-1] else ''} |")
+    return rows
+
+
+@stepped_scenes
+def test_steps_too_long_for_the_tension_are_told(name: str) -> None:
+    """Whether told at all, and by a number of the error's size."""
+    for dt, error, estimate, _, warned in tension_errors(name):
+        if error > WRONG:
+            assert warned, (name, dt)
+            assert estimate > 0.1 * error, (name, dt)
+        if KNOWN < error < 1.0:
+            assert 0.2 * error < estimate < 10.0 * max(error, 0.01), (name, dt)
+
+
+@pytest.mark.verify
+def test_estimate_of_the_tension_s_error_is_of_its_size() -> None:
+    rows = [row for name in STEPPED for row in tension_errors(name)]
+    judged = [(error, estimate) for _, error, estimate, _, _ in rows if KNOWN < error < 1.0]
+    ratios = np.array([estimate / error for error, estimate in judged])
+    within = float(np.mean((ratios > 0.2) & (ratios < 5.0)))
+    print(f"{len(ratios)} errors: median ratio {np.median(ratios):.3g}, {within:.0%} within a factor 5")
+    assert len(STEPPED) >= 12
+    assert 0.5 < np.median(ratios) < 3.0
+    assert within >= 0.8
+
+
+@pytest.mark.verify
+def test_few_good_runs_are_warned_of() -> None:
+    """A table's corner, where a motion stops at once, counts like one that steps have cut: one scene does so."""
+    good = [(name, *row) for name in STEPPED for row in tension_errors(name) if row[1] < RIGHT]
+    false = [row for row in good if row[4] > LARGE_ERROR]
+    print(f"{len(false)} of {len(good)}: {false}")
+    assert len(good) >= 5
+    assert len(false) <= 0.2 * len(good)
+
+
+IMPACTS = [(1e5, 2e-2), (1e5, 3e-3), (1e6, 1e-2), (1e6, 3e-3), (1e6, 1e-3), (1e7, 3e-3), (1e7, 1e-3)]
+
+
+@pytest.mark.parametrize(
+    ("k", "dt"), [each if each == (1e6, 1e-3) else pytest.param(*each, marks=pytest.mark.verify) for each in IMPACTS]
+)
+def test_force_of_an_impact_is_told_to_be_too_small(k: float, dt: float) -> None:
+    """A pipe falls by h = 0.1 m on a lossless floor: at most w + sqrt(w² + 2 k w h) per length."""
+    stage, w = last_stage(falling(dt, k)), 700.0
+    exact = 40.0 * (w + math.sqrt(w * w + 2.0 * k * w * 0.1))
+    error, found = 1.0 - stage["extremes"]["contact_force"]["max"] / exact, stage["indicators"]["impact"]
+    print(f"| {k:.0e} | {dt:g} | {error:.1%} | {found['force_error']:.1%} | {found['share_of_kinetic']:.0%} |")
+    lost = stage["energy"]["dissipated_by"]
+    assert lost == {"seabed": 0.0, "seabed_time_scheme": stage["energy"]["dissipated"]}
+    assert 0.4 * error < found["force_error"] < 2.0 * error
+    assert found["share_of_kinetic"] > LARGE_LOSS
+    assert any("impact lost" in text for text in stage["warnings"])
+
+
+@pytest.mark.verify
+def test_impact_in_short_steps_is_not_told() -> None:
+    stage = last_stage(falling(2e-4, 1e6))
+    assert not any("impact lost" in text for text in stage["warnings"])
+    assert stage["indicators"]["impact"]["steps_in_contact_period"] == pytest.approx(344.0, rel=0.01)
+
+
+HUNG: dict[str, tuple[float, tuple[float, float, float], str]] = {
+    "10 km, steep": (10000.0, (5000.0, 0.0, 8000.0), "free"),
+    "10 km, slack": (10000.0, (8000.0, 0.0, 2000.0), "free"),
+    "10 km, wide": (10000.0, (6000.0, 0.0, 7900.0), "free"),
+    "148 m": (148.0, (80.0, 0.0, 100.0), "free"),
+    "148 m, clamped": (148.0, (80.0, 0.0, 100.0), "fixed"),
+}
+
+
+@pytest.mark.parametrize(
+    "name", [name if name == "10 km, steep" else pytest.param(name, marks=pytest.mark.verify) for name in HUNG]
+)
+def test_elements_too_long_for_the_moment_are_told(name: str) -> None:
+    length, top, rotation = HUNG[name]
+    exact = moment(last_stage(hung(640, length, top, rotation)))
+    for elements in (10, 20, 40, 80):
+        stage = last_stage(hung(elements, length, top, rotation))
+        error, found = abs(moment(stage) - exact), stage["indicators"]["bending"]
+        print(f"| {name} | {elements} | {error / exact:.2%} | {found['moment_error'] / exact:.2%} |")
+        if error > 0.1 * exact:
+            assert found["share"] > SMOOTH_MISFIT, elements
+            assert any("too long for the bending" in text for text in stage["warnings"]), elements
+            assert 0.3 * error < found["moment_error"] < 10.0 * error, elements
+
+
+def moment(stage: Mapping[str, Any]) -> float:
+    """Largest bending moment at the stage's end [N.m]."""
+    return float(stage["final"]["max_bending_moment"]["value"])
