@@ -15,7 +15,9 @@ from riser_soil.riser import shapes
 from riser_soil.riser.line import End, Line
 from riser_soil.seabed.grounds import Plane
 from riser_soil.seabed.law import NormalLaw
+from tests.support.pipe_on_surface import STIFFNESS, pipe_on_surface, sagging
 from tests.support.soil_loops import after, aubeny_biscontin, forces, randolph_quiggin, through, work
+from tests.support.soil_tops import top
 
 D, SU, LENGTH = 0.3, 2000.0, 4.0
 HYSTERETIC = {"randolph-quiggin": randolph_quiggin(D, SU, 1500.0), "aubeny-biscontin": aubeny_biscontin(D, SU, 1500.0)}
@@ -93,5 +95,33 @@ def test_a_slow_cycle_on_the_seabed_is_its_loop(law: NormalLaw) -> None:
 
 def test_ground_that_gives_back_all_dissipates_nothing() -> None:
     own, by_scheme = pressed(Penalty(1e5, 1e-3), 8)
+    assert own == 0.0
+    assert by_scheme > 1.0
+
+
+def pulled_off_soil(law: Penalty | SuctionLaw, steps: int) -> tuple[float, float]:
+    """Dissipated by contact with soil, and by the scheme, of a pipe that is pulled off it [J]."""
+    made, own, by_scheme = pipe_on_surface(sagging(), top("quad4"), 2, pressure=law), 0.0, 0.0
+    made.commit(made.state().u)
+    for _ in range(steps):
+        u = made.state().u
+        u[made.line.translation_dofs[:, 1]] = 0.06 / steps
+        turned = made.contact.work(made.state(), made.state(u))
+        own, by_scheme = own + turned.dissipated - turned.by_scheme, by_scheme + turned.by_scheme
+        made.commit(u)
+    return own, by_scheme
+
+
+def test_suction_of_soil_takes_as_much_in_any_steps() -> None:
+    law = SuctionLaw(Penalty(STIFFNESS), 4e3, 0.01)
+    many, few = pulled_off_soil(law, 60), pulled_off_soil(law, 6)
+    print(f"60 steps {many}, 6 steps {few}")
+    assert many[0] > 1.0
+    assert few[0] == pytest.approx(many[0], rel=0.1)
+    assert abs(few[1]) > 3.0 * abs(many[1])
+
+
+def test_contact_with_soil_by_the_penalty_dissipates_nothing() -> None:
+    own, by_scheme = pulled_off_soil(Penalty(STIFFNESS, 1e-3), 6)
     assert own == 0.0
     assert by_scheme > 1.0

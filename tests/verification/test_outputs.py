@@ -125,6 +125,7 @@ def test_summary_is_as_documented(demo: WatchedRun) -> None:
     assert {"riser", "soil", "contact", "linear_solve"} <= set(summary["seconds"])
     documented = {"name", "kind", "time", "steps", "newton_iterations", "step_cuts", "final", "extremes", "energy"}
     documented |= {"most_newton_iterations", "method", "relaxations", "branch_switches", "warnings", "soil"}
+    documented |= {"indicators"}
     for stage in summary["stages"]:
         assert set(stage) == documented
         assert_final(stage["final"])
