@@ -82,15 +82,20 @@ def _cheapest(study: Study, target: float) -> Iterator[str]:
     if not quantities:
         return
     best = found if found is not None else study.front()[-1]
-    settings, off = study.ladders.told(best.factors), _off(quantities, *study.error(best))
+    error, key = study.error(best)
+    settings, off = study.ladders.told(best.factors), _off(quantities, error, key)
     where = "" if len(quantities) == len(study.quantities()) else f" in {len(quantities)} quantities"
-    if found is not None:
-        yield f"{percent(target)} is reached{where} at the least cost, {best.cpu:.3g} s, with {settings}: {off}"
-    else:
+    if found is None:
         yield f"{percent(target)} is reached{where} by no setting that was run; the best, {settings}, is {off}"
+        return
+    at = f"at the least cost, {best.cpu:.3g} s, with {settings}: {off}"
+    if error <= target:
+        yield f"{percent(target)} is reached{where} {at}"
+    else:
+        yield f"{percent(target)} can't be told{where}; the reference is reached as far as it is known {at}"
     beside = _doubtful(quantities, target)
-    if found is not None and beside:
-        yield f"as {percent(target)} counts what the study can tell, where that is more: {beside}"
+    if beside:
+        yield f"the reference is known less well than to {percent(target)} of {beside}"
 
 
 def _failed(study: Study) -> Iterator[str]:

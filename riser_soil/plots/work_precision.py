@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from matplotlib.axes import Axes
-from matplotlib.ticker import FuncFormatter, NullFormatter
+from matplotlib.ticker import FuncFormatter
 
 from riser_soil.plots.curves import sheet
 
@@ -53,14 +53,15 @@ def drawn_work_precision(shown: WorkPrecision) -> str:
     axes.plot(*[[each] for each in (shown.scene[0], max(shown.scene[1], LEAST))], "ko", fillstyle="none", markersize=15)
     axes.annotate("scene as it is", (shown.scene[0], max(shown.scene[1], LEAST)), (12, 8), textcoords="offset points")
     if shown.doubt > LEAST:
-        axes.axhline(shown.doubt, color="0.4", linestyle=":", label="uncertainty of the reference")
+        axes.axhline(shown.doubt, color="0.4", linestyle=":", label="largest uncertainty of a reference")
     for target in shown.targets:
         axes.axhline(target, color="C2", linewidth=0.6)
     axes.set(xscale="log", yscale="log", xlabel="processor time [s]")
     axes.set_ylabel("largest relative error of a headline quantity")
     axes.yaxis.set_major_formatter(FuncFormatter(lambda part, _: f"{100.0 * part:g} %"))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda seconds, _: f"{seconds:g}"))
-    axes.xaxis.set_minor_formatter(FuncFormatter(_seconds_between) if _span(shown) < 30.0 else NullFormatter())
+    told = "123456789" if _span(shown) < 6.0 else "25" if _span(shown) < 30.0 else ""
+    axes.xaxis.set_minor_formatter(FuncFormatter(lambda s, _: f"{s:g}" if f"{s:.0e}"[0] in told else ""))
     axes.legend(fontsize=9)
     text = io.StringIO()
     figure.savefig(text, format="svg")
@@ -82,8 +83,3 @@ def _seen(errors: Sequence[float]) -> list[float]:
 def _span(shown: WorkPrecision) -> float:
     seconds = [s for line in shown.lines for s in line.seconds] + [*shown.other_seconds]
     return max(seconds) / min(seconds)
-
-
-def _seconds_between(seconds: float, _: int) -> str:
-    """Twos and fives of a scale that spans little."""
-    return f"{seconds:g}" if f"{seconds:.0e}"[0] in "25" else ""

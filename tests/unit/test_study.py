@@ -160,7 +160,9 @@ def test_a_target_finer_than_the_reference_counts_what_can_be_told(
     assert reached is not None
     assert tension.error_of(reached.headlines["heave: top tension"]) <= tension.doubt
     assert made.foretold(0.001).excess((0.25, 0.25)) > 1.0
-    assert words(made)[-1].startswith("as 0.1 % counts what the study can tell, where that is more: heave: top tension")
+    *_, cannot, why = words(made)
+    assert cannot.startswith("0.1 % can't be told; the reference is reached as far as it is known at the least cost")
+    assert why.startswith("the reference is known less well than to 0.1 % of heave: top tension (± ")
 
 
 def test_a_scene_that_fails_is_studied_around_finer_settings(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -227,22 +229,21 @@ def test_how_a_point_ended(tmp_path: Path) -> None:
     assert StudyPoint((1.0, 1.0), scene().model_copy(update={"gravity": 9.8}), tmp_path).folder != point.folder
 
 
-def command(folder: Path, *options: str) -> list[str]:
-    return [sys.executable, "-m", "riser_soil", "study", "small.yaml", "--rungs", "3", *options]
+COMMAND = [sys.executable, "-m", "riser_soil", "study", "small.yaml", "--rungs", "3", "--jobs", "2"]
 
 
 def test_a_study_that_was_interrupted_goes_on(tmp_path: Path) -> None:
     """A run of each rung, and of those that were done before the signal none again."""
     (tmp_path / "small.yaml").write_text(SMALL, encoding="utf-8")
     told = {"cwd": tmp_path, "env": environment(), "text": True}
-    with subprocess.Popen(command(tmp_path), stdout=subprocess.PIPE, stderr=subprocess.PIPE, **told) as first:  # type: ignore[call-overload]
+    with subprocess.Popen(COMMAND, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **told) as first:  # type: ignore[call-overload]
         outcomes = _first_outcomes(tmp_path, first)
         first.send_signal(signal.SIGTERM)
         _, said = first.communicate(timeout=HANGS)
     assert first.returncode == 143
     assert said.startswith("ended by SIGTERM in a study; call again to go on")
     before = {path: path.stat().st_mtime_ns for path in outcomes}
-    done = subprocess.run(command(tmp_path), capture_output=True, timeout=HANGS, check=False, **told)  # type: ignore[call-overload]
+    done = subprocess.run(COMMAND, capture_output=True, timeout=HANGS, check=False, **told)  # type: ignore[call-overload]
     assert done.returncode == 0, done.stderr
     assert {path: path.stat().st_mtime_ns for path in outcomes} == before
     assert done.stdout.count("computed before") >= len(outcomes)
@@ -250,6 +251,9 @@ def test_a_study_that_was_interrupted_goes_on(tmp_path: Path) -> None:
     tension = found["quantities"]["hang: top tension"]
     assert tension["error"] < 0.02
     assert tension["knobs"]["elements"]["order"] == pytest.approx(4.0, abs=1.5)
+    assert {tuple(p["factors"].values()): p["timed_alone"] for p in found["points"][:3]} == {
+        (0.5,): True, (1.0,): True, (2.0,): False,
+    }  # fmt: skip
     assert not list((tmp_path / "small-study").rglob("*.nc"))
 
 
