@@ -20,7 +20,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test lint verify fuzz bench verify-fresh docker pins clean
+.PHONY: help setup demo demos test lint verify fuzz bench bars verify-fresh docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -53,6 +53,9 @@ fuzz: setup ## 600 mutated scenes, each in a process with limits: how they end; 
 
 bench: setup ## seconds by part of the demo, Newton iterations against the bare work in them, energy of an impact by scheme
 	$(PYTHON) -m benchmarks
+
+bars: setup ## error bars of 52 scenes beside their true errors: docs/error_bars.md
+	$(PYTHON) -m benchmarks.error_bars
 
 verify-fresh: ## both commands of the README on bare Debians 12 and 13 made for it (needs root and debootstrap)
 	@set -e; for suite in $(SUITES); do FRESH_SUITE=$$suite scripts/verify_fresh.sh; done

@@ -15,6 +15,7 @@ HOSE |= {"drag": {"normal": 1.2}, "added_mass": {"normal": 1.0}}
 BEAM: Mapping = {"outer_diameter": 0.2, "mass": 50.0, "EA": 1.0e8, "EI": 5.0e5}
 WATER: Mapping = {"density": 1025.0}
 CLAY: Mapping = {"kind": "von-mises", "su": 2.0e3, "su_gradient": 1.5e3, "E_over_su": 300.0, "nu": 0.49}
+CYCLIC: Mapping = {"kind": "kinematic-hardening", "su": 5.0e3, "E_over_su": 300.0, "elastic_share": 0.1}
 HANG: Mapping = {"name": "hang", "kind": "static"}
 
 
@@ -22,7 +23,8 @@ def line(pipe: Mapping, start: Any, end: Any, segments: list[Mapping], stages: l
     """A riser between two places, each [x, y, z] or a whole support; lengths and elements of its segments."""
     ends = {"start": _support(start), "end": _support(end)}
     cut = [{"line_type": "pipe"} | segment for segment in segments]
-    return {"line_types": {"pipe": pipe}, "riser": {"segments": cut} | ends | more.pop("riser", {}), "stages": stages} | more
+    riser = {"segments": cut} | ends | more.pop("riser", {})
+    return {"line_types": {"pipe": pipe}, "riser": riser, "stages": stages} | more
 
 
 def _support(place: Any) -> Any:
@@ -49,12 +51,14 @@ def hanging(elements: int, span: float, *stages: Mapping, EI: float = 2.096e4, *
     pipe = FLEXIBLE | {"outer_diameter": 0.26, "mass": 57.5, "EA": 1.538e9, "EI": EI}
     more = {"water": WATER} | more
     contents = {"contents": {"density": 1025.0}}
-    return line(pipe, [0.0, 0.0, 0.0], [span, 0.0, 150.0], even(350.0, elements), [HANG, *stages], riser=contents, **more)
+    ends = [0.0, 0.0, 0.0], [span, 0.0, 150.0]
+    return line(pipe, *ends, even(350.0, elements), [HANG, *stages], riser=contents, **more)
 
 
 def touching(seabed: Mapping, size: float, *stages: Mapping, pipe: Mapping = FLEXIBLE, **more: Any) -> Mapping:
     """A flexible riser that comes down from 100 m; size: of the elements at the touchdown point [m]."""
-    segments = [{"length": 50.0, "element_length": size}, {"length": 98.0, "element_length": [size, 4.0 * size]}]
+    segments: list[Mapping] = [{"length": 50.0, "element_length": size}]
+    segments.append({"length": 98.0, "element_length": [size, 4.0 * size]})
     ends = [0.0, 0.0, 0.15], [80.0, 0.0, 100.0]
     contents = {"contents": {"density": 850.0}}
     return line(pipe, *ends, segments, [HANG, *stages], seabed=seabed, water=WATER, riser=contents, **more)
@@ -68,15 +72,23 @@ def hose(elements: int, *stages: Mapping, **more: Any) -> Mapping:
     return line(HOSE, *ends, even(40.0, elements), [HANG, *stages], seabed=floor, water=WATER, **more)
 
 
-def on_soil(law: Mapping, elements: int, size: float, *stages: Mapping) -> Mapping:
-    """A short flexible riser that comes down on a small block."""
-    segments = [{"length": 12.0, "elements": 2 * elements}, {"length": 18.0, "elements": elements}]
-    soil = {"block": {"x": [2.0, 9.0], "y": [-1.0, 1.0], "depth": 1.0}, "law": law, "submerged_unit_weight": 5.0e3}
-    soil |= {"mesh": {"size_at_riser": {"along": 2.0 * size, "across": size}, "size_far": 2.0 * size}}
-    ends = [0.0, 0.0, 0.15], [22.5, 0.0, 15.0]
-    contents = {"contents": {"density": 850.0}}
-    bed = {"kind": "spring", "stiffness": 1.0e5}
-    return line(FLEXIBLE, *ends, segments, [HANG, *stages], seabed=bed, water=WATER, riser=contents, soil=soil)
+def pressed(law: Mapping, cells: int, depth: float, *stages: Mapping) -> Mapping:
+    """A short stiff pipe, pressed by its ends into a slice of soil; depth: m. cells: to its diameter."""
+    pipe = {"outer_diameter": 0.3, "submerged_weight": 500.0, "mass": 120.0, "EA": 1.0e10, "EI": 1.0e7}
+    ends = [{"position": [x, 0.0, 0.15], "rotation": "fixed"} for x in (0.0, 0.3)]
+    block = {"x": [0.13, 0.17], "y": [-1.2, 1.2], "depth": 1.2}
+    size = {"along": 0.2, "across": 0.3 / cells, "strip": 0.3}
+    soil = {"block": block, "mesh": {"size_at_riser": size, "size_far": 0.3}, "law": law}
+    contact = {"method": "surface", "soil_moves": "upright"}
+    press = HANG | {"move": {"start": [0.0, 0.0, 0.15 - depth], "end": [0.3, 0.0, 0.15 - depth]}}
+    more: Mapping = {"soil": soil, "contact": contact, "dimension": 2, "riser": {"initial": "straight"}}
+    return line(pipe, ends[0], ends[1], even(0.3, 2), [press, *stages], **more)
+
+
+def lifted(height: float, steps: int) -> Mapping:
+    """Both ends go up and down once."""
+    harmonic = {"harmonic": {"amplitude": [0.0, 0.0, height], "period": 10.0, "ramp": 5.0}}
+    return freely(10.0, steps, motion={"start": harmonic, "end": harmonic})
 
 
 def cantilever(elements: int, *stages: Mapping, **more: Any) -> Mapping:
@@ -93,7 +105,7 @@ def loaded(name: str = "load", **load: Any) -> Mapping:
 def held(elements: int, *stages: Mapping, tension: float, **more: Any) -> Mapping:
     """A beam of 30 m along x with clamped ends, drawn to a tension [N], then loaded by its weight."""
     ends = [{"position": [x, 0.0, 0.0], "rotation": "fixed"} for x in (0.0, 30.0 * (1.0 + tension / BEAM["EA"]))]
-    return line(BEAM, *ends, even(30.0, elements), list(stages), riser={"initial": "straight"}, **more)
+    return line(BEAM, ends[0], ends[1], even(30.0, elements), list(stages), riser={"initial": "straight"}, **more)
 
 
 RIGID, SPRING = {"kind": "rigid"}, {"kind": "spring", "stiffness": 1.0e5}
@@ -142,8 +154,8 @@ SCENES: dict[str, Mapping] = {
     "on sloping springs": touching(SPRING | {"slope_deg": 5.0}, 1.0),
     "lazy wave": line(
         FLEXIBLE, [0.0, 0.0, 0.15], [110.0, 0.0, 80.0],
-        [{"length": 50.0, "element_length": 1.5},
-         {"length": 40.0, "element_length": 2.0, "line_type": "buoyant"}, {"length": 70.0, "element_length": 2.0}],
+        [{"length": 70.0, "element_length": 1.5},
+         {"length": 20.0, "element_length": 2.0, "line_type": "buoyant"}, {"length": 70.0, "element_length": 2.0}],
         [HANG], seabed=SPRING, water=WATER,
         line_types={"pipe": FLEXIBLE, "buoyant": FLEXIBLE | {"outer_diameter": 0.55, "mass": 165.0}},
     ),
@@ -177,7 +189,7 @@ SCENES: dict[str, Mapping] = {
     "hose swings on a rigid floor": hose(80, moved([1.5, 0.0, 0.5], 10.0, 2.0, 100)),
     "heave on clay springs": touching(CLAY_SPRINGS, 1.0, moved([0.0, 0.0, 1.0], 8.0, 2.0, 80)),
     "heave on clay springs with suction": touching(SUCTION_SPRINGS, 1.0, moved([0.0, 0.0, 1.0], 8.0, 2.0, 80)),
-    "laid on elastic soil": on_soil({"kind": "linear-elastic", "E": 1.0e6, "nu": 0.45}, 12, 0.25),
-    "laid on clay": on_soil(CLAY, 12, 0.25),
-    "heave on clay": on_soil(CLAY, 12, 0.25, moved([0.0, 0.0, 0.2], 4.0, 1.5, 40)),
+    "pipe pressed on elastic soil": pressed({"kind": "linear-elastic", "E": 1.2e6, "nu": 0.45}, 12, 0.006),
+    "pipe pressed on clay": pressed(CLAY, 12, 0.02),
+    "pipe pressed on clay and lifted": pressed(CYCLIC, 12, 0.02, lifted(0.004, 20)),
 }  # fmt: skip

@@ -48,8 +48,9 @@ def _bars(scene: Scene, folder: Path, peaks: RunPeaks, comm: Any) -> list[ErrorB
     if comm.rank != 0:
         return []
     told = headlines(json.loads((folder / SUMMARY).read_text(encoding="utf-8")))
-    settled = {key: each.value for key, each in told.items()}  # of the soil, whose peaks are not followed
-    of_run = RunValues(told, settled | values_of(peaks, "of_nodes"), settled | values_of(peaks, "peaks"))
+    known = {key: each.value for key, each in told.items()}  # of the soil, whose peaks are not followed
+    of_nodes, between_steps = (known | dict(values_of(peaks, which)) for which in ("of_nodes", "peaks"))
+    of_run = RunValues(told, of_nodes, between_steps)
     return error_bars(of_run, chain, scene.has_ground)
 
 

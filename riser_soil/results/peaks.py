@@ -69,13 +69,15 @@ class StagePeaks:
 
     def told(self, which: str) -> dict[str, Any]:
         """As the summary tells the stage; which: sampled, of_nodes or peaks."""
-        final = final_state(self._seen) if self._seen is not None else {}
+        if self._seen is None:
+            return {"name": self.name, "kind": self.kind, "final": None}
+        final = final_state(self._seen)
         if which != "sampled":
             for name in _ALONG:
                 final[name] = {**final[name], "value": self._last[-1][places_of(name)].item()}
         extremes = {"sampled": self.sampled, "of_nodes": self.of_nodes, "peaks": self.peaks}[which]
         return {
-            "name": self.name, "kind": self.kind, "final": final or None, "soil": self.soil,
+            "name": self.name, "kind": self.kind, "final": final, "soil": self.soil,
             "extremes": extremes.nested(),
         }  # fmt: skip
 
