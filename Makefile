@@ -54,7 +54,7 @@ fuzz: setup ## 600 mutated scenes, each in a process with limits: how they end; 
 bench: setup ## seconds by part of the demo, Newton iterations against the bare work in them, energy of an impact by scheme
 	$(PYTHON) -m benchmarks
 
-bars: setup ## error bars of 52 scenes beside their true errors: docs/error_bars.md
+bars: setup ## error bars of 51 scenes beside their true errors: docs/error_bars.md
 	$(PYTHON) -m benchmarks.error_bars
 
 verify-fresh: ## both commands of the README on bare Debians 12 and 13 made for it (needs root and debootstrap)

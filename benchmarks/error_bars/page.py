@@ -69,7 +69,7 @@ def page(scenes: list[JudgedScene]) -> str:
         date=datetime.date.today().isoformat(),
         python=platform.python_version(),
         cores=os.cpu_count(),
-        factors="1.6 for the mesh, 2 for time and soil, 2.6 for the penalty",
+        factors="1.5 for the mesh, 2 for time, 5 for soil, 2.1 for the penalty",
         smallest=SMALLEST,
         scenes=len(SCENES),
         quantities=len(certain),

@@ -76,8 +76,8 @@ def _run(step: _Step, comm: Any) -> Companion:
         return Companion(step.source, step.ratio, None, step.reason)
     try:
         return Companion(step.source, step.ratio, values_of(peaks_of(step.scene, comm), "peaks"))
-    except (SolveError, SceneError, MeshError) as err:
-        reason = str(err).splitlines()[0]
+    except (SolveError, SceneError, MeshError, ArithmeticError, ValueError) as err:
+        reason = str(err).partition("\n")[0]
         return Companion(step.source, step.ratio, None, f"its coarser companion failed: {reason}")
 
 

@@ -23,7 +23,7 @@ SOURCES = {"elements": "mesh", "time_step": "time", "soil_mesh": "soil", "penalt
 SMALLEST = 5e-5  # bar told, over the quantity's scale
 FREE, TOUCHING = 4.0, 2.0  # orders of elements that hang, and where contact begins and ends within one
 ORDER = {"time": 2.0, "soil": 1.0, "penalty": 0.75}
-SAFETY = {"mesh": 1.6, "time": 2.0, "soil": 2.0, "penalty": 2.6}
+SAFETY = {"mesh": 1.5, "time": 2.0, "soil": 5.0, "penalty": 2.1}
 LARGE = {"mesh": 0.03, "time": 0.01}  # differences, over the scale, that are half way to the divisor 1
 STEP_GAP = 2.0  # times what falls between steps, as later samples fall elsewhere
 
