@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 LEAST_ORDER, MOST_ORDER = 0.4, 8.0  # beyond them three values tell no order
-LEAST_DOUBT = 0.1  # of the last correction: two extrapolations may agree by chance
+LEAST_DOUBT = 0.3  # of the last correction: two extrapolations may agree by chance
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Limit:
 def limit(sizes: Sequence[float], values: Sequence[float]) -> Limit:
     """The limit of values at sizes h, in any order, each size once; one value is its own limit, of unknown uncertainty.
 
-    Uncertainty: how far the extrapolation from the finest three is from that of the three before, at least a tenth of
+    Uncertainty: how far the extrapolation from the finest three is from that of the three before, at least 0.3 of
     the last correction. Where there are none before or they show no order: the correction, at least half the last
     change. Without an order among the finest three: the largest change among them.
     """

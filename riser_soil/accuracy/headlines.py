@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 FORCE_FLOOR = 0.1  # of the largest headline force
@@ -29,13 +29,18 @@ Told = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Headline:
-    """A headline quantity of one stage: value and scale in `unit` (SI)."""
+    """A headline quantity of one stage: value and floor of its scale in `unit` (SI)."""
 
     stage: str
     name: str
     unit: str
     value: float
-    scale: float
+    floor: float
+
+    @property
+    def scale(self) -> float:
+        """What errors are told relative to, in `unit`."""
+        return max(abs(self.value), self.floor)
 
     @property
     def key(self) -> str:
@@ -55,17 +60,16 @@ def headlines(summary: Told) -> dict[str, Headline]:
 
 
 def _of_stage(stage: Told) -> list[Headline]:
-    final = stage["final"]
+    final, values = stage["final"], list(_values(stage))
     length = math.dist(final["start"]["position"], final["end"]["position"])
-    raw = [Headline(stage["name"], name, unit, value, abs(value)) for name, unit, value in _values(stage)]
-    force = max((abs(each.value) for each in raw if each.unit == "N"), default=0.0)
+    force = max((abs(value) for _, unit, value in values if unit == "N"), default=0.0)
     floors = {"N": FORCE_FLOOR * force, "N.m": MOMENT_FLOOR * force * length, "m": SETTLEMENT_FLOOR * length}
     floors["1/m"] = CURVATURE_FLOOR / length if length > 0.0 else 0.0
-    return [replace(each, scale=max(each.scale, _floor(each, floors, length))) for each in raw]
 
+    def floor(name: str, unit: str) -> float:
+        return length if name.endswith("arc") else floors[unit]
 
-def _floor(each: Headline, floors: Mapping[str, float], length: float) -> float:
-    return length if each.name.endswith("arc") else floors[each.unit]
+    return [Headline(stage["name"], name, unit, value, floor(name, unit)) for name, unit, value in values]
 
 
 def _values(stage: Told) -> Iterator[tuple[str, str, float]]:

@@ -166,14 +166,26 @@ def _last_use(folder: Path) -> float:
 
 
 class _Announcer(event.Listener):
-    """Tells on the first rank that kernels are being compiled, once for a cache folder."""
+    """Tells on the first rank that kernels are being compiled, once for a cache folder, and counts the time.
+
+    seconds: processor time that compiling has taken in this process.
+    """
+
+    def __init__(self) -> None:
+        self.seconds = 0.0
+        self._within, self._since = 0, 0.0  # kernels are compiled within the compilation of those that call them
 
     def on_start(self, event: Any) -> None:
         if _on_first_rank() and _first(FOLDER / "announced"):
             tell(ANNOUNCEMENT)
+        if self._within == 0:
+            self._since = time.process_time()
+        self._within += 1
 
     def on_end(self, event: Any) -> None:
-        pass
+        self._within -= 1
+        if self._within == 0:
+            self.seconds += time.process_time() - self._since
 
 
 def _first(marker: Path) -> bool:
@@ -185,4 +197,10 @@ def _first(marker: Path) -> bool:
 
 
 FOLDER = choose_folder(fingerprint(PACKAGE))
-event.register("numba:compile", _Announcer())
+_announcer = _Announcer()
+event.register("numba:compile", _announcer)
+
+
+def seconds_compiling() -> float:
+    """Processor time [s] that compiling kernels has taken in this process so far."""
+    return _announcer.seconds

@@ -6,17 +6,15 @@ std::regex get mixed up), and a machine without means to draw must not bring a r
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from pathlib import Path
 
+from riser_soil.core.own_process import environment_alone
 from riser_soil.errors import ResultsError
 from riser_soil.results.whole_file import written_whole
 
 FORMATS = (".gif", ".mp4")
-# A child that saw its parent's MPI rank in these would take itself for that rank.
-_MPI = ("OMPI_", "PMIX_", "PMI_", "HYDRA_", "SLURM_")
 
 
 def picture(folder: Path | str, png: Path | str, magnify: float | None = None) -> Path:
@@ -62,10 +60,9 @@ def film(
 
 def _draw(command: list[str]) -> None:
     """Runs a module of this folder with its arguments."""
-    environment = {name: value for name, value in os.environ.items() if not name.startswith(_MPI)}
     module, *arguments = command
     call = [sys.executable, "-m", f"riser_soil.plots.{module}", *arguments]
-    done = subprocess.run(call, env=environment, capture_output=True, text=True)
+    done = subprocess.run(call, env=environment_alone(), capture_output=True, text=True)
     if done.returncode != 0:
         raise ResultsError(_reason(done))
 

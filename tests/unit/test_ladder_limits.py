@@ -20,7 +20,7 @@ def test_a_pure_power_is_found_with_its_order(p: float, c: float) -> None:
     found = limit(SIZES, values)
     assert found.order == pytest.approx(p, rel=1e-6)
     assert found.value == pytest.approx(7.0, rel=1e-9)
-    assert found.uncertainty == pytest.approx(0.1 * abs(values[-1] - 7.0), rel=1e-6)
+    assert found.uncertainty == pytest.approx(0.3 * abs(values[-1] - 7.0), rel=1e-6)
 
 
 def test_order_of_points_does_not_matter() -> None:
@@ -34,7 +34,7 @@ def test_uncertainty_holds_the_error_where_higher_terms_disturb(second: float, c
     sizes = [1.0, 0.5, 0.25, 0.125, 0.0625][:count]
     found = limit(sizes, [1.0 + 0.4 * (h + second * h**3) for h in sizes])
     finest = 0.4 * (sizes[-1] + second * sizes[-1] ** 3)
-    assert abs(found.value - 1.0) <= (0.5 if count > 3 else 1.0) * abs(finest)
+    assert abs(found.value - 1.0) <= (0.5 if count > 3 else 1.0 + 1e-9) * abs(finest)
     assert abs(found.value - 1.0) <= found.uncertainty
 
 

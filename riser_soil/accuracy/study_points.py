@@ -1,0 +1,143 @@
+"""Points of a study: runs of a scene with its knobs turned, each in a process and a folder of its own.
+
+A point's folder is named by a digest of its scene and the program's version: what has been computed is found again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+import subprocess
+import sys
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from riser_soil import __version__
+from riser_soil.accuracy.headlines import Headline, headlines
+from riser_soil.core.own_process import environment_alone
+from riser_soil.errors import MeshError, SolveError
+from riser_soil.results.folder import NAMES, SUMMARY
+from riser_soil.results.folder import SCENE as RESOLVED
+from riser_soil.scene.dump import dump_scene
+from riser_soil.scene.scene import Scene
+
+POINTS, GIVEN, OUTCOME, COST, SAID = "points", "given.yaml", "outcome.json", "cost.json", "said.txt"
+LASTING = (0, MeshError.exit_status, SolveError.exit_status)  # exit statuses that a repetition would have again
+
+Factors = tuple[float, ...]
+"""How many times as fine as the scene a point is, knob by knob."""
+
+
+@dataclass(frozen=True)
+class PointOutcome:
+    """What became of a point.
+
+    status: exit status; reason: why it failed. cpu: processor time [s], nan where it is not known. alone: whether no
+    other point ran beside it. steps: time and load steps taken.
+    """
+
+    factors: Factors
+    status: int
+    reason: str
+    cpu: float
+    alone: bool
+    steps: int = 0
+    headlines: Mapping[str, Headline] = field(default_factory=dict)
+
+    @property
+    def done(self) -> bool:
+        """Whether it has an answer."""
+        return self.status == 0
+
+
+@dataclass(frozen=True, eq=False)
+class StudyPoint:
+    """A run to be had: its scene, and the folder of all points."""
+
+    factors: Factors
+    scene: Scene
+    points: Path
+
+    @property
+    def given(self) -> str:
+        """Its scene as text; fields beside the positions are not recorded."""
+        output = self.scene.output.model_copy(update={"fields": (), "directory": None})
+        return dump_scene(self.scene.model_copy(update={"output": output}))
+
+    @property
+    def folder(self) -> Path:
+        return self.points / hashlib.sha256(f"{__version__}\n{self.given}".encode()).hexdigest()[:12]
+
+    def found(self) -> PointOutcome | None:
+        """What became of it in an earlier study; None where it has not come to an end."""
+        try:
+            told: dict[str, Any] = json.loads((self.folder / OUTCOME).read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return None
+        if told["status"] not in LASTING:
+            return None
+        known = {key: Headline(**each) for key, each in told["headlines"].items()}
+        return PointOutcome(**told | {"factors": self.factors, "headlines": known, "cpu": _number(told["cpu"])})
+
+    def start(self) -> subprocess.Popen[bytes]:
+        """The process that computes it; what it says goes to a file in its folder."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        for name in (OUTCOME, COST):
+            (self.folder / name).unlink(missing_ok=True)
+        (self.folder / GIVEN).write_text(self.given, encoding="utf-8")
+        with (self.folder / SAID).open("wb") as said:
+            return subprocess.Popen(
+                [sys.executable, "-m", "riser_soil.accuracy.point_run", str(self.folder / GIVEN), str(self.folder)],
+                env=_environment(), stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT,
+            )  # fmt: skip
+
+    def ended(self, status: int, alone: bool) -> PointOutcome:
+        """What became of it, kept for later studies; of its results the summary stays, series and pictures go."""
+        cost = self._cost(status)
+        summary = self._summary()
+        steps = sum(stage["steps"] for stage in summary["stages"])
+        known = headlines(summary) if status == 0 else {}
+        outcome = PointOutcome(self.factors, status, _line(cost["reason"]), cost["cpu"], alone, steps, known)
+        for name in set(NAMES) - {SUMMARY, RESOLVED}:
+            (self.folder / name).unlink(missing_ok=True)
+        told = asdict(outcome) | {"cpu": None if math.isnan(outcome.cpu) else outcome.cpu}
+        (self.folder / OUTCOME).write_text(json.dumps(told, indent=1), encoding="utf-8")
+        return outcome
+
+    def _cost(self, status: int) -> dict[str, Any]:
+        try:
+            told: dict[str, Any] = json.loads((self.folder / COST).read_text(encoding="utf-8"))
+            return told
+        except (OSError, ValueError):
+            return {"reason": self._last_words(status), "cpu": math.nan}
+
+    def _last_words(self, status: int) -> str:
+        if status < 0:
+            return f"killed by signal {-status}"
+        said = (self.folder / SAID).read_text(encoding="utf-8", errors="replace").strip().splitlines()
+        return said[-1] if said else f"ended with status {status}"
+
+    def _summary(self) -> dict[str, Any]:
+        try:
+            told: dict[str, Any] = json.loads((self.folder / SUMMARY).read_text(encoding="utf-8"))
+            return told
+        except (OSError, ValueError):
+            return {"stages": []}
+
+
+def _environment() -> dict[str, str]:
+    """One thread, so that processor time is the time of one core."""
+    own = {"OMP_NUM_THREADS": "1", "PETSC_OPTIONS": f"-no_signal_handler {os.environ.get('PETSC_OPTIONS', '')}"}
+    return environment_alone() | own
+
+
+def _line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _number(value: float | None) -> float:
+    return math.nan if value is None else value

@@ -1,0 +1,296 @@
+"""Study of a scene: references, shares and cheapest settings of manufactured answers; the command on a small riser."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+from ruamel.yaml import YAML
+from typer.testing import CliRunner
+
+from riser_soil.accuracy import findings
+from riser_soil.accuracy.findings import Study
+from riser_soil.accuracy.headlines import Headline
+from riser_soil.accuracy.study import refuse, study
+from riser_soil.accuracy.study_points import PointOutcome, StudyPoint
+from riser_soil.accuracy.study_words import words
+from riser_soil.commands.app import app
+from riser_soil.errors import ResultsError, SceneError, SolveError
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.scene import Scene
+from tests.support.coupled_scenes import LAY, heave, touchdown
+from tests.support.on_ranks import HANGS, environment
+
+SMALL = """
+title: A small riser
+line_types: {pipe: {EA: 1.0e6, EI: 200.0, mass: 20.0, submerged_weight: 150.0, outer_diameter: 0.1}}
+riser:
+  segments: [{line_type: pipe, length: 12.0, elements: 8}]
+  start: {position: [0.0, 0.0, 0.0]}
+  end: {position: [9.0, 0.0, 4.0]}
+stages: [{name: hang, kind: static}]
+"""
+Answer = Callable[[float, float], float]
+
+
+def scene() -> Scene:
+    told = touchdown(LAY, heave(1.0, 0.01))
+    del told["soil"]
+    return scene_from_mapping(told)
+
+
+def manufactured(monkeypatch: pytest.MonkeyPatch, folder: Path, answer: Answer, **given: Any) -> Study:
+    """A study whose runs are formulas of the sizes of elements and steps, 1 in the scene; failures by `fails`."""
+    fails: Callable[[float, float], bool] = given.pop("fails", lambda h, dt: False)
+
+    def compute(points: Sequence[StudyPoint], jobs: int, told: Any) -> list[PointOutcome]:
+        return [outcome(point.factors) for point in points]
+
+    def outcome(factors: tuple[float, ...]) -> PointOutcome:
+        h, dt = (1.0 / factor for factor in factors)
+        if fails(h, dt):
+            return PointOutcome(factors, 3, "no convergence at 0.3 s", 0.1, True)
+        found = {
+            "heave: top tension": Headline("heave", "top tension", "N", answer(h, dt), 0.0),
+            "heave: touchdown arc": Headline("heave", "touchdown arc", "m", 20.0 + 0.1 * (answer(h, dt) - 100.0), 0.0),
+        }
+        return PointOutcome(factors, 0, "", 2.0 / (h * dt), True, 10, found)
+
+    monkeypatch.setattr(findings, "compute", compute)
+    return study(scene(), folder, says=lambda _: None, **given)
+
+
+def both(h: float, dt: float) -> float:
+    """Second order in steps, fourth in elements, and a little of both together."""
+    return 100.0 + 4.0 * dt**2 - 0.3 * h**4 + 0.02 * h**4 * dt**2
+
+
+def test_reference_and_shares_of_a_manufactured_answer(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    found = manufactured(monkeypatch, tmp_path / "s", both).quantities()["heave: top tension"]
+    assert found.reference.value == pytest.approx(100.0, abs=0.01)
+    assert abs(found.reference.value - 100.0) <= found.uncertainty < 0.2
+    assert found.error == pytest.approx(0.0372, abs=1e-4)
+    assert [each.order for each in found.limits] == [pytest.approx(4.0), pytest.approx(2.0)]
+    assert [found.share(0), found.share(1)] == [pytest.approx(0.0028, abs=1e-5), pytest.approx(0.0402, abs=1e-5)]
+
+
+def test_how_errors_act_together_is_in_the_uncertainty(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """An answer whose errors multiply more than they add."""
+    made = manufactured(monkeypatch, tmp_path / "s", lambda h, dt: 100.0 + 4.0 * h**2 * dt**2 + dt**2)
+    found = made.quantities()["heave: top tension"]
+    assert 0.1 < abs(found.reference.value - 100.0) <= found.uncertainty
+
+
+def test_the_limiting_knob_and_the_cheapest_settings(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """1 % of 100 needs steps of a half, with elements twice as long (0.3 h^4 = 4.8) too much: 4 s. By hand."""
+    made = manufactured(monkeypatch, tmp_path / "s", both)
+    for target, best, seconds in ((0.01, (1.0, 2.0), 4.0), (0.001, (2.0, 8.0), 32.0)):
+        reached = made.reaching(target)
+        assert reached is not None
+        assert (reached.factors, reached.cpu) == (best, seconds)
+    told = " | ".join(words(made))
+    assert "as it is, the scene takes 2 s and is 3.73 % off at most" in told
+    assert "what limits the accuracy is the time step" in told
+    assert "1 % is reached at the least cost, 4 s, with 36 elements, time_step 0.005 s" in told
+    assert "0.1 % is reached at the least cost, 32 s, with 72 elements, time_step 0.00125 s" in told
+
+
+def test_the_pareto_front_falls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    made = manufactured(monkeypatch, tmp_path / "s", both)
+    front = made.front()
+    errors = [made.error(each)[0] for each in front]
+    assert errors == sorted(errors, reverse=True)
+    assert [each.cpu for each in front] == sorted(each.cpu for each in front)
+    for each in made.outcomes.values():
+        assert any(a.cpu <= each.cpu and made.error(a)[0] <= made.error(each)[0] for a in front)
+
+
+def test_errors_that_cancel_reach_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """In the scene two errors of 4 % cancel."""
+    made = manufactured(monkeypatch, tmp_path / "s", lambda h, dt: 100.0 + 4.0 * dt**2 - 4.0 * h**2)
+    assert made.error(made.scene)[0] < 1e-6
+    assert made.reaching(0.01) is not made.scene
+
+
+def test_a_failed_point_is_a_row_with_its_reason(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Steps too long fail: the ladder goes on without them."""
+    made = manufactured(monkeypatch, tmp_path / "s", both, fails=lambda h, dt: dt > 2.0)
+    assert made.quantities()["heave: top tension"].reference.value == pytest.approx(100.0, abs=0.01)
+    with (tmp_path / "s" / "study.csv").open(encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if row["status"] != "0"]
+    assert [(row["settings"], row["reason"]) for row in rows] == [
+        ("36 elements, time_step 0.04 s", "no convergence at 0.3 s")
+    ]
+    assert "1 of 11 points failed" in words(made)[-1]
+    assert "no convergence at 0.3 s" in (tmp_path / "s" / "study.html").read_text(encoding="utf-8")
+
+
+def test_a_failed_corner_leaves_a_reference(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    made = manufactured(monkeypatch, tmp_path / "s", both, fails=lambda h, dt: h < 1.0 and dt < 1.0)
+    found = made.quantities()["heave: top tension"]
+    assert abs(found.reference.value - 100.0) <= found.uncertainty < 1.0
+
+
+def test_what_does_not_close_in_is_not_judged(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    made = manufactured(monkeypatch, tmp_path / "s", lambda h, dt: 100.0 + 40.0 * (-1.0) ** round(math.log2(dt)) + h)
+    assert made.judged().keys() == set()
+    assert words(made)[0].startswith("no error can be told of heave: top tension (±")
+    assert made.reaching(0.01) is None
+
+
+def test_a_target_finer_than_the_reference_counts_what_can_be_told(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Steps make a noise of 2 %, elements an error of 4 % at their coarsest: those must be as fine as for 1 %."""
+    made = manufactured(
+        monkeypatch, tmp_path / "s", lambda h, dt: 100.0 + (-1.0) ** round(math.log2(dt)) + 0.5 * h**2
+    )
+    tension = made.quantities()["heave: top tension"]
+    assert 0.015 < tension.doubt < 0.05
+    reached = made.reaching(0.001)
+    assert reached is not None
+    assert tension.error_of(reached.headlines["heave: top tension"]) <= tension.doubt
+    assert made.foretold(0.001).excess((0.25, 0.25)) > 1.0
+    *_, cannot, why = words(made)
+    assert cannot.startswith("0.1 % can't be told; the reference is reached as far as it is known at the least cost")
+    assert why.startswith("the reference is known less well than to 0.1 % of heave: top tension (± ")
+
+
+def test_a_scene_that_fails_is_studied_around_finer_settings(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """It runs with steps of a quarter: 0.0025 s, elements of a quarter, too. What failed is a row."""
+    found = {"heave: top tension": Headline("heave", "top tension", "N", 100.0, 0.0)}
+
+    def outcome(point: StudyPoint) -> PointOutcome:
+        if point.scene.riser.element_count < 4 * 36:
+            return PointOutcome(point.factors, 3, "folded", 1.0, True)
+        return PointOutcome(point.factors, 0, "", 1.0, True, 1, found)
+
+    def compute(points: Sequence[StudyPoint], jobs: int, told: Any) -> list[PointOutcome]:
+        return [outcome(point) for point in points]
+
+    monkeypatch.setattr(findings, "compute", compute)
+    made = study(scene(), tmp_path / "t", rungs=3, says=lambda _: None)
+    assert made.ladders.told(made.ladders.base) == "144 elements, time_step 0.0025 s"
+    assert words(made)[0] == (
+        "the scene itself fails: folded; the study is around finer settings: 144 elements, time_step 0.0025 s"
+    )
+    with (tmp_path / "t" / "study.csv").open(encoding="utf-8") as file:
+        failed = [row["settings"] for row in csv.DictReader(file) if row["reason"] == "folded"]
+    assert {"36 elements, time_step 0.01 s", "72 elements, time_step 0.005 s"} < {*failed}
+
+
+def test_a_scene_that_fails_with_finer_settings_too_ends_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    with pytest.raises(SolveError, match=r"the scene itself fails, .*: no convergence"):
+        manufactured(monkeypatch, tmp_path / "s", both, fails=lambda h, dt: True)
+
+
+def test_numbers_are_json_and_the_page_stands_alone(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    made = manufactured(monkeypatch, tmp_path / "s", both)
+    told = json.loads((tmp_path / "s" / "study.json").read_text(encoding="utf-8"))
+    assert told["cheapest"] == {"0.01": [1.0, 2.0], "0.001": [2.0, 8.0]}
+    assert told["quantities"]["heave: top tension"]["knobs"]["time_step"]["order"] == pytest.approx(2.0)
+    assert len(told["points"]) == len(made.outcomes)
+    page = (tmp_path / "s" / "study.html").read_text(encoding="utf-8")
+    assert "data:image/svg+xml;base64," in page
+    assert "http" not in page
+    assert all(sentence[1:] in page.replace("&#x27;", "'") for sentence in told["words"])
+
+
+def test_bad_input_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ResultsError, match="--knob penalty: the scene has no such knob; choose among elements, time"):
+        study(scene(), tmp_path / "s", knobs=["penalty"])
+    assert not (tmp_path / "s").exists()
+    (tmp_path / "letters").mkdir()
+    (tmp_path / "letters" / "a.txt").write_text("mine")
+    with pytest.raises(SceneError, match=r"holds something else than a study, a.txt"):
+        refuse(tmp_path / "letters", force=True)
+
+
+def test_how_a_point_ended(tmp_path: Path) -> None:
+    """One that was killed is run again, one whose solve failed is not."""
+    point = StudyPoint((2.0, 1.0), scene(), tmp_path)
+    point.folder.mkdir(parents=True)
+    killed = point.ended(-9, alone=True)
+    assert (killed.reason, math.isnan(killed.cpu), killed.done) == ("killed by signal 9", True, False)
+    assert point.found() is None
+    (point.folder / "cost.json").write_text('{"status": 3, "reason": "no\\n convergence at all", "cpu": 1.5}')
+    failed = point.ended(3, alone=True)
+    assert (failed.reason, failed.cpu) == ("no convergence at all", 1.5)
+    assert point.found() == failed
+    assert StudyPoint((1.0, 1.0), scene().model_copy(update={"gravity": 9.8}), tmp_path).folder != point.folder
+
+
+COMMAND = [sys.executable, "-m", "riser_soil", "study", "small.yaml", "--rungs", "3", "--jobs", "2"]
+
+
+def test_a_study_that_was_interrupted_goes_on(tmp_path: Path) -> None:
+    """A run of each rung, and of those that were done before the signal none again."""
+    (tmp_path / "small.yaml").write_text(SMALL, encoding="utf-8")
+    told = {"cwd": tmp_path, "env": environment(), "text": True}
+    with subprocess.Popen(COMMAND, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **told) as first:  # type: ignore[call-overload]
+        outcomes = _first_outcomes(tmp_path, first)
+        first.send_signal(signal.SIGTERM)
+        _, said = first.communicate(timeout=HANGS)
+    assert first.returncode == 143
+    assert said.startswith("ended by SIGTERM in a study; call again to go on")
+    before = {path: path.stat().st_mtime_ns for path in outcomes}
+    done = subprocess.run(COMMAND, capture_output=True, timeout=HANGS, check=False, **told)  # type: ignore[call-overload]
+    assert done.returncode == 0, done.stderr
+    assert {path: path.stat().st_mtime_ns for path in outcomes} == before
+    assert done.stdout.count("computed before") >= len(outcomes)
+    found = json.loads((tmp_path / "small-study" / "study.json").read_text(encoding="utf-8"))
+    tension = found["quantities"]["hang: top tension"]
+    assert tension["error"] < 0.02
+    assert tension["knobs"]["elements"]["order"] == pytest.approx(4.0, abs=1.5)
+    assert {tuple(p["factors"].values()): p["timed_alone"] for p in found["points"][:3]} == {
+        (0.5,): True, (1.0,): True, (2.0,): False,
+    }  # fmt: skip
+    assert not list((tmp_path / "small-study").rglob("*.nc"))
+
+
+def _first_outcomes(folder: Path, process: subprocess.Popen[str]) -> list[Path]:
+    """What has been computed as soon as there is something."""
+    since = time.monotonic()
+    while time.monotonic() - since < HANGS and process.poll() is None:
+        found = list(folder.glob("small-study/points/*/outcome.json"))
+        if found:
+            return found
+        time.sleep(0.05)
+    raise AssertionError(process.communicate())
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--rungs", "2"], "--rungs 2: must be from 3 to 9"),
+        (["--jobs", "0"], "--jobs 0: must be 1 or more"),
+        (["--knob", "time_step"], "--knob time_step: the scene has no such knob; choose among elements"),
+        (["-o", "small.yaml"], "small.yaml: is a file, not a folder; choose another result folder with -o FOLDER"),
+    ],
+)
+def test_the_command_refuses_bad_input(
+    options: list[str], says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "small.yaml").write_text(SMALL, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    result = CliRunner().invoke(app, ["study", "small.yaml", *options])
+    assert (result.exit_code, result.stderr) == (2, says + "\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["small.yaml"]
+
+
+def test_a_run_that_fails_tells_why(tmp_path: Path) -> None:
+    given = YAML(typ="safe").load(SMALL) | {"solver": {"max_iterations": 1, "min_load_step": 1.0}}
+    point = StudyPoint((1.0,), scene_from_mapping(given), tmp_path)
+    outcome = point.ended(point.start().wait(timeout=HANGS), alone=True)
+    assert outcome.status == 3
+    assert "no stable equilibrium" in outcome.reason
+    assert 0.0 < outcome.cpu < HANGS
