@@ -40,14 +40,16 @@ def values_of(peaks: RunPeaks, which: str) -> Values:
 
 
 @dataclass(frozen=True)
-class _Step:
+class CoarserScene:
+    """What a companion runs: None where it can't be, for the `reason`. ratio: to the scene before."""
+
     source: str
     ratio: float
     scene: Scene | None
     reason: str = ""
 
 
-def _coarser(scene: Scene) -> Iterator[_Step]:
+def _coarser(scene: Scene) -> Iterator[CoarserScene]:
     """Scenes ever coarser; one that can't be is None, and the next ones follow the one before it."""
     now = _recording_all(scene)
     for name, ratio in COARSER.items():
@@ -59,19 +61,19 @@ def _coarser(scene: Scene) -> Iterator[_Step]:
         now = step.scene or now
 
 
-def _step(scene: Scene, knob: Knob, ratio: float) -> _Step:
+def _step(scene: Scene, knob: Knob, ratio: float) -> CoarserScene:
     source = SOURCES[knob.name]
     try:
         coarse = varied(scene, knob, 1.0 / ratio)
     except SceneError as err:
-        return _Step(source, ratio, None, str(err))
+        return CoarserScene(source, ratio, None, str(err))
     reached = knob.fineness(scene) / knob.fineness(coarse)
     if reached < LEAST_RATIO:
-        return _Step(source, ratio, None, f"{knob.told(scene)} can't be coarsened")
-    return _Step(source, reached, coarse)
+        return CoarserScene(source, ratio, None, f"{knob.told(scene)} can't be coarsened")
+    return CoarserScene(source, reached, coarse)
 
 
-def _run(step: _Step, comm: Any) -> Companion:
+def _run(step: CoarserScene, comm: Any) -> Companion:
     if step.scene is None:
         return Companion(step.source, step.ratio, None, step.reason)
     try:

@@ -8,15 +8,27 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
 from benchmarks.error_bars import references
 from benchmarks.error_bars.calibration import judge, share_inside
 from benchmarks.error_bars.scenes import SCENES
 from riser_soil.accuracy import chain
 from riser_soil.accuracy.barred_run import run_with_error_bars
-from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, Companion, ErrorBar, RunValues, divisor, error_bars
+from riser_soil.accuracy.error_bars import (
+    SAFETY,
+    SMALLEST,
+    STEP_GAP,
+    Companion,
+    ErrorBar,
+    RunValues,
+    divisor,
+    error_bars,
+)
 from riser_soil.accuracy.headlines import Headline
+from riser_soil.commands.app import app
 from riser_soil.errors import SolveError
+from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 
@@ -67,6 +79,13 @@ def test_what_falls_between_nodes_is_the_meshs() -> None:
     assert bar.by_source["mesh"] == pytest.approx(SAFETY["mesh"] * 10.0)
 
 
+def test_what_falls_between_steps_is_the_time_steps() -> None:
+    headline = Headline("heave", "top tension", "N", 1000.0, 1000.0)
+    key = headline.key
+    (bar,) = error_bars(RunValues({key: headline}, {key: 1000.0}, {key: 1004.0}), [], touches=False)
+    assert bar.by_source["time"] == pytest.approx(SAFETY["time"] * STEP_GAP * 4.0)
+
+
 def test_no_bar_without_a_companion() -> None:
     """What is known is told by source; what stands behind one that failed is not compared with what stands before."""
     failed = Companion("time", 5.0, None, "its coarser companion failed: it did")
@@ -114,6 +133,31 @@ def test_companion_that_fails_is_told_and_its_run_stays(
     assert told["finished"]
     assert {bar["bar"] for bar in told["error_bars"]["quantities"]} == {None}
     assert "its coarser companion failed: no convergence at 3 s" in capsys.readouterr().out
+
+
+def test_companions_go_on_from_one_to_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps five times as long, which output times do not hold back, then half the elements too, then soft contact."""
+    seen: list[Scene] = []
+
+    def looks(scene: Scene, comm: object) -> RunPeaks:
+        seen.append(scene)
+        return RunPeaks()
+
+    monkeypatch.setattr(chain, "peaks_of", looks)
+    scene = scene_from_mapping(SCENES["hose swings on a rigid floor"] | {"output": {"interval": 0.1}})
+    found = chain.companions(scene, None)
+    assert [(each.source, each.ratio) for each in found] == [("time", 5.0), ("mesh", 2.0), ("penalty", 4.0)]
+    assert [each.riser.element_count for each in seen] == [80, 40, 40]
+    assert [each.contact and each.contact.stiffness for each in seen] == [1e5, 1e5, 2.5e4]
+    assert {each.output.interval for each in seen} == {None}
+
+
+def test_a_scene_may_ask_for_bars(tmp_path: Path) -> None:
+    file, folder = tmp_path / "scene.yaml", tmp_path / "run"
+    file.write_text(json.dumps(SCENES["cantilever, tip load"] | {"error_bars": True}), encoding="utf-8")
+    assert CliRunner().invoke(app, ["run", str(file), "-o", str(folder)]).exit_code == 0
+    told = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    assert {bar["bar"] is None for bar in told["error_bars"]["quantities"]} == {False}
 
 
 def test_what_cannot_be_coarsened_has_no_bar() -> None:
