@@ -20,7 +20,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test lint verify stress fuzz bench parts verify-fresh docker pins clean
+.PHONY: help setup demo demos test lint verify stress fuzz bench parts bars verify-fresh docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -59,6 +59,9 @@ bench: setup ## seconds by part of the demo, Newton iterations against the bare 
 
 parts: setup ## what each part of a scene costs: docs/parts.md
 	$(PYTHON) -m benchmarks.parts --page
+
+bars: setup ## error bars of 51 scenes beside their true errors: docs/error_bars.md
+	$(PYTHON) -m benchmarks.error_bars
 
 verify-fresh: ## both commands of the README on bare Debians 12 and 13 made for it (needs root and debootstrap)
 	@set -e; for suite in $(SUITES); do FRESH_SUITE=$$suite scripts/verify_fresh.sh; done

@@ -16,16 +16,17 @@ from riser_soil.errors import Interruption, SolveError
 from riser_soil.interruption import agreeing, handling_signals, uninterrupted
 from riser_soil.results.observer import Observer
 from riser_soil.results.ownership import refuse_together
+from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.scene import Scene
 from riser_soil.stages import lay, run_stage
 
 
-def run(scene: Scene, folder: Path | str, force: bool = False) -> None:
+def run(scene: Scene, folder: Path | str, force: bool = False, peaks: RunPeaks | None = None) -> None:
     """Run a scene and leave its results in a folder; collective over all ranks.
 
-    force: overwrite a finished run. Raises SceneError or MeshError before anything is computed. After SolveError, and
-    Interruption at Ctrl-C or SIGTERM, the folder keeps everything up to the last accepted step, after WriteError what
-    went in; it is marked unfinished.
+    force: overwrite a finished run. peaks: gathered on the way, where they are wanted. Raises SceneError or MeshError
+    before anything is computed. After SolveError, and Interruption at Ctrl-C or SIGTERM, the folder keeps everything up
+    to the last accepted step, after WriteError what went in; it is marked unfinished.
     """
     folder = Path(folder)
     with handling_signals():
@@ -42,7 +43,7 @@ def run(scene: Scene, folder: Path | str, force: bool = False) -> None:
         for warning in (*physical_warnings(assembly), *too_long(size)):
             if comm.rank == 0:
                 print(f"warning: {warning}")
-        with agreeing(comm), Observer.open(assembly, clock, folder, force) as observer:
+        with agreeing(comm), Observer.open(assembly, clock, folder, force, peaks) as observer:
             _take_all(assembly, observer, clock)
 
 

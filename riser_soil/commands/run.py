@@ -27,6 +27,12 @@ def run(
     force: Annotated[
         bool, typer.Option("--force", help="overwrite a finished run, which is refused otherwise")
     ] = False,
+    error_bars: Annotated[
+        bool,
+        typer.Option(
+            "--error-bars", help="estimate by coarser companions how far its headline quantities may be off"
+        ),
+    ] = False,
     overrides: Overrides = None,
 ) -> None:
     """Compute a scene and leave its results in a folder."""
@@ -35,7 +41,10 @@ def run(
             raise SceneError("--restart: not supported yet; run the scene from its beginning")
         checked = read(scene, overrides)
         folder = result_folder(scene, checked, output, force)
-        from riser_soil.run import run as compute
+        if error_bars or checked.error_bars:
+            from riser_soil.accuracy.barred_run import run_with_error_bars as compute
+        else:
+            from riser_soil.run import run as compute
 
         with placed(scene, overrides):
             compute(checked, folder, force)

@@ -76,6 +76,16 @@ def unpack(vector: Array) -> dict[str, Any]:
     return nested
 
 
+def places_of(name: str) -> slice:
+    """Where a figure stands in a packed vector."""
+    first = 0
+    for _, figure in _FIGURES:
+        if figure.name == name:
+            return slice(first, first + figure.size)
+        first += figure.size
+    raise KeyError(name)
+
+
 def final_state(seen: Instant) -> dict[str, Any]:
     """The summary's `final`: the figures, with the arc length [m] of those that sit on one node."""
     values = _values(seen)

@@ -18,11 +18,12 @@ from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, State
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
-from riser_soil.core.snapshot import ContactSnapshot, RiserSnapshot, RunFacts, SoilSnapshot, StepStatistics
+from riser_soil.core.snapshot import ContactSnapshot, Instant, RiserSnapshot, RunFacts, SoilSnapshot, StepStatistics
 from riser_soil.core.system import Timer
 from riser_soil.errors import Interruption, RiserSoilError, SolveError
 from riser_soil.interruption import uninterrupted
 from riser_soil.results.energy_ledger import EnergyLedger
+from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.plausibility import Plausibility
 from riser_soil.results.progress import Progress
 from riser_soil.results.record import Recorder
@@ -49,10 +50,18 @@ if TYPE_CHECKING:
 
 
 class Observer:
-    """Follows a run: progress bar, energy ledger, files. recorder is None off rank 0."""
+    """Follows a run: progress bar, energy ledger, files, peaks where they are wanted. recorder is None off rank 0."""
 
-    def __init__(self, assembly: Assembly, clock: Timer, recorder: Recorder | None, progress: Progress) -> None:
+    def __init__(
+        self,
+        assembly: Assembly,
+        clock: Timer,
+        recorder: Recorder | None,
+        progress: Progress,
+        peaks: RunPeaks | None = None,
+    ) -> None:
         self._assembly, self._clock, self._recorder, self._progress = assembly, clock, recorder, progress
+        self._peaks = peaks if recorder is not None else None
         output = assembly.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         self._zone = TouchdownZone(assembly, _known_fields(assembly))
@@ -60,7 +69,9 @@ class Observer:
 
     @classmethod
     @contextmanager
-    def open(cls, assembly: Assembly, clock: Timer, folder: Path, force: bool) -> Iterator[Observer]:
+    def open(
+        cls, assembly: Assembly, clock: Timer, folder: Path, force: bool, peaks: RunPeaks | None = None
+    ) -> Iterator[Observer]:
         """Take the run's folder over; collective. What was written stays when the block is left early."""
         mesh = assembly.soil.output_mesh() if assembly.soil is not None else None
         known = facts(assembly)
@@ -71,13 +82,15 @@ class Observer:
                     text, fields = dump_scene(assembly.scene), _known_fields(assembly)
                     recorder = Recorder.open(folder, known, assembly.line.arc, mesh, text, fields, force)
             with recorder or nullcontext():
-                yield cls(assembly, clock, recorder, progress)
+                yield cls(assembly, clock, recorder, progress, peaks)
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         """stepper: at the stage's beginning; collective."""
         self._enter(stage, stepper.energy)
         if self._recorder is not None:
             self._recorder.begin_stage(stage.name, stage.kind)
+        if self._peaks is not None:
+            self._peaks.begin_stage(stage.name, stage.kind)
         if stage is self._assembly.scene.stages[0] and not isinstance(stage, StaticStage):
             self._begin_at(stepper)
         self._show(stage)
@@ -98,7 +111,9 @@ class Observer:
         """Records the state before all stages, which no static stage has brought about."""
         soil = self._soil()
         if self._recorder is not None:
-            self._recorder.begin_at(riser_snapshot(self._assembly, stepper), self._zone.look(stepper.now), soil)
+            riser, touching = riser_snapshot(self._assembly, stepper), self._zone.look(stepper.now)
+            self._recorder.begin_at(riser, touching, soil)
+            self._add_peaks(0.0, riser, touching)
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Tell the recorder of a step that has been committed; collective."""
@@ -116,10 +131,15 @@ class Observer:
             at_rest = due.series and isinstance(self._stage, StaticStage)
             riser, touching = riser_snapshot(self._assembly, stepper), self._zone.look(stepper.now, at_rest)
             self._recorder.accept(step.t, due, riser, touching, health, self._balance.ledger, soil)
+            self._add_peaks(step.t, riser, touching)
             if due.series:
                 self._judge(self._recorder, stepper, riser, touching, closely=due.pictures)
         self._relaxed = 0
         self._clock.add("output", since)
+
+    def _add_peaks(self, t: float, riser: RiserSnapshot, touching: ContactSnapshot) -> None:
+        if self._peaks is not None:
+            self._peaks.record(t, Instant(self._assembly.line.arc, riser, touching))
 
     def _judge(
         self, recorder: Recorder, stepper: TimeStepper, riser: RiserSnapshot, touching: ContactSnapshot, closely: bool

@@ -40,6 +40,10 @@ class Scene(BaseModel):
     stages: tuple[Stage, ...] = Field(min_length=1, description="what happens, one stage after the other")
     solver: Solver = Field(default=Solver(), description="settings of the nonlinear solver")
     output: Output = Field(default=Output(), description="what the run writes")
+    error_bars: Literal[True, False] = Field(
+        default=False,
+        description="whether a run estimates by coarser companions how far its headline quantities may be off",
+    )
 
     @model_validator(mode="before")
     @classmethod

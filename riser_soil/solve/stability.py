@@ -41,7 +41,7 @@ def unstable_modes(system: System, state: State, weights: Weights, forces: float
     The system's matrix is not that of its parts afterwards.
     """
     judged = judged_parts(system)
-    if judged is None:
+    if judged is None or system.numbering.free == 0:
         return 0
     system.assemble(state, weights, judged)
     prescribed = _one_dof_each(system, _neutral(system, state, NO_STIFFNESS * forces))

@@ -109,3 +109,22 @@ def test_a_sagging_line_does_not_wind_up_its_end_spring(tmp_path: Path) -> None:
     run(scene_from_mapping(scene), tmp_path)
     moment = Run(tmp_path).summary["stages"][0]["final"]["start"]["moment"]
     assert 0.0 < np.linalg.norm(moment) < 10.0 * np.pi / 2.0
+
+
+def test_a_riser_that_cannot_move_is_pressed_into_soil(tmp_path: Path) -> None:
+    """One element held at both ends has no unknowns: on its cushion, before the soil, there are none at all."""
+    ends = {place: {"position": [x, 0.0, 0.15], "rotation": "fixed"} for place, x in (("start", 0.0), ("end", 0.3))}
+    soil = {"block": {"x": [0.1, 0.2], "y": [-0.5, 0.5], "depth": 0.5}, "law": {"kind": "linear-elastic", "E": 1e6}}
+    soil["law"] |= {"nu": 0.3}
+    soil["mesh"] = {"size_at_riser": {"along": 0.1, "across": 0.05}, "size_far": 0.25}
+    scene = {
+        "dimension": 2,
+        "line_types": {"pipe": PIPE | {"outer_diameter": 0.3}},
+        "riser": {"segments": [{"line_type": "pipe", "length": 0.3, "elements": 1}], "initial": "straight"} | ends,
+        "soil": soil,
+        "stages": [
+            {"name": "press", "kind": "static", "move": {"start": [0.0, 0.0, 0.147], "end": [0.3, 0.0, 0.147]}}
+        ],
+    }
+    run(scene_from_mapping(scene), tmp_path)
+    assert Run(tmp_path).summary["stages"][0]["final"]["contact_force"] > 0.0

@@ -1,0 +1,57 @@
+"""References of the calibration's scenes: each computed much finer in all its knobs, and half as fine to judge that.
+
+`references.json` has them: by scene and headline quantity the value of the finer run, and its uncertainty, a quarter of
+how far the two are apart: halving what is coarse leaves a quarter of a second-order error.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from mpi4py import MPI
+
+from benchmarks.error_bars.scenes import SCENES, Mapping
+from riser_soil.accuracy.chain import values_of
+from riser_soil.accuracy.companions import peaks_of
+from riser_soil.accuracy.error_bars import Values
+from riser_soil.accuracy.knobs import knobs_of, varied
+from riser_soil.scene.reader import scene_from_mapping
+
+FILE = Path(__file__).with_name("references.json")
+LEFT = 0.25  # of the change between the two, in the finer one
+STATIC = ({"elements": 8, "penalty": 6, "soil_mesh": 2}, {"elements": 16, "penalty": 32, "soil_mesh": 4})
+DYNAMIC = (
+    {"elements": 2, "time_step": 4, "penalty": 6, "soil_mesh": 2},
+    {"elements": 4, "time_step": 10, "penalty": 32, "soil_mesh": 4},
+)
+Reference = dict[str, tuple[float, float]]
+
+
+def write(names: list[str]) -> None:
+    """Compute the references of scenes anew; those of the others stay."""
+    known = read() if FILE.exists() else {}
+    for name in names:
+        known[name] = reference(SCENES[name])
+        print(f"reference of {name}", flush=True)
+        in_order = {each: known[each] for each in SCENES if each in known}
+        FILE.write_text(json.dumps(in_order, indent=0) + "\n", encoding="utf-8")
+
+
+def read() -> dict[str, Reference]:
+    told = json.loads(FILE.read_text(encoding="utf-8"))
+    return {name: {key: (value, off) for key, (value, off) in of_scene.items()} for name, of_scene in told.items()}
+
+
+def reference(scene: Mapping) -> Reference:
+    """Value and uncertainty of each headline quantity."""
+    levels = DYNAMIC if any(stage["kind"] == "dynamic" for stage in scene["stages"]) else STATIC
+    fine, finer = (_values(scene, level) for level in levels)
+    return {key: (finer[key], LEFT * abs(finer[key] - fine[key])) for key in finer if key in fine}
+
+
+def _values(scene: Mapping, level: dict[str, int]) -> Values:
+    now = scene_from_mapping(scene)
+    for knob in knobs_of(now):
+        now = varied(now, knob, float(level[knob.name]))
+    return values_of(peaks_of(now, MPI.COMM_WORLD), "peaks")

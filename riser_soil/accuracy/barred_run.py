@@ -1,0 +1,68 @@
+"""Run of a scene with error bars: the run, its companions, the bars in its summary and on the screen."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
+
+from riser_soil.accuracy.chain import companions, values_of
+from riser_soil.accuracy.error_bars import ErrorBar, RunValues, error_bars
+from riser_soil.accuracy.headlines import headlines
+from riser_soil.accuracy.screen import print_bars
+from riser_soil.errors import Interruption
+from riser_soil.interruption import handling_signals
+from riser_soil.results.folder import SUMMARY, FolderLock, write_atomically
+from riser_soil.results.peaks import RunPeaks
+from riser_soil.results.summary import plain_json
+from riser_soil.run import run
+from riser_soil.scene.scene import Scene
+
+LEFT = "while its error bars were computed; {} has the whole run, without them"
+
+
+def run_with_error_bars(scene: Scene, folder: Path | str, force: bool = False) -> None:
+    """As `run`, then tell the error bars; collective. What goes wrong with a companion leaves the run as it is."""
+    folder, comm, peaks = Path(folder), MPI.COMM_WORLD, RunPeaks()
+    began = time.perf_counter()
+    run(scene, folder, force, peaks)
+    taken = time.perf_counter() - began
+    bars = _bars(scene, folder, peaks, comm)
+    if comm.rank == 0:
+        extra = time.perf_counter() - began - taken
+        seconds = {"run": taken, "companions": extra}
+        _write(folder, bars, seconds)
+        print_bars(bars, extra / taken)
+
+
+def _bars(scene: Scene, folder: Path, peaks: RunPeaks, comm: Any) -> list[ErrorBar]:
+    with handling_signals():
+        try:
+            chain = companions(scene, comm)
+        except Interruption as end:
+            end.place = LEFT.format(folder)
+            raise
+    if comm.rank != 0:
+        return []
+    told = headlines(json.loads((folder / SUMMARY).read_text(encoding="utf-8")))
+    known = {key: each.value for key, each in told.items()}  # of the soil, whose peaks are not followed
+    of_nodes, between_steps = (known | dict(values_of(peaks, which)) for which in ("of_nodes", "peaks"))
+    of_run = RunValues(told, of_nodes, between_steps)
+    return error_bars(of_run, chain, scene.has_ground)
+
+
+def _write(folder: Path, bars: list[ErrorBar], seconds: dict[str, float]) -> None:
+    summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
+    summary["error_bars"] = {"seconds": seconds, "quantities": [_told(bar) for bar in bars]}
+    with FolderLock(folder):
+        write_atomically(folder / SUMMARY, json.dumps(plain_json(summary), indent=2, allow_nan=False) + "\n")
+
+
+def _told(bar: ErrorBar) -> dict[str, Any]:
+    headline = bar.headline
+    told: dict[str, Any] = {"stage": headline.stage, "name": headline.name, "unit": headline.unit}
+    told |= {"value": headline.value, "bar": bar.bar, "by_source": dict(bar.by_source)}
+    return told | ({"reason": bar.reason} if bar.reason else {})

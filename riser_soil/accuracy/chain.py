@@ -1,0 +1,89 @@
+"""Companions of a run in a chain: coarser soil, then longer steps too, then fewer elements, then a softer penalty."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from riser_soil.accuracy.companions import peaks_of
+from riser_soil.accuracy.error_bars import SOURCES, Companion, Values
+from riser_soil.accuracy.headlines import headlines
+from riser_soil.accuracy.knobs import KNOBS, Knob, knobs_of, varied
+from riser_soil.errors import MeshError, SceneError, SolveError
+from riser_soil.results.peaks import RunPeaks
+from riser_soil.scene.scene import Scene
+
+COARSER = {"soil_mesh": 2.0, "time_step": 5.0, "elements": 2.0, "penalty": 4.0}  # the dearest first
+LEAST_RATIO = 1.4  # below it two runs are too much alike
+
+
+def companions(scene: Scene, comm: Any) -> list[Companion]:
+    """Those of a scene, run one after the other; collective, their values on rank 0.
+
+    One that fails leaves nothing to compare the next ones with: they are not run.
+    """
+    chain: list[Companion] = []
+    if scene.soil is not None and "soil_mesh" not in {knob.name for knob in knobs_of(scene)}:
+        chain.append(Companion("soil", 1.0, None, "cells of a mesh file can't be coarsened"))
+    for step in _coarser(scene):
+        if any(before.values is None for before in chain):
+            chain.append(Companion(step.source, step.ratio, None, "a companion before failed"))
+        else:
+            chain.append(_run(step, comm))
+    return chain
+
+
+def values_of(peaks: RunPeaks, which: str) -> Values:
+    """Of headline quantities by their keys; which: sampled, of_nodes or peaks."""
+    return {key: headline.value for key, headline in headlines(peaks.told(which)).items()}
+
+
+@dataclass(frozen=True)
+class CoarserScene:
+    """What a companion runs: None where it can't be, for the `reason`. ratio: to the scene before."""
+
+    source: str
+    ratio: float
+    scene: Scene | None
+    reason: str = ""
+
+
+def _coarser(scene: Scene) -> Iterator[CoarserScene]:
+    """Scenes ever coarser; one that can't be is None, and the next ones follow the one before it."""
+    now = _recording_all(scene)
+    for name, ratio in COARSER.items():
+        knob = next(each for each in KNOBS if each.name == name)
+        if not knob.there(scene):
+            continue
+        step = _step(now, knob, ratio)
+        yield step
+        now = step.scene or now
+
+
+def _step(scene: Scene, knob: Knob, ratio: float) -> CoarserScene:
+    source = SOURCES[knob.name]
+    try:
+        coarse = varied(scene, knob, 1.0 / ratio)
+    except SceneError as err:
+        return CoarserScene(source, ratio, None, str(err))
+    reached = knob.fineness(scene) / knob.fineness(coarse)
+    if reached < LEAST_RATIO:
+        return CoarserScene(source, ratio, None, f"{knob.told(scene)} can't be coarsened")
+    return CoarserScene(source, reached, coarse)
+
+
+def _run(step: CoarserScene, comm: Any) -> Companion:
+    if step.scene is None:
+        return Companion(step.source, step.ratio, None, step.reason)
+    try:
+        return Companion(step.source, step.ratio, values_of(peaks_of(step.scene, comm), "peaks"))
+    except (SolveError, SceneError, MeshError, ArithmeticError, ValueError) as err:
+        reason = str(err).partition("\n")[0]
+        return Companion(step.source, step.ratio, None, f"its coarser companion failed: {reason}")
+
+
+def _recording_all(scene: Scene) -> Scene:
+    """Automatic steps are not held back by output times."""
+    output = scene.output.model_copy(update={"interval": None, "xdmf_interval": None})
+    return scene.model_copy(update={"output": output})

@@ -1,0 +1,60 @@
+"""Companion of a run: the same scene, coarser, taken in the same process without files, for its peaks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from riser_soil.assembly import Assembly, build, sized
+from riser_soil.core.snapshot import Instant
+from riser_soil.core.system import Timer
+from riser_soil.interruption import agreeing
+from riser_soil.results.observer import riser_snapshot
+from riser_soil.results.peaks import RunPeaks
+from riser_soil.results.schedule import Schedule
+from riser_soil.results.touchdown_zone import TouchdownZone
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import Stage, StaticStage
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
+from riser_soil.stages import StatelessObserver, lay, run_stage
+
+
+def peaks_of(scene: Scene, comm: Any) -> RunPeaks:
+    """Peaks of a scene, computed without a results folder; collective, told on rank 0. Raises what a run would."""
+    assembly, clock = build(sized(scene), comm), Timer.new()
+    observer = PeakObserver(assembly)
+    with agreeing(comm):
+        before, _ = lay(assembly, clock)
+        for stage in assembly.scene.stages:
+            before = run_stage(assembly, stage, before, observer, clock)
+    return observer.peaks
+
+
+class PeakObserver(StatelessObserver):
+    """Follows a companion: `peaks` has what the summary of a run would have of it; on rank 0."""
+
+    def __init__(self, assembly: Assembly) -> None:
+        self._assembly, self._zone = assembly, TouchdownZone(assembly)
+        output, soil = assembly.scene.output, assembly.soil
+        self._schedule = Schedule(output.interval, output.xdmf_interval)
+        self.peaks = RunPeaks(None if soil is None else soil.output_mesh())
+
+    def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
+        first = not self.peaks.stages
+        self._schedule.begin_stage(stage.kind)
+        self.peaks.begin_stage(stage.name, stage.kind)
+        if first and not isinstance(stage, StaticStage) and self._assembly.comm.rank == 0:
+            self.peaks.stages[-1].update(0.0, self._seen(stepper))
+
+    def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
+        """Of a committed step; collective where there is soil."""
+        due, on_soil = self._schedule.due(step.t, last), self._assembly.soil
+        soil = on_soil.output_fields() if on_soil is not None and due.pictures else None
+        if self._assembly.comm.rank == 0:
+            self.peaks.record(step.t, self._seen(stepper), soil)
+
+    def relaxed(self, relaxed: object) -> None:
+        pass
+
+    def _seen(self, stepper: TimeStepper) -> Instant:
+        riser = riser_snapshot(self._assembly, stepper)
+        return Instant(self._assembly.line.arc, riser, self._zone.look(stepper.now))

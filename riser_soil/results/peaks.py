@@ -1,0 +1,109 @@
+"""Peaks between samples: the extremes of a stage's figures without what falls between nodes and between steps.
+
+A largest value at a node, or at the end of a step, misses the peak beside it by up to an eighth of the second
+difference there. The vertex of the parabola through the sample and its two neighbours misses it by higher orders.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.snapshot import Instant, SoilMesh, SoilSnapshot
+from riser_soil.results.figures import Extremes, final_state, pack, places_of
+from riser_soil.results.soil_extremes import places, with_largest
+
+_ALONG = {"max_bending_moment": 1.0, "max_curvature": 1.0, "min_effective_tension": -1.0}  # 1: largest, -1: least
+
+
+def vertex(t: Array, values: Array) -> Array:
+    """Vertex of the parabola through samples (3, ...) at t (3,); the middle one where it is no extreme of the three."""
+    before, after = t[1] - t[0], t[2] - t[1]
+    left, right = (values[1] - values[0]) / before, (values[2] - values[1]) / after
+    bend, slope = (right - left) / (before + after), (left * after + right * before) / (before + after)
+    turns = left * right < 0.0
+    return np.asarray(np.where(turns, values[1] - slope**2 / np.where(turns, 4.0 * bend, 1.0), values[1]))
+
+
+def between_nodes(arc: Array, along: Array, sign: float = 1.0) -> float:
+    """Largest value (least for sign -1) along the riser, between nodes too. arc, along: (nn,)."""
+    at = int((sign * along).argmax())
+    if not 0 < at < len(along) - 1:
+        return float(along[at])
+    return float(vertex(arc[at - 1 : at + 2], along[at - 1 : at + 2]))
+
+
+def pack_peaks(seen: Instant) -> Array:
+    """As `pack`, with peaks between nodes in place of those at nodes."""
+    vector, riser = pack(seen), seen.riser
+    along = {"max_bending_moment": riser.bending_moment, "max_curvature": riser.curvature}
+    along["min_effective_tension"] = riser.effective_tension
+    for name, sign in _ALONG.items():
+        vector[places_of(name)] = between_nodes(seen.arc, along[name], sign)
+    return vector
+
+
+class StagePeaks:
+    """Extremes of one stage three ways: as recorded, with peaks between nodes, and between steps as well."""
+
+    def __init__(self, name: str, kind: str) -> None:
+        self.name, self.kind = name, kind
+        self.sampled, self.of_nodes, self.peaks = Extremes(), Extremes(), Extremes()
+        self._seen: Instant | None = None
+        self.soil: dict[str, Any] = {}
+        self._t: list[float] = []
+        self._last: list[Array] = []
+
+    def update(self, t: float, seen: Instant) -> None:
+        """Of the state that a dynamic stage begins with, and of every accepted step in turn; t: s or load factor."""
+        self.sampled.update(t, pack(seen))
+        peaked = pack_peaks(seen)
+        for extremes in (self.of_nodes, self.peaks):
+            extremes.update(t, peaked)
+        self._t, self._last = [*self._t[-2:], t], [*self._last[-2:], peaked]
+        if self.kind == "dynamic" and len(self._t) == 3 and self._t[0] < self._t[1] < t:
+            self.peaks.update(self._t[1], vertex(np.array(self._t), np.array(self._last)))
+        self._seen = seen
+
+    def told(self, which: str) -> dict[str, Any]:
+        """As the summary tells the stage; which: sampled, of_nodes or peaks."""
+        if self._seen is None:
+            return {"name": self.name, "kind": self.kind, "final": None}
+        final = final_state(self._seen)
+        if which != "sampled":
+            for name in _ALONG:
+                final[name] = {**final[name], "value": self._last[-1][places_of(name)].item()}
+        extremes = {"sampled": self.sampled, "of_nodes": self.of_nodes, "peaks": self.peaks}[which]
+        return {
+            "name": self.name, "kind": self.kind, "final": final, "soil": self.soil,
+            "extremes": extremes.nested(),
+        }  # fmt: skip
+
+
+class RunPeaks:
+    """The peaks of a run, stage by stage; fed on the rank that records. mesh: the soil's; None: not followed."""
+
+    def __init__(self, mesh: SoilMesh | None = None) -> None:
+        self.stages: list[StagePeaks] = []
+        self._places = None if mesh is None else places(mesh)
+        self._latest: Instant | None = None
+
+    def begin_stage(self, name: str, kind: str) -> None:
+        """A dynamic stage's extremes include the state that it begins with, where a stage came before it."""
+        self.stages.append(StagePeaks(name, kind))
+        if kind == "dynamic" and self._latest is not None:
+            self.stages[-1].update(0.0, self._latest)
+
+    def record(self, t: float, seen: Instant, soil: SoilSnapshot | None = None) -> None:
+        """soil: where it is recorded at this step."""
+        stage = self.stages[-1]
+        stage.update(t, seen)
+        self._latest = seen
+        if soil is not None and self._places is not None:
+            stage.soil = with_largest(stage.soil, self._places, t, soil)
+
+    def told(self, which: str) -> dict[str, Any]:
+        """The share of a summary that headline quantities are read from; which: sampled, of_nodes or peaks."""
+        return {"stages": [stage.told(which) for stage in self.stages]}

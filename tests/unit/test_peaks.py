@@ -1,0 +1,68 @@
+"""Peaks between nodes and between steps: of known curves, sampled beside their tops."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from riser_soil.core.snapshot import Instant
+from riser_soil.results.figures import pack, places_of
+from riser_soil.results.peaks import RunPeaks, between_nodes, pack_peaks, vertex
+from tests.support.recorded_run import Catenary
+
+ARC = np.linspace(0.0, 150.0, 31)
+
+
+def test_vertex_of_a_parabola_is_exact_at_any_spacing() -> None:
+    t = np.array([0.0, 0.3, 1.1])
+    values = np.stack([2.0 - 3.0 * (t - 0.4) ** 2, 5.0 + (t - 0.35) ** 2, t], axis=1)
+    assert vertex(t, values) == pytest.approx([2.0, 5.0, 0.3])  # the third has no extreme in the middle
+
+
+def test_peak_between_nodes_is_of_higher_order() -> None:
+    """A cosine's top, sampled at uneven places: the miss falls by 16 as the spacing halves, at the nodes by 4."""
+    missed, at_nodes = [], []
+    for h in (0.2, 0.1):
+        arc = np.arange(-8, 9) * h + 0.31 * h
+        missed.append(1.0 - between_nodes(arc, np.cos(arc)))
+        at_nodes.append(1.0 - np.cos(arc).max())
+        assert between_nodes(arc, -np.cos(arc), sign=-1.0) == pytest.approx(-between_nodes(arc, np.cos(arc)))
+    assert missed[0] / missed[1] == pytest.approx(16.0, rel=0.05)
+    assert at_nodes[0] / at_nodes[1] == pytest.approx(4.0, rel=0.05)
+
+
+def test_peak_at_an_end_stays_there() -> None:
+    assert between_nodes(np.array([0.0, 1.0, 2.0]), np.array([3.0, 2.0, 0.0])) == 3.0
+
+
+def seen(t: float) -> Instant:
+    """Catenary whose moments grow and fall with time."""
+    line = Catenary(32.0, 30.0)
+    riser = line.riser(ARC)
+    return Instant(ARC, replace(riser, bending_moment=riser.bending_moment * np.cos(t)), line.touch(ARC))
+
+
+def test_only_what_sits_between_nodes_is_replaced() -> None:
+    plain, peaked = pack(seen(0.0)), pack_peaks(seen(0.0))
+    changed = np.flatnonzero(~np.isclose(plain, peaked, equal_nan=True))
+    replaced = {places_of(name).start for name in ("max_bending_moment", "max_curvature", "min_effective_tension")}
+    assert set(changed) <= replaced
+    assert peaked[places_of("max_bending_moment")] >= plain[places_of("max_bending_moment")]
+
+
+def test_extremes_of_a_stage_three_ways() -> None:
+    """The largest moment passes between two steps of 0.3; a static stage's end is no extreme in time."""
+    peaks = RunPeaks()
+    peaks.begin_stage("motion", "dynamic")
+    for t in np.arange(-1.0, 1.0, 0.3):
+        peaks.record(t, seen(t))
+    largest = {
+        which: peaks.told(which)["stages"][0]["extremes"]["max_bending_moment"]["max"]
+        for which in ("sampled", "of_nodes", "peaks")
+    }
+    top = pack_peaks(seen(0.0))[places_of("max_bending_moment")].item()
+    assert largest["sampled"] == pytest.approx(seen(0.1).riser.bending_moment.max())
+    assert largest["of_nodes"] == pytest.approx(top * np.cos(0.1))
+    assert largest["peaks"] == pytest.approx(top, rel=3e-4)
