@@ -11,6 +11,7 @@ from riser_soil.riser.sections import Elements
 from riser_soil.scene.scene import Scene
 
 FORCE_FLOOR = 1e-14  # of EA: a residual below this is round-off even where all forces vanish
+THINNEST = 1e-3  # of the length: stands for the diameter of a chain that has none
 LEAST_WEIGHT = 1e-6  # of EA/L: stands for the weight of a line that has none
 
 
@@ -28,7 +29,7 @@ class Scales:
 
 def scales_of(elements: Elements) -> Scales:
     EA = float(elements.EA.max())
-    bar = float(4.0 * np.sqrt((elements.EI_y / elements.EA).max()))
+    bar = float(4.0 * np.sqrt((elements.EI_y / elements.EA).max())) or THINNEST * float(elements.arc[-1])
     weight = max(float(np.abs(elements.weight).max()), LEAST_WEIGHT * EA / float(elements.arc[-1]))
     return Scales(weight, float(elements.outer_diameter.max()) or bar, FORCE_FLOOR * EA)
 

@@ -39,7 +39,7 @@ def _long_in_boundary_layers(assembly: Assembly) -> Iterator[str]:
     H, line = assembly.catenary.H, assembly.line
     layer = np.sqrt(_stiffness(assembly) / H)
     for place, e in _boundary_layers(assembly):
-        if line.length[e] > LONGEST_ELEMENT * layer[e]:
+        if assembly.elements.bends[e] and line.length[e] > LONGEST_ELEMENT * layer[e]:
             yield (
                 f"elements {place} are {line.length[e]:.4g} m long, but bending varies there over sqrt(EI/H) = "
                 f"{layer[e]:.4g} m (H = {H:.4g} N): take at most {LONGEST_ELEMENT * layer[e]:.3g} m"
@@ -71,9 +71,10 @@ def _long_in_the_bend(assembly: Assembly) -> Iterator[str]:
     w = np.abs(assembly.elements.weight)
     middle = 0.5 * (T[1:] + T[:-1])
     second = 2.0 * w**3 * H * np.abs(3.0 * middle**2 - 4.0 * H**2) / middle**6
-    error = _hanging(assembly) * middle * line.length**4 * second / 384.0
+    bends = np.logical_and(_hanging(assembly), assembly.elements.bends)
+    error = bends * middle * line.length**4 * second / 384.0
     moment = _stiffness(assembly) * w * H / np.minimum(T[1:], T[:-1]) ** 2
-    share = error / float((_hanging(assembly) * moment).max(initial=np.finfo(float).tiny))
+    share = error / float((bends * moment).max(initial=np.finfo(float).tiny))
     e = int(share.argmax())
     if share[e] > MOMENT_ERROR:
         longest = line.length[e] * (0.9 * MOMENT_ERROR / share[e]) ** 0.25

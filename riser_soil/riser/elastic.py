@@ -62,7 +62,7 @@ class PlanarElements(ElasticElements):
     section_type: ClassVar[type[Any]] = beam2d.PlanarSection
 
     def __init__(self, line: Line, frames: PlanarFrames, elements: Elements) -> None:
-        super().__init__(line, frames.alpha0, elements.EA, elements.EI_y)
+        super().__init__(line, frames.alpha0, elements.EA, elements.stiffness()[0])
 
     def configuration(self, trial: Trial) -> tuple[Array, Array, Array]:
         """Chords (ne, 2) and directions of the tangents at both ends (ne,)."""
@@ -84,7 +84,7 @@ class SpatialElements(ElasticElements):
     section_type: ClassVar[type[Any]] = beam3d.SpatialSection
 
     def __init__(self, line: Line, frames: SpatialFrames, elements: Elements) -> None:
-        super().__init__(line, frames.T0, elements.EA, elements.EI_y, elements.EI_z, elements.GJ)
+        super().__init__(line, frames.T0, elements.EA, *elements.stiffness(), elements.GJ)
 
     def configuration(self, trial: Trial) -> tuple[Array, Array, Array]:
         """Chords (ne, 3) and section frames at both ends (ne, 3, 3)."""

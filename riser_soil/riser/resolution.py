@@ -67,13 +67,14 @@ def _sections(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]:
 
 def _over_stiffness(trial: Trial, elements: Elements, moment: Array) -> Array:
     """Curvatures (ne, 2, 3) of moments, global axes; about the section axes where there are two stiffnesses."""
+    y, z = elements.flexibility()
     if not isinstance(trial.turn, SpatialOrientation):
-        return np.asarray(moment / elements.EI_y[:, None, None])
+        return np.asarray(moment * y[:, None, None])
     frames = np.stack([trial.turn.frame1, trial.turn.frame2], axis=1)
     about = np.einsum("enij,eni->enj", frames, moment)
     about[..., 0] = 0.0
-    about[..., 1] /= elements.EI_y[:, None]
-    about[..., 2] /= elements.EI_z[:, None]
+    about[..., 1] *= y[:, None]
+    about[..., 2] *= z[:, None]
     return np.asarray(np.einsum("enij,enj->eni", frames, about))
 
 

@@ -17,7 +17,7 @@ from riser_soil.core.part import State
 from riser_soil.riser.directors import SpatialOrientation
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
-from riser_soil.riser.sections import Elements
+from riser_soil.riser.sections import Elements, larger_beside
 from riser_soil.riser.trial import Trial
 
 
@@ -82,7 +82,7 @@ def section_forces(
     force, moment = _nodal_section(line, trial, residual)
     tangent = _nodal(trial.turn.tangent[:, 0], trial.turn.tangent[:, 1]) @ line.basis.T
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
-    bending = _across(moment, tangent)
+    bending = _across(moment, tangent) * larger_beside(elements.bends.astype(float))[:, None]
     damping = 0.0 if viscous is None else _across(_nodal_section(line, trial, viscous)[1], tangent)
     first, second = _curvatures(trial, elements, bending - damping)
     return SectionForces(
@@ -161,10 +161,11 @@ def _curvatures(trial: Trial, elements: Elements, bending: Array) -> tuple[Array
             _section_curvature(trial.turn.frame1, bending[:-1], elements),
             _section_curvature(trial.turn.frame2, bending[1:], elements),
         )
-    magnitude = np.linalg.norm(bending, axis=1)
-    return magnitude[:-1] / elements.EI_y, magnitude[1:] / elements.EI_y
+    magnitude, flexibility = np.linalg.norm(bending, axis=1), elements.flexibility()[0]
+    return magnitude[:-1] * flexibility, magnitude[1:] * flexibility
 
 
 def _section_curvature(frame: Array, moment: Array, elements: Elements) -> Array:
     about = np.einsum("eij,ei->ej", frame, moment)
-    return np.hypot(about[:, 1] / elements.EI_y, about[:, 2] / elements.EI_z)
+    y, z = elements.flexibility()
+    return np.hypot(about[:, 1] * y, about[:, 2] * z)

@@ -8,8 +8,10 @@ from typing import Self
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.errors import SceneError
+
+CHAIN = 1e-18  # EI of an element without bending stiffness, over EA L^2: below the round-off of its other stiffnesses
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,23 @@ class Elements:
     polar_inertia: Array
     damping: Array
     min_bend_radius: Array
+
+    @property
+    def bends(self) -> BoolArray:
+        """Whether an element has bending stiffness (ne,), or is a chain's."""
+        return np.asarray(self.EI_y > 0.0)
+
+    def flexibility(self) -> tuple[Array, Array]:
+        """1/EI (ne,) about both section axes [1/(N.m2)], 0 of a chain: no moment bends it."""
+        y, z = (np.divide(1.0, EI, out=np.zeros_like(EI), where=self.bends) for EI in (self.EI_y, self.EI_z))
+        return y, z
+
+    def stiffness(self) -> tuple[Array, Array]:
+        """EI (ne,) about both section axes as the elements have it; of a chain too little to count, for each node's
+        turn needs a stiffness.
+        """
+        chain = CHAIN * self.EA * self.length**2
+        return np.where(self.bends, self.EI_y, chain), np.where(self.bends, self.EI_z, chain)
 
     @property
     def arc(self) -> Array:

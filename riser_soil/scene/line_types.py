@@ -9,6 +9,7 @@ from riser_soil.core.quantities import (
     FROZEN,
     AxialStiffness,
     BendingStiffness,
+    BendingStiffnessOrNone,
     Coefficient,
     Frequency,
     Length,
@@ -80,7 +81,9 @@ class LineType(BaseModel):
         default=None, description="mass per length in air without contents [kg/m]; needed for dynamics"
     )
     EA: AxialStiffness = Field(description="axial stiffness [N]")
-    EI: BendingStiffness | None = Field(default=None, description="bending stiffness [N.m2]; or give EI_y and EI_z")
+    EI: BendingStiffnessOrNone | None = Field(
+        default=None, description="bending stiffness [N.m2], 0 for a chain; or give EI_y and EI_z"
+    )
     EI_y: BendingStiffness | None = Field(
         default=None, description="bending stiffness about the section's y axis [N.m2]"
     )

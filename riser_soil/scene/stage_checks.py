@@ -21,6 +21,7 @@ def stage_conflicts(scene: Scene) -> Iterator[Problem]:
     for n, stage in enumerate(scene.stages):
         for m, load in enumerate(stage.loads):
             yield from _load_on_riser(scene, ("stages", n, "loads", m), load)
+            yield from _moment_on_chain(scene, ("stages", n, "loads", m), load)
         if isinstance(stage, StaticStage):
             yield from _static(scene, n, stage)
         else:
@@ -47,6 +48,22 @@ def _load_on_riser(scene: Scene, path: Path, load: Load) -> Iterator[Problem]:
     elif load.moment is not None and abs((near := _nearest_node(scene, load.at)) - load.at) > 1e-6 * length:
         allowed = f"a moment must act at a node; the nearest is at {near:.6g} m"
         yield Problem((*path, "at"), allowed, "move the moment there or change the elements")
+
+
+def _moment_on_chain(scene: Scene, path: Path, load: Load) -> Iterator[Problem]:
+    """A moment where all that is beside it has no bending stiffness."""
+    if load.moment is None or load.at is None:
+        return
+    length, first = scene.riser.length, 0.0
+    at = {"start": 0.0, "end": length}[load.at] if isinstance(load.at, str) else load.at
+    beside = list[str]()
+    for segment in scene.riser.segments:
+        if first - 1e-9 * length <= at <= first + segment.length + 1e-9 * length:
+            beside.append(segment.line_type)
+        first += segment.length
+    if beside and not any(max(scene.line_types[name].bending_stiffness) for name in beside):
+        allowed = f"line type {beside[0]} has no bending stiffness (EI: 0) and bears no moment"
+        yield Problem((*path, "moment"), allowed, "leave the moment out, or give a bending stiffness")
 
 
 def _nearest_node(scene: Scene, arc: float) -> float:

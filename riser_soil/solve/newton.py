@@ -289,7 +289,9 @@ class Newton:
             return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
         if self._taken < self._least_iterations:
             return self._next_tangent()
-        if norm <= max(self.settings.tolerance * self._scale(self._forces), self.settings.floor):
+        if norm <= self.settings.tolerance * self._scale(self._forces):
+            return CONVERGED
+        if norm <= self.settings.floor and self._taken > 0:  # a load as small as round-off still has its answer
             return CONVERGED
         if self._taken >= 4 and norm > 1e6 * self._norms[self._first]:
             return DIVERGED

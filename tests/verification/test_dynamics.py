@@ -263,7 +263,7 @@ def gust(iterations: int) -> Mapping:
 def test_failed_step_is_cut_and_grows_again() -> None:
     """With few iterations allowed the steps under the gust fail, and else those that make energy of it."""
     hard, easy = stage_histories(gust(6))[-1], stage_histories(gust(25))[-1]
-    assert sum(hard.cuts) > 10
+    assert sum(hard.cuts) > 5
     assert sum(easy.cuts) < 5
     smallest = int(np.argmin(hard.dt))
     assert hard.dt[smallest] < 0.11

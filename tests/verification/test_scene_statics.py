@@ -17,7 +17,7 @@ from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 from tests.support.coupled_scenes import Mapping
 from tests.support.flexible_riser import elastica_H, guess, properties
-from tests.support.riser_scenes import prescribed, riser_scene, static
+from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
 from tests.support.rod_reference import Rod, tip
 
 SCENES = Path(__file__).parents[1] / "scenes"
@@ -184,3 +184,20 @@ def test_loads_end_with_their_stage(solve: Solve) -> None:
     bent, straight = done["position"][:, -1, 2]
     assert bent == pytest.approx(FORCE * SPAN**3 / (3.0 * EI), rel=1e-5)
     assert abs(straight) < 1e-9 * bent
+
+
+@pytest.mark.parametrize("force", [1e-3, 1e-6, 1e-12])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_load_below_the_round_off_of_strains_still_bends(dimension: int, force: float) -> None:
+    """A cantilever whose EA is 1e9 times EI/L^2: residuals of 1e-14 EA count as none, but not before one iteration."""
+    shape: Mapping = {"riser": {"unstressed": {"points": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]}}, "dimension": dimension}
+    scene = riser_scene(
+        static(loads=[{"at": "end", "force": [0.0, 0.0, force]}]),
+        pipe={"EA": 1e9, "EI": 1.0, "GJ": 1.0},
+        length=1.0,
+        elements=10,
+        start=prescribed(0.0, 0.0, 0.0, rotation="fixed"),
+        end="free",
+        **shape,
+    )
+    assert stage_histories(scene)[0].position[-1][-1, 2] == pytest.approx(force / 3.0, rel=1e-6)
