@@ -2,7 +2,9 @@
 
 A step that creates much energy at once is a root of the equations far from the motion that it continues, or too long.
 Steps that follow a line through buckling or a snap may each create a little and never give it back: in the end the
-line is torn by what the scheme has put in. So their sum counts, too, beside what has been turned over.
+line is torn by what the scheme has put in. So their sum counts, too, beside what has been turned over. Of a step there
+counts what may have gone into motion, at most the kinetic energy: what a slow pipe seems to gain that is pressed into
+soil in long steps is the error of its mean force, which moves nothing.
 """
 
 from __future__ import annotations
@@ -34,14 +36,16 @@ class EnergyGain:
         in_motion = was.kinetic + was.strain + max(0.0, was.potential - now.potential) + abs(work)
         if appeared > self._largest * in_motion + negligible:
             return f"the step's solution makes {appeared:.3g} J out of nothing, beside {in_motion:.3g} J in motion"
-        adds, made, turned = SMALL * self._largest * in_motion, self._sum + appeared, max(self._turned, in_motion)
-        if appeared > adds + negligible and made > SUM * self._largest * turned:
+        adds, turned = SMALL * self._largest * in_motion, max(self._turned, in_motion)
+        moving = _into_motion(was, now, appeared)
+        made = self._sum + moving
+        if moving > adds + negligible and made > SUM * self._largest * turned:
             return f"the steps' solutions make {made:.3g} J out of nothing, beside {turned:.3g} J turned over"
         return ""
 
     def accept(self, was: Energy, now: Energy, dissipated: float, work: float) -> None:
         """Count an accepted step."""
-        self._sum = max(0.0, self._sum + _appeared(was, now, dissipated, work))
+        self._sum = max(0.0, self._sum + _into_motion(was, now, _appeared(was, now, dissipated, work)))
         self._work += work
         self._dissipated += dissipated
         self._turned = max(self._turned, now.kinetic, now.strain, abs(self._dissipated), abs(self._work))
@@ -55,3 +59,7 @@ class EnergyGain:
 
 def _appeared(was: Energy, now: Energy, dissipated: float, work: float) -> float:
     return now.total - was.total + dissipated - work
+
+
+def _into_motion(was: Energy, now: Energy, appeared: float) -> float:
+    return min(appeared, was.kinetic + now.kinetic)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from riser_soil.core.part import Energy
@@ -39,6 +41,19 @@ def test_work_that_goes_through_counts_as_turned_over() -> None:
     gain.accept(STILL, STILL, dissipated=1000.0, work=1000.0)
     gain.accept(STILL, moving(6.0), 0.0, 0.0)
     assert gain.rejection(STILL, moving(6.0), 0.0, 0.0, 0.0) == ""
+
+
+def test_what_moves_nothing_does_not_count() -> None:
+    """A pipe that is pressed slowly into soil, in steps so long that the mean of its forces is off."""
+    slow = [Energy(kinetic=1e-3, strain=10.0 * k, potential=0.0) for k in range(9)]
+    gain = EnergyGain(LARGEST, slow[1])
+    for was, now in pairwise(slow[1:]):
+        assert gain.rejection(was, now, 0.0, 8.5, 0.0) == "", "1.5 J appear in each of 7 steps, of 80 J"
+        gain.accept(was, now, 0.0, 8.5)
+    fast = [Energy(kinetic=100.0, strain=10.0 * k, potential=0.0) for k in range(9)]
+    gain = EnergyGain(LARGEST, fast[1])
+    gain.accept(fast[1], fast[2], 0.0, -45.0)
+    assert gain.rejection(fast[2], fast[3], 0.0, 8.5, 0.0) != ""
 
 
 def test_it_goes_on_from_what_was_saved() -> None:
