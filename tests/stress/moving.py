@@ -152,13 +152,13 @@ def heave_of_10_m_in_4_s() -> Trial:
     return Trial(scenes, answers, TOO_LONG)
 
 
-@stress_case()
+@stress_case(cpu=150)
 def heave_of_10_m_in_4_s_then_rest() -> Trial:
     """After three cycles of that heave, in compression at the touchdown point, the end stops where it began: the riser
-    comes to rest where it was, as the equilibrium of a line on springs without friction is one.
+    comes to rest where it was, as the equilibrium of a line on springs without friction is one; the shock of its stop, 3.9 m/s, may be told.
     """
-    scene = first_scene(heaved(5.0, 8.0, 24.0, 0.025, 8.0), dynamic(80.0, 0.025, "rest"))
-    return one(scene, as_before)
+    scene = first_scene(heaved(5.0, 8.0, 24.0, 0.025, 8.0), dynamic(60.0, 0.05, "rest"))
+    return one(scene, as_before, r"the energy balance is")
 
 
 @stress_case()
@@ -183,7 +183,7 @@ def as_before(run: Run) -> Iterator[Answer]:
 
 @stress_case()
 def lifted_off_and_dropped() -> Trial:
-    """A hoist lifts what lies of the first scene's riser 8 m off the ground with 20 kN, and lets go: the riser falls,
+    """A hoist lifts what lies of the first scene's riser 4.5 m off the ground with 20 kN, and lets go: the riser falls,
     and comes to rest where it was. (With much drag along it, as nothing else stops its sliding.)
     """
     hoist = {"at": 20.0, "force": [0.0, 0.0, 20e3]}
@@ -192,7 +192,7 @@ def lifted_off_and_dropped() -> Trial:
 
     def answers(run: Run) -> Iterator[Answer]:
         lifted = run["position"][1]
-        yield between("height of the hoist [m]", float(lifted[run.arc == 20.0, 2][0]), 5.0)
+        yield between("height of the hoist [m]", float(lifted[run.arc == 20.0, 2][0]), 4.0)
         yield from as_before(run)
 
     return one(scene, answers)
