@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -11,12 +12,16 @@ from pathlib import Path
 
 import pytest
 
-from riser_soil.scene.reader import read_scene
+from riser_soil.results import Run
+from riser_soil.run import run
+from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.stress.answers import Answer, between, near
+from riser_soil.stress.bounds import bounds
 from riser_soil.stress.extremes import BASE, extremes
 from riser_soil.stress.limited_process import Ending, Limits, ended
 from riser_soil.stress.outcome import BROKEN, LONG, PASSED, TOLD, WRONG, outcome
 from tests.support.on_ranks import ROOT, environment
+from tests.support.riser_scenes import prescribed, riser_scene, static
 
 FIRST_SCENE = ROOT / "demos" / "first_scene.yaml"
 RIGHT, OFF = near("T [N]", 101.0, 100.0, rel=0.02), near("T [N]", 103.0, 100.0, rel=0.02)
@@ -89,3 +94,18 @@ def test_the_cheapest_cases_end_as_they_are_to() -> None:
     done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.count("passed: ") > 5
+
+
+def test_forces_out_of_balance_are_found(tmp_path: Path) -> None:
+    """A hanging line's run, then the same with one reaction 1 % larger in its summary."""
+    line = {"EA": 1e8, "EI": 10.0, "submerged_weight": 500.0}
+    ends = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(80.0, 0.0, 30.0)}
+    scene = riser_scene(static(), pipe=line, length=100.0, elements=20, gravity=9.81, **ends)
+    run(scene_from_mapping(scene), tmp_path / "run")
+    assert all(answer.holds for answer in bounds(Run(tmp_path / "run")))
+    summary = tmp_path / "run" / "summary.json"
+    told = json.loads(summary.read_text())
+    told["stages"][0]["final"]["end"]["force"][2] *= 1.01
+    summary.write_text(json.dumps(told))
+    wrong = [answer.what for answer in bounds(Run(tmp_path / "run")) if not answer.holds]
+    assert wrong == ["static: vertical forces out of balance, of the largest [-]"]
