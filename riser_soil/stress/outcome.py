@@ -11,7 +11,7 @@ from typing import Any
 from riser_soil.results.read import Run
 from riser_soil.results.summary import plain_json
 from riser_soil.stress.answers import Answer
-from riser_soil.stress.bounds import worst_residual
+from riser_soil.stress.bounds import ENERGY, worst_residual
 from riser_soil.stress.limited_process import Ending
 
 PASSED, TOLD, WRONG, BROKEN, LONG = "passed", "told plainly", "QUIETLY WRONG", "broken", "out of time"
@@ -85,8 +85,11 @@ def _verdict(ending: Ending, answers: Sequence[Answer], may_tell: str | None) ->
         return LONG if ending.word == "hang" else BROKEN
     if not ending.finished:
         return TOLD
-    if all(answer.holds for answer in answers):
+    wrong = [answer for answer in answers if not answer.holds]
+    if not wrong:
         return PASSED
+    if all(ENERGY in answer.what for answer in wrong) and _says(ending, "the energy balance is"):
+        return TOLD
     return TOLD if may_tell is not None and _says(ending, may_tell) else WRONG
 
 

@@ -152,13 +152,14 @@ def heave_of_10_m_in_4_s() -> Trial:
     return Trial(scenes, answers, TOO_LONG)
 
 
-@stress_case()
+@stress_case(cpu=150)
 def heave_of_10_m_in_4_s_then_rest() -> Trial:
     """After three cycles of that heave, in compression at the touchdown point, the end stops where it began: the riser
-    comes to rest where it was, as the equilibrium of a line on springs without friction is one.
+    comes to rest where it was, as the equilibrium of a line on springs without friction is one; the
+    shock of its stop, 3.9 m/s, may be told.
     """
-    scene = first_scene(heaved(5.0, 8.0, 24.0, 0.025, 8.0), dynamic(80.0, 0.2, "rest"))
-    return one(scene, as_before)
+    scene = first_scene(heaved(5.0, 8.0, 24.0, 0.025, 8.0), dynamic(60.0, 0.05, "rest"))
+    return one(scene, as_before, r"the energy balance is")
 
 
 @stress_case()
@@ -183,15 +184,16 @@ def as_before(run: Run) -> Iterator[Answer]:
 
 @stress_case()
 def lifted_off_and_dropped() -> Trial:
-    """A hoist lifts what lies of the first scene's riser 8 m off the ground with 20 kN, and lets go: the riser falls,
-    and comes to rest where it was.
+    """A hoist lifts what lies of the first scene's riser 4.5 m off the ground with 20 kN, and lets go: the riser falls,
+    and comes to rest where it was. (With much drag along it, as nothing else stops its sliding.)
     """
     hoist = {"at": 20.0, "force": [0.0, 0.0, 20e3]}
-    scene = first_scene(static("lift", loads=[hoist]), dynamic(60.0, 0.05, "drop"))
+    scene = first_scene(static("lift", loads=[hoist]), dynamic(100.0, 0.05, "drop"))
+    scene["line_types"]["flexible"]["drag"]["tangential"] = 0.5
 
     def answers(run: Run) -> Iterator[Answer]:
         lifted = run["position"][1]
-        yield between("height of the hoist [m]", float(lifted[run.arc == 20.0, 2][0]), 5.0)
+        yield between("height of the hoist [m]", float(lifted[run.arc == 20.0, 2][0]), 4.0)
         yield from as_before(run)
 
     return one(scene, answers)
@@ -267,15 +269,15 @@ stress_case(name="ten_turns_the_other_way", not_yet=ROUND_OFF)(turned(-10))
 stress_case(name="hundred_turns", cpu=100, not_yet=ROUND_OFF)(turned(100, 2e-3))
 
 
-@stress_case(cpu=150)
+@stress_case(cpu=240)
 def ten_thousand_cycles() -> Trial:
-    """A mass of 1 t on a bar of 10 m, EA = 1 MN, let go 0.1 m off by the average acceleration, 20 steps a cycle: the
+    """A mass of 1 t on a bar of 10 m, EA = 1 MN, let go 0.1 m off by the average acceleration, 8 steps a cycle: the
     amplitude stays 0.1 m over 10,000 cycles, energy to a millionth.
     """
     k, period = 1e5, 2.0 * np.pi / 10.0
     scene = riser_scene(
         static("pull", loads=[{"at": "end", "force": [0.1 * k, 0.0, 0.0]}]),
-        dynamic(10_000 * period, period / 20.0, scheme=AVERAGE),
+        dynamic(10_000 * period, period / 8.0, scheme=AVERAGE),
         pipe={"EA": 1e6, "EI": 1e3, "mass": 1e-3},
         length=10.0,
         elements=1,

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -10,15 +12,20 @@ from pathlib import Path
 
 import pytest
 
-from riser_soil.scene.reader import read_scene
+from riser_soil.results import Run
+from riser_soil.run import run
+from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.stress.answers import Answer, between, near
+from riser_soil.stress.bounds import bounds
 from riser_soil.stress.extremes import BASE, extremes
 from riser_soil.stress.limited_process import Ending, Limits, ended
 from riser_soil.stress.outcome import BROKEN, LONG, PASSED, TOLD, WRONG, outcome
 from tests.support.on_ranks import ROOT, environment
+from tests.support.riser_scenes import prescribed, riser_scene, static
 
 FIRST_SCENE = ROOT / "demos" / "first_scene.yaml"
 RIGHT, OFF = near("T [N]", 101.0, 100.0, rel=0.02), near("T [N]", 103.0, 100.0, rel=0.02)
+ENERGY_OFF = between("heave: energy residual [-]", 0.02, 0.0, 0.01)
 
 
 def test_answers_hold_within_what_they_may_miss() -> None:
@@ -36,6 +43,8 @@ def test_answers_hold_within_what_they_may_miss() -> None:
         (Ending("done", True, 1.0, "warning: too coarse"), OFF, None, WRONG, False),
         (Ending("done", True, 1.0, "warning: too coarse"), OFF, "coarse", TOLD, True),
         (Ending("done", True, 1.0, "warning: too coarse"), OFF, "too long", WRONG, False),
+        (Ending("done", True, 1.0, "warning: the energy balance is off"), ENERGY_OFF, None, TOLD, False),
+        (Ending("done", True, 1.0, ""), ENERGY_OFF, None, WRONG, False),
         (Ending("solve failed", True, 1.0, "no convergence"), OFF, None, TOLD, False),
         (Ending("solve failed", True, 1.0, "no convergence"), OFF, "no conv", TOLD, True),
         (Ending("traceback", False, 1.0, "Traceback"), OFF, "Trace", BROKEN, False),
@@ -61,13 +70,17 @@ def test_a_process_ends_at_its_limits(tmp_path: Path) -> None:
         print("no convergence")
         return 3
 
+    def crashes() -> int:
+        os.kill(os.getpid(), signal.SIGTERM)
+        return 0
+
     begun = time.monotonic()
     assert ended(busy, tmp_path, Limits(cpu=1)).word == "hang"
     assert time.monotonic() - begun < 20.0
     assert ended(greedy, tmp_path, Limits()).word == "traceback"
     told = ended(fails, tmp_path, Limits())
     assert (told.word, told.well, told.output) == ("solve failed", True, "no convergence\n")
-    assert ended(lambda: os.abort(), tmp_path, Limits()).word == "killed by SIGABRT"
+    assert ended(crashes, tmp_path, Limits()).word == "killed by SIGTERM"
 
 
 def test_extremes_of_the_first_scene() -> None:
@@ -85,3 +98,18 @@ def test_the_cheapest_cases_end_as_they_are_to() -> None:
     done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.count("passed: ") > 5
+
+
+def test_forces_out_of_balance_are_found(tmp_path: Path) -> None:
+    """A hanging line's run, then the same with one reaction 1 % larger in its summary."""
+    line = {"EA": 1e8, "EI": 10.0, "submerged_weight": 500.0}
+    ends = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(80.0, 0.0, 30.0)}
+    scene = riser_scene(static(), pipe=line, length=100.0, elements=20, gravity=9.81, **ends)
+    run(scene_from_mapping(scene), tmp_path / "run")
+    assert all(answer.holds for answer in bounds(Run(tmp_path / "run")))
+    summary = tmp_path / "run" / "summary.json"
+    told = json.loads(summary.read_text())
+    told["stages"][0]["final"]["end"]["force"][2] *= 1.01
+    summary.write_text(json.dumps(told))
+    wrong = [answer.what for answer in bounds(Run(tmp_path / "run")) if not answer.holds]
+    assert wrong == ["static: vertical forces out of balance, of the largest [-]"]
