@@ -28,11 +28,14 @@ class TimeResolution:
     """Estimates of the time step's error in the extremes of n figures."""
 
     def __init__(self, n: int) -> None:
-        self._values, self._slope, self._t, self._dt = np.full(n, np.nan), np.full(n, np.nan), math.nan, math.nan
-        self._past = np.zeros(n)  # |D| of the step before
+        self._values: Array = np.full(n, np.nan)
+        self._slope: Array = np.full(n, np.nan)
+        self._t, self._dt = math.nan, math.nan
+        self._past: Array = np.zeros(n)  # |D| of the step before
         # Of the least values, negative, and of the largest: the value, the largest |D| around it, steps since.
-        self._extreme, self._around = np.full((2, n), -np.inf), np.zeros((2, n))
-        self._since = np.full((2, n), np.inf)
+        self._extreme: Array = np.full((2, n), -np.inf)
+        self._around: Array = np.zeros((2, n))
+        self._since: Array = np.full((2, n), np.inf)
 
     def update(self, t: float, values: Array) -> None:
         """t: s; values (n,) after a step. nan does not count."""

@@ -56,7 +56,7 @@ def test_extremes_of_a_stage_three_ways() -> None:
     """The largest moment passes between two steps of 0.3; a static stage's end is no extreme in time."""
     peaks = RunPeaks()
     peaks.begin_stage("motion", "dynamic")
-    for t in np.arange(-1.0, 1.0, 0.3):
+    for t in np.arange(-1.0, 1.0, 0.3).tolist():
         peaks.record(t, seen(t))
     largest = {
         which: peaks.told(which)["stages"][0]["extremes"]["max_bending_moment"]["max"]
