@@ -20,7 +20,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test lint verify stress fuzz bench parts bars verify-fresh docker pins clean
+.PHONY: help setup demo demos test lint verify stress fuzz bench parts bars quality verify-fresh docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -62,6 +62,9 @@ parts: setup ## what each part of a scene costs: docs/parts.md
 
 bars: setup ## error bars of 51 scenes beside their true errors: docs/error_bars.md
 	$(PYTHON) -m benchmarks.error_bars
+
+quality: stress bars parts ## those three and a study of the first scene: docs/quality.md
+	$(PYTHON) -m benchmarks.quality
 
 verify-fresh: ## both commands of the README on bare Debians 12 and 13 made for it (needs root and debootstrap)
 	@set -e; for suite in $(SUITES); do FRESH_SUITE=$$suite scripts/verify_fresh.sh; done

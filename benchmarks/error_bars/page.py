@@ -10,7 +10,7 @@ from pathlib import Path
 from benchmarks.error_bars.calibration import Judged, JudgedScene, median_ratio, share_inside
 from benchmarks.error_bars.scenes import SCENES
 from riser_soil import __version__
-from riser_soil.accuracy.error_bars import SMALLEST
+from riser_soil.accuracy.error_bars import SAFETY, SMALLEST
 
 PAGE = Path("docs") / "error_bars.md"
 
@@ -74,7 +74,7 @@ def page(scenes: list[JudgedScene]) -> str:
         date=datetime.date.today().isoformat(),
         python=platform.python_version(),
         cores=os.cpu_count(),
-        factors="1.5 for the mesh, 2 for time, 5 for soil, 2.1 for the penalty",
+        factors=", ".join(f"{factor:g} for the {source}" for source, factor in SAFETY.items()),
         smallest=SMALLEST,
         scenes=len(SCENES),
         quantities=len(certain),

@@ -1,0 +1,80 @@
+"""Page "How accurate, how fast, how stable", docs/quality.md, from what the commands have found.
+
+    python -m benchmarks.quality
+
+Runs `riser-soil study` of the first scene, or takes what it has left in results/quality, and gathers what `make bars`,
+`make stress` and `make parts` have written into their pages.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+from demos.page import block, filled, table
+from riser_soil.accuracy.study import study
+from riser_soil.scene.reader import read_scene
+
+ROOT = Path(__file__).parent.parent
+DOCS = ROOT / "docs"
+SCENE = "demos/first_scene.yaml"
+PAGE, PLOT = DOCS / "quality.md", DOCS / "study.svg"
+VERDICTS = ("passed", "told plainly", "QUIETLY WRONG")
+
+
+def studied(folder: Path) -> str:
+    """Words and table of the study; its plot goes into a file."""
+    study(read_scene(ROOT / SCENE), folder)
+    told = json.loads((folder / "study.json").read_text(encoding="utf-8"))
+    page = (folder / "study.html").read_text(encoding="utf-8")
+    found = re.search(r'data:image/svg\+xml;base64,([^"]+)"', page)
+    assert found is not None
+    PLOT.write_bytes(base64.b64decode(found[1]))
+    said = "\n".join(f"- {sentence[0].upper()}{sentence[1:]}." for sentence in told["words"])
+    rows = [_quantity(name, each) for name, each in told["quantities"].items()]
+    machine = f"{told['machine']['cores']} cores ({told['machine']['processor']}), {told['date']}"
+    head = ("headline quantity", "value", "reference", "uncertainty", "error")
+    return "\n\n".join([said, table(head, rows), f"Made by `riser-soil study {SCENE}` on {machine}."])
+
+
+def _quantity(name: str, each: dict[str, Any]) -> list[str]:
+    of_scale = [f"{100.0 * each[key] / scale:.2g} %" for key, scale in (("uncertainty", each["scale"]), ("error", 1.0))]
+    return [name, f"{each['value']:.6g} {each['unit']}", f"{each['reference']:.6g}", *of_scale]
+
+
+def error_bars() -> str:
+    """What the calibration has found, from its page."""
+    page = (DOCS / "error_bars.md").read_text(encoding="utf-8")
+    found = re.search(r"\| \| \|\n\|---\|---:\|\n(.*?)\n\n", page, re.DOTALL)
+    assert found is not None
+    return "| error bars | |\n|---|---:|\n" + found[1]
+
+
+def stressed() -> str:
+    """How the stress cases ended."""
+    rows = json.loads((DOCS / "stress.json").read_text(encoding="utf-8"))["cases"]
+    counts = [sum(row["verdict"] == verdict for row in rows) for verdict in VERDICTS]
+    others = len(rows) - sum(counts)
+    missed = ", ".join(row["name"] for row in rows if not row["as_hoped"]) or "none"
+    seconds = f"{sum(row['seconds'] for row in rows):.0f}"
+    head = ("stress cases", *VERDICTS, "ended otherwise", "processor time s")
+    counted = table(head, [[str(len(rows)), *map(str, counts), str(others), seconds]])
+    return f"{counted}\n\nNot as they are to end: {missed}."
+
+
+def parts() -> str:
+    """What each part costs, from its page."""
+    return block((DOCS / "parts.md").read_text(encoding="utf-8"), "parts")
+
+
+def main() -> None:
+    blocks = {"study": studied(ROOT / "results" / "quality"), "error bars": error_bars()}
+    blocks |= {"stress": stressed(), "cost of parts": parts()}
+    PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), blocks), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
