@@ -17,6 +17,7 @@ from riser_soil.core.system import System
 from riser_soil.solve.failed_step import place_of_largest, reason_name
 from riser_soil.solve.line_search import step_length
 from riser_soil.solve.linear_solver import PREFIX, complaint, defaults, factorise_directly
+from riser_soil.solve.round_off import RoundOff
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError
 from riser_soil.solve.stability import prescribe_free_turns, unstable_modes
 from riser_soil.solve.time_scheme import Static
@@ -44,6 +45,7 @@ class Newton:
         self._levers = system.numbering.vector.duplicate()
         system.numbering.to_global(system.levers, self._levers)
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
+        self._round_off = RoundOff(system.sum, system.lever * self._x.getSize())
         self._snes = self._create()
 
     def _create(self) -> PETSc.SNES:
@@ -205,6 +207,8 @@ class Newton:
 
     def _begin(self, step: Step) -> None:
         self._step, self._norms, self._first = step, list[float](), 0
+        self._round_off.begin()
+        self._shortened = False
         self._weights, self._past = step.scheme.weights(step.dt), step.scheme.past(step.start)
         self._still = step.scheme.trial(step.before, step.t, step.dt, np.zeros_like(step.guess))
         prescribed = State(step.t, *(x.copy() for x in (step.guess, self._still.v, self._still.a)))
@@ -247,10 +251,11 @@ class Newton:
             return -float(found.dot(y))
 
         part = step_length(-float(self._f.dot(y)), slope)
+        self._shortened = part != 1.0
         y.scale(part)
         for vector in (tried, found):
             vector.destroy()
-        return part != 1.0
+        return self._shortened
 
     def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, jacobian: PETSc.Mat, p: PETSc.Mat) -> None:
         """The convergence test has assembled it; a matrix that it has left as it was keeps its factors."""
@@ -292,6 +297,8 @@ class Newton:
         if norm <= self.settings.tolerance * self._scale(self._forces):
             return CONVERGED
         if norm <= self.settings.floor and self._taken > 0:  # a load as small as round-off still has its answer
+            return CONVERGED
+        if not self._shortened and self._round_off.reached(self._x.array_r * self._levers.array_r, self._norms):
             return CONVERGED
         if self._taken >= 4 and norm > 1e6 * self._norms[self._first]:
             return DIVERGED

@@ -260,13 +260,9 @@ def turned(turns: int, dt: float = 0.005) -> Callable[[], Trial]:
     return make
 
 
-ROUND_OFF = (
-    "where hardly any force acts Newton's method stops at the round-off of the residual, above the floor of 1e-14 EA "
-    "that counts as zero; a floor that grows with the elements would hide small loads on long lines"
-)
-stress_case(name="ten_turns_one_way", not_yet=ROUND_OFF)(turned(10))
-stress_case(name="ten_turns_the_other_way", not_yet=ROUND_OFF)(turned(-10))
-stress_case(name="hundred_turns", cpu=100, not_yet=ROUND_OFF)(turned(100, 2e-3))
+stress_case(name="ten_turns_one_way")(turned(10))
+stress_case(name="ten_turns_the_other_way")(turned(-10))
+stress_case(name="hundred_turns", cpu=100)(turned(100, 2e-3))
 
 
 @stress_case(cpu=240)
