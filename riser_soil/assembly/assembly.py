@@ -252,7 +252,7 @@ def _add_ground(assembly: Assembly) -> None:
     stiffness = ground.stiffnesses(scene, settings, assembly.scales)
     line, elements, assembly.contact_stiffness = assembly.line, assembly.elements, stiffness
     if scene.soil is not None:
-        assembly.soil = soil = ground.soil_of(scene, scene.soil, line, assembly.comm)
+        assembly.soil = soil = ground.soil_of(scene, scene.soil, line, assembly.scales.diameter, assembly.comm)
         contact = ground.soil_contact_of(scene, settings, line, elements, soil.surface, stiffness["soil"])
         assembly.soil_contact = contact
         assembly.soil_friction = ground.soil_friction_of(scene, settings, contact, elements)

@@ -41,18 +41,21 @@ GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within 
 POINTS_ACROSS, FINEST, COARSEST, ALONG = 4.0, 1.0 / 200.0, 1.0 / 16.0, 4.0
 # Of the outer diameter: a penalty's corner, sharper ones cost Newton iterations; the slide that mobilises friction.
 NARROWEST_CORNER, WIDEST_CORNER, MOBILISATION = 1.0 / 3000.0, 1.0 / 300.0, 1.0 / 30.0
+SHALLOWEST = 1.0 / 300.0  # soil that gains strength from nothing has at least that of this depth
 CUSHION, LEVEL = 0.01, 0.01  # of the diameter: how far it gives under the riser's weight; unevenness of a level top
 
 
-def soil_of(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Soil:
-    """The continuum; meshed finely under the straight line between the riser's ends. Collective."""
+def soil_of(scene: Scene, given: SoilScene, line: Line, diameter: float, comm: MPI.Intracomm) -> Soil:
+    """The continuum; meshed finely under the straight line between the riser's ends. diameter: of the riser [m].
+    Collective.
+    """
     with restoring_signal_handlers():  # imports gmsh
         from riser_soil.soil.soil import Soil
 
     grid = _grid(scene, given, line, comm)
     return Soil(
         grid,
-        law_of(given, grid),
+        law_of(given, grid, SHALLOWEST * diameter),
         level=scene.seabed_level,
         unit_weight=weight_of(given),
         K0=given.K0,

@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     from riser_soil.soil.law import Formula
     from riser_soil.soil.layered import LayeredWeight
 
-SHALLOWEST = 1e-3  # of the mesh's height: soil that gains strength from nothing has at least that of this depth
 
+def law_of(given: SoilScene, grid: DistributedMesh, shallowest: float = 0.0) -> Callable[[Array, Array], Formula]:
+    """What makes the formula of depths (n,) [m] and initial stress (n, 6) [Pa] of the grid's quadrature points.
 
-def law_of(given: SoilScene, grid: DistributedMesh) -> Callable[[Array, Array], Formula]:
-    """What makes the formula of depths (n,) [m] and initial stress (n, 6) [Pa] of the grid's quadrature points."""
-    shallowest = SHALLOWEST * float(grid.high[2] - grid.low[2])
+    shallowest: soil that gains strength from nothing has at least that of this depth [m].
+    """
     if given.layers is None:
         law = given.top_law
         return lambda depth, initial: law.at_points(np.maximum(depth, shallowest), initial)

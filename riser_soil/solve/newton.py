@@ -34,12 +34,13 @@ STATIC = Static().weights(0.0)
 class Newton:
     """Solver of a system's steps. Create once a stage; the symbolic factorisation is reused throughout.
 
-    iterations: of all its steps, those that failed included.
+    iterations: of all its steps, those that failed included. rests: whether the next step starts from the equilibrium
+    of its own loads, so that a residual within round-off needs no iteration.
     """
 
     def __init__(self, system: System, settings: NewtonSettings) -> None:
         self.system, self.settings = system, settings
-        self.iterations = 0
+        self.iterations, self.rests = 0, False
         self._x = system.numbering.vector.duplicate()
         self._f = system.numbering.vector.duplicate()
         self._levers = system.numbering.vector.duplicate()
@@ -71,6 +72,7 @@ class Newton:
             self._start_linearly()
         if failure := self._iterate():
             raise NotConvergedError(failure)
+        self.rests = False
         state = self._trial(self._x)
         self.require_admissible(state)
         return Solution(state, self._forces, self._norms)
@@ -216,6 +218,7 @@ class Newton:
         self._prescribed = [x[self.system.prescribed_dofs] for x in (prescribed.u, prescribed.v, prescribed.a)]
         self._state: State | None = None
         self.system.numbering.to_global(step.guess, self._x)
+        self._answers_load = self.rests or self._x.norm() > 0.0  # one like round-off has an answer, too
 
     def _trial(self, x: PETSc.Vec) -> State:
         """State of the unknowns x; the same object while x stays the same, so that parts need not look twice."""
@@ -296,7 +299,7 @@ class Newton:
             return self._next_tangent()
         if norm <= self.settings.tolerance * self._scale(self._forces):
             return CONVERGED
-        if norm <= self.settings.floor and self._taken > 0:  # a load as small as round-off still has its answer
+        if norm <= self.settings.floor and (self._taken > 0 or self._answers_load):
             return CONVERGED
         if not self._shortened and self._round_off.reached(self._x.array_r * self._levers.array_r, self._norms):
             return CONVERGED

@@ -262,7 +262,7 @@ def turned(turns: int, dt: float = 0.005) -> Callable[[], Trial]:
 
 stress_case(name="ten_turns_one_way")(turned(10))
 stress_case(name="ten_turns_the_other_way")(turned(-10))
-stress_case(name="hundred_turns", cpu=100)(turned(100, 2e-3))
+stress_case(name="hundred_turns", cpu=240)(turned(100, 2e-3))
 
 
 @stress_case(cpu=240)

@@ -16,7 +16,7 @@ def reached(moves: list[float], norms: list[float], size: float = 1.0) -> list[b
     followed.begin()
     x, told = X, []
     for n, move in enumerate([0.0, *moves]):
-        x = x + [move, 0.0]
+        x = x + np.array([move, 0.0])
         told.append(followed.reached(x, norms[: n + 1]))
     return told
 

@@ -28,7 +28,7 @@ GIVEN: list[dict[str, Any]] = [
 def test_a_million_random_increments(given: dict[str, Any]) -> None:
     """Sand has a test of its own."""
     law = LAWS[given["kind"]].model_validate(given | {"nu": 0.4999})
-    depth = np.linspace(0.0, 2.0, 10_000)
+    depth = np.linspace(1e-3, 2.0, 10_000)
     initial = np.zeros((10_000, 6)) if given.get("su") == 0.0 else initial_stress(10_000, 0.9)
     assert random_paths(law.at_points(depth, initial), initial, 100, seed=8, largest=-1.0) <= 1.0 + 1e-9
 

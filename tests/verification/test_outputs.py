@@ -27,7 +27,7 @@ ON_NODES = ("effective_tension", "bending_moment", "curvature", "contact_force")
 
 ENERGY = {"kinetic", "strain", "potential", "dissipated", "numerical", "work", "residual", "turned_over"}
 ENERGY |= {"dissipated_by", "work_by", "relative_residual", "worst_residual"}
-VECTORS, SCALARS = ("position", "force", "moment"), ("effective_tension", "angle_deg")
+VECTORS, SCALARS = ("position", "force", "moment"), ("effective_tension", "angle_deg", "resultant_force")
 WHOLE = ("touchdown_arc", "touchdown_points", "max_penetration", "contact_force")
 PLACED = ("max_bending_moment", "max_curvature", "min_bend_radius", "min_effective_tension", "max_embedment")
 
