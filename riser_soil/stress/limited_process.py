@@ -9,6 +9,7 @@ import os
 import resource
 import signal
 import sys
+import threading
 import time
 import traceback
 from collections.abc import Callable
@@ -18,6 +19,11 @@ from pathlib import Path
 
 STATUSES = {0: "done", 2: "bad input", 3: "solve failed", 4: "results not written"}
 LONG = "this takes about"
+
+FORKING = threading.Lock()
+"""Held while a process is forked. Who reads results in one thread while another forks holds it, too: a process that is
+forked while a library's own lock is held, as h5py's, waits for it for ever.
+"""
 
 Job = Callable[[], int]
 """What a process does in its folder; gives its exit status."""
@@ -62,7 +68,8 @@ def ended(job: Job, place: Path, limits: Limits) -> Ending:
     """Do a job in a process of its own, in a folder that is there; what it prints goes to the file `output`."""
     sys.stdout.flush()
     sys.stderr.flush()
-    process = os.fork()
+    with FORKING:
+        process = os.fork()
     if process == 0:
         _child(job, place, limits)
     status, seconds, long = _waited(process, place / "output", limits)

@@ -20,7 +20,7 @@ from pathlib import Path
 
 from riser_soil.stress.answers import Answer
 from riser_soil.stress.bounds import bounds
-from riser_soil.stress.limited_process import Limits, ended, import_all
+from riser_soil.stress.limited_process import FORKING, Limits, ended, import_all
 from riser_soil.stress.outcome import WRONG, StressOutcome, outcome, runs_in
 from riser_soil.stress.stressed_run import running
 from riser_soil.stress.table import told
@@ -46,9 +46,10 @@ def judged(case: StressCase, folder: Path) -> StressOutcome:
     for name, content in trial.files.items():
         (place / name).write_text(content, encoding="utf-8")
     ending = ended(running(list(trial.scenes)), place, Limits(cpu=case.cpu))
-    runs = runs_in(place, trial.scenes)
     about = " ".join(case.about.split())
-    return outcome(case.name, about, ending, runs, _answers(trial, place), may_tell=trial.may_tell)
+    with FORKING:
+        runs = runs_in(place, trial.scenes)
+        return outcome(case.name, about, ending, runs, _answers(trial, place), may_tell=trial.may_tell)
 
 
 def _answers(trial: Trial, place: Path) -> Iterator[Answer]:
