@@ -210,7 +210,6 @@ class Newton:
     def _begin(self, step: Step) -> None:
         self._step, self._norms, self._first = step, list[float](), 0
         self._round_off.begin()
-        self._shortened = False
         self._weights, self._past = step.scheme.weights(step.dt), step.scheme.past(step.start)
         self._still = step.scheme.trial(step.before, step.t, step.dt, np.zeros_like(step.guess))
         prescribed = State(step.t, *(x.copy() for x in (step.guess, self._still.v, self._still.a)))
@@ -254,11 +253,10 @@ class Newton:
             return -float(found.dot(y))
 
         part = step_length(-float(self._f.dot(y)), slope)
-        self._shortened = part != 1.0
         y.scale(part)
         for vector in (tried, found):
             vector.destroy()
-        return self._shortened
+        return part != 1.0
 
     def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, jacobian: PETSc.Mat, p: PETSc.Mat) -> None:
         """The convergence test has assembled it; a matrix that it has left as it was keeps its factors."""
@@ -301,11 +299,15 @@ class Newton:
             return CONVERGED
         if norm <= self.settings.floor and (self._taken > 0 or self._answers_load):
             return CONVERGED
-        if not self._shortened and self._round_off.reached(self._x.array_r * self._levers.array_r, self._norms):
+        if not self.settings.line_search and self._at_round_off():
             return CONVERGED
         if self._taken >= 4 and norm > 1e6 * self._norms[self._first]:
             return DIVERGED
         return self._next_tangent()
+
+    def _at_round_off(self) -> bool:
+        """Told by full Newton steps alone: a step that a line search has shortened may be small anywhere."""
+        return self._round_off.reached(self._x.array_r * self._levers.array_r, self._norms)
 
     def _next_tangent(self) -> int:
         """Assemble that of the next iteration, if there is one with a tangent of its own; whether it has a place."""
