@@ -8,6 +8,7 @@ Runs `riser-soil study` of the first scene, or takes what it has left in results
 
 from __future__ import annotations
 
+import argparse
 import base64
 import json
 import re
@@ -71,6 +72,10 @@ def parts() -> str:
 
 
 def main() -> None:
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.quality", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.parse_args()
     blocks = {"study": studied(ROOT / "results" / "quality"), "error bars": error_bars()}
     blocks |= {"stress": stressed(), "cost of parts": parts()}
     PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), blocks), encoding="utf-8")
