@@ -12,12 +12,11 @@ import sys
 import time
 from pathlib import Path
 
+from riser_soil.accuracy.study_points import COST
 from riser_soil.core import compiled
 from riser_soil.errors import Interruption, RiserSoilError
 from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
-
-COST = "cost.json"
 
 
 def main(file: Path, folder: Path) -> int:

@@ -38,16 +38,6 @@ _SOMETIMES = frozenset(figure.name for output, figure in _FIGURES if output.need
 _SIZE = sum(figure.size for _, figure in _FIGURES)
 
 
-def index_of(name: str) -> int:
-    """Where a figure, or the first component of a vector, stands in what `pack` gives."""
-    before = 0
-    for _, figure in _FIGURES:
-        if figure.name == name:
-            return before
-        before += figure.size
-    raise KeyError(name)
-
-
 def pack(seen: Instant) -> Array:
     """All figures of one instant as one vector, in the order of the summary; nan for what is not known."""
     values, vector, first = _values(seen), np.empty(_SIZE), 0

@@ -21,7 +21,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, gathered, packed, restore_all, unpacked
 from riser_soil.core.snapshot import Ledger, StepStatistics
-from riser_soil.results.figures import index_of
+from riser_soil.results.figures import places_of
 from riser_soil.results.time_resolution import TimeResolution
 
 #: Figures whose extremes are judged, with what a warning calls them; those without words have none.
@@ -32,7 +32,7 @@ JUDGED = {
     "max_bending_moment": "bending moment",
     "touchdown_arc": "",
 }
-AT = np.array([index_of(name) for name in JUDGED])
+AT = np.array([places_of(name).start for name in JUDGED])
 # Share of a figure's largest size from which its estimated error is a warning, and that which is advised.
 LARGE_ERROR, FINE = 0.03, 0.01
 # Local error of a step, over the diameter, from which the motion is not followed; automatic steps keep to 0.02.

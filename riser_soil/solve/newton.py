@@ -72,7 +72,6 @@ class Newton:
             self._start_linearly()
         if failure := self._iterate():
             raise NotConvergedError(failure)
-        self.rests = False
         state = self._trial(self._x)
         self.require_admissible(state)
         return Solution(state, self._forces, self._norms)
@@ -218,6 +217,7 @@ class Newton:
         self._state: State | None = None
         self.system.numbering.to_global(step.guess, self._x)
         self._answers_load = self.rests or self._x.norm() > 0.0  # one like round-off has an answer, too
+        self.rests = False
 
     def _trial(self, x: PETSc.Vec) -> State:
         """State of the unknowns x; the same object while x stays the same, so that parts need not look twice."""

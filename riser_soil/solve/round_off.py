@@ -16,12 +16,13 @@ from riser_soil.core.arrays import Array
 
 STALLED = 0.5  # the norm of a residual that falls by less in each of two iterations stays as it is
 STILL = 1e-10  # change of the unknowns in an iteration, over their increments in the step
-
 EPS = float(np.finfo(float).eps)
 
 
 class RoundOff:
-    """Follows the unknowns of a step. total: sums over the ranks; size: of the lines, in all [m]."""
+    """Follows the unknowns of a step. total: sums over the ranks; size: a length [m] whose round-off the unknowns
+    together may move by, as the lines' own, some three times.
+    """
 
     def __init__(self, total: Callable[[list[float]], list[float]], size: float) -> None:
         self._total, self._size = total, size

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from riser_soil.results import Run
 from riser_soil.stress.answers import Answer, between, near
 from tests.stress.case import Runs, Trial, one, stress_case
-from tests.support.coupled_scenes import LAY, Mapping, touchdown
+from tests.support.coupled_scenes import Mapping, lying_pipe
 from tests.support.pushed_pipe import INDENTATION, D, E, slice_of_soil
 
 CELLS = 16  # across the diameter
@@ -78,13 +78,8 @@ def penalty_on_soil_over_six_decades() -> Trial:
 
 
 def resting(su: float) -> Mapping:
-    """8 m of pipe, 717 N/m, pinned at its start, on a block of clay of strength su [Pa] and on nothing else."""
-    scene = touchdown(LAY, su=su)
-    del scene["seabed"]
-    segments = [{"line_type": "flexible", "length": 8.0, "elements": 16}]
-    scene["riser"] |= {"segments": segments, "end": "free", "initial": "straight"}
-    scene["soil"]["block"]["x"] = [-1.0, 9.0]
-    scene["soil"]["law"]["su_gradient"] = 0.0
+    """Load steps down to a hundredth alone."""
+    scene = lying_pipe(su)
     scene["solver"]["min_load_step"] = 0.01
     return scene
 

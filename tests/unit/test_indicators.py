@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from riser_soil.core.snapshot import Ledger, StepStatistics
-from riser_soil.results.figures import index_of
+from riser_soil.results.figures import places_of
 from riser_soil.results.indicators import AT, JUDGED, ImpactLoss, StageIndicators
 from riser_soil.results.time_resolution import SHARE, TimeResolution
 
 SIZE = int(AT.max()) + 1
-TENSION = index_of("end.effective_tension")
+TENSION = places_of("end.effective_tension").start
 
 
 def resolved(dt: float, start: float = 0.0) -> TimeResolution:

@@ -127,8 +127,10 @@ def test_automatic_sizes_and_penalties_are_turned_as_the_numbers_that_they_stand
     assert changed(sized(given), resolved(given)) == {"contact.stiffness"}
     turned = varied(given, SOIL, 1.25)
     assert SOIL.fineness(turned) / SOIL.fineness(given) == pytest.approx(1.25)
+    before = sized(given).soil
     assert turned.soil is not None
-    assert turned.soil.block == sized(given).soil.block  # type: ignore[union-attr]
+    assert before is not None
+    assert turned.soil.block == before.block
     stiff = varied(given, PENALTY, 10.0)
     assert PENALTY.fineness(stiff) == pytest.approx(10.0 * PENALTY.fineness(given))
     assert "stiffness: auto" not in dump_scene(stiff)

@@ -15,6 +15,7 @@ import pytest
 from riser_soil.results import Run
 from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
+from riser_soil.scene.stages import DynamicStage
 from riser_soil.stress.answers import Answer, between, near
 from riser_soil.stress.bounds import bounds
 from riser_soil.stress.extremes import BASE, extremes
@@ -88,7 +89,9 @@ def test_extremes_of_the_first_scene() -> None:
     assert next(iter(found)) == BASE
     pipe = found["EA times 1000"].scene.line_types["flexible"]
     assert pytest.approx(3e11) == pipe.EA
-    assert found["time step, 0.1 times as fine"].scene.stages[1].time_step == pytest.approx(1.0)  # type: ignore[union-attr]
+    coarse = found["time step, 0.1 times as fine"].scene.stages[1]
+    assert isinstance(coarse, DynamicStage)
+    assert coarse.time_step == pytest.approx(1.0)
     assert all(each.against in (None, "at rest", *found) for each in found.values())
     assert not [name for name in found if "soil" in name or "penalty" in name], "it has springs alone"
 

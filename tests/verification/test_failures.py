@@ -14,7 +14,7 @@ import pytest
 
 from riser_soil.results import Run
 from riser_soil.stages import LAID_IN
-from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.coupled_scenes import LAY, Mapping, heave, lying_pipe, touchdown
 from tests.support.on_ranks import HANGS, Job, mpirun
 from tests.support.vtk_reading import read_by_vtk
 
@@ -35,17 +35,6 @@ def struck() -> Mapping:
     blow = {"at": 4.0, "force": [0.0, 0.0, -1.0e6], "history": [[0.0, 0.0], [0.5, 0.0], [0.6, 1.0], [3.0, 1.0]]}
     scene = touchdown(LAY, heave(3.0) | {"loads": [blow]})
     scene["solver"]["min_time_step"] = 0.02
-    return scene
-
-
-def resting(su: float) -> Mapping:
-    """A pipe of 8 m, pinned at its start, lies on clay of strength su [Pa] and on nothing else."""
-    scene = touchdown(LAY, su=su)
-    del scene["seabed"]
-    segments = [{"line_type": "flexible", "length": 8.0, "elements": 16}]
-    scene["riser"] |= {"segments": segments, "end": "free", "initial": "straight"}
-    scene["soil"]["block"]["x"] = [-1.0, 9.0]
-    scene["soil"]["law"]["su_gradient"] = 0.0
     return scene
 
 
@@ -84,7 +73,7 @@ def test_failed_step_is_told_with_its_place_and_keeps_all_before(ranks: int, tmp
 @RANKS
 def test_soil_loaded_beyond_its_capacity_is_an_error(ranks: int, tmp_path: Path) -> None:
     """717 N/m lie on clay that bears some 250 N/m: no answer is right."""
-    scene = resting(su=100.0)
+    scene = lying_pipe(su=100.0)
     scene["solver"]["min_load_step"] = 0.03
     done = command(tmp_path, ranks, scene)
     assert done.returncode == FAILED
@@ -102,7 +91,7 @@ def test_soil_loaded_beyond_its_capacity_is_an_error(ranks: int, tmp_path: Path)
 
 
 def test_soil_loaded_below_its_capacity_is_none(tmp_path: Path) -> None:
-    done = command(tmp_path, 1, resting(su=1000.0))
+    done = command(tmp_path, 1, lying_pipe(su=1000.0))
     assert done.returncode == 0, done.stderr
     assert Run(tmp_path / "out").finished
 
