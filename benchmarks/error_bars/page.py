@@ -41,10 +41,8 @@ say:
 | bars not given, as a companion failed | {missing} |
 | processor time of the companions over that of the scenes, without start-up and files | {cost:.0%} |
 
-Start-up and files included, companions added 32 % to the run time of the [catenary](../demos/catenary/README.md) in
-surge, 41 % to that of the [hose](../demos/tank/README.md) on its rigid floor, 31 % to that of the [touchdown on
-clay](../demos/touchdown_clay/README.md), on a busy machine. On clay the bar of the settlement is wider than the
-settlement itself: the factor for soil covers what two scenes showed.
+What a run's companions take beside all of it, start-up and files included, the run itself tells at its end. On clay
+the bar of the settlement may be wider than the settlement itself: the factor for soil covers what two scenes showed.
 
 The scenes chose the factors, so on other scenes a share a little lower is to be expected. Where the answer hangs on
 a sudden load that excites all modes, or steps are so long that companions show no order, bars are least reliable.
