@@ -34,6 +34,10 @@ class SolveError(RiserSoilError):
     exit_status = 3
 
 
+class AccuracyError(SolveError):
+    """The accuracy that a scene asks for was not reached; the finest run is kept whole, with its error bars."""
+
+
 class WriteError(RiserSoilError):
     """Results, or what the program prints, can't be written; the files are whole up to the last frame that went in."""
 

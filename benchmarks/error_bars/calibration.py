@@ -11,9 +11,9 @@ from mpi4py import MPI
 
 from benchmarks.error_bars.references import Reference
 from benchmarks.error_bars.scenes import Mapping
-from riser_soil.accuracy.chain import companions, values_of
+from riser_soil.accuracy.chain import companions, run_values
 from riser_soil.accuracy.companions import peaks_of
-from riser_soil.accuracy.error_bars import SMALLEST, ErrorBar, RunValues, error_bars
+from riser_soil.accuracy.error_bars import SMALLEST, ErrorBar, error_bars
 from riser_soil.accuracy.headlines import headlines
 from riser_soil.scene.reader import scene_from_mapping
 
@@ -62,8 +62,7 @@ def judge(name: str, mapping: Mapping, reference: Reference) -> JudgedScene:
     taken = time.process_time() - began
     chain = companions(scene, MPI.COMM_WORLD)
     extra = time.process_time() - began - taken
-    told = headlines(peaks.told("sampled"))
-    run = RunValues(told, values_of(peaks, "of_nodes"), values_of(peaks, "peaks"))
+    run = run_values(headlines(peaks.told("sampled")), peaks)
     bars = [bar for bar in error_bars(run, chain, scene.has_ground) if bar.headline.key in reference]
     judged = [_judged(name, bar, *reference[bar.headline.key]) for bar in bars if bar.bar is not None]
     return JudgedScene(name, judged, [bar for bar in bars if bar.bar is None], (taken, extra))

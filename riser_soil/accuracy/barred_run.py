@@ -9,7 +9,7 @@ from typing import Any
 
 from mpi4py import MPI
 
-from riser_soil.accuracy.chain import companions, values_of
+from riser_soil.accuracy.chain import companions, run_values
 from riser_soil.accuracy.error_bars import ErrorBar, RunValues, error_bars
 from riser_soil.accuracy.headlines import headlines
 from riser_soil.accuracy.screen import print_bars
@@ -34,7 +34,7 @@ def run_with_error_bars(scene: Scene, folder: Path | str, force: bool = False) -
     if comm.rank == 0:
         extra = time.perf_counter() - began - taken
         seconds = {"run": taken, "companions": extra}
-        _write(folder, bars, seconds)
+        write_bars(folder, bars, seconds)
         print_bars(bars, extra / taken)
 
 
@@ -47,16 +47,18 @@ def _bars(scene: Scene, folder: Path, peaks: RunPeaks, comm: Any) -> list[ErrorB
             raise
     if comm.rank != 0:
         return []
-    told = headlines(json.loads((folder / SUMMARY).read_text(encoding="utf-8")))
-    known = {key: each.value for key, each in told.items()}  # of the soil, whose peaks are not followed
-    of_nodes, between_steps = (known | dict(values_of(peaks, which)) for which in ("of_nodes", "peaks"))
-    of_run = RunValues(told, of_nodes, between_steps)
-    return error_bars(of_run, chain, scene.has_ground)
+    return error_bars(values_of_run(folder, peaks), chain, scene.has_ground)
 
 
-def _write(folder: Path, bars: list[ErrorBar], seconds: dict[str, float]) -> None:
+def values_of_run(folder: Path, peaks: RunPeaks) -> RunValues:
+    """Of a finished run, with the peaks that were gathered on the way."""
+    return run_values(headlines(json.loads((folder / SUMMARY).read_text(encoding="utf-8"))), peaks)
+
+
+def write_bars(folder: Path, bars: list[ErrorBar], seconds: dict[str, float], **more: Any) -> None:
+    """Into the summary of a finished run. more: blocks of the summary beside them."""
     summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
-    summary["error_bars"] = {"seconds": seconds, "quantities": [_told(bar) for bar in bars]}
+    summary |= {"error_bars": {"seconds": seconds, "quantities": [_told(bar) for bar in bars]}} | more
     with FolderLock(folder):
         write_atomically(folder / SUMMARY, json.dumps(plain_json(summary), indent=2, allow_nan=False) + "\n")
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from riser_soil.accuracy.companions import peaks_of
-from riser_soil.accuracy.error_bars import SOURCES, Companion, Values
-from riser_soil.accuracy.headlines import headlines
+from riser_soil.accuracy.error_bars import SOURCES, Companion, RunValues
+from riser_soil.accuracy.headlines import Headline, headlines
 from riser_soil.accuracy.knobs import KNOBS, Knob, knobs_of, varied
 from riser_soil.errors import MeshError, SceneError, SolveError
 from riser_soil.results.peaks import RunPeaks
@@ -18,15 +18,15 @@ COARSER = {"soil_mesh": 2.0, "time_step": 5.0, "elements": 2.0, "penalty": 4.0} 
 LEAST_RATIO = 1.4  # below it two runs are too much alike
 
 
-def companions(scene: Scene, comm: Any) -> list[Companion]:
-    """Those of a scene, run one after the other; collective, their values on rank 0.
+def companions(scene: Scene, comm: Any, coarser: Mapping[str, float] = COARSER) -> list[Companion]:
+    """Those of a scene, run one after the other; collective, their values on rank 0. coarser: ratios by knob, in order.
 
     One that fails leaves nothing to compare the next ones with: they are not run.
     """
     chain: list[Companion] = []
     if scene.soil is not None and "soil_mesh" not in {knob.name for knob in knobs_of(scene)}:
         chain.append(Companion("soil", 1.0, None, "cells of a mesh file can't be coarsened"))
-    for step in _coarser(scene):
+    for step in _coarser(scene, coarser):
         if any(before.values is None for before in chain):
             chain.append(Companion(step.source, step.ratio, None, "a companion before failed"))
         else:
@@ -34,8 +34,15 @@ def companions(scene: Scene, comm: Any) -> list[Companion]:
     return chain
 
 
-def values_of(peaks: RunPeaks, which: str) -> Values:
-    """Of headline quantities by their keys; which: sampled, of_nodes or peaks."""
+def run_values(told: Mapping[str, Headline], peaks: RunPeaks) -> RunValues:
+    """Of a run whose peaks were gathered on the way; of the soil, whose peaks may not be, as told."""
+    known = {key: headline.value for key, headline in told.items()}
+    of_nodes, between_steps, smooth = (known | values_of(peaks, which) for which in ("of_nodes", "peaks", "smooth"))
+    return RunValues(told, of_nodes, between_steps, smooth)
+
+
+def values_of(peaks: RunPeaks, which: str) -> dict[str, float]:
+    """Of headline quantities by their keys; which: sampled, of_nodes, peaks or smooth."""
     return {key: headline.value for key, headline in headlines(peaks.told(which)).items()}
 
 
@@ -49,10 +56,10 @@ class CoarserScene:
     reason: str = ""
 
 
-def _coarser(scene: Scene) -> Iterator[CoarserScene]:
+def _coarser(scene: Scene, coarser: Mapping[str, float]) -> Iterator[CoarserScene]:
     """Scenes ever coarser; one that can't be is None, and the next ones follow the one before it."""
     now = _recording_all(scene)
-    for name, ratio in COARSER.items():
+    for name, ratio in coarser.items():
         knob = next(each for each in KNOBS if each.name == name)
         if not knob.there(scene):
             continue

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from riser_soil.accuracy.element_sizes import CurveEnvelope
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.core.snapshot import Instant
 from riser_soil.core.system import Timer
@@ -20,37 +21,48 @@ from riser_soil.stages import StatelessObserver, lay, run_stage
 
 def peaks_of(scene: Scene, comm: Any) -> RunPeaks:
     """Peaks of a scene, computed without a results folder; collective, told on rank 0. Raises what a run would."""
+    return observed(scene, comm).peaks
+
+
+def observed(scene: Scene, comm: Any) -> PeakObserver:
+    """As `peaks_of`, with the envelope along the riser."""
     assembly, clock = build(sized(scene), comm), Timer.new()
     observer = PeakObserver(assembly)
     with agreeing(comm):
         before, _ = lay(assembly, clock)
         for stage in assembly.scene.stages:
             before = run_stage(assembly, stage, before, observer, clock)
-    return observer.peaks
+    return observer
 
 
 class PeakObserver(StatelessObserver):
-    """Follows a companion: `peaks` has what the summary of a run would have of it; on rank 0."""
+    """Follows a companion: `peaks` has what the summary of a run would have of it, `envelope` what its moments and
+    tensions ask of the elements; on rank 0.
+    """
 
     def __init__(self, assembly: Assembly) -> None:
         self._assembly, self._zone = assembly, TouchdownZone(assembly)
         output, soil = assembly.scene.output, assembly.soil
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         self.peaks = RunPeaks(None if soil is None else soil.output_mesh())
+        self.envelope = CurveEnvelope()
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         first = not self.peaks.stages
         self._schedule.begin_stage(stage.kind)
         self.peaks.begin_stage(stage.name, stage.kind)
         if first and not isinstance(stage, StaticStage) and self._assembly.comm.rank == 0:
-            self.peaks.stages[-1].update(0.0, self._seen(stepper))
+            self.peaks.stages[-1].update(0.0, self._seen(stepper))  # not followed: no shape that a step has found
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Of a committed step; collective where there is soil."""
         due, on_soil = self._schedule.due(step.t, last), self._assembly.soil
         soil = on_soil.output_fields() if on_soil is not None and due.pictures else None
         if self._assembly.comm.rank == 0:
-            self.peaks.record(step.t, self._seen(stepper), soil)
+            seen = self._seen(stepper)
+            self.peaks.record(step.t, seen, soil)
+            if last or self.peaks.stages[-1].kind == "dynamic":
+                self.envelope.follow(seen)
 
     def relaxed(self, relaxed: object) -> None:
         pass

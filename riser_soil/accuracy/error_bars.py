@@ -25,6 +25,7 @@ FREE, TOUCHING = 4.0, 2.0  # orders of elements that hang, and where contact beg
 ORDER = {"time": 2.0, "soil": 1.0, "penalty": 0.75}
 SAFETY = {"mesh": 1.5, "time": 2.0, "soil": 5.0, "penalty": 2.1}
 LARGE = {"mesh": 0.03, "time": 0.01}  # differences, over the scale, that are half way to the divisor 1
+RINGING = 2.0  # times what rings from step to step
 STEP_GAP = 2.0  # times what falls between steps, as later samples fall elsewhere
 
 Values = Mapping[str, float]  # of headline quantities by their keys, in their units
@@ -50,6 +51,7 @@ class RunValues:
     told: Mapping[str, Headline]
     of_nodes: Values
     peaks: Values
+    smooth: Values
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,7 @@ def error_bars(run: RunValues, chain: Sequence[Companion], touches: bool) -> lis
 
 def _bar(headline: Headline, run: RunValues, chain: Sequence[Companion], touches: bool) -> ErrorBar:
     key, scale = headline.key, headline.scale
-    shares, unknown = _gaps(headline, run), list[str]()
+    shares, unknown = gaps(headline, run), list[str]()
     before: Values | None = run.peaks
     for companion in chain:
         known = before is not None and key in before and companion.values is not None and key in companion.values
@@ -99,9 +101,11 @@ def divisor(companion: Companion, off: float, touches: bool) -> float:
     return 1.0 + (asymptotic - 1.0) / (1.0 + off / LARGE[source]) if source in LARGE else asymptotic
 
 
-def _gaps(headline: Headline, run: RunValues) -> dict[str, float]:
+def gaps(headline: Headline, run: RunValues) -> dict[str, float]:
     """What falls between nodes and between steps of the run itself."""
     key, value = headline.key, headline.value
     nodes = run.of_nodes.get(key, value)
     steps = STEP_GAP * abs(run.peaks.get(key, nodes) - nodes)
+    if key in run.smooth:
+        steps += RINGING * abs(run.smooth[key] - nodes)
     return {"mesh": abs(nodes - value)} | ({"time": steps} if steps else {})

@@ -20,6 +20,7 @@ from riser_soil.assembly.stage import dynamic_parts, loads_of, prescribe_spin
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Field, Model, Part
 from riser_soil.core.saved_state import Saved
+from riser_soil.errors import SceneError
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
@@ -232,6 +233,8 @@ def sized(scene: Scene) -> Scene:
 
 def build(scene: Scene, comm: MPI.Intracomm) -> Assembly:
     """Build the parts of a scene; collective. Raises SceneError or MeshError."""
+    if scene.accuracy is not None:
+        raise SceneError("accuracy: elements and steps are to be chosen first, by riser_soil.accuracy.target_run")
     scene = sized(scene)
     elements = elements_of(scene)
     attachments = attachments_of(scene)

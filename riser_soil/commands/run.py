@@ -7,7 +7,7 @@ import typer
 
 from riser_soil.commands.arguments import Overrides, SceneFile
 from riser_soil.commands.endings import expected_errors, rank
-from riser_soil.commands.scenes import placed, read, result_folder
+from riser_soil.commands.scenes import placed, read, read_begun, result_folder
 from riser_soil.errors import SceneError
 
 
@@ -41,7 +41,9 @@ def run(
             raise SceneError("--restart: not supported yet; run the scene from its beginning")
         checked = read(scene, overrides)
         folder = result_folder(scene, checked, output, force)
-        if error_bars or checked.error_bars:
+        if checked.accuracy is not None:
+            from riser_soil.accuracy.target_run import run_to_accuracy as compute
+        elif error_bars or checked.error_bars:
             from riser_soil.accuracy.barred_run import run_with_error_bars as compute
         else:
             from riser_soil.run import run as compute
@@ -53,7 +55,7 @@ def run(
 def check(scene: SceneFile, overrides: Overrides = None) -> None:
     """Check a scene: tell what would be built, what is left out and why, what looks doubtful; solve nothing."""
     with expected_errors():
-        checked = read(scene, overrides)
+        checked = read_begun(scene, overrides)
         from riser_soil.checks.check import describe
 
         with placed(scene, overrides):

@@ -22,6 +22,19 @@ def read(scene: str, overrides: list[str] | None) -> "Scene":
         raise SceneError(f"{scene}: cannot be read: {err.strerror}") from err
 
 
+def read_begun(scene: str, overrides: list[str] | None) -> "Scene":
+    """As `read`; one that asks for an accuracy in the setting with which the search for it begins."""
+    checked = read(scene, overrides)
+    if checked.accuracy is None:
+        return checked
+    from riser_soil.accuracy.first_setting import first_setting
+
+    if rank() == 0:
+        print(f"accuracy {checked.accuracy:.2%}: a run chooses elements and steps; here are those that it begins with")
+    with placed(scene, overrides):
+        return first_setting(checked)
+
+
 def result_folder(file: str, scene: "Scene", output: Path | None, force: bool) -> Path:
     """The folder for the results; a finished run in it is only overwritten by force."""
     from riser_soil.results.ownership import refuse

@@ -6,6 +6,7 @@ difference there. The vertex of the parabola through the sample and its two neig
 
 from __future__ import annotations
 
+from copy import deepcopy
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,10 @@ from riser_soil.core.snapshot import Instant, SoilMesh, SoilSnapshot
 from riser_soil.results.figures import Extremes, final_state, pack, places_of
 from riser_soil.results.soil_extremes import places, with_largest
 
+_ALTERNATING = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 16.0  # what alternates of five steps, in the middle one
+# The middle one, and those after it, without what alternates, if that lasts; cubics stay as they are.
+RINGLESS = np.eye(5)[2:] - np.outer([1.0, -1.0, 1.0], _ALTERNATING)
+UNEVEN = 1e-6  # of five steps' time, by which they may differ
 _ALONG = {"max_bending_moment": 1.0, "max_curvature": 1.0, "min_effective_tension": -1.0}  # 1: largest, -1: least
 
 
@@ -50,7 +55,7 @@ class StagePeaks:
 
     def __init__(self, name: str, kind: str) -> None:
         self.name, self.kind = name, kind
-        self.sampled, self.of_nodes, self.peaks = Extremes(), Extremes(), Extremes()
+        self.sampled, self.of_nodes, self.peaks, self.smooth = Extremes(), Extremes(), Extremes(), Extremes()
         self._seen: Instant | None = None
         self.soil: dict[str, Any] = {}
         self._t: list[float] = []
@@ -62,10 +67,29 @@ class StagePeaks:
         peaked = pack_peaks(seen)
         for extremes in (self.of_nodes, self.peaks):
             extremes.update(t, peaked)
-        self._t, self._last = [*self._t[-2:], t], [*self._last[-2:], peaked]
-        if self.kind == "dynamic" and len(self._t) == 3 and self._t[0] < self._t[1] < t:
-            self.peaks.update(self._t[1], vertex(np.array(self._t), np.array(self._last)))
+        self._t, self._last = [*self._t[-4:], t], [*self._last[-4:], peaked]
+        if self.kind == "dynamic" and len(self._t) >= 3 and self._t[-3] < self._t[-2] < t:
+            self.peaks.update(self._t[-2], vertex(np.array(self._t[-3:]), np.array(self._last[-3:])))
+        self._follow_smoothly()
         self._seen = seen
+
+    def _follow_smoothly(self) -> None:
+        """The middle one of five steps without ringing; where there are none yet, or uneven ones, the last as it is."""
+        if self._even:
+            self.smooth.update(self._t[2], RINGLESS[0] @ np.array(self._last))
+        else:
+            self.smooth.update(self._t[-1], self._last[-1])
+
+    @property
+    def _even(self) -> bool:
+        return len(self._t) == 5 and bool(np.ptp(np.diff(self._t)) <= UNEVEN * (self._t[-1] - self._t[0]))
+
+    def _smooth_to_the_end(self) -> Extremes:
+        """With the last two steps, whose ringing is that of the five."""
+        ended = deepcopy(self.smooth)
+        for n in (1, 2) if self._even else ():
+            ended.update(self._t[2 + n], RINGLESS[n] @ np.array(self._last))
+        return ended
 
     def told(self, which: str) -> dict[str, Any]:
         """As the summary tells the stage; which: sampled, of_nodes or peaks."""
@@ -75,7 +99,7 @@ class StagePeaks:
         if which != "sampled":
             for name in _ALONG:
                 final[name] = {**final[name], "value": self._last[-1][places_of(name)].item()}
-        extremes = {"sampled": self.sampled, "of_nodes": self.of_nodes, "peaks": self.peaks}[which]
+        extremes = self._smooth_to_the_end() if which == "smooth" else vars(self)[which]
         return {
             "name": self.name, "kind": self.kind, "final": final, "soil": self.soil,
             "extremes": extremes.nested(),

@@ -6,6 +6,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, Field, model_validator
 
 from riser_soil.core.quantities import FROZEN, Gravity, Text
+from riser_soil.scene.accuracy import Accuracy, with_placeholders
 from riser_soil.scene.contact import Contact
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.output import Output
@@ -40,6 +41,11 @@ class Scene(BaseModel):
     stages: tuple[Stage, ...] = Field(min_length=1, description="what happens, one stage after the other")
     solver: Solver = Field(default=Solver(), description="settings of the nonlinear solver")
     output: Output = Field(default=Output(), description="what the run writes")
+    accuracy: Accuracy | None = Field(
+        default=None,
+        description="accuracy of all headline quantities, as 1 % (0.01 to 20 %), in place of elements, time steps, the "
+        "soil's mesh and the penalty: the run chooses them",
+    )
     error_bars: Literal[True, False] = Field(
         default=False,
         description="whether a run estimates by coarser companions how far its headline quantities may be off",
@@ -48,7 +54,7 @@ class Scene(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _fill_what_depends_on_other_parts(cls, data: Any) -> Any:
-        return _with_initial(_with_contact(data)) if isinstance(data, dict) else data
+        return with_placeholders(_with_initial(_with_contact(data))) if isinstance(data, dict) else data
 
     @property
     def seabed_level(self) -> float:

@@ -16,6 +16,7 @@ from benchmarks.error_bars.scenes import SCENES
 from riser_soil.accuracy import chain
 from riser_soil.accuracy.barred_run import run_with_error_bars
 from riser_soil.accuracy.error_bars import (
+    RINGING,
     SAFETY,
     SMALLEST,
     STEP_GAP,
@@ -38,7 +39,7 @@ QUICK = ("catenary, 35 elements", "cantilever, tip load", "on springs", "surge, 
 
 def bar_of(told: float, peak: float, *companions: Companion, touches: bool = False) -> ErrorBar:
     headline = Headline("hang", "top tension", "N", told, 1000.0)
-    (bar,) = error_bars(RunValues({KEY: headline}, {KEY: peak}, {KEY: peak}), companions, touches)
+    (bar,) = error_bars(RunValues({KEY: headline}, {KEY: peak}, {KEY: peak}, {KEY: peak}), companions, touches)
     return bar
 
 
@@ -79,11 +80,12 @@ def test_what_falls_between_nodes_is_the_meshs() -> None:
     assert bar.by_source["mesh"] == pytest.approx(SAFETY["mesh"] * 10.0)
 
 
-def test_what_falls_between_steps_is_the_time_steps() -> None:
+def test_what_falls_between_steps_and_what_rings_is_the_time_steps() -> None:
     headline = Headline("heave", "top tension", "N", 1000.0, 1000.0)
     key = headline.key
-    (bar,) = error_bars(RunValues({key: headline}, {key: 1000.0}, {key: 1004.0}), [], touches=False)
-    assert bar.by_source["time"] == pytest.approx(SAFETY["time"] * STEP_GAP * 4.0)
+    nodes, steps, smooth = {key: 1000.0}, {key: 1004.0}, {key: 997.0}
+    (bar,) = error_bars(RunValues({key: headline}, nodes, steps, smooth), [], touches=False)
+    assert bar.by_source["time"] == pytest.approx(SAFETY["time"] * (STEP_GAP * 4.0 + RINGING * 3.0))
 
 
 def test_no_bar_without_a_companion() -> None:

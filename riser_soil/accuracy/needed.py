@@ -1,0 +1,76 @@
+"""How much finer a setting has to be for an accuracy, from error bars of a coarser one; what is left to expect then."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, ErrorBar, RunValues, gaps
+
+#: Orders in which shares of errors fall, gaps between nodes and steps included; what fineness costs, as a power.
+ORDER = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}
+COST = {"mesh": 0.7, "time": 1.0, "soil": 3.0, "penalty": 0.1}
+MARGIN = 0.8  # of the accuracy, that the bars are to keep to
+MOST = {"mesh": 4.0, "time": 4.0, "soil": 2.0, "penalty": 100.0}  # from one setting to the next
+NOT_KNOWN = 2.0  # finer in mesh and time, where a bar is not known
+
+Factors = Mapping[str, float]  # by source: how many times as fine
+
+
+def needed(bars: Sequence[ErrorBar], accuracy: float) -> Factors:
+    """For all bars to keep to the accuracy, a share of their quantities' scales, at the least cost; at most `MOST`."""
+    found: dict[str, float] = {}
+    for bar in bars:
+        for source, factor in _of_quantity(bar, accuracy).items():
+            found[source] = max(found.get(source, 1.0), min(factor, MOST[source]))
+    return found
+
+
+def expected(bars: Sequence[ErrorBar], before: RunValues, found: RunValues, factors: Factors) -> list[ErrorBar]:
+    """Bars of a run that is finer by factors than the one `before` with its bars.
+
+    Each source's share falls by its order. Where the two runs are further apart than the bar before, that was too
+    small, and so would be the one that follows from it: both are larger in that ratio.
+    """
+    known = {bar.headline.key: bar for bar in bars}
+    return [_expected(known.get(key), before, found, factors, key) for key in found.told]
+
+
+def largest(bars: Sequence[ErrorBar]) -> tuple[float, str]:
+    """The largest bar over its quantity's scale, inf where one is not known, and its key."""
+    return max((_relative(bar), bar.headline.key) for bar in bars)
+
+
+def _relative(bar: ErrorBar) -> float:
+    return math.inf if bar.bar is None else bar.headline.relative(bar.bar)
+
+
+def _of_quantity(bar: ErrorBar, accuracy: float) -> Factors:
+    if bar.bar is None:
+        return {"mesh": NOT_KNOWN} | ({"time": NOT_KNOWN} if "time" in bar.by_source else {})
+    allowed = (MARGIN * accuracy - SMALLEST) * bar.headline.scale
+    left, shares = allowed**2, dict(bar.by_source)
+    while True:
+        weights = {source: COST[source] / ORDER[source] for source in shares}
+        whole = math.fsum(weights.values())
+        aims = {source: math.sqrt(left * weight / whole) for source, weight in weights.items()}
+        small = [source for source, aim in aims.items() if shares[source] <= aim]
+        if not small:
+            return {source: (shares[source] / aim) ** (1.0 / ORDER[source]) for source, aim in aims.items()}
+        left -= math.fsum(shares.pop(source) ** 2 for source in small)
+
+
+def _expected(
+    bar: ErrorBar | None, before: RunValues, found: RunValues, factors: Factors, key: str
+) -> ErrorBar:
+    headline = found.told[key]
+    if bar is None or bar.bar is None or key not in before.peaks:
+        return ErrorBar(headline, None, {}, (bar and bar.reason) or "the run before does not have it")
+    apart = abs(found.peaks[key] - before.peaks[key])
+    larger = max(1.0, apart / bar.bar) if bar.bar > 0.0 else 1.0
+    own = {source: SAFETY[source] * gap for source, gap in gaps(headline, found).items()}
+    left = {s: larger * each / factors.get(s, 1.0) ** ORDER[s] for s, each in bar.by_source.items()}
+    shares = {source: max(own.get(source, 0.0), each) for source, each in (own | left).items()}
+    whole = math.hypot(*shares.values()) + SMALLEST * headline.scale
+    return replace(bar, headline=headline, bar=whole, by_source=shares)

@@ -1,0 +1,98 @@
+"""Search for a setting that reaches an accuracy: a mesh graded by static runs, and a trial with coarser companions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from riser_soil.accuracy.chain import COARSER, companions, run_values
+from riser_soil.accuracy.companions import PeakObserver, observed
+from riser_soil.accuracy.element_sizes import graded
+from riser_soil.accuracy.error_bars import ErrorBar, RunValues, error_bars
+from riser_soil.accuracy.headlines import headlines
+from riser_soil.accuracy.knobs import KNOBS, varied
+from riser_soil.errors import SolveError
+from riser_soil.scene.riser import Segment
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import StaticStage
+
+SHAPES = 3  # static runs at most that grade the mesh
+SETTLED = 1.5  # elements at most so many times as long as curvature asks for
+COMPANIONS = COARSER | {"time_step": 2.0}  # of the trial, whose steps are long already
+ATTEMPTS, FINER = 3, 2.0  # of a scene that fails, each with elements and steps so much finer
+HELPING = ("elements", "time_step")
+_Found = TypeVar("_Found")
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A scene that was computed, its values on rank 0, and its error bars."""
+
+    scene: Scene
+    values: RunValues | None
+    bars: list[ErrorBar]
+
+
+def trial(scene: Scene, accuracy: float, comm: Any) -> Trial:
+    """On a mesh that curvature has graded, with companions; collective. scene: in its first setting."""
+    segments = scene.riser.segments
+    scene = _meshed(scene, accuracy, comm)
+    scene, seen = _computed(scene, comm)
+    if _excess(seen, accuracy, comm) > SETTLED:
+        scene, seen = _computed(_graded(scene, segments, seen, accuracy, comm), comm)
+    chain = companions(scene, comm, COMPANIONS)
+    if comm.rank != 0:
+        return Trial(scene, None, comm.bcast(None))
+    values = run_values(headlines(seen.peaks.told("sampled")), seen.peaks)
+    return Trial(scene, values, comm.bcast(error_bars(values, chain, scene.has_ground)))
+
+
+def finer(scene: Scene, factors: dict[str, float]) -> Scene:
+    """The scene with knobs finer by factors, where it has them."""
+    for knob in KNOBS:
+        if knob.name in factors and knob.there(scene):
+            scene = varied(scene, knob, factors[knob.name])
+    return scene
+
+
+def _meshed(scene: Scene, accuracy: float, comm: Any) -> Scene:
+    """By the static stages that the scene begins with; as it is where there is none."""
+    segments, statics = scene.riser.segments, _first_statics(scene)
+    for _ in range(SHAPES if statics else 0):
+        part, seen = _computed(scene.model_copy(update={"stages": statics}), comm)
+        scene = scene.model_copy(update={"riser": part.riser})
+        if _excess(seen, accuracy, comm) <= SETTLED:
+            break
+        scene = _graded(scene, segments, seen, accuracy, comm)
+    return scene
+
+
+def _first_statics(scene: Scene) -> Sequence[Any]:
+    dynamic = [n for n, stage in enumerate(scene.stages) if not isinstance(stage, StaticStage)]
+    return scene.stages[: dynamic[0]] if dynamic else scene.stages
+
+
+def _computed(scene: Scene, comm: Any) -> tuple[Scene, PeakObserver]:
+    """The scene, finer where it fails otherwise, and what was seen of it."""
+    for _ in range(ATTEMPTS - 1):
+        try:
+            return scene, observed(scene, comm)
+        except SolveError:
+            scene = finer(scene, dict.fromkeys(HELPING, FINER))
+    return scene, observed(scene, comm)
+
+
+def _graded(scene: Scene, segments: tuple[Segment, ...], seen: PeakObserver, accuracy: float, comm: Any) -> Scene:
+    made = _on_first(comm, lambda: graded(segments, seen.envelope, accuracy))
+    return scene.model_copy(update={"riser": scene.riser.model_copy(update={"segments": made})})
+
+
+def _excess(seen: PeakObserver, accuracy: float, comm: Any) -> float:
+    return _on_first(comm, lambda: seen.envelope.excess(accuracy))
+
+
+def _on_first(comm: Any, found: Callable[[], _Found]) -> _Found:
+    """What rank 0 finds."""
+    there: _Found = comm.bcast(found() if comm.rank == 0 else None)
+    return there
