@@ -7,6 +7,7 @@ how far the two are apart: halving what is coarse leaves a quarter of a second-o
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from pathlib import Path
 
 from mpi4py import MPI
@@ -28,18 +29,18 @@ DYNAMIC = (
 Reference = dict[str, tuple[float, float]]
 
 
-def write(names: list[str]) -> None:
-    """Compute the references of scenes anew; those of the others stay."""
-    known = read() if FILE.exists() else {}
+def write(names: Iterable[str], scenes: dict[str, Mapping] = SCENES, file: Path = FILE) -> None:
+    """Compute the references of some of the scenes anew; those of the others stay."""
+    known = read(file) if file.exists() else {}
     for name in names:
-        known[name] = reference(SCENES[name])
+        known[name] = reference(scenes[name])
         print(f"reference of {name}", flush=True)
-        in_order = {each: known[each] for each in SCENES if each in known}
-        FILE.write_text(json.dumps(in_order, indent=0) + "\n", encoding="utf-8")
+        in_order = {each: known[each] for each in scenes if each in known}
+        file.write_text(json.dumps(in_order, indent=0) + "\n", encoding="utf-8")
 
 
-def read() -> dict[str, Reference]:
-    told = json.loads(FILE.read_text(encoding="utf-8"))
+def read(file: Path = FILE) -> dict[str, Reference]:
+    told = json.loads(file.read_text(encoding="utf-8"))
     return {name: {key: (value, off) for key, (value, off) in of_scene.items()} for name, of_scene in told.items()}
 
 

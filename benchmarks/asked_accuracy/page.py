@@ -1,0 +1,161 @@
+"""The page of accuracies asked, docs/asked_accuracy.md: what scenes reach, and what it costs, one by one."""
+
+from __future__ import annotations
+
+import datetime
+import os
+import platform
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from statistics import median
+
+from benchmarks.asked_accuracy.asked import (
+    AskedScene,
+    HandCost,
+    Outcome,
+    costs,
+    median_error,
+    share_of_all,
+    share_of_claims,
+)
+from benchmarks.asked_accuracy.true_errors import ACCURACY
+from benchmarks.error_bars.calibration import JudgedScene, share_inside
+from demos.page import table
+from riser_soil import __version__
+
+PAGE = Path("docs") / "asked_accuracy.md"
+FIGURES = "asked accuracy"  # block of the page that others quote
+DEAR = 2.0  # times the best by hand
+
+TEXT = """# Accuracy asked: whether runs reach it, and what that costs
+
+Written by `make asked`: riser-soil {version}, {date}, Python {python}, {cores} cores.
+
+With `accuracy: {accuracy:g} %` in a scene, elements, time steps, soil mesh and penalty are chosen by the run
+([scenes](scenes.md)). Here the {count} scenes of the [error bars' calibration](error_bars.md) ask for it, without the
+settings that they have there; some then are the same scene. The true error is that of each headline quantity against
+its reference, over the quantity's scale. A scene reaches the accuracy if all its quantities do; {left_out} quantities
+whose reference is not certain to {certain:g} % are left out.
+
+<!-- {block} -->
+{figures}
+<!-- end of {block} -->
+
+The best by hand is the cheapest setting, of elements and time steps 1/4 to 4 times as fine as the calibration's and
+penalties 1 to 16 times as large, that truly reaches the accuracy: whoever looks for it has to know the answer. It is
+not compared where none of these reaches it, or where more than a third of the quantities are left out. Seconds are of
+the processor, without compilation; the run of the chosen setting, all runs that were taken for it together, and the
+best by hand, one after the other in one process, files included.
+
+{rows}
+
+Not reached, as the scenes were told, or missed:
+
+{others}
+
+## Scenes that have chosen no factor
+
+{count_of_others} more scenes are drawn at random, always the same: kinds of the calibration's in other spans, depths,
+pipes, motions and seabeds. None of them has been used to choose a factor of the error bars or of the search.
+
+{figures_of_others}
+
+{rows_of_others}
+
+`python -m benchmarks.asked_accuracy --by-hand` looks for the best settings anew, `--references` computes the random
+scenes' references anew; each takes some ten minutes.
+"""
+
+
+def page(scenes: list[AskedScene], others: list[AskedScene], judged: list[JudgedScene]) -> str:
+    """scenes: the calibration's. others: those drawn at random. judged: their error bars."""
+    return TEXT.format(
+        version=__version__,
+        date=datetime.date.today().isoformat(),
+        python=platform.python_version(),
+        cores=os.cpu_count(),
+        accuracy=100.0 * ACCURACY,
+        certain=30.0 * ACCURACY,
+        block=FIGURES,
+        count=len(scenes),
+        left_out=sum(each.errors.left_out for each in scenes if each.errors is not None),
+        figures=_figures(scenes),
+        rows=_rows(scenes),
+        others=_not_reached([*scenes, *others]),
+        count_of_others=len(others),
+        figures_of_others=_figures_of_others(others, judged),
+        rows_of_others=_rows_of_others(others, judged),
+    )
+
+
+def _figures(scenes: list[AskedScene]) -> str:
+    compared = costs(scenes)
+    chosen = [each.chosen / each.by_hand for each in compared]
+    rows = [
+        *_shares(scenes),
+        ["processor time of the chosen setting's run over the best by hand, median", f"{median(chosen):.2f}"],
+        [f"of it at most {DEAR:g} times the best by hand", f"{_share(chosen, lambda x: x <= DEAR):.0%}"],
+        ["everything, search included, over the best by hand, median", f"{_everything(compared):.2f}"],
+        ["scenes compared with the best by hand", str(len(compared))],
+    ]
+    return table(["accuracy asked", ""], rows)
+
+
+def _shares(scenes: list[AskedScene]) -> list[list[str]]:
+    told = sum(each.outcome is Outcome.TOLD for each in scenes)
+    return [
+        ["scenes that truly reach what they ask, of those that claim it", f"{share_of_claims(scenes):.1%}"],
+        [f"of all {len(scenes)} scenes ({told} tell that they do not reach it)", f"{share_of_all(scenes):.1%}"],
+        ["largest true error over the accuracy asked, median", f"{median_error(scenes):.2f}"],
+    ]
+
+
+def _share(values: list[float], kept: Callable[[float], bool]) -> float:
+    return sum(map(kept, values)) / len(values)
+
+
+def _everything(compared: list[HandCost]) -> float:
+    return median(each.everything / each.by_hand for each in compared)
+
+
+def _rows(scenes: Iterable[AskedScene]) -> str:
+    head = ["scene", "outcome", "true error", "setting", "its run s", "everything s", "by hand s", "over by hand"]
+    return table(head, [[*_told(each), *_seconds(each.cost)] for each in scenes])
+
+
+def _told(each: AskedScene) -> list[str]:
+    error = f"{each.errors.largest[0]:.2%}" if each.errors is not None else "no run"
+    return [each.name, each.outcome.value, error, each.setting]
+
+
+def _seconds(cost: HandCost | None) -> list[str]:
+    if cost is None:
+        return ["", "", "", "not compared"]
+    return [
+        *(f"{seconds:.2f}" for seconds in (cost.chosen, cost.everything, cost.by_hand)),
+        f"{cost.chosen / cost.by_hand:.2f}",
+    ]
+
+
+def _not_reached(scenes: Iterable[AskedScene]) -> str:
+    found = [each for each in scenes if each.outcome is not Outcome.REACHED]
+    return "\n".join(f"- {each.name}: {_why(each)}" for each in found) or "None."
+
+
+def _why(each: AskedScene) -> str:
+    if each.said or each.errors is None:
+        return each.said
+    error, key = each.errors.largest
+    return f"missed, {error:.2%} in {key}"
+
+
+def _figures_of_others(others: list[AskedScene], judged: list[JudgedScene]) -> str:
+    bars = [each for scene in judged for each in scene.judged]
+    inside = f"{share_inside(bars):.1%} of {sum(each.certain for each in bars)}"
+    return table(["random scenes", ""], [["true error inside its error bar", inside], *_shares(others)])
+
+
+def _rows_of_others(others: list[AskedScene], judged: list[JudgedScene]) -> str:
+    inside = {scene.name: [each.inside for each in scene.judged if each.certain] for scene in judged}
+    rows = [[*_told(each), f"{sum(inside[each.name])} of {len(inside[each.name])}"] for each in others]
+    return table(["scene", "outcome", "true error", "setting", "error bars inside"], rows)

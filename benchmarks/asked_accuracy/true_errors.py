@@ -1,0 +1,75 @@
+"""True errors of a run's headline quantities, against references, and the processor time that something takes."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from benchmarks.error_bars.references import Reference
+from riser_soil.accuracy.headlines import headlines
+from riser_soil.core import compiled
+from riser_soil.errors import SolveError
+from riser_soil.results.folder import SUMMARY
+from riser_soil.run import run
+from riser_soil.scene.scene import Scene
+
+ACCURACY = 0.01  # asked
+CERTAIN = 0.3  # of the accuracy: what a reference may be off to be judged by
+
+
+@dataclass(frozen=True)
+class TrueErrors:
+    """by_key: relative errors of the quantities that are judged. left_out: how many have no certain reference."""
+
+    by_key: Mapping[str, float]
+    left_out: int
+
+    @property
+    def largest(self) -> tuple[float, str]:
+        """And the key of its quantity."""
+        return max((error, key) for key, error in self.by_key.items())
+
+    @property
+    def telling(self) -> bool:
+        """Whether at most a third is left out: else a setting that reaches the rest says little."""
+        return 2 * self.left_out <= len(self.by_key)
+
+    @property
+    def within(self) -> bool:
+        return self.largest[0] <= ACCURACY
+
+
+def true_errors(folder: Path, reference: Reference) -> TrueErrors:
+    """Of the run in a folder; inf for a quantity that it lacks."""
+    found = headlines(json.loads((folder / SUMMARY).read_text(encoding="utf-8")))
+    errors, left_out = dict[str, float](), 0
+    for key, (true, uncertainty) in reference.items():
+        if key in found and found[key].relative(uncertainty) > CERTAIN * ACCURACY:
+            left_out += 1
+        else:
+            errors[key] = found[key].relative(found[key].value - true) if key in found else math.inf
+    return TrueErrors(errors, left_out)
+
+
+def run_errors(scene: Scene, folder: Path, reference: Reference) -> tuple[TrueErrors | None, float]:
+    """Of the scene run as users do, and its processor time [s]; None where it fails."""
+    try:
+        seconds = taken(lambda: run(scene, folder, force=True))
+    except (SolveError, ArithmeticError):
+        return None, math.inf
+    return true_errors(folder, reference), seconds
+
+
+def taken(action: Callable[[], Any]) -> float:
+    """Processor time [s] without compilation of kernels; what the action prints is left out."""
+    began, compiling = time.process_time(), compiled.seconds_compiling()
+    with contextlib.redirect_stdout(io.StringIO()):
+        action()
+    return time.process_time() - began - (compiled.seconds_compiling() - compiling)

@@ -1,0 +1,102 @@
+"""Calibration of accuracies asked: quick scenes and a random one, settings by hand, and what its page counts."""
+
+from __future__ import annotations
+
+import pytest
+
+from benchmarks.asked_accuracy import by_hand
+from benchmarks.asked_accuracy.asked import (
+    AskedScene,
+    HandCost,
+    Outcome,
+    asked,
+    asking,
+    costs,
+    median_error,
+    share_of_all,
+    share_of_claims,
+)
+from benchmarks.asked_accuracy.by_hand import best, settings
+from benchmarks.asked_accuracy.other_scenes import FILE, OTHERS
+from benchmarks.asked_accuracy.page import FIGURES, page
+from benchmarks.asked_accuracy.true_errors import ACCURACY, TrueErrors
+from benchmarks.error_bars import references
+from benchmarks.error_bars.calibration import judge
+from benchmarks.error_bars.scenes import SCENES
+from demos.page import block
+from riser_soil.scene.reader import scene_from_mapping
+
+GOOD, BAD = TrueErrors({"hang: top tension": 0.2 * ACCURACY}, 0), TrueErrors({"hang: top tension": 3.0 * ACCURACY}, 1)
+
+
+def made_up() -> list[AskedScene]:
+    return [
+        AskedScene("a", GOOD, "", "24 elements", HandCost(3.0, 1.0, 0.5)),
+        AskedScene("b", BAD, "", "24 elements", HandCost(3.0, 1.0, 0.5)),
+        AskedScene("c", BAD, "accuracy: it was not reached", "24 elements", HandCost(3.0, 1.0, 0.5)),
+        AskedScene("d", TrueErrors({"hang: top tension": 0.4 * ACCURACY}, 0), "", "9 elements"),
+    ]
+
+
+def test_outcomes_and_shares() -> None:
+    scenes = made_up()
+    assert [each.outcome for each in scenes] == [Outcome.REACHED, Outcome.MISSED, Outcome.TOLD, Outcome.REACHED]
+    assert share_of_claims(scenes) == pytest.approx(2.0 / 3.0)
+    assert share_of_all(scenes) == pytest.approx(0.5)
+    assert median_error(scenes) == pytest.approx(0.4)
+    assert costs(scenes) == [scenes[0].cost]
+
+
+def test_what_is_asked_has_none_of_what_it_chooses() -> None:
+    for mapping in (*SCENES.values(), *OTHERS.values()):
+        before = repr(mapping)
+        assert scene_from_mapping(asking(mapping)).accuracy == ACCURACY
+        assert repr(mapping) == before
+
+
+@pytest.mark.parametrize("name", ["clamped catenary", "on springs"])
+def test_quick_scenes_reach_it(name: str) -> None:
+    known = references.read()[name]
+    hand = by_hand.read()[name]
+    found = asked(name, SCENES[name], known, hand)
+    assert found.outcome is Outcome.REACHED
+    assert found.cost is not None
+    assert 0.0 < found.cost.chosen < found.cost.everything
+    far = {key: (1.05 * value, 0.0) for key, (value, _) in known.items()}
+    assert asked(name, SCENES[name], far).outcome is Outcome.MISSED
+
+
+def test_page_of_a_random_scene() -> None:
+    name = "catenary A"
+    known = references.read(FILE)[name]
+    found = asked(name, OTHERS[name], known)
+    told = page(made_up(), [found], [judge(name, OTHERS[name], known)])
+    assert found.outcome is Outcome.REACHED
+    assert "| scenes that truly reach what they ask, of those that claim it | 66.7% |" in block(told, FIGURES)
+    assert "- b: missed, 3.00% in hang: top tension" in told
+    assert "- c: accuracy: it was not reached" in told
+    assert f"| {name} | reached |" in told
+
+
+def test_best_by_hand_is_the_cheapest_that_reaches_it() -> None:
+    name = "catenary, 35 elements"
+    reference = references.read()[name]
+    found = best(SCENES[name], reference)
+    assert found is not None
+    assert found == by_hand.read()[name]
+    assert found.error <= ACCURACY
+    uncertain = {key: (value, abs(value)) for key, (value, _) in reference.items()}
+    assert best(SCENES[name], uncertain) is None
+
+
+def test_settings_by_hand_begin_with_the_cheapest() -> None:
+    tried = list(settings(scene_from_mapping(SCENES["heave on a rigid floor"])))
+    assert len(tried) == 75
+    assert tried[0] == {"elements": 0.25, "time_step": 0.25, "penalty": 1.0}
+    assert tried[-1] == {"elements": 4.0, "time_step": 4.0, "penalty": 16.0}
+
+
+def test_every_scene_has_what_it_is_compared_with() -> None:
+    assert set(by_hand.read()) == set(SCENES)
+    assert set(references.read(FILE)) == set(OTHERS)
+    assert len(OTHERS) >= 12

@@ -1,0 +1,44 @@
+"""Accuracies asked: scenes that claim to reach 1 % truly do, on the calibration's scenes and on random ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from benchmarks.asked_accuracy import by_hand
+from benchmarks.asked_accuracy.asked import asked, share_of_claims
+from benchmarks.asked_accuracy.other_scenes import FILE, OTHERS
+from benchmarks.asked_accuracy.true_errors import run_errors
+from benchmarks.error_bars import references
+from benchmarks.error_bars.calibration import judge, share_inside
+from benchmarks.error_bars.scenes import SCENES
+
+
+@pytest.mark.verify
+def test_scenes_reach_what_they_claim() -> None:
+    known = references.read()
+    assert share_of_claims(asked(name, SCENES[name], known[name]) for name in SCENES) >= 0.95
+
+
+@pytest.mark.verify
+def test_random_scenes_reach_what_they_claim() -> None:
+    known = references.read(FILE)
+    assert share_of_claims(asked(name, OTHERS[name], known[name]) for name in OTHERS) >= 0.9
+
+
+@pytest.mark.verify
+def test_error_bars_of_random_scenes_hold() -> None:
+    known = references.read(FILE)
+    judged = [each for name in OTHERS for each in judge(name, OTHERS[name], known[name]).judged]
+    assert share_inside(judged) >= 0.9
+
+
+@pytest.mark.verify
+def test_settings_by_hand_reach_it(tmp_path: Path) -> None:
+    known = references.read()
+    for name, setting in by_hand.read().items():
+        if setting is not None:
+            errors, _ = run_errors(by_hand.turned(SCENES[name], setting.factors), tmp_path / "run", known[name])
+            assert errors is not None, name
+            assert errors.within, name
