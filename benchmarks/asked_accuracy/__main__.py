@@ -12,7 +12,6 @@ from benchmarks.asked_accuracy.other_scenes import FILE, OTHERS
 from benchmarks.asked_accuracy.page import PAGE, page
 from benchmarks.error_bars import references
 from benchmarks.error_bars.calibration import judge
-from benchmarks.error_bars.scenes import SCENES
 
 parser = argparse.ArgumentParser(prog="python -m benchmarks.asked_accuracy", description=__doc__)
 parser.add_argument("--by-hand", nargs="*", metavar="SCENE", help="look for the best settings anew: of these, else all")
@@ -20,12 +19,12 @@ parser.add_argument("--references", nargs="*", metavar="SCENE", help="compute re
 given = parser.parse_args()
 known = references.read()
 if given.by_hand is not None:
-    by_hand.write(given.by_hand or list(SCENES), known)
+    by_hand.write(given.by_hand or list(by_hand.ASKED), known)
 if given.references is not None:
     references.write(given.references or list(OTHERS), OTHERS, FILE)
 hand, of_others = by_hand.read(), references.read(FILE)
 scenes, others, judged = [], [], []
-for name, scene in SCENES.items():
+for name, scene in by_hand.ASKED.items():
     scenes.append(asked(name, scene, known[name], hand[name]))
     print(f"{name}: {scenes[-1].outcome.value}", flush=True)
 for name, scene in OTHERS.items():

@@ -12,7 +12,7 @@ from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, ErrorBar, RunValues
 ORDER = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}
 COST = {"mesh": 0.7, "time": 1.0, "soil": 3.0, "penalty": 0.1}
 MARGIN = 0.8  # of the accuracy, that the bars are to keep to
-MOST = {"mesh": 4.0, "time": 4.0, "soil": 2.0, "penalty": 100.0}  # from one setting to the next
+MOST = {"mesh": 4.0, "time": 4.0, "soil": 2.0, "penalty": 4.0}  # from one setting to the next
 NOT_KNOWN = 2.0  # finer in mesh and time, where a bar is not known
 
 Factors = Mapping[str, float]  # by source: how many times as fine

@@ -16,13 +16,12 @@ from benchmarks.asked_accuracy.asked import (
     share_of_all,
     share_of_claims,
 )
-from benchmarks.asked_accuracy.by_hand import best, settings
+from benchmarks.asked_accuracy.by_hand import ASKED, best, settings
 from benchmarks.asked_accuracy.other_scenes import FILE, OTHERS
 from benchmarks.asked_accuracy.page import FIGURES, page
 from benchmarks.asked_accuracy.true_errors import ACCURACY, TrueErrors
 from benchmarks.error_bars import references
 from benchmarks.error_bars.calibration import judge
-from benchmarks.error_bars.scenes import SCENES
 from demos.page import block
 from riser_soil.scene.reader import scene_from_mapping
 
@@ -48,7 +47,7 @@ def test_outcomes_and_shares() -> None:
 
 
 def test_what_is_asked_has_none_of_what_it_chooses() -> None:
-    for mapping in (*SCENES.values(), *OTHERS.values()):
+    for mapping in (*ASKED.values(), *OTHERS.values()):
         before = repr(mapping)
         assert scene_from_mapping(asking(mapping)).accuracy == ACCURACY
         assert repr(mapping) == before
@@ -58,12 +57,12 @@ def test_what_is_asked_has_none_of_what_it_chooses() -> None:
 def test_quick_scenes_reach_it(name: str) -> None:
     known = references.read()[name]
     hand = by_hand.read()[name]
-    found = asked(name, SCENES[name], known, hand)
+    found = asked(name, ASKED[name], known, hand)
     assert found.outcome is Outcome.REACHED
     assert found.cost is not None
     assert 0.0 < found.cost.chosen < found.cost.everything
     far = {key: (1.05 * value, 0.0) for key, (value, _) in known.items()}
-    assert asked(name, SCENES[name], far).outcome is Outcome.MISSED
+    assert asked(name, ASKED[name], far).outcome is Outcome.MISSED
 
 
 def test_page_of_a_random_scene() -> None:
@@ -81,22 +80,22 @@ def test_page_of_a_random_scene() -> None:
 def test_best_by_hand_is_the_cheapest_that_reaches_it() -> None:
     name = "catenary, 35 elements"
     reference = references.read()[name]
-    found = best(SCENES[name], reference)
+    found = best(ASKED[name], reference)
     assert found is not None
     assert found == by_hand.read()[name]
     assert found.error <= ACCURACY
     uncertain = {key: (value, abs(value)) for key, (value, _) in reference.items()}
-    assert best(SCENES[name], uncertain) is None
+    assert best(ASKED[name], uncertain) is None
 
 
 def test_settings_by_hand_begin_with_the_cheapest() -> None:
-    tried = list(settings(scene_from_mapping(SCENES["heave on a rigid floor"])))
+    tried = list(settings(scene_from_mapping(ASKED["heave on a rigid floor"])))
     assert len(tried) == 75
     assert tried[0] == {"elements": 0.25, "time_step": 0.25, "penalty": 1.0}
     assert tried[-1] == {"elements": 4.0, "time_step": 4.0, "penalty": 16.0}
 
 
 def test_every_scene_has_what_it_is_compared_with() -> None:
-    assert set(by_hand.read()) == set(SCENES)
+    assert set(by_hand.read()) == set(ASKED)
     assert set(references.read(FILE)) == set(OTHERS)
     assert len(OTHERS) >= 12

@@ -12,13 +12,12 @@ from benchmarks.asked_accuracy.other_scenes import FILE, OTHERS
 from benchmarks.asked_accuracy.true_errors import run_errors
 from benchmarks.error_bars import references
 from benchmarks.error_bars.calibration import judge, share_inside
-from benchmarks.error_bars.scenes import SCENES
 
 
 @pytest.mark.verify
 def test_scenes_reach_what_they_claim() -> None:
     known = references.read()
-    assert share_of_claims(asked(name, SCENES[name], known[name]) for name in SCENES) >= 0.95
+    assert share_of_claims(asked(name, by_hand.ASKED[name], known[name]) for name in by_hand.ASKED) >= 0.95
 
 
 @pytest.mark.verify
@@ -39,6 +38,6 @@ def test_settings_by_hand_reach_it(tmp_path: Path) -> None:
     known = references.read()
     for name, setting in by_hand.read().items():
         if setting is not None:
-            errors, _ = run_errors(by_hand.turned(SCENES[name], setting.factors), tmp_path / "run", known[name])
+            errors, _ = run_errors(by_hand.turned(by_hand.ASKED[name], setting.factors), tmp_path / "run", known[name])
             assert errors is not None, name
             assert errors.within, name
