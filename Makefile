@@ -20,7 +20,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test lint verify stress fuzz bench parts bars quality verify-fresh docker pins clean
+.PHONY: help setup demo demos test lint verify stress fuzz bench parts bars asked quality verify-fresh docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -63,7 +63,10 @@ parts: setup ## what each part of a scene costs: docs/parts.md
 bars: setup ## error bars of 51 scenes beside their true errors: docs/error_bars.md
 	$(PYTHON) -m benchmarks.error_bars
 
-quality: stress bars parts ## those three and a study of the first scene: docs/quality.md
+asked: setup ## scenes that ask for 1 %, whether they reach it and what it costs beside the best by hand: docs/asked_accuracy.md
+	$(PYTHON) -m benchmarks.asked_accuracy
+
+quality: stress bars asked parts ## those four and a study of the first scene: docs/quality.md
 	$(PYTHON) -m benchmarks.quality
 
 verify-fresh: ## both commands of the README on bare Debians 12 and 13 made for it (needs root and debootstrap)

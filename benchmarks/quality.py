@@ -3,7 +3,7 @@
     python -m benchmarks.quality
 
 Runs `riser-soil study` of the first scene, or takes what it has left in results/quality, and gathers what `make bars`,
-`make stress` and `make parts` have written into their pages.
+`make asked`, `make stress` and `make parts` have written into their pages.
 """
 
 from __future__ import annotations
@@ -54,6 +54,11 @@ def error_bars() -> str:
     return "| error bars | |\n|---|---:|\n" + found[1]
 
 
+def asked() -> str:
+    """How often an accuracy that is asked is reached, and at what cost, from its page."""
+    return block((DOCS / "asked_accuracy.md").read_text(encoding="utf-8"), "asked accuracy")
+
+
 def stressed() -> str:
     """How the stress cases ended."""
     rows = json.loads((DOCS / "stress.json").read_text(encoding="utf-8"))["cases"]
@@ -77,7 +82,7 @@ def main() -> None:
     )
     parser.parse_args()
     blocks = {"study": studied(ROOT / "results" / "quality"), "error bars": error_bars()}
-    blocks |= {"stress": stressed(), "cost of parts": parts()}
+    blocks |= {"asked accuracy": asked(), "stress": stressed(), "cost of parts": parts()}
     PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), blocks), encoding="utf-8")
 
 

@@ -32,10 +32,11 @@ TEXT = """# Accuracy asked: whether runs reach it, and what that costs
 Written by `make asked`: riser-soil {version}, {date}, Python {python}, {cores} cores.
 
 With `accuracy: {accuracy:g} %` in a scene, elements, time steps, soil mesh and penalty are chosen by the run
-([scenes](scenes.md)). Here the {count} scenes of the [error bars' calibration](error_bars.md) ask for it that have no soil, as the
-search takes minutes on it, without the settings that they have there; some then are the same scene. The true error is that of each headline quantity against
-its reference, over the quantity's scale. A scene reaches the accuracy if all its quantities do; {left_out} quantities
-whose reference is not certain to {certain:g} % are left out.
+([scenes](scenes.md)). Here {count} scenes of the [error bars' calibration](error_bars.md) ask for it, without the
+settings that they have there; some then are the same scene. Those on soil are left out, as the search takes minutes on
+them. The true error is that of each headline quantity against its reference, over the quantity's scale. A scene reaches
+the accuracy if all its quantities do; {left_out} quantities whose reference is not certain to {certain:g} % are left
+out.
 
 <!-- {block} -->
 {figures}

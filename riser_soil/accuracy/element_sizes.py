@@ -21,7 +21,7 @@ from riser_soil.scene.riser import Segment
 
 GAP = 0.5  # of the accuracy asked: what falls between nodes
 FORGIVEN = 0.2  # of how far a moment is below the largest, or a tension above the least
-TENSION_SCALE = 0.1  # of the largest tension, as of headline quantities
+TENSION_SCALE = 0.1  # of the largest force, as of headline quantities
 FEWEST = 12  # elements along the whole riser
 GROWTH = 0.3  # of the length of elements from one to the next
 SHRINK = 6.0  # at most, from one run to the next: what is not resolved yet asks for more than it needs
@@ -34,7 +34,7 @@ class CurveEnvelope:
     """Moment and tension along the riser over a run: extremes and second derivatives by their largest size.
 
     arc: (nn,) m. moment, least: (nn,) largest moment [N m], least tension [N]. bends: (2, nn) second derivatives of
-    moment and tension. pull: (nn,) tension over EI [1/m2]. most: largest tension [N].
+    moment and tension. pull: (nn,) tension over EI [1/m2]. force: largest tension or shear [N].
     """
 
     arc: Array = field(default_factory=lambda: np.zeros(0))
@@ -42,7 +42,7 @@ class CurveEnvelope:
     least: Array = field(default_factory=lambda: np.zeros(0))
     bends: Array = field(default_factory=lambda: np.zeros((2, 0)))
     pull: Array = field(default_factory=lambda: np.zeros(0))
-    most: float = 0.0
+    force: float = 0.0
 
     def follow(self, seen: Instant) -> None:
         """One more instant."""
@@ -57,14 +57,14 @@ class CurveEnvelope:
         self.bends = np.maximum(self.bends, bends)
         self.moment = np.maximum(self.moment, riser.bending_moment)
         self.least = np.minimum(self.least, riser.effective_tension)
-        self.most = max(self.most, float(np.abs(riser.effective_tension).max()))
+        self.force = max(self.force, float(np.abs(riser.effective_tension).max()), _shear(arc, riser.moment_vector))
 
     def lengths(self, share: float) -> Array:
         """Lengths of elements (nn,) [m] at the nodes, for a share of accuracy; inf where all is straight."""
         gap = GAP * share
         largest = self.moment.max()
         of_moment = gap * largest + FORGIVEN * (largest - self.moment)
-        of_tension = gap * TENSION_SCALE * self.most + FORGIVEN * (self.least - self.least.min())
+        of_tension = gap * TENSION_SCALE * self.force + FORGIVEN * (self.least - self.least.min())
         by_moment, by_tension = self.bends
         with np.errstate(divide="ignore", invalid="ignore"):
             lengths = np.stack([
@@ -98,6 +98,11 @@ def _bend(arc: Array, values: Array) -> Array:
     slope = np.diff(values, axis=0) / np.diff(arc)[:, None]
     inner = np.linalg.norm(np.diff(slope, axis=0), axis=1) / (0.5 * (arc[2:] - arc[:-2]))
     return np.concatenate([inner[:1], inner, inner[-1:]])
+
+
+def _shear(arc: Array, moment: Array) -> float:
+    """Largest shear force [N], the slope of moments (nn, 3) [N m]."""
+    return float((np.linalg.norm(np.diff(moment, axis=0), axis=1) / np.diff(arc)).max())
 
 
 def _present(arc: Array) -> Array:
