@@ -20,7 +20,7 @@ from riser_soil.accuracy.first_setting import first_setting
 from riser_soil.accuracy.knobs import knobs_of
 from riser_soil.accuracy.needed import expected, largest, needed
 from riser_soil.accuracy.screen import print_bars
-from riser_soil.accuracy.search import Trial, finer, trial
+from riser_soil.accuracy.search import TriedSetting, finer, trial
 from riser_soil.errors import AccuracyError, Interruption
 from riser_soil.interruption import handling_signals
 from riser_soil.results.ownership import refuse_together
@@ -59,19 +59,19 @@ def run_to_accuracy(scene: Scene, folder: Path | str, force: bool = False) -> No
         raise AccuracyError(_missed(last, accuracy, folder))
 
 
-def _finer_run(last: Trial, accuracy: float, folder: Path, force: bool, comm: Any) -> Trial:
+def _finer_run(last: TriedSetting, accuracy: float, folder: Path, force: bool, comm: Any) -> TriedSetting:
     by_source = needed(last.bars, accuracy)
     names = {source: name for name, source in SOURCES.items()}
     scene, peaks = finer(last.scene, {names[source]: factor for source, factor in by_source.items()}), RunPeaks()
     run(scene, folder, force, peaks)
     if comm.rank != 0:
-        return Trial(scene, None, comm.bcast(None))
+        return TriedSetting(scene, None, comm.bcast(None))
     assert last.values is not None
     values = values_of_run(folder, peaks)
-    return Trial(scene, values, comm.bcast(expected(last.bars, last.values, values, by_source)))
+    return TriedSetting(scene, values, comm.bcast(expected(last.bars, last.values, values, by_source)))
 
 
-def _tell(last: Trial, accuracy: float, comm: Any) -> None:
+def _tell(last: TriedSetting, accuracy: float, comm: Any) -> None:
     if comm.rank == 0:
         off, key = largest(last.bars)
         print(f"accuracy {accuracy:.2%}: with {_setting(last.scene)} it is {off:.2%} ({key})")
@@ -81,7 +81,7 @@ def _setting(scene: Scene) -> str:
     return ", ".join(knob.told(scene) for knob in knobs_of(scene))
 
 
-def _report(last: Trial, accuracy: float, folder: Path, seconds: Mapping[str, float]) -> None:
+def _report(last: TriedSetting, accuracy: float, folder: Path, seconds: Mapping[str, float]) -> None:
     off, key = largest(last.bars)
     told = {"asked": accuracy, "reached": off <= accuracy, "largest_error": off, "of": key}
     settings = {knob.name: knob.told(last.scene) for knob in knobs_of(last.scene)}
@@ -89,7 +89,7 @@ def _report(last: Trial, accuracy: float, folder: Path, seconds: Mapping[str, fl
     print_bars(last.bars, seconds["search"] / seconds["run"])
 
 
-def _missed(last: Trial, accuracy: float, folder: Path) -> str:
+def _missed(last: TriedSetting, accuracy: float, folder: Path) -> str:
     off, key = largest(last.bars)
     bar = next(bar for bar in last.bars if bar.headline.key == key)
     return (
