@@ -27,11 +27,12 @@ _Found = TypeVar("_Found")
 
 @dataclass(frozen=True, eq=False)
 class TriedSetting:
-    """A scene that was computed, its values on rank 0, and its error bars."""
+    """A scene that was computed, its values on rank 0, its error bars, and the seconds that it took as a run."""
 
     scene: Scene
     values: RunValues | None
     bars: list[ErrorBar]
+    seconds: float = 0.0
 
 
 def trial(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:

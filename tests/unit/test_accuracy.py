@@ -18,10 +18,11 @@ from riser_soil.accuracy.headlines import headlines
 from riser_soil.accuracy.search import trial
 from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.commands.app import app
-from riser_soil.errors import Interruption, SceneError, SolveError
+from riser_soil.errors import AccuracyError, Interruption, SceneError, SolveError
 from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage
 from tests.support.on_ranks import mpirun
 
 CHOSEN = ("elements", "element_length", "time_step", "tolerance", "stiffness", "mesh")
@@ -97,7 +98,9 @@ def test_first_setting_has_steps_by_period_and_accuracy() -> None:
         scene = first_setting(scene_from_mapping(asking("surge, 40 steps", accuracy)))
         assert scene.accuracy is None
         assert scene.riser.element_count == 24
-        steps.append(scene.stages[1].time_step)
+        motion = scene.stages[1]
+        assert isinstance(motion, DynamicStage)
+        steps.append(motion.time_step)
     assert steps == pytest.approx([14.0 / 50.0, 14.0 / 100.0])
 
 
@@ -148,6 +151,20 @@ def test_accuracy_that_is_not_reached_is_told(tmp_path: Path, monkeypatch: pytes
     assert told["accuracy"]["largest_error"] > 0.2
     assert max(bar["bar"] / abs(bar["value"]) for bar in told["error_bars"]["quantities"] if bar["bar"]) > 0.2
     assert told["finished"]
+
+
+def test_a_run_too_large_to_follow_leaves_the_one_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    name, limits = "cantilever under a sudden load", [SceneError("needs 4 TB of memory"), None]
+
+    def limited(scene: Scene, *given: Any) -> None:
+        if limit := limits.pop():
+            raise limit
+        run(scene, *given)
+
+    monkeypatch.setattr(target_run, "run", limited)
+    with pytest.raises(AccuracyError, match=r"was not reached: .*; a finer one can't be run: needs 4 TB of memory"):
+        run_to_accuracy(scene_from_mapping(asking(name, "20 %")), tmp_path / "run")
+    assert summary(tmp_path / "run")["accuracy"]["reached"] is False
 
 
 def test_a_finished_run_is_refused_before_the_search(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
