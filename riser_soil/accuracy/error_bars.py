@@ -5,7 +5,8 @@ source's share of the error is, by Richardson's extrapolation,
 
     safety * (what falls between samples + difference / (ratio^order - 1)).
 
-What falls between the run's nodes is the mesh's, between its steps the time step's (`results.peaks`). A large
+What falls between the run's nodes is the mesh's, between its steps the time step's, as is what alternates from step to
+step around an extreme: short waves that the steps do not resolve (`results.peaks`). A large
 difference has not reached its order yet: the divisor falls towards 1 as it grows. Shares of different sources add up as
 squares do. With these factors the calibration (`benchmarks.error_bars`) finds the true error inside at least 95 % of
 the bars.

@@ -10,14 +10,16 @@ from rich.table import Table
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar
 
 
-def print_bars(bars: list[ErrorBar], share: float, console: Console | None = None) -> None:
-    """share: of the run's seconds that the companions took in addition."""
+def print_bars(
+    bars: list[ErrorBar], share: float, console: Console | None = None, what: str = "error bars"
+) -> None:
+    """share: of the run's seconds that companions, or `what` else, took in addition."""
     console = console or Console()
     for stage, of_stage in groupby(bars, key=lambda bar: bar.headline.stage):
         console.print(_table(stage, list(of_stage)))
     for reason in sorted({bar.reason for bar in bars if bar.reason}):
         console.print(f"warning: no error bar where a source is not known: {reason}", soft_wrap=True, markup=False)
-    console.print(f"error bars took {share:.0%} of the run's time in addition", markup=False)
+    console.print(f"{what} took {share:.0%} of the run's time in addition", markup=False)
 
 
 def _table(stage: str, bars: list[ErrorBar]) -> Table:

@@ -26,15 +26,16 @@ _Found = TypeVar("_Found")
 
 
 @dataclass(frozen=True, eq=False)
-class Trial:
-    """A scene that was computed, its values on rank 0, and its error bars."""
+class TriedSetting:
+    """A scene that was computed, its values on rank 0, its error bars, and the seconds that it took as a run."""
 
     scene: Scene
     values: RunValues | None
     bars: list[ErrorBar]
+    seconds: float = 0.0
 
 
-def trial(scene: Scene, accuracy: float, comm: Any) -> Trial:
+def trial(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
     """On a mesh that curvature has graded, with companions; collective. scene: in its first setting."""
     segments = scene.riser.segments
     scene = _meshed(scene, accuracy, comm)
@@ -43,9 +44,9 @@ def trial(scene: Scene, accuracy: float, comm: Any) -> Trial:
         scene, seen = _computed(_graded(scene, segments, seen, accuracy, comm), comm)
     chain = companions(scene, comm, COMPANIONS)
     if comm.rank != 0:
-        return Trial(scene, None, comm.bcast(None))
+        return TriedSetting(scene, None, comm.bcast(None))
     values = run_values(headlines(seen.peaks.told("sampled")), seen.peaks)
-    return Trial(scene, values, comm.bcast(error_bars(values, chain, scene.has_ground)))
+    return TriedSetting(scene, values, comm.bcast(error_bars(values, chain, scene.has_ground)))
 
 
 def finer(scene: Scene, factors: dict[str, float]) -> Scene:

@@ -8,7 +8,6 @@ finer run follows.
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +19,8 @@ from riser_soil.accuracy.first_setting import first_setting
 from riser_soil.accuracy.knobs import knobs_of
 from riser_soil.accuracy.needed import expected, largest, needed
 from riser_soil.accuracy.screen import print_bars
-from riser_soil.accuracy.search import Trial, finer, trial
-from riser_soil.errors import AccuracyError, Interruption
+from riser_soil.accuracy.search import TriedSetting, finer, trial
+from riser_soil.errors import AccuracyError, Interruption, MeshError, SceneError
 from riser_soil.interruption import handling_signals
 from riser_soil.results.ownership import refuse_together
 from riser_soil.results.peaks import RunPeaks
@@ -40,38 +39,54 @@ def run_to_accuracy(scene: Scene, folder: Path | str, force: bool = False) -> No
     accuracy = scene.accuracy
     assert accuracy is not None
     refuse_together(folder, force, comm)
+    last, limit = _run_until(accuracy, _sought(scene, accuracy, comm), folder, force, comm)
+    if comm.rank == 0:
+        _report(last, accuracy, folder, time.perf_counter() - began)
+    if largest(last.bars)[0] > accuracy:
+        raise AccuracyError(_missed(last, accuracy, folder, limit))
+
+
+def _sought(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
     with handling_signals():
         try:
-            last = trial(first_setting(scene), accuracy, comm)
+            return trial(first_setting(scene), accuracy, comm)
         except Interruption as end:
             end.place = SOUGHT
             raise
+
+
+def _run_until(
+    accuracy: float, last: TriedSetting, folder: Path, force: bool, comm: Any
+) -> tuple[TriedSetting, str]:
+    """The last run, and why there is no finer one where it can't be run."""
     for number in range(RUNS):
         _tell(last, accuracy, comm)
-        since = time.perf_counter()
-        last = _finer_run(last, accuracy, folder, force or number > 0, comm)
+        try:
+            last = _finer_run(last, accuracy, folder, force or number > 0, comm)
+        except (SceneError, MeshError) as err:
+            if number == 0:
+                raise
+            return last, f"; a finer one can't be run: {err}"
         if largest(last.bars)[0] <= accuracy:
             break
-    if comm.rank == 0:
-        taken = time.perf_counter() - since
-        _report(last, accuracy, folder, {"run": taken, "search": since - began})
-    if largest(last.bars)[0] > accuracy:
-        raise AccuracyError(_missed(last, accuracy, folder))
+    return last, ""
 
 
-def _finer_run(last: Trial, accuracy: float, folder: Path, force: bool, comm: Any) -> Trial:
+def _finer_run(last: TriedSetting, accuracy: float, folder: Path, force: bool, comm: Any) -> TriedSetting:
     by_source = needed(last.bars, accuracy)
     names = {source: name for name, source in SOURCES.items()}
     scene, peaks = finer(last.scene, {names[source]: factor for source, factor in by_source.items()}), RunPeaks()
+    since = time.perf_counter()
     run(scene, folder, force, peaks)
+    taken = time.perf_counter() - since
     if comm.rank != 0:
-        return Trial(scene, None, comm.bcast(None))
+        return TriedSetting(scene, None, comm.bcast(None), taken)
     assert last.values is not None
     values = values_of_run(folder, peaks)
-    return Trial(scene, values, comm.bcast(expected(last.bars, last.values, values, by_source)))
+    return TriedSetting(scene, values, comm.bcast(expected(last.bars, last.values, values, by_source)), taken)
 
 
-def _tell(last: Trial, accuracy: float, comm: Any) -> None:
+def _tell(last: TriedSetting, accuracy: float, comm: Any) -> None:
     if comm.rank == 0:
         off, key = largest(last.bars)
         print(f"accuracy {accuracy:.2%}: with {_setting(last.scene)} it is {off:.2%} ({key})")
@@ -81,20 +96,22 @@ def _setting(scene: Scene) -> str:
     return ", ".join(knob.told(scene) for knob in knobs_of(scene))
 
 
-def _report(last: Trial, accuracy: float, folder: Path, seconds: Mapping[str, float]) -> None:
+def _report(last: TriedSetting, accuracy: float, folder: Path, seconds: float) -> None:
+    """seconds: of everything."""
     off, key = largest(last.bars)
     told = {"asked": accuracy, "reached": off <= accuracy, "largest_error": off, "of": key}
     settings = {knob.name: knob.told(last.scene) for knob in knobs_of(last.scene)}
-    write_bars(folder, last.bars, dict(seconds), accuracy=told | {"settings": settings})
-    print_bars(last.bars, seconds["search"] / seconds["run"])
+    taken = {"run": last.seconds, "search": seconds - last.seconds}
+    write_bars(folder, last.bars, taken, accuracy=told | {"settings": settings})
+    print_bars(last.bars, taken["search"] / taken["run"], what="the search for the accuracy")
 
 
-def _missed(last: Trial, accuracy: float, folder: Path) -> str:
+def _missed(last: TriedSetting, accuracy: float, folder: Path, limit: str) -> str:
     off, key = largest(last.bars)
     bar = next(bar for bar in last.bars if bar.headline.key == key)
     return (
         f"accuracy: {accuracy:.2%} was not reached: with {_setting(last.scene)}, {_limits(bar)} leaves {key} at "
-        f"{off:.2%}; {folder} has that run, with its error bars: ask for less"
+        f"{off:.2%}{limit}; {folder} has that run, with its error bars: ask for less"
     )
 
 

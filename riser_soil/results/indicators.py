@@ -2,7 +2,8 @@
 
 Each is an estimate of size, calibrated in `tests/verification/test_indicators.py`; none is a bound.
 
-- time step: `time_resolution`, in the extremes of some figures, and the largest local error of a step;
+- time step: `time_resolution` and `doubtful_extremes`, in the extremes of some figures, and the largest local error of
+  a step;
 - impact: what contact's force at the end of the step takes beyond what the ground does. A share s of the energy of an
   impact, lost while the riser is brought to rest and thrown back, lowers the force of it by some 1 - (1 - s)^(1/4), as
   half of the loss comes before the peak and the force goes with the root of the energy;
@@ -21,26 +22,14 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, gathered, packed, restore_all, unpacked
 from riser_soil.core.snapshot import Ledger, StepStatistics
-from riser_soil.results.figures import places_of
+from riser_soil.results.doubtful_extremes import AT, JUDGED, JudgedExtremes
 from riser_soil.results.time_resolution import TimeResolution
 
-#: Figures whose extremes are judged, with what a warning calls them; those without words have none.
-JUDGED = {
-    "start.effective_tension": "tension at the start",
-    "end.effective_tension": "tension at the end",
-    "min_effective_tension": "",
-    "max_bending_moment": "bending moment",
-    "touchdown_arc": "",
-}
-AT = np.array([places_of(name).start for name in JUDGED])
-# Share of a figure's largest size from which its estimated error is a warning, and that which is advised.
-LARGE_ERROR, FINE = 0.03, 0.01
 # Local error of a step, over the diameter, from which the motion is not followed; automatic steps keep to 0.02.
 LARGE_LOCAL_ERROR = 2.0
 # Share of the riser's kinetic energy that one impact may lose to the time step.
 LARGE_LOSS = 0.1
 STEPS_OF_IMPACT = 100.0  # in a period of the riser on its contact, which cost 2 to 3 % of the force of an impact
-NEGLIGIBLE = 1e-2  # of the riser's weight: a tension too small to judge; times a diameter, a moment
 LOSSES = ("seabed_time_scheme", "contact_time_scheme")
 
 
@@ -96,12 +85,13 @@ class StageIndicators:
     """Indicators of one stage, gathered while it runs.
 
     diameter, weight: of the riser [m], [N]. contact_period: of the riser on its contact's stiffness [s], nan without.
-    bending: the largest misfit of the elements, see `Plausibility`.
+    automatic: whether the time steps are. bending: the largest misfit of the elements, see `Plausibility`.
     """
 
     diameter: float = math.nan
     weight: float = math.nan
     contact_period: float = math.nan
+    automatic: bool = False
     step: WorstStep = field(default_factory=WorstStep)
     impact: ImpactLoss = field(default_factory=ImpactLoss)
     bending: dict[str, float] = field(default_factory=dict)
@@ -142,32 +132,10 @@ class StageIndicators:
 
     def warnings(self) -> Iterator[str]:
         """Of a dynamic stage, with numbers and a remedy."""
-        yield from self._coarse_steps()
+        judged = JudgedExtremes(self.resolution, self.largest, self.diameter, self.weight)
+        yield from judged.warnings(self.automatic)
         yield from self._jumps()
         yield from self._lost_impact()
-
-    def _coarse_steps(self) -> Iterator[str]:
-        """Of tensions and moment the one that is most in doubt."""
-        share, scale = self._doubt()
-        n = int(share.argmax())
-        if share[n] > LARGE_ERROR:
-            name, unit = list(JUDGED)[n], "N.m" if "moment" in list(JUDGED)[n] else "N"
-            fine = self.step.dt * math.sqrt(FINE / share[n])
-            error = self.resolution.of_most[n]
-            yield (
-                f"the largest {JUDGED[name]} may be off by some {error:.3g} {unit}, {share[n]:.2g} "
-                f"of {scale[n]:.4g} {unit} (told above {LARGE_ERROR:g}): that sharply it turns between steps of"
-                f" {self.step.dt:.3g} s; take a time_step of {fine:.2g} s, or auto"
-            )
-
-    def _doubt(self) -> tuple[Array, Array]:
-        """Estimated errors over their scales, and these scales; 0 for figures that have no words."""
-        tension, least = float(self.largest[:2].max()), NEGLIGIBLE * self.weight
-        moment = max(self.largest[3], least * self.diameter)
-        scale = np.array([max(tension, least)] * 3 + [moment, math.inf])
-        spoken = np.array([bool(words) for words in JUDGED.values()])
-        share = self.resolution.of_most / np.where(scale > 0.0, scale, math.inf)
-        return np.where(spoken, share, 0.0), scale
 
     def _jumps(self) -> Iterator[str]:
         step, allowed = self.step, LARGE_LOCAL_ERROR * self.diameter
@@ -199,7 +167,7 @@ class StageIndicators:
 
     def state(self) -> Saved:
         told = {"step": asdict(self.step), "impact": asdict(self.impact), "bending": self.bending}
-        plain = {name: getattr(self, name) for name in ("diameter", "weight", "contact_period")}
+        plain = {name: getattr(self, name) for name in ("diameter", "weight", "contact_period", "automatic")}
         return gathered({"resolution": self.resolution}) | {"told": packed(told | plain), "largest": self.largest}
 
     def restore(self, saved: Saved) -> None:

@@ -88,7 +88,8 @@ class Observer:
         """stepper: at the stage's beginning; collective."""
         self._enter(stage, stepper.energy)
         if self._recorder is not None:
-            self._recorder.begin_stage(stage.name, stage.kind)
+            automatic = not isinstance(stage, StaticStage) and stage.time_step == "auto"
+            self._recorder.begin_stage(stage.name, stage.kind, automatic)
         if self._peaks is not None:
             self._peaks.begin_stage(stage.name, stage.kind)
         if stage is self._assembly.scene.stages[0] and not isinstance(stage, StaticStage):

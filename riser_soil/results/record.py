@@ -142,12 +142,15 @@ class Recorder:
     ) -> None:
         self.close()
 
-    def begin_stage(self, name: str, kind: str) -> None:
-        """kind: `static` or `dynamic`. A dynamic stage's extremes include the state that it begins with."""
+    def begin_stage(self, name: str, kind: str, automatic: bool = False) -> None:
+        """kind: `static` or `dynamic`. automatic: whether the time steps are.
+
+        A dynamic stage's extremes include the state that it begins with.
+        """
         if self.summary.stages:
             self.flush()
         self._time.begin_stage(kind)
-        stage = StageTally(name, kind, indicators=StageIndicators(*self._scales))
+        stage = StageTally(name, kind, indicators=StageIndicators(*self._scales, automatic=automatic))
         if kind == "dynamic" and self._latest is not None:
             stage.extremes.update(self._time.now, self._latest)
             stage.indicators.begin(self._time.now, self._latest)

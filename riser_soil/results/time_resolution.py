@@ -32,25 +32,39 @@ class TimeResolution:
         self._slope: Array = np.full(n, np.nan)
         self._t, self._dt = math.nan, math.nan
         self._past: Array = np.zeros(n)  # |D| of the step before
-        # Of the least values, negative, and of the largest: the value, the largest |D| around it, steps since.
+        # Of the least values, negative, and of the largest: the value, the largest |D| around it, updates since.
         self._extreme: Array = np.full((2, n), -np.inf)
         self._around: Array = np.zeros((2, n))
         self._since: Array = np.full((2, n), np.inf)
+        self._steps: Array = np.zeros((2, n))  # s, the longest of those around it
 
     def update(self, t: float, values: Array) -> None:
         """t: s; values (n,) after a step. nan does not count."""
         dt = t - self._t
         slope = (values - self._values) / dt
-        bend = (2.0 * max(dt, self._dt) ** 2 / (dt + self._dt)) * np.abs(slope - self._slope)
+        longer = max(dt, self._dt)
+        bend = (2.0 * longer**2 / (dt + self._dt)) * np.abs(slope - self._slope)
         bend = np.where(bend >= 0.0, bend, 0.0)
         self._values, self._slope, self._t, self._dt = values.copy(), slope, t, dt
         signed = _SIGNS * values
         new = signed > self._extreme
         self._since = np.where(new, 0.0, self._since + 1.0)
         self._extreme = np.where(new, signed, self._extreme)
-        near = np.where(self._since <= AFTER, np.maximum(self._around, bend), self._around)
-        self._around = np.where(new, np.maximum(self._past, bend), near)
+        near = self._since <= AFTER
+        kept = np.where(near, np.maximum(self._around, bend), self._around)
+        self._around = np.where(new, np.maximum(self._past, bend), kept)
+        self._steps = np.where(new, longer, np.where(near, np.fmax(self._steps, longer), self._steps))
         self._past = bend
+
+    @property
+    def least(self) -> Array:
+        """Least values (n,) yet; inf without any."""
+        return -self._extreme[0]
+
+    @property
+    def steps(self) -> Array:
+        """Longest steps [s] around the least and the largest values (2, n)."""
+        return self._steps
 
     @property
     def of_least(self) -> Array:

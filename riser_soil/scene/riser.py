@@ -52,7 +52,8 @@ class Segment(BaseModel):
     @model_validator(mode="after")
     def _cut_once(self) -> Self:
         if self.elements is None and self.element_length is None:
-            raise wrong("elements", "the elements are missing", "give either elements or element_length [m]")
+            remedy = "give either elements or element_length [m], or accuracy to the whole scene"
+            raise wrong("elements", "the elements are missing", remedy)
         if self.elements is not None and self.element_length is not None:
             raise wrong(
                 "elements", "elements and element_length are both given", "leave one out, or set it to null"

@@ -35,11 +35,12 @@ def last_stage(scene: Scene) -> Mapping:
         return found
 
 
-def heaved(amplitude: float, period: float, duration: float) -> Callable[[float], Scene]:
+def heaved(amplitude: float, period: float, duration: float, ramp: float = 10.0) -> Callable[[float], Scene]:
     """The first scene with another heave."""
     motion = f"stages.1.motion.end.harmonic.amplitude=[0.0, 0.0, {amplitude}]"
-    given = (motion, f"stages.1.motion.end.harmonic.period={period}", f"stages.1.duration={duration}")
-    return lambda dt: read_scene(FIRST_SCENE, [*given, f"stages.1.time_step={dt}", "output.interval=1.0"])
+    times = (f"stages.1.motion.end.harmonic.{name}={time}" for name, time in (("period", period), ("ramp", ramp)))
+    given = (motion, *times, f"stages.1.duration={duration}", "output.interval=1.0")
+    return lambda dt: read_scene(FIRST_SCENE, [*given, f"stages.1.time_step={dt}"])
 
 
 def moved(height: float, within: float, duration: float) -> Callable[[float], Scene]:
@@ -108,7 +109,7 @@ def swung(amplitude: list[float], period: float, steps: tuple[float, ...], schem
 
 
 STEPPED = {
-    "first scene": stepped(heaved(1.5, 10.0, 20.0), (0.8, 0.4, 0.1), 0.025),
+    "first scene": stepped(heaved(1.5, 10.0, 20.0), (1.0, 0.8, 0.4, 0.1), 0.025),
     "first scene, heave 3 m, 8 s": stepped(heaved(3.0, 8.0, 16.0), (0.4, 0.2, 0.1), 0.025),
     "first scene, heave 10 m, 4 s": stepped(heaved(10.0, 4.0, 4.0), (0.2, 0.1, 0.05), 0.0125),
     "let down by 5 m in 4 s": stepped(moved(-5.0, 4.0, 5.0), (0.2, 0.1, 0.05), 0.0125),
@@ -121,6 +122,23 @@ STEPPED = {
     "heave, midpoint rule": swung([0.0, 0.0, 2.0], 10.0, (2.5, 1.25, 0.5), MIDPOINT),
     "heave, rho_inf 0.5": swung([0.0, 0.0, 3.0], 12.0, (1.5, 0.75, 0.375), {"generalized_alpha": {"rho_inf": 0.5}}),
     "surge, damped Newmark": swung([4.0, 0.0, 0.0], 12.0, (1.5, 0.6, 0.3), DAMPED),
+}
+
+
+@dataclass(frozen=True)
+class Compressed:
+    """A scene by its time step in which the riser is compressed and gets taut again, steps to try [s] that do not show
+    with what force, and the largest tension in steps of 0.0125 s [N].
+    """
+
+    scene: Callable[[float], Scene]
+    steps: tuple[float, ...]
+    largest: float
+
+
+COMPRESSED = {
+    "heave 5 m, 8 s": Compressed(heaved(5.0, 8.0, 16.0, 8.0), (0.1, 0.05), 230.96e3),
+    "heave 4 m, 7 s": Compressed(heaved(4.0, 7.0, 14.0, 7.0), (0.1,), 194.83e3),
 }
 
 

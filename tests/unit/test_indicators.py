@@ -8,12 +8,15 @@ import numpy as np
 import pytest
 
 from riser_soil.core.snapshot import Ledger, StepStatistics
+from riser_soil.results.doubtful_extremes import AT, JUDGED
 from riser_soil.results.figures import places_of
-from riser_soil.results.indicators import AT, JUDGED, ImpactLoss, StageIndicators
+from riser_soil.results.indicators import ImpactLoss, StageIndicators
 from riser_soil.results.time_resolution import SHARE, TimeResolution
 
 SIZE = int(AT.max()) + 1
 TENSION = places_of("end.effective_tension").start
+LEAST = places_of("min_effective_tension").start
+MOMENT = places_of("max_bending_moment").start
 
 
 def resolved(dt: float, start: float = 0.0) -> TimeResolution:
@@ -82,6 +85,57 @@ def test_a_tension_that_turns_sharply_is_a_warning() -> None:
     assert list(followed([980.0, 995.0, 1000.0, 995.0, 980.0]).warnings()) == []
 
 
+def judged(least: list[float], moments: list[float] | None = None, automatic: bool = False) -> list[str]:
+    """Warnings of steps of 0.1 s with these least tensions and largest moments, while the end bears 1000 N."""
+    found, vector = StageIndicators(0.3, 1e3, 0.5, automatic), np.zeros(SIZE)
+    for n, tension in enumerate(least):
+        vector[[TENSION, LEAST, MOMENT]] = 1000.0, tension, moments[n] if moments else 0.0
+        found.follow(n * 0.1, vector, StepStatistics(3, 0.1, 0.0, 0), Ledger())
+    return list(found.warnings())
+
+
+def test_a_least_tension_that_turns_sharply_is_a_warning() -> None:
+    """Down by 40 N and up again: 0.3 times 80 N of the largest 1000 N, beside a tenth of 150 N, and to a third of that
+    as the square of the step; the largest value of the least tension is not asked.
+    """
+    assert judged([230.0, 190.0, 150.0, 190.0, 230.0]) == [
+        "the least effective tension may be off by some 24 N, 0.024 of 1000 N (told above 0.015): that sharply it "
+        "turns between steps of 0.1 s; take a time_step of 0.046 s, or auto"
+    ]
+    assert judged([150.0, 190.0, 230.0, 190.0, 150.0]) == []
+
+
+@pytest.mark.parametrize(
+    ("least", "allowed"), [(0.0, 10.0), (50.0, 10.0), (200.0, 20.0), (-200.0, 20.0), (-800.0, 30.0), (900.0, 30.0)]
+)
+def test_least_tension_is_told_from_a_tenth_of_its_size(least: float, allowed: float) -> None:
+    """Within 1 and 3 % of the largest tension. V-shaped, by a little more or less than what is allowed."""
+    for factor, warned in ((0.99, False), (1.01, True)):
+        off = factor * allowed / (2.0 * SHARE)
+        told = judged([least + 2.0 * off, least + off, least, least + off, least + 2.0 * off])
+        assert bool(told) == warned
+        assert not told or ("where the riser is compressed" in told[0]) == (least < 0.0)
+
+
+def test_tension_and_moment_are_told_of_each() -> None:
+    told = judged([230.0, 190.0, 150.0, 190.0, 230.0], [0.0, 100.0, 200.0, 100.0, 0.0])
+    assert [text.split(" may ")[0] for text in told] == ["the least effective tension", "the largest bending moment"]
+
+
+def test_automatic_steps_are_to_take_a_smaller_tolerance() -> None:
+    """Steps that are 0.456 as long have 0.456³ of the local error."""
+    (told,) = judged([230.0, 190.0, 150.0, 190.0, 230.0], automatic=True)
+    assert told.endswith("between steps of 0.1 s; take a tolerance of 0.095 of this one")
+
+
+def test_steps_that_are_told_are_those_around_the_extreme() -> None:
+    found, t = TimeResolution(1), 0.0
+    for dt, q in ((1.0, 0.0), (1.0, 1.0), (0.1, 2.0), (0.2, 3.0), (0.1, 2.0), (0.1, 1.0), (4.0, 0.5), (9.0, 0.4)):
+        t += dt
+        found.update(t, np.array([q]))
+    np.testing.assert_allclose(found.steps, [[1.0], [0.2]])
+
+
 def test_tension_beside_the_weight_is_too_small_to_judge() -> None:
     assert list(followed([0.0, 1e-6, -1e-6, 1e-6]).warnings()) == []
 
@@ -111,7 +165,8 @@ def test_steps_that_misplace_the_riser_are_a_warning() -> None:
 
 
 def test_indicators_come_back_as_they_were() -> None:
-    first, again = followed([600.0, 800.0, 1000.0], lost=5.0, local_error=0.1), StageIndicators()
+    first, again = followed([600.0, 800.0, 1000.0, 700.0], lost=5.0, local_error=0.1), StageIndicators()
+    first.automatic = True
     first.bending = {"moment_error": 3.0}
     again.restore(first.state())
     assert again.as_dict(True) == first.as_dict(True)

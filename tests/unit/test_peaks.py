@@ -66,3 +66,34 @@ def test_extremes_of_a_stage_three_ways() -> None:
     assert largest["sampled"] == pytest.approx(seen(0.1).riser.bending_moment.max())
     assert largest["of_nodes"] == pytest.approx(top * np.cos(0.1))
     assert largest["peaks"] == pytest.approx(top, rel=3e-4)
+
+
+def of_five(t: np.ndarray, moment: np.ndarray) -> float:
+    """The largest moment of a stage without what rings; moment: at steps t."""
+    peaks = RunPeaks()
+    peaks.begin_stage("motion", "dynamic")
+    line = Catenary(32.0, 30.0)
+    for at, size in zip(t.tolist(), moment.tolist(), strict=True):
+        riser = replace(line.riser(ARC), bending_moment=np.full(ARC.size, size))
+        peaks.record(at, Instant(ARC, riser, line.touch(ARC)))
+    largest: float = peaks.told("smooth")["stages"][0]["extremes"]["max_bending_moment"]["max"]
+    return largest
+
+
+RINGS = np.where(np.arange(21) % 2, -3.0, 3.0)
+
+
+@pytest.mark.parametrize("top", [1.0, 1.9, 2.0])
+def test_what_rings_from_step_to_step_is_taken_away(top: float) -> None:
+    """Also where the largest is among the last two steps; what a cubic follows stays."""
+    t = np.linspace(0.0, 2.0, 21)
+    cubic = 100.0 - 5.0 * (t - top) ** 2 - (t - top) ** 3
+    assert of_five(t, cubic) == pytest.approx(cubic.max())
+    rings = np.where(t < 0.45, 0.0, RINGS)
+    assert (cubic + rings).max() > cubic.max() + 2.0
+    assert of_five(t, cubic + rings) == pytest.approx(cubic.max(), abs=1e-9)
+
+
+def test_steps_of_different_lengths_tell_no_ringing() -> None:
+    t = np.linspace(0.0, 2.0, 21) ** 2
+    assert of_five(t, 100.0 + RINGS) == pytest.approx(103.0)

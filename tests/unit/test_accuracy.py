@@ -1,0 +1,215 @@
+"""Accuracy asked in a scene: how it is written, the setting chosen for it, the run that reaches it or says why not."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mpi4py import MPI
+from typer.testing import CliRunner
+
+from benchmarks.error_bars import references
+from benchmarks.error_bars.scenes import SCENES
+from riser_soil.accuracy import target_run
+from riser_soil.accuracy.first_setting import first_setting
+from riser_soil.accuracy.headlines import headlines
+from riser_soil.accuracy.search import trial
+from riser_soil.accuracy.target_run import run_to_accuracy
+from riser_soil.commands.app import app
+from riser_soil.errors import AccuracyError, Interruption, SceneError, SolveError
+from riser_soil.run import run
+from riser_soil.scene.reader import read_scene, scene_from_mapping
+from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage
+from tests.support.on_ranks import mpirun
+
+CHOSEN = ("elements", "element_length", "time_step", "tolerance", "stiffness", "mesh")
+
+
+def asking(name: str, accuracy: Any = "1 %", **more: Any) -> dict[str, Any]:
+    """A scene of known answer without what an accuracy stands for."""
+    given = SCENES[name]
+
+    def without(part: dict[str, Any]) -> dict[str, Any]:
+        return {key: value for key, value in part.items() if key not in CHOSEN}
+
+    riser = given["riser"] | {"segments": [without(segment) for segment in given["riser"]["segments"]]}
+    found = given | {"accuracy": accuracy, "riser": riser, "stages": [without(stage) for stage in given["stages"]]}
+    found |= {key: without(given[key]) for key in ("contact", "soil") if key in given}
+    return found | more
+
+
+def summary(folder: Path) -> Any:
+    return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+
+
+def worst(folder: Path, name: str) -> float:
+    """The largest true error of a run's headline quantities."""
+    told, known = headlines(summary(folder)), references.read()[name]
+    return max(each.relative(each.value - known[key][0]) for key, each in told.items() if key in known)
+
+
+@pytest.mark.parametrize(("given", "share"), [("1 %", 0.01), ("0.5%", 0.005), (" 20 % ", 0.2), (0.02, 0.02)])
+def test_accuracy_is_a_percentage(given: Any, share: float) -> None:
+    assert scene_from_mapping(asking("catenary, 35 elements", given)).accuracy == pytest.approx(share)
+
+
+@pytest.mark.parametrize("given", ["1", "25 %", "0.001 %", 1, 0.5, True, "good", "-1 %", ["1 %"]])
+def test_other_accuracies_are_refused(given: Any) -> None:
+    with pytest.raises(SceneError, match=r"accuracy.*must be a percentage from 0.01 % to 20 %, such as 1 %"):
+        scene_from_mapping(asking("catenary, 35 elements", given))
+
+
+@pytest.mark.parametrize(
+    ("name", "key"),
+    [
+        ("catenary, 35 elements", "riser.segments.0.elements"),
+        ("on springs", "riser.segments.0.element_length"),
+        ("surge, 40 steps", "stages.1.time_step"),
+        ("waves and surge, automatic steps", "stages.1.time_step"),
+        ("hose on a rigid floor", "contact.stiffness"),
+        ("pipe pressed on clay", "soil.mesh"),
+    ],
+)
+def test_what_it_stands_for_is_not_given_too(name: str, key: str) -> None:
+    chosen = asking(name)
+    part, of_key = chosen, key.split(".")
+    given: Any = SCENES[name]
+    for step in of_key[:-1]:
+        at: Any = int(step) if step.isdecimal() else step
+        part, given = part[at], given[at]
+    part[of_key[-1]] = given[of_key[-1]]
+    with pytest.raises(SceneError) as caught:
+        scene_from_mapping(chosen)
+    assert f"chooses what {key} gives; leave out {key}, or accuracy" in str(caught.value)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_other_mistakes_are_told_beside_it() -> None:
+    with pytest.raises(SceneError, match=r"riser\.segments: "):
+        scene_from_mapping(asking("catenary, 35 elements") | {"riser": {"segments": "none"}})
+
+
+def test_first_setting_has_steps_by_period_and_accuracy() -> None:
+    steps = []
+    for accuracy in ("1 %", "0.25 %"):
+        scene = first_setting(scene_from_mapping(asking("surge, 40 steps", accuracy)))
+        assert scene.accuracy is None
+        assert scene.riser.element_count == 24
+        motion = scene.stages[1]
+        assert isinstance(motion, DynamicStage)
+        steps.append(motion.time_step)
+    assert steps == pytest.approx([14.0 / 50.0, 14.0 / 100.0])
+
+
+def test_nothing_else_runs_before_the_setting_is_chosen(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match="are to be chosen first"):
+        run(scene_from_mapping(asking("catenary, 35 elements")), tmp_path / "run")
+
+
+@pytest.mark.parametrize("name", ["beam under tension, unresolved", "on springs, coarse", "hose on a rigid floor"])
+def test_statics_reach_it(name: str, tmp_path: Path) -> None:
+    run_to_accuracy(scene_from_mapping(asking(name)), tmp_path / "run")
+    told = summary(tmp_path / "run")
+    assert told["accuracy"]["reached"]
+    assert told["accuracy"]["largest_error"] <= 0.01
+    assert worst(tmp_path / "run", name) <= 0.01
+    assert told["finished"]
+
+
+def test_elements_are_short_where_curvature_asks_for_it() -> None:
+    """At the clamped ends of a taut beam, in a layer of 0.35 m; in the middle they are ten times as long."""
+    found = trial(first_setting(scene_from_mapping(asking("beam under tension, unresolved"))), 0.01, MPI.COMM_WORLD)
+    lengths = [x for segment in found.scene.riser.segments for x in segment.element_lengths]
+    assert max(lengths[0], lengths[-1]) < 0.35
+    assert max(lengths) > 10.0 * lengths[0]
+
+
+def test_motion_reaches_it_and_its_scene_is_kept(tmp_path: Path) -> None:
+    name = "beam under tension, sudden load"
+    run_to_accuracy(scene_from_mapping(asking(name)), tmp_path / "run")
+    assert worst(tmp_path / "run", name) <= 0.01
+    chosen = read_scene(tmp_path / "run" / "scene.yaml")
+    assert chosen.accuracy is None
+    run(chosen, tmp_path / "again")
+    told, again = (headlines(summary(tmp_path / folder)) for folder in ("run", "again"))
+    assert {key: each.value for key, each in told.items()} == {key: each.value for key, each in again.items()}
+
+
+def test_accuracy_that_is_not_reached_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The finest run is kept with its error bars; the command fails as a solve does."""
+    monkeypatch.setattr(target_run, "RUNS", 1)
+    file, folder = tmp_path / "scene.yaml", tmp_path / "run"
+    file.write_text(json.dumps(asking("cantilever under a sudden load", "20 %")), encoding="utf-8")
+    done = CliRunner().invoke(app, ["run", str(file), "-o", str(folder)])
+    assert done.exit_code == SolveError.exit_status
+    assert "accuracy: 20.00% was not reached: with" in done.output
+    told = summary(folder)
+    assert told["accuracy"]["reached"] is False
+    assert told["accuracy"]["largest_error"] > 0.2
+    assert max(bar["bar"] / abs(bar["value"]) for bar in told["error_bars"]["quantities"] if bar["bar"]) > 0.2
+    assert told["finished"]
+
+
+def test_a_run_too_large_to_follow_leaves_the_one_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    name, limits = "cantilever under a sudden load", [SceneError("needs 4 TB of memory"), None]
+
+    def limited(scene: Scene, *given: Any) -> None:
+        if limit := limits.pop():
+            raise limit
+        run(scene, *given)
+
+    monkeypatch.setattr(target_run, "run", limited)
+    with pytest.raises(AccuracyError, match=r"was not reached: .*; a finer one can't be run: needs 4 TB of memory"):
+        run_to_accuracy(scene_from_mapping(asking(name, "20 %")), tmp_path / "run")
+    assert summary(tmp_path / "run")["accuracy"]["reached"] is False
+
+
+def test_a_finished_run_is_refused_before_the_search(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = scene_from_mapping(asking("cantilever, tip load"))
+    run_to_accuracy(scene, tmp_path / "run")
+    monkeypatch.setattr(target_run, "trial", None)
+    with pytest.raises(SceneError, match="holds a finished run"):
+        run_to_accuracy(scene, tmp_path / "run")
+
+
+def test_a_signal_during_the_search_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def ended(scene: Scene, accuracy: float, comm: Any) -> None:
+        raise Interruption(2)
+
+    monkeypatch.setattr(target_run, "trial", ended)
+    with pytest.raises(Interruption, match="while a setting for the accuracy was sought; nothing was written"):
+        run_to_accuracy(scene_from_mapping(asking("cantilever, tip load")), tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
+def test_check_tells_the_setting_that_the_search_begins_with(tmp_path: Path) -> None:
+    file = tmp_path / "scene.yaml"
+    file.write_text(json.dumps(asking("surge, 40 steps")), encoding="utf-8")
+    done = CliRunner().invoke(app, ["check", str(file)])
+    assert done.exit_code == 0, done.output
+    assert "accuracy 1.00%: a run chooses elements and steps" in done.output
+    assert "riser: 24 elements" in done.output
+
+
+def test_ranks_choose_alike(tmp_path: Path) -> None:
+    file = tmp_path / "scene.yaml"
+    file.write_text(json.dumps(asking("on springs, coarse")), encoding="utf-8")
+    for ranks in (1, 2):
+        done = mpirun(ranks, "-m", "riser_soil", "run", "scene.yaml", "-o", f"on {ranks}", folder=tmp_path)
+        assert done.returncode == 0, done.stderr
+    one, two = (summary(tmp_path / f"on {ranks}") for ranks in (1, 2))
+    assert one["accuracy"]["settings"] == two["accuracy"]["settings"]
+    assert one["accuracy"]["largest_error"] == pytest.approx(two["accuracy"]["largest_error"], rel=1e-3)
+
+
+def test_error_is_of_the_run_that_is_told(tmp_path: Path) -> None:
+    """Bars of the summary are the accuracy's: the largest over its scale is what is told."""
+    run_to_accuracy(scene_from_mapping(asking("cantilever, tip load")), tmp_path / "run")
+    told = summary(tmp_path / "run")
+    scales = {key: each.scale for key, each in headlines(told).items()}
+    bars = told["error_bars"]["quantities"]
+    shares = {f"{bar['stage']}: {bar['name']}": bar["bar"] for bar in bars}
+    assert max(bar / scales[key] for key, bar in shares.items()) == pytest.approx(told["accuracy"]["largest_error"])

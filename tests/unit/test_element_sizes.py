@@ -1,0 +1,112 @@
+"""Element lengths by curvature: of known curves, and of the stretches that they are told in."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from riser_soil.accuracy.element_sizes import FORGIVEN, GAP, GROWTH, SHRINK, TENSION_SCALE, CurveEnvelope, graded
+from riser_soil.core.arrays import Array
+from riser_soil.core.snapshot import Instant
+from riser_soil.scene.riser import Segment
+from tests.support.recorded_run import Catenary
+
+LENGTH, SHARE = 100.0, 0.01
+ARC = np.linspace(0.0, LENGTH, 201)
+LIMP = {"curvature": np.zeros(ARC.size)}  # no EI that tension acts against
+
+
+def seen(moment: Array, tension: Array, **more: Array) -> Instant:
+    """A riser with such a moment about y and tension along it."""
+    line = Catenary(32.0, 30.0)
+    vector = np.zeros((ARC.size, 3))
+    vector[:, 1] = moment
+    given = {"moment_vector": vector, "bending_moment": np.abs(moment), "effective_tension": tension} | LIMP | more
+    return Instant(ARC, replace(line.riser(ARC), **given), line.touch(ARC))
+
+
+def envelope(*instants: Instant) -> CurveEnvelope:
+    made = CurveEnvelope()
+    for instant in instants:
+        made.follow(instant)
+    return made
+
+
+def asked(made: CurveEnvelope, place: float) -> float:
+    """Length [m] at an arc, as asked."""
+    return float(np.interp(place, ARC, made.lengths(SHARE)))
+
+
+BULGE = 1e3 * (1.0 - (2.0 * ARC / LENGTH - 1.0) ** 2)  # M'' = 0.8 N/m everywhere
+EVEN = np.full(ARC.size, 5e4)
+
+
+def test_a_straight_line_misses_a_parabola_by_the_share() -> None:
+    middle = asked(envelope(seen(BULGE, EVEN)), 50.0)
+    assert middle**2 * 0.8 / 8.0 == pytest.approx(GAP * SHARE * 1e3, rel=1e-6)
+
+
+def test_a_smaller_moment_may_be_missed_by_more() -> None:
+    aside = asked(envelope(seen(BULGE, EVEN)), 25.0)
+    assert aside**2 * 0.8 / 8.0 == pytest.approx(GAP * SHARE * 1e3 + FORGIVEN * 250.0, rel=1e-3)
+
+
+def test_tension_asks_by_its_scale() -> None:
+    tension = 4e4 + 4.0 * (ARC - 50.0) ** 2
+    middle = asked(envelope(seen(0.0 * BULGE, tension)), 50.0)
+    assert middle**2 * 8.0 / 8.0 == pytest.approx(GAP * SHARE * TENSION_SCALE * tension.max(), rel=1e-6)
+
+
+def test_tension_over_stiffness_keeps_elements_to_what_a_cubic_follows() -> None:
+    EI = 1e2
+    middle = asked(envelope(seen(BULGE, EVEN, curvature=BULGE / EI)), 50.0)
+    assert 5e4 * middle**4 * 0.8 / EI / 384.0 == pytest.approx(GAP * SHARE * 1e3, rel=1e-6)
+
+
+def test_straight_risers_ask_for_nothing() -> None:
+    assert np.isinf(envelope(seen(0.0 * BULGE, EVEN)).lengths(SHARE)).all()
+
+
+def test_the_worst_instant_counts() -> None:
+    """Also where the direction of the moment turns, which its size does not show."""
+    calm, bent = seen(BULGE, EVEN), seen(4.0 * BULGE, EVEN)
+    both = envelope(calm, bent, calm)
+    assert both.lengths(SHARE) == pytest.approx(envelope(bent).lengths(SHARE))
+    turned = seen(1e3 * (ARC / LENGTH - 0.5), EVEN)  # straight through zero: nothing to miss
+    assert asked(envelope(turned), 50.0) == np.inf
+
+
+def test_what_is_not_resolved_shrinks_step_by_step() -> None:
+    spike = np.where(ARC == 50.0, 1e3, 0.0)
+    assert asked(envelope(seen(spike, EVEN)), 50.0) == pytest.approx(0.5 / SHRINK)
+
+
+def test_excess_is_the_worst_length_over_the_length_asked_for() -> None:
+    made = envelope(seen(BULGE, EVEN))
+    assert made.excess(SHARE) == pytest.approx(0.5 / made.lengths(SHARE).min(), rel=1e-6)
+
+
+def layered() -> CurveEnvelope:
+    """Moment that falls off within a layer of 2 m from the start."""
+    return envelope(seen(1e3 * np.exp(-ARC / 2.0), EVEN))
+
+
+def test_stretches_follow_the_curve_and_keep_the_segments_whole() -> None:
+    segments = (Segment(line_type="a", length=60.0, elements=6), Segment(line_type="b", length=40.0, elements=4))
+    made = graded(segments, layered(), SHARE)
+    assert [math.fsum(s.length for s in made if s.line_type == name) for name in "ab"] == pytest.approx([60.0, 40.0])
+    lengths = np.array([x for segment in made for x in segment.element_lengths])
+    assert lengths[0] == pytest.approx(math.sqrt(8.0 * GAP * SHARE * 1e3 / 250.0), rel=0.25)
+    assert lengths.max() <= LENGTH / 12 * 1.001
+    assert max(b / a for a, b in pairwise(lengths)) < 1.0 + 2.0 * GROWTH
+    fine = np.array([x for segment in graded(segments, layered(), SHARE / 100.0) for x in segment.element_lengths])
+    assert fine[0] < 0.2 * lengths[0]
+
+
+def test_a_short_segment_has_two_elements_at_least() -> None:
+    segments = (Segment(line_type="a", length=99.0, elements=6), Segment(line_type="b", length=1.0, elements=4))
+    assert graded(segments, envelope(seen(0.0 * BULGE, EVEN)), SHARE)[-1].element_count == 2

@@ -1,0 +1,98 @@
+"""How much finer a setting has to be: of made-up error bars, and what is left of them afterwards."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, STEP_GAP, ErrorBar, RunValues
+from riser_soil.accuracy.headlines import Headline
+from riser_soil.accuracy.needed import COST, MARGIN, MOST, NOT_KNOWN, ORDER, expected, largest, needed
+
+VALUE = 1000.0
+HEADLINE = Headline("hang", "top tension", "N", VALUE, 100.0)
+KEY = HEADLINE.key
+
+
+def bar(**shares: float) -> ErrorBar:
+    """Shares relative to the value."""
+    by_source = {source: share * VALUE for source, share in shares.items()}
+    return ErrorBar(HEADLINE, math.hypot(*by_source.values()) + SMALLEST * VALUE, by_source)
+
+
+def values(told: float, peak: float | None = None) -> RunValues:
+    """A run's; peak: between its steps."""
+    headline = Headline("hang", "top tension", "N", told, 100.0)
+    return RunValues({KEY: headline}, {KEY: told}, {KEY: told if peak is None else peak}, {KEY: told})
+
+
+def left(given: ErrorBar, factors: dict[str, float]) -> float:
+    """The relative bar once each source is finer."""
+    return math.hypot(*(b / VALUE / factors.get(s, 1.0) ** ORDER[s] for s, b in given.by_source.items())) + SMALLEST
+
+
+@pytest.mark.parametrize(
+    "shares",
+    [{"time": 0.05}, {"mesh": 0.03, "time": 0.001}, {"mesh": 0.02, "time": 0.04, "penalty": 0.03}, {"soil": 0.015}],
+)
+def test_bars_just_keep_to_the_margin(shares: dict[str, float]) -> None:
+    given = bar(**shares)
+    assert left(given, dict(needed([given], 0.01))) == pytest.approx(MARGIN * 0.01, rel=1e-6)
+
+
+def test_no_cheaper_way_leads_there() -> None:
+    """The cost is the product of powers; other ways of sharing the error out cost more."""
+    given = bar(mesh=0.02, time=0.04)
+    factors = dict(needed([given], 0.01))
+
+    def cost(at: dict[str, float]) -> float:
+        return math.prod(factor ** COST[source] for source, factor in at.items())
+
+    for mesh in (0.9, 0.97, 1.03, 1.1):
+        other = factors | {"mesh": mesh * factors["mesh"]}
+        of_time = math.sqrt((MARGIN * 0.01 - SMALLEST) ** 2 - (0.02 / other["mesh"] ** ORDER["mesh"]) ** 2)
+        other["time"] = (0.04 / of_time) ** (1.0 / ORDER["time"])
+        assert left(given, other) == pytest.approx(MARGIN * 0.01)
+        assert cost(other) > cost(factors)
+
+
+def test_what_is_accurate_enough_stays() -> None:
+    assert not needed([bar(mesh=0.002, time=0.003)], 0.01)
+    assert set(needed([bar(mesh=0.0001, time=0.05)], 0.01)) == {"time"}
+
+
+def test_the_worst_quantity_counts_and_no_step_is_huge() -> None:
+    found = needed([bar(time=0.02), bar(time=0.05), bar(mesh=100.0)], 0.01)
+    assert found["time"] == pytest.approx(math.sqrt(0.05 / (MARGIN * 0.01 - SMALLEST)))
+    assert found["mesh"] == MOST["mesh"]
+
+
+def test_unknown_bars_ask_for_a_finer_setting() -> None:
+    unknown = ErrorBar(HEADLINE, None, {"time": 1.0}, "a companion failed")
+    assert needed([unknown], 0.01) == {"mesh": NOT_KNOWN, "time": NOT_KNOWN}
+    assert largest([unknown, bar(time=0.5)]) == (math.inf, KEY)
+
+
+def test_shares_fall_by_their_orders() -> None:
+    (found,) = expected([bar(mesh=0.02, time=0.04)], values(1000.0), values(1010.0), {"mesh": 2.0, "time": 4.0})
+    assert found.by_source == pytest.approx({"mesh": 5.0, "time": 2.5})
+    assert found.bar == pytest.approx(math.hypot(5.0, 2.5) + SMALLEST * 1010.0)
+
+
+def test_bars_grow_where_the_runs_are_further_apart_than_they_said() -> None:
+    before = bar(time=0.02)
+    assert before.bar is not None
+    (found,) = expected([before], values(1000.0), values(1000.0 + 3.0 * before.bar), {"time": 2.0})
+    assert found.by_source["time"] == pytest.approx(3.0 * 20.0 / 4.0)
+
+
+def test_what_falls_between_the_runs_own_steps_is_kept() -> None:
+    (found,) = expected([bar(time=0.02)], values(1000.0), values(1000.0, peak=1008.0), {"time": 10.0})
+    assert found.by_source["time"] == pytest.approx(SAFETY["time"] * STEP_GAP * 8.0)
+
+
+def test_a_quantity_that_the_run_before_lacks_is_not_known() -> None:
+    (found,) = expected([], values(1000.0), values(1000.0), {})
+    assert found.bar is None
+    assert "the run before does not have it" in found.reason
