@@ -159,7 +159,27 @@ def _finer_soil(scene: Scene, factor: float) -> Scene:
 def _stiffer_penalty(scene: Scene, factor: float) -> Scene:
     contact = scene.contact
     assert contact is not None
-    return scene.model_copy(update={"contact": contact.model_copy(update={"stiffness": _penalty(scene) * factor})})
+    stiffness = _penalty(scene) * factor
+    made = {"stiffness": stiffness} | _corner(scene, stiffness)
+    return scene.model_copy(update={"contact": contact.model_copy(update=made)})
+
+
+def _corner(scene: Scene, stiffness: float) -> dict[str, float]:
+    """Of a rigid seabed so stiff that the automatic corner would be wider than what the riser sinks in by its weight.
+
+    Where an end is held on the seabed such a corner presses the riser by a force that grows with the penalty, to no
+    limit.
+    """
+    from riser_soil.assembly.ground import NARROWEST_CORNER
+    from riser_soil.assembly.riser import elements_of
+    from riser_soil.assembly.scales import scales_of
+
+    contact = scene.contact
+    if contact is None or contact.smoothing != "auto" or scene.soil is not None:
+        return {}
+    scales = scales_of(elements_of(scene))
+    at_rest = scales.weight / stiffness
+    return {"smoothing": at_rest} if at_rest < NARROWEST_CORNER * scales.diameter else {}
 
 
 def _penalty(scene: Scene) -> float:
