@@ -6,13 +6,13 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, ErrorBar, RunValues, gaps
+from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, ErrorBar, RunValues, gaps, order_of
 
 #: Orders in which shares of errors fall, gaps between nodes and steps included; what fineness costs, as a power.
 ORDER = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}
 COST = {"mesh": 0.7, "time": 1.0, "soil": 3.0, "penalty": 0.1}
 MARGIN = 0.8  # of the accuracy, that the bars are to keep to
-MOST = {"mesh": 4.0, "time": 4.0, "soil": 2.0, "penalty": 4.0}  # from one setting to the next
+MOST = {"mesh": 4.0, "time": 4.0, "soil": 2.0, "penalty": 10.0}  # from one setting to the next
 NOT_KNOWN = 2.0  # finer in mesh and time, where a bar is not known
 
 Factors = Mapping[str, float]  # by source: how many times as fine
@@ -51,13 +51,14 @@ def _of_quantity(bar: ErrorBar, accuracy: float) -> Factors:
         return {"mesh": NOT_KNOWN} | ({"time": NOT_KNOWN} if "time" in bar.by_source else {})
     allowed = (MARGIN * accuracy - SMALLEST) * bar.headline.scale
     left, shares = allowed**2, dict(bar.by_source)
+    order = {source: order_of(source, bar.headline.name, ORDER) for source in shares}
     while True:
-        weights = {source: COST[source] / ORDER[source] for source in shares}
+        weights = {source: COST[source] / order[source] for source in shares}
         whole = math.fsum(weights.values())
         aims = {source: math.sqrt(left * weight / whole) for source, weight in weights.items()}
         small = [source for source, aim in aims.items() if shares[source] <= aim]
         if not small:
-            return {source: (shares[source] / aim) ** (1.0 / ORDER[source]) for source, aim in aims.items()}
+            return {source: (shares[source] / aim) ** (1.0 / order[source]) for source, aim in aims.items()}
         left -= math.fsum(shares.pop(source) ** 2 for source in small)
 
 
@@ -70,7 +71,8 @@ def _expected(
     apart = abs(found.peaks[key] - before.peaks[key])
     larger = max(1.0, apart / bar.bar) if bar.bar > 0.0 else 1.0
     own = {source: SAFETY[source] * gap for source, gap in gaps(headline, found).items()}
-    left = {s: larger * each / factors.get(s, 1.0) ** ORDER[s] for s, each in bar.by_source.items()}
+    order = {source: order_of(source, headline.name, ORDER) for source in bar.by_source}
+    left = {s: larger * each / factors.get(s, 1.0) ** order[s] for s, each in bar.by_source.items()}
     shares = {source: max(own.get(source, 0.0), each) for source, each in (own | left).items()}
     whole = math.hypot(*shares.values()) + SMALLEST * headline.scale
     return replace(bar, headline=headline, bar=whole, by_source=shares)

@@ -55,6 +55,11 @@ def test_a_smaller_moment_may_be_missed_by_more() -> None:
     assert aside**2 * 0.8 / 8.0 == pytest.approx(GAP * SHARE * 1e3 + FORGIVEN * 250.0, rel=1e-3)
 
 
+def test_tension_of_round_off_asks_for_nothing() -> None:
+    noise = 1e-6 * (-1.0) ** np.arange(ARC.size)
+    assert asked(envelope(seen(BULGE, noise)), 50.0) == pytest.approx(asked(envelope(seen(BULGE, EVEN)), 50.0))
+
+
 def test_tension_asks_by_its_scale() -> None:
     tension = 4e4 + 4.0 * (ARC - 50.0) ** 2
     middle = asked(envelope(seen(0.0 * BULGE, tension)), 50.0)

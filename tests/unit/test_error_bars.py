@@ -61,6 +61,12 @@ def test_elements_that_touch_down_have_a_lower_order() -> None:
     assert divisor(Companion("mesh", 2.0, {}), 0.0, touches=False) == pytest.approx(15.0)
 
 
+def test_contact_force_falls_with_the_fourth_root_of_the_penalty() -> None:
+    penalty = Companion("penalty", 16.0, {})
+    assert divisor(penalty, 0.0, touches=True, name="largest contact force") == pytest.approx(1.0)
+    assert divisor(penalty, 0.0, touches=True, name="top tension") == pytest.approx(7.0)
+
+
 def test_large_differences_are_hardly_divided() -> None:
     assert divisor(Companion("time", 5.0, {}), 10.0, touches=False) == pytest.approx(1.0, abs=0.05)
 

@@ -10,6 +10,8 @@ import pytest
 
 from riser_soil.accuracy.knobs import KNOBS, Knob, knobs_of, resolved, varied
 from riser_soil.assembly import sized
+from riser_soil.assembly.riser import elements_of
+from riser_soil.assembly.scales import scales_of
 from riser_soil.errors import SceneError
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import scene_from_mapping
@@ -139,3 +141,16 @@ def test_automatic_sizes_and_penalties_are_turned_as_the_numbers_that_they_stand
 def test_more_elements_than_a_riser_may_have_are_refused() -> None:
     with pytest.raises(SceneError, match="elements of the riser, 1e\\+06 times as fine: more than 1000000 elements"):
         varied(scene(LAY), ELEMENTS, 1e6)
+
+
+def test_a_very_stiff_floor_has_a_corner_no_wider_than_what_the_riser_sinks_in() -> None:
+    given = scene(LAY, without=("soil",), seabed={"kind": "rigid"})
+    stiff, stiffer = varied(given, PENALTY, 2.0), varied(given, PENALTY, 200.0)
+    assert stiff.contact is not None
+    assert stiffer.contact is not None
+    weight = scales_of(elements_of(given)).weight
+    assert stiff.contact.smoothing == "auto"
+    assert stiffer.contact.smoothing == pytest.approx(weight / float(stiffer.contact.stiffness))
+    assert varied(stiffer, PENALTY, 3.0).contact == stiffer.contact.model_copy(
+        update={"stiffness": 3.0 * float(stiffer.contact.stiffness)}
+    )
