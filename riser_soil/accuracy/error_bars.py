@@ -24,7 +24,7 @@ SOURCES = {"elements": "mesh", "time_step": "time", "soil_mesh": "soil", "penalt
 SMALLEST = 5e-5  # bar told, over the quantity's scale
 FREE, TOUCHING = 4.0, 2.0  # orders of elements that hang, and where contact begins and ends within one
 ORDER = {"time": 2.0, "soil": 1.0, "penalty": 0.75}
-#: Of the penalty in a contact force: what an end that is held on the ground bears falls with the length, (4 EI/k)^(1/4),
+#: Of the penalty in a contact force: what an end that is held on the ground bears falls with the length (4 EI/k)^(1/4)
 #: within which the riser sinks in beside it (beam on an elastic foundation).
 CONTACT_FORCE, ORDER_OF_CONTACT_FORCE = "largest contact force", 0.25
 SAFETY = {"mesh": 1.5, "time": 2.0, "soil": 5.0, "penalty": 2.1}

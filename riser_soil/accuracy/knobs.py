@@ -7,6 +7,7 @@ among its knobs: soil of a mesh file has no mesh to vary, a bed of springs or of
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -165,9 +166,10 @@ def _stiffer_penalty(scene: Scene, factor: float) -> Scene:
 
 
 def _corner(scene: Scene, stiffness: float) -> dict[str, float]:
-    """Of a rigid seabed so stiff that the automatic corner would be wider than what the riser sinks in by its weight.
+    """Of a rigid seabed so stiff that the automatic corner would be wider than what the riser sinks in by its weight:
+    just that, also where it was that before.
 
-    Where an end is held on the seabed such a corner presses the riser by a force that grows with the penalty, to no
+    Where an end is held on the seabed a wider one presses the riser by a force that grows with the penalty, to no
     limit.
     """
     from riser_soil.assembly.ground import NARROWEST_CORNER
@@ -175,11 +177,14 @@ def _corner(scene: Scene, stiffness: float) -> dict[str, float]:
     from riser_soil.assembly.scales import scales_of
 
     contact = scene.contact
-    if contact is None or contact.smoothing != "auto" or scene.soil is not None:
+    if contact is None or scene.soil is not None:
         return {}
     scales = scales_of(elements_of(scene))
-    at_rest = scales.weight / stiffness
-    return {"smoothing": at_rest} if at_rest < NARROWEST_CORNER * scales.diameter else {}
+    width, at_rest = contact.smoothing, scales.weight / stiffness
+    if width == "auto":
+        return {"smoothing": at_rest} if at_rest < NARROWEST_CORNER * scales.diameter else {}
+    follows = math.isclose(float(width) * _penalty(scene), scales.weight, rel_tol=1e-6)
+    return {"smoothing": at_rest} if follows else {}
 
 
 def _penalty(scene: Scene) -> float:
