@@ -24,9 +24,9 @@ SOURCES = {"elements": "mesh", "time_step": "time", "soil_mesh": "soil", "penalt
 SMALLEST = 5e-5  # bar told, over the quantity's scale
 FREE, TOUCHING = 4.0, 2.0  # orders of elements that hang, and where contact begins and ends within one
 ORDER = {"time": 2.0, "soil": 1.0, "penalty": 0.75}
-#: Of the penalty in a contact force: what an end that is held on the ground bears falls with the length (4 EI/k)^(1/4)
-#: within which the riser sinks in beside it (beam on an elastic foundation).
-CONTACT_FORCE, ORDER_OF_CONTACT_FORCE = "largest contact force", 0.25
+#: Orders in a contact force. Beside an end that is held on the ground the riser sinks in within (4 EI/k)^(1/4) (beam on
+#: an elastic foundation), or within an element where that is longer; what lies there, the end bears.
+CONTACT_FORCE, OF_CONTACT_FORCE = "largest contact force", {"mesh": 1.0, "penalty": 0.25}
 SAFETY = {"mesh": 1.5, "time": 2.0, "soil": 5.0, "penalty": 2.1}
 LARGE = {"mesh": 0.03, "time": 0.01}  # differences, over the scale, that are half way to the divisor 1
 RINGING = 2.0  # times what rings from step to step
@@ -102,15 +102,14 @@ def divisor(companion: Companion, off: float, touches: bool, name: str = "") -> 
     the quantity.
     """
     source = companion.source
-    order = (TOUCHING if touches else FREE) if source == "mesh" else order_of(source, name, ORDER)
+    order = order_of(source, name, ORDER | {"mesh": TOUCHING if touches else FREE})
     asymptotic = companion.ratio**order - 1.0
     return 1.0 + (asymptotic - 1.0) / (1.0 + off / LARGE[source]) if source in LARGE else asymptotic
 
 
 def order_of(source: str, name: str, orders: Mapping[str, float]) -> float:
     """Of the orders by source, that in which the error of a quantity of this name falls."""
-    slow = source == "penalty" and name == CONTACT_FORCE
-    return ORDER_OF_CONTACT_FORCE if slow else orders[source]
+    return OF_CONTACT_FORCE.get(source, orders[source]) if name == CONTACT_FORCE else orders[source]
 
 
 def gaps(headline: Headline, run: RunValues) -> dict[str, float]:
