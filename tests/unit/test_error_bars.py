@@ -61,7 +61,8 @@ def test_elements_that_touch_down_have_a_lower_order() -> None:
     assert divisor(Companion("mesh", 2.0, {}), 0.0, touches=False) == pytest.approx(15.0)
 
 
-def test_contact_force_falls_with_the_fourth_root_of_the_penalty() -> None:
+def test_contact_force_falls_by_its_own_orders() -> None:
+    assert divisor(Companion("mesh", 2.0, {}), 0.0, touches=True, name="largest contact force") == pytest.approx(1.0)
     penalty = Companion("penalty", 16.0, {})
     assert divisor(penalty, 0.0, touches=True, name="largest contact force") == pytest.approx(1.0)
     assert divisor(penalty, 0.0, touches=True, name="top tension") == pytest.approx(7.0)
