@@ -42,7 +42,7 @@ class HandCost:
 class AskedScene:
     """errors: true ones; None where no run was left. said: why the accuracy was not reached, empty where it was.
 
-    setting: the one chosen, in words. cost: None where nothing by hand reaches the accuracy, or nothing was compared.
+    setting: the one chosen, in words. cost: None where it is not compared with a setting by hand.
     """
 
     name: str
@@ -81,7 +81,7 @@ def asked(name: str, mapping: Mapping, reference: Reference, hand: HandSetting |
             return AskedScene(name, None, said, "none")
         errors, scene = true_errors(folder, reference), read_scene(folder / SCENE)
         setting = ", ".join(knob.told(scene) for knob in knobs_of(scene))
-        if hand is None:
+        if hand is None or said:
             return AskedScene(name, errors, said, setting)
         _, chosen = run_errors(scene, beside, reference)
         _, by_hand = run_errors(turned(mapping, hand.factors), beside, reference)
