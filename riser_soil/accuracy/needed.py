@@ -13,17 +13,33 @@ ORDER = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}
 COST = {"mesh": 0.7, "time": 1.0, "soil": 3.0, "penalty": 0.1}
 MARGIN = 0.8  # of the accuracy, that the bars are to keep to
 MOST = {"mesh": 4.0, "time": 4.0, "soil": 2.0, "penalty": 10.0}  # from one setting to the next
+#: Finer cells by more than that, in a scene's first setting, are beyond what a machine bears: soil grows by the cube.
+BEYOND = {"soil": 2.0}
 NOT_KNOWN = 2.0  # finer in mesh and time, where a bar is not known
 
 Factors = Mapping[str, float]  # by source: how many times as fine
 
 
 def needed(bars: Sequence[ErrorBar], accuracy: float) -> Factors:
-    """For all bars to keep to the accuracy, a share of their quantities' scales, at the least cost; at most `MOST`."""
+    """For all bars to keep to the accuracy, a share of their quantities' scales, at the least cost; at most `MOST`, and
+    nothing in a source that is out of reach.
+    """
+    found, lost = _asked(bars, accuracy), out_of_reach(bars, accuracy)
+    return {source: min(factor, MOST[source]) for source, factor in found.items() if source not in lost}
+
+
+def out_of_reach(bars: Sequence[ErrorBar], accuracy: float) -> list[str]:
+    """Sources that would have to be finer than can be."""
+    found = _asked(bars, accuracy)
+    return [source for source, most in BEYOND.items() if found.get(source, 1.0) > most]
+
+
+def _asked(bars: Sequence[ErrorBar], accuracy: float) -> Factors:
+    """The largest factors that any of the quantities asks for, however large."""
     found: dict[str, float] = {}
     for bar in bars:
         for source, factor in _of_quantity(bar, accuracy).items():
-            found[source] = max(found.get(source, 1.0), min(factor, MOST[source]))
+            found[source] = max(found.get(source, 1.0), factor)
     return found
 
 

@@ -17,7 +17,7 @@ from riser_soil.accuracy.barred_run import values_of_run, write_bars
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar
 from riser_soil.accuracy.first_setting import first_setting
 from riser_soil.accuracy.knobs import knobs_of
-from riser_soil.accuracy.needed import expected, largest, needed
+from riser_soil.accuracy.needed import expected, largest, needed, out_of_reach
 from riser_soil.accuracy.screen import print_bars
 from riser_soil.accuracy.search import TriedSetting, finer, trial
 from riser_soil.errors import AccuracyError, Interruption, MeshError, SceneError
@@ -69,6 +69,8 @@ def _run_until(
             return last, f"; a finer one can't be run: {err}"
         if largest(last.bars)[0] <= accuracy:
             break
+        if lost := out_of_reach(last.bars, accuracy):
+            return last, f"; what the {lost[0]} asks for is out of reach"
     return last, ""
 
 

@@ -18,12 +18,15 @@ from tests.support.vtk_reading import times_by_vtk
 SCENE = ROOT / "demos" / "first_scene.yaml"
 # Every step is recorded, and the files grow all the time.
 ENDLESS = ("--set", "stages.1.duration=1e4", "--set", "output.interval=0.1")
-# The command, in a process that may write no file longer than so many bytes. MPI needs some when it starts.
+# The command, in a process that may write no file longer than so many bytes. MPI needs some when it starts. Rows go to
+# disk every tenth of a second, so that what fits does not hang on how many a fast machine gathers in a second.
 ON_A_SMALL_DISK = """
 import resource, sys
 import riser_soil.run
 from riser_soil.__main__ import main
+from riser_soil.results import record
 
+record._FLUSH_EVERY = 0.1
 resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv.pop(1)),) * 2)
 sys.argv[0] = "riser-soil"
 main()

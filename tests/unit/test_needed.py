@@ -8,7 +8,7 @@ import pytest
 
 from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, STEP_GAP, ErrorBar, RunValues
 from riser_soil.accuracy.headlines import Headline
-from riser_soil.accuracy.needed import COST, MARGIN, MOST, NOT_KNOWN, ORDER, expected, largest, needed
+from riser_soil.accuracy.needed import COST, MARGIN, MOST, NOT_KNOWN, ORDER, expected, largest, needed, out_of_reach
 
 VALUE = 1000.0
 HEADLINE = Headline("hang", "top tension", "N", VALUE, 100.0)
@@ -66,6 +66,14 @@ def test_the_worst_quantity_counts_and_no_step_is_huge() -> None:
     found = needed([bar(time=0.02), bar(time=0.05), bar(mesh=100.0)], 0.01)
     assert found["time"] == pytest.approx(math.sqrt(0.05 / (MARGIN * 0.01 - SMALLEST)))
     assert found["mesh"] == MOST["mesh"]
+
+
+def test_soil_that_would_have_to_be_far_finer_stays_as_it_is() -> None:
+    """Twice as fine is eight times as many cells; the other sources are as fine as they would be beside it."""
+    assert needed([bar(soil=0.015)], 0.01)["soil"] == pytest.approx(0.015 / (MARGIN * 0.01 - SMALLEST))
+    assert not out_of_reach([bar(soil=0.015)], 0.01)
+    assert set(needed([bar(soil=0.03, time=0.03)], 0.01)) == {"time"}
+    assert out_of_reach([bar(soil=0.03, time=0.03)], 0.01) == ["soil"]
 
 
 def test_unknown_bars_ask_for_a_finer_setting() -> None:

@@ -73,9 +73,9 @@ def of_five(t: np.ndarray, moment: np.ndarray) -> float:
     peaks = RunPeaks()
     peaks.begin_stage("motion", "dynamic")
     line = Catenary(32.0, 30.0)
-    for at, size in zip(t.tolist(), moment.tolist(), strict=True):
+    for at, size in zip(t, moment, strict=True):
         riser = replace(line.riser(ARC), bending_moment=np.full(ARC.size, size))
-        peaks.record(at, Instant(ARC, riser, line.touch(ARC)))
+        peaks.record(float(at), Instant(ARC, riser, line.touch(ARC)))
     largest: float = peaks.told("smooth")["stages"][0]["extremes"]["max_bending_moment"]["max"]
     return largest
 
