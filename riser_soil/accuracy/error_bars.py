@@ -15,7 +15,7 @@ the bars.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from riser_soil.accuracy.headlines import Headline
@@ -24,8 +24,8 @@ SOURCES = {"elements": "mesh", "time_step": "time", "soil_mesh": "soil", "penalt
 SMALLEST = 5e-5  # bar told, over the quantity's scale
 FREE, TOUCHING = 4.0, 2.0  # orders of elements that hang, and where contact begins and ends within one
 ORDER = {"time": 2.0, "soil": 1.0, "penalty": 0.75}
-#: Orders in a contact force. Beside an end that is held on the ground the riser sinks in within (4 EI/k)^(1/4) (beam on
-#: an elastic foundation), or within an element where that is longer; what lies there, the end bears.
+#: Orders in a contact force by a penalty. Beside an end that is held on the ground the riser sinks in within a length
+#: (4 EI/k)^(1/4) (beam on an elastic foundation), or an element where that is longer; what lies there, the end bears.
 CONTACT_FORCE, OF_CONTACT_FORCE = "largest contact force", {"mesh": 1.0, "penalty": 0.25}
 SAFETY = {"mesh": 1.5, "time": 2.0, "soil": 5.0, "penalty": 2.1}
 LARGE = {"mesh": 0.03, "time": 0.01}  # differences, over the scale, that are half way to the divisor 1
@@ -78,6 +78,7 @@ def error_bars(run: RunValues, chain: Sequence[Companion], touches: bool) -> lis
 
 def _bar(headline: Headline, run: RunValues, chain: Sequence[Companion], touches: bool) -> ErrorBar:
     key, scale = headline.key, headline.scale
+    order = orders(headline.name, {each.source for each in chain}, TOUCHING if touches else FREE)
     shares, unknown = gaps(headline, run), list[str]()
     before: Values | None = run.peaks
     for companion in chain:
@@ -86,7 +87,7 @@ def _bar(headline: Headline, run: RunValues, chain: Sequence[Companion], touches
             assert before is not None
             assert companion.values is not None
             off = abs(companion.values[key] - before[key])
-            told = off / divisor(companion, off / scale if scale > 0.0 else 0.0, touches, headline.name)
+            told = off / divisor(companion, off / scale if scale > 0.0 else 0.0, order[companion.source])
             shares[companion.source] = shares.get(companion.source, 0.0) + told
         else:
             unknown.append(f"{companion.source}: {companion.reason or 'a companion does not have it'}")
@@ -97,19 +98,17 @@ def _bar(headline: Headline, run: RunValues, chain: Sequence[Companion], touches
     return ErrorBar(headline, math.hypot(*shares.values()) + SMALLEST * scale, shares)
 
 
-def divisor(companion: Companion, off: float, touches: bool, name: str = "") -> float:
-    """Ratio of the difference to the error of the finer one of two runs. off: the difference over its scale. name: of
-    the quantity.
-    """
+def divisor(companion: Companion, off: float, order: float) -> float:
+    """Ratio of the difference to the error of the finer one of two runs. off: the difference over its scale."""
     source = companion.source
-    order = order_of(source, name, ORDER | {"mesh": TOUCHING if touches else FREE})
     asymptotic = companion.ratio**order - 1.0
     return 1.0 + (asymptotic - 1.0) / (1.0 + off / LARGE[source]) if source in LARGE else asymptotic
 
 
-def order_of(source: str, name: str, orders: Mapping[str, float]) -> float:
-    """Of the orders by source, that in which the error of a quantity of this name falls."""
-    return OF_CONTACT_FORCE.get(source, orders[source]) if name == CONTACT_FORCE else orders[source]
+def orders(name: str, sources: Collection[str], mesh: float) -> Mapping[str, float]:
+    """Orders by source in which the error of a quantity falls. sources: of the scene. mesh: order of its elements."""
+    usual = ORDER | {"mesh": mesh}
+    return usual | OF_CONTACT_FORCE if name == CONTACT_FORCE and "penalty" in sources else usual
 
 
 def gaps(headline: Headline, run: RunValues) -> dict[str, float]:

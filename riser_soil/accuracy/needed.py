@@ -6,11 +6,10 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, ErrorBar, RunValues, gaps, order_of
+from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, ErrorBar, RunValues, gaps, orders
 
-#: Orders in which shares of errors fall, gaps between nodes and steps included; what fineness costs, as a power.
-ORDER = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}
-COST = {"mesh": 0.7, "time": 1.0, "soil": 3.0, "penalty": 0.1}
+MESH = 2.0  # order in which the elements' share falls, gaps between nodes included
+COST = {"mesh": 0.7, "time": 1.0, "soil": 3.0, "penalty": 0.1}  # what fineness costs, as a power
 MARGIN = 0.8  # of the accuracy, that the bars are to keep to
 MOST = {"mesh": 4.0, "time": 4.0, "soil": 2.0, "penalty": 10.0}  # from one setting to the next
 #: Finer cells by more than that, in a scene's first setting, are beyond what a machine bears: soil grows by the cube.
@@ -67,7 +66,7 @@ def _of_quantity(bar: ErrorBar, accuracy: float) -> Factors:
         return {"mesh": NOT_KNOWN} | ({"time": NOT_KNOWN} if "time" in bar.by_source else {})
     allowed = (MARGIN * accuracy - SMALLEST) * bar.headline.scale
     left, shares = allowed**2, dict(bar.by_source)
-    order = {source: order_of(source, bar.headline.name, ORDER) for source in shares}
+    order = orders(bar.headline.name, shares.keys(), MESH)
     while True:
         weights = {source: COST[source] / order[source] for source in shares}
         whole = math.fsum(weights.values())
@@ -87,7 +86,7 @@ def _expected(
     apart = abs(found.peaks[key] - before.peaks[key])
     larger = max(1.0, apart / bar.bar) if bar.bar > 0.0 else 1.0
     own = {source: SAFETY[source] * gap for source, gap in gaps(headline, found).items()}
-    order = {source: order_of(source, headline.name, ORDER) for source in bar.by_source}
+    order = orders(headline.name, bar.by_source.keys(), MESH)
     left = {s: larger * each / factors.get(s, 1.0) ** order[s] for s, each in bar.by_source.items()}
     shares = {source: max(own.get(source, 0.0), each) for source, each in (own | left).items()}
     whole = math.hypot(*shares.values()) + SMALLEST * headline.scale

@@ -16,6 +16,7 @@ from benchmarks.error_bars.scenes import SCENES
 from riser_soil.accuracy import chain
 from riser_soil.accuracy.barred_run import run_with_error_bars
 from riser_soil.accuracy.error_bars import (
+    ORDER,
     RINGING,
     SAFETY,
     SMALLEST,
@@ -25,6 +26,7 @@ from riser_soil.accuracy.error_bars import (
     RunValues,
     divisor,
     error_bars,
+    orders,
 )
 from riser_soil.accuracy.headlines import Headline
 from riser_soil.commands.app import app
@@ -56,20 +58,20 @@ def test_error_of_the_known_order_is_found(source: str, ratio: float, order: flo
     assert bar.bar == pytest.approx(bar.by_source[source] + SMALLEST * 1000.0)
 
 
-def test_elements_that_touch_down_have_a_lower_order() -> None:
-    assert divisor(Companion("mesh", 2.0, {}), 0.0, touches=True) == pytest.approx(3.0)
-    assert divisor(Companion("mesh", 2.0, {}), 0.0, touches=False) == pytest.approx(15.0)
+@pytest.mark.parametrize(("touches", "divided"), [(True, 3.0), (False, 15.0)])
+def test_elements_that_touch_down_have_a_lower_order(touches: bool, divided: float) -> None:
+    bar = bar_of(1000.0, 1000.0, Companion("mesh", 2.0, {KEY: 1000.0 + 1e-6}), touches=touches)
+    assert bar.by_source["mesh"] == pytest.approx(SAFETY["mesh"] * 1e-6 / divided, rel=1e-3)
 
 
-def test_contact_force_falls_by_its_own_orders() -> None:
-    assert divisor(Companion("mesh", 2.0, {}), 0.0, touches=True, name="largest contact force") == pytest.approx(1.0)
-    penalty = Companion("penalty", 16.0, {})
-    assert divisor(penalty, 0.0, touches=True, name="largest contact force") == pytest.approx(1.0)
-    assert divisor(penalty, 0.0, touches=True, name="top tension") == pytest.approx(7.0)
+def test_contact_force_on_a_penalty_falls_by_its_own_orders() -> None:
+    assert orders("top tension", {"mesh", "penalty"}, 2.0) == ORDER | {"mesh": 2.0}
+    assert orders("largest contact force", {"mesh", "time"}, 2.0) == ORDER | {"mesh": 2.0}  # on springs
+    assert orders("largest contact force", {"mesh", "penalty"}, 2.0) == ORDER | {"mesh": 1.0, "penalty": 0.25}
 
 
 def test_large_differences_are_hardly_divided() -> None:
-    assert divisor(Companion("time", 5.0, {}), 10.0, touches=False) == pytest.approx(1.0, abs=0.05)
+    assert divisor(Companion("time", 5.0, {}), 10.0, 2.0) == pytest.approx(1.0, abs=0.05)
 
 
 def test_sources_follow_one_another_and_add_up_as_squares_do() -> None:

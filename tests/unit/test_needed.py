@@ -6,11 +6,12 @@ import math
 
 import pytest
 
-from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, STEP_GAP, ErrorBar, RunValues
+from riser_soil.accuracy.error_bars import ORDER, SAFETY, SMALLEST, STEP_GAP, ErrorBar, RunValues
 from riser_soil.accuracy.headlines import Headline
-from riser_soil.accuracy.needed import COST, MARGIN, MOST, NOT_KNOWN, ORDER, expected, largest, needed, out_of_reach
+from riser_soil.accuracy.needed import COST, MARGIN, MESH, MOST, NOT_KNOWN, expected, largest, needed, out_of_reach
 
 VALUE = 1000.0
+ORDERS = ORDER | {"mesh": MESH}
 HEADLINE = Headline("hang", "top tension", "N", VALUE, 100.0)
 KEY = HEADLINE.key
 
@@ -29,7 +30,7 @@ def values(told: float, peak: float | None = None) -> RunValues:
 
 def left(given: ErrorBar, factors: dict[str, float]) -> float:
     """The relative bar once each source is finer."""
-    return math.hypot(*(b / VALUE / factors.get(s, 1.0) ** ORDER[s] for s, b in given.by_source.items())) + SMALLEST
+    return math.hypot(*(b / VALUE / factors.get(s, 1.0) ** ORDERS[s] for s, b in given.by_source.items())) + SMALLEST
 
 
 @pytest.mark.parametrize(
@@ -51,8 +52,8 @@ def test_no_cheaper_way_leads_there() -> None:
 
     for mesh in (0.9, 0.97, 1.03, 1.1):
         other = factors | {"mesh": mesh * factors["mesh"]}
-        of_time = math.sqrt((MARGIN * 0.01 - SMALLEST) ** 2 - (0.02 / other["mesh"] ** ORDER["mesh"]) ** 2)
-        other["time"] = (0.04 / of_time) ** (1.0 / ORDER["time"])
+        of_time = math.sqrt((MARGIN * 0.01 - SMALLEST) ** 2 - (0.02 / other["mesh"] ** MESH) ** 2)
+        other["time"] = (0.04 / of_time) ** (1.0 / ORDERS["time"])
         assert left(given, other) == pytest.approx(MARGIN * 0.01)
         assert cost(other) > cost(factors)
 
