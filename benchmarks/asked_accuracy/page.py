@@ -57,7 +57,8 @@ Not reached, as the scenes were told, or missed:
 ## Scenes that have chosen no factor
 
 {count_of_others} more scenes are drawn at random, always the same: kinds of the calibration's in other spans, depths,
-pipes, motions and seabeds. None of them has been used to choose a factor of the error bars or of the search.
+pipes, motions and seabeds. None of them has been used to choose a factor of the error bars or of the search; the two on
+a rigid floor showed that a contact force has orders of its own.
 
 {figures_of_others}
 

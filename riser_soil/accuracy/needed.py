@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, ErrorBar, RunValues, gaps, orders
+from riser_soil.accuracy.error_bars import SAFETY, SMALLEST, Companion, ErrorBar, RunValues, divisor, gaps, orders
 
 MESH = 2.0  # order in which the elements' share falls, gaps between nodes included
 COST = {"mesh": 0.7, "time": 1.0, "soil": 3.0, "penalty": 0.1}  # what fineness costs, as a power
@@ -14,6 +14,7 @@ MARGIN = 0.8  # of the accuracy, that the bars are to keep to
 MOST = {"mesh": 4.0, "time": 4.0, "soil": 2.0, "penalty": 10.0}  # from one setting to the next
 #: Finer cells by more than that, in a scene's first setting, are beyond what a machine bears: soil grows by the cube.
 BEYOND = {"soil": 2.0}
+BY_CHANCE = 0.25  # of a share, that is left at least where two runs agree
 NOT_KNOWN = 2.0  # finer in mesh and time, where a bar is not known
 
 Factors = Mapping[str, float]  # by source: how many times as fine
@@ -46,7 +47,8 @@ def expected(bars: Sequence[ErrorBar], before: RunValues, found: RunValues, fact
     """Bars of a run that is finer by factors than the one `before` with its bars.
 
     Each source's share falls by its order. Where the two runs are further apart than the bar before, that was too
-    small, and so would be the one that follows from it: both are larger in that ratio.
+    small, and so would be the one that follows from it: both are larger in that ratio. Where a single source tells the
+    two apart, its share is no more than they tell, by Richardson's extrapolation.
     """
     known = {bar.headline.key: bar for bar in bars}
     return [_expected(known.get(key), before, found, factors, key) for key in found.told]
@@ -88,6 +90,17 @@ def _expected(
     own = {source: SAFETY[source] * gap for source, gap in gaps(headline, found).items()}
     order = orders(headline.name, bar.by_source.keys(), MESH)
     left = {s: larger * each / factors.get(s, 1.0) ** order[s] for s, each in bar.by_source.items()}
+    if len(factors) == 1:
+        left |= _by_the_two_runs(left, headline.relative(apart), factors, order, headline.scale)
     shares = {source: max(own.get(source, 0.0), each) for source, each in (own | left).items()}
     whole = math.hypot(*shares.values()) + SMALLEST * headline.scale
     return replace(bar, headline=headline, bar=whole, by_source=shares)
+
+
+def _by_the_two_runs(
+    left: Mapping[str, float], apart: float, factors: Factors, order: Mapping[str, float], scale: float
+) -> dict[str, float]:
+    """The share of the one source that is finer; apart: the two runs, over the scale."""
+    ((source, ratio),) = factors.items()
+    told = SAFETY[source] * apart * scale / divisor(Companion(source, ratio, {}), apart, order[source])
+    return {source: min(left[source], max(told, BY_CHANCE * left[source]))}

@@ -8,7 +8,18 @@ import pytest
 
 from riser_soil.accuracy.error_bars import ORDER, SAFETY, SMALLEST, STEP_GAP, ErrorBar, RunValues
 from riser_soil.accuracy.headlines import Headline
-from riser_soil.accuracy.needed import COST, MARGIN, MESH, MOST, NOT_KNOWN, expected, largest, needed, out_of_reach
+from riser_soil.accuracy.needed import (
+    BY_CHANCE,
+    COST,
+    MARGIN,
+    MESH,
+    MOST,
+    NOT_KNOWN,
+    expected,
+    largest,
+    needed,
+    out_of_reach,
+)
 
 VALUE = 1000.0
 ORDERS = ORDER | {"mesh": MESH}
@@ -87,6 +98,17 @@ def test_shares_fall_by_their_orders() -> None:
     (found,) = expected([bar(mesh=0.02, time=0.04)], values(1000.0), values(1010.0), {"mesh": 2.0, "time": 4.0})
     assert found.by_source == pytest.approx({"mesh": 5.0, "time": 2.5})
     assert found.bar == pytest.approx(math.hypot(5.0, 2.5) + SMALLEST * 1010.0)
+
+
+@pytest.mark.parametrize(("apart", "share"), [(4.0, 4.0), (1e-3, BY_CHANCE * 5.0), (9.0, 5.0)])
+def test_two_runs_that_one_source_tells_apart_tell_its_share(apart: float, share: float) -> None:
+    """By Richardson's extrapolation, no less than a part of what was to be expected, and no more than that."""
+    (found,) = expected([bar(penalty=0.02)], values(1000.0), values(1000.0 + apart), {"penalty": 4.0 ** (1 / 0.75)})
+    told = SAFETY["penalty"] * apart / 3.0  # 4^(order / order) - 1
+    assert found.by_source["penalty"] == pytest.approx(min(max(told, BY_CHANCE * 5.0), 5.0))
+    assert found.by_source["penalty"] == pytest.approx(share, rel=0.35)
+    (both,) = expected([bar(penalty=0.02)], values(1000.0), values(1000.0 + apart), {"penalty": 4.0, "mesh": 2.0})
+    assert both.by_source["penalty"] == pytest.approx(20.0 / 4.0**0.75)
 
 
 def test_bars_grow_where_the_runs_are_further_apart_than_they_said() -> None:
