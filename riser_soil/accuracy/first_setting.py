@@ -1,8 +1,13 @@
-"""First setting of a scene that asks for an accuracy: a few even elements, some steps to a period, automatic soil."""
+"""First setting of a scene that asks for an accuracy: a few even elements, some steps to a period, automatic soil.
+
+Where forces, moments or attachments act within the riser there are nodes: moments need them, and shear jumps there.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from itertools import pairwise
 
 from riser_soil.accuracy.knobs import resolved
 from riser_soil.assembly.end_places import periods_of
@@ -10,7 +15,8 @@ from riser_soil.scene.riser import Segment
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage
 
-EVEN, LEAST = 24, 4  # elements of the riser, and of a segment
+EVEN, LEAST, BROKEN = 24, 4, 2  # elements of the riser; at least of a segment, and of a part of one between two places
+SAME_PLACE = 1e-6  # of the riser's length
 # Time steps to the shortest period of what moves, times the root of the accuracy, as errors fall with the step's
 # square; within limits. Where nothing has a period, to a quarter of a stage; so many to any stage at least.
 OF_PERIOD, FEWEST, MOST = 5.0, 16.0, 500.0
@@ -21,14 +27,38 @@ def first_setting(scene: Scene) -> Scene:
     length, accuracy = scene.riser.length, scene.accuracy
     assert accuracy is not None
     of_period = min(max(OF_PERIOD / math.sqrt(accuracy), FEWEST), MOST)
-    segments = tuple(_cut(segment, length) for segment in scene.riser.segments)
+    segments = tuple(_cut(part, length, least) for part, least in _parts(scene))
     stages = tuple(_stepped(scene, stage, of_period) for stage in scene.stages)
     riser = scene.riser.model_copy(update={"segments": segments})
     return resolved(scene.model_copy(update={"accuracy": None, "riser": riser, "stages": stages}))
 
 
-def _cut(segment: Segment, length: float) -> Segment:
-    elements = max(LEAST, round(EVEN * segment.length / length))
+def _parts(scene: Scene) -> Iterator[tuple[Segment, int]]:
+    """Segments, broken where something acts, with their least number of elements."""
+    begin, near = 0.0, SAME_PLACE * scene.riser.length
+    for segment in scene.riser.segments:
+        end, cuts = begin + segment.length, [begin]
+        for place in sorted(_places(scene)):
+            if cuts[-1] + near < place < end - near:
+                cuts.append(place)
+        if len(cuts) == 1:
+            yield segment, LEAST
+        else:
+            for a, b in pairwise([*cuts, end]):
+                yield segment.model_copy(update={"length": b - a}), BROKEN
+        begin = end
+
+
+def _places(scene: Scene) -> Iterator[float]:
+    """Arc lengths [m] of point loads and attachments."""
+    for stage in scene.stages:
+        yield from (load.at for load in stage.loads if isinstance(load.at, float))
+    for attachment in scene.riser.attachments:
+        yield from attachment.arcs
+
+
+def _cut(segment: Segment, length: float, least: int) -> Segment:
+    elements = max(least, round(EVEN * segment.length / length))
     return segment.model_copy(update={"elements": elements, "element_length": None})
 
 

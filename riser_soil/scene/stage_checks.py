@@ -45,6 +45,8 @@ def _load_on_riser(scene: Scene, path: Path, load: Load) -> Iterator[Problem]:
         yield Problem(
             (*path, "at"), f"must not exceed the riser's length ({length:.6g} m)", "correct the arc length"
         )
+    elif scene.accuracy is not None:
+        return  # a node is put there
     elif load.moment is not None and abs((near := _nearest_node(scene, load.at)) - load.at) > 1e-6 * length:
         allowed = f"a moment must act at a node; the nearest is at {near:.6g} m"
         yield Problem((*path, "at"), allowed, "move the moment there or change the elements")

@@ -104,6 +104,22 @@ def test_first_setting_has_steps_by_period_and_accuracy() -> None:
     assert steps == pytest.approx([14.0 / 50.0, 14.0 / 100.0])
 
 
+def test_nodes_are_where_something_acts(tmp_path: Path) -> None:
+    """A moment at 4.3 m and a clump at 7.1 m of a cantilever of 10 m: M(0) = 2e3 + m g 7.1, by statics."""
+    moment = {"name": "load", "kind": "static", "loads": [{"at": 4.3, "moment": [0.0, 2.0e3, 0.0]}]}
+    given = asking("cantilever, tip load", stages=[moment], gravity=9.81)
+    given["line_types"] = {"pipe": given["line_types"]["pipe"] | {"submerged_weight": 0.0}}
+    given["riser"] = given["riser"] | {"attachments": [{"at": 7.1, "mass": 30.0}]}
+    scene = scene_from_mapping(given)
+    run_to_accuracy(scene, tmp_path / "run")
+    arcs = read_scene(tmp_path / "run" / "scene.yaml").riser.node_arcs
+    for place in (4.3, 7.1):
+        assert min(abs(arc - place) for arc in arcs) < 1e-9
+    told = headlines(summary(tmp_path / "run"))
+    assert told["load: largest bending moment"].value == pytest.approx(2.0e3 + 30.0 * 9.81 * 7.1, rel=2e-3)
+    assert summary(tmp_path / "run")["accuracy"]["reached"]
+
+
 def test_nothing_else_runs_before_the_setting_is_chosen(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match="are to be chosen first"):
         run(scene_from_mapping(asking("catenary, 35 elements")), tmp_path / "run")
