@@ -6,14 +6,13 @@ import re
 from collections.abc import Iterator
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field
-from pydantic_core import PydanticCustomError
+from pydantic import BeforeValidator
 
 from riser_soil.core.quantities import wrong
 
 FINEST, COARSEST = 1e-4, 0.2
 _PERCENT = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*")
-_TOLD = "must be a percentage from 0.01 % to 20 %, such as 1 %"
+_TOLD = "must be a percentage from 0.01 % to 20 %"
 
 
 def _share(value: Any) -> float:
@@ -21,11 +20,11 @@ def _share(value: Any) -> float:
     found = _PERCENT.fullmatch(value) if isinstance(value, str) else None
     share = float(found[1]) / 100.0 if found else value
     if isinstance(share, bool) or not isinstance(share, float) or not FINEST <= share <= COARSEST:
-        raise PydanticCustomError("size", "{text}", {"text": _TOLD})
+        raise wrong("", _TOLD, "write accuracy: 1 %")
     return share
 
 
-Accuracy = Annotated[float, BeforeValidator(_share, json_schema_input_type=str), Field(ge=FINEST, le=COARSEST)]
+Accuracy = Annotated[float, BeforeValidator(_share, json_schema_input_type=str | float)]
 
 
 def with_placeholders(data: dict[str, Any]) -> dict[str, Any]:

@@ -22,6 +22,7 @@ from riser_soil.errors import AccuracyError, Interruption, SceneError, SolveErro
 from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.schema import schema_text
 from riser_soil.scene.stages import DynamicStage
 from tests.support.on_ranks import mpirun
 
@@ -58,7 +59,7 @@ def test_accuracy_is_a_percentage(given: Any, share: float) -> None:
 
 @pytest.mark.parametrize("given", ["1", "25 %", "0.001 %", 1, 0.5, True, "good", "-1 %", ["1 %"]])
 def test_other_accuracies_are_refused(given: Any) -> None:
-    with pytest.raises(SceneError, match=r"accuracy.*must be a percentage from 0.01 % to 20 %, such as 1 %"):
+    with pytest.raises(SceneError, match=r"accuracy.*must be a percentage from 0.01 % to 20 %; write accuracy: 1 %"):
         scene_from_mapping(asking("catenary, 35 elements", given))
 
 
@@ -229,3 +230,8 @@ def test_error_is_of_the_run_that_is_told(tmp_path: Path) -> None:
     bars = told["error_bars"]["quantities"]
     shares = {f"{bar['stage']}: {bar['name']}": bar["bar"] for bar in bars}
     assert max(bar / scales[key] for key, bar in shares.items()) == pytest.approx(told["accuracy"]["largest_error"])
+
+
+def test_editors_know_both_ways_of_writing_it() -> None:
+    told = json.loads(schema_text())["properties"]["accuracy"]
+    assert {each["type"] for each in told["anyOf"]} == {"string", "number", "null"}
