@@ -58,7 +58,7 @@ class AskedScene:
         return Outcome.REACHED if self.errors is not None and self.errors.within else Outcome.MISSED
 
 
-def asking(mapping: Mapping) -> Mapping:
+def asking(mapping: Mapping, accuracy: str | float = f"{100.0 * ACCURACY:g} %") -> Mapping:
     """The scene without what an accuracy chooses, and with one."""
     mapping = copy.deepcopy(mapping)
     for segment in mapping["riser"]["segments"]:
@@ -67,7 +67,7 @@ def asking(mapping: Mapping) -> Mapping:
         _without(stage, "time_step", "tolerance")
     _without(mapping.get("contact", {}), "stiffness")
     _without(mapping.get("soil", {}), "mesh")
-    return mapping | {"accuracy": f"{100.0 * ACCURACY:g} %"}
+    return mapping | {"accuracy": accuracy}
 
 
 def asked(name: str, mapping: Mapping, reference: Reference, hand: HandSetting | None = None) -> AskedScene:

@@ -10,6 +10,7 @@ import pytest
 from mpi4py import MPI
 from typer.testing import CliRunner
 
+from benchmarks.asked_accuracy.asked import asking as without_settings
 from benchmarks.error_bars import references
 from benchmarks.error_bars.scenes import SCENES
 from riser_soil.accuracy import target_run
@@ -26,20 +27,10 @@ from riser_soil.scene.schema import schema_text
 from riser_soil.scene.stages import DynamicStage
 from tests.support.on_ranks import mpirun
 
-CHOSEN = ("elements", "element_length", "time_step", "tolerance", "stiffness", "mesh")
-
 
 def asking(name: str, accuracy: Any = "1 %", **more: Any) -> dict[str, Any]:
-    """A scene of known answer without what an accuracy stands for."""
-    given = SCENES[name]
-
-    def without(part: dict[str, Any]) -> dict[str, Any]:
-        return {key: value for key, value in part.items() if key not in CHOSEN}
-
-    riser = given["riser"] | {"segments": [without(segment) for segment in given["riser"]["segments"]]}
-    found = given | {"accuracy": accuracy, "riser": riser, "stages": [without(stage) for stage in given["stages"]]}
-    found |= {key: without(given[key]) for key in ("contact", "soil") if key in given}
-    return found | more
+    """A scene of known answer that asks for an accuracy."""
+    return without_settings(SCENES[name], accuracy) | more
 
 
 def summary(folder: Path) -> Any:
