@@ -59,10 +59,22 @@ def handling_signals() -> Iterator[None]:
         _pending.number, _pending.latest = 0, None
     former = {number: signal.signal(number, _pending.take) for number in mine}
     try:
-        yield
+        with unmasked():
+            yield
     finally:
         for number, handler in former.items():
             signal.signal(number, handler)
+
+
+@contextmanager
+def unmasked() -> Iterator[None]:
+    """Raises the Interruption of a signal that came within compiled code: its caller makes a SystemError of that."""
+    try:
+        yield
+    except SystemError as err:
+        if isinstance(err.__cause__, Interruption):
+            raise err.__cause__ from None
+        raise
 
 
 @contextmanager

@@ -13,7 +13,7 @@ from riser_soil.checks.limits import size_that_fits, tell, too_long
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.core.system import Timer
 from riser_soil.errors import Interruption, SolveError
-from riser_soil.interruption import agreeing, handling_signals, uninterrupted
+from riser_soil.interruption import agreeing, handling_signals, uninterrupted, unmasked
 from riser_soil.results.observer import Observer
 from riser_soil.results.ownership import refuse_together
 from riser_soil.results.peaks import RunPeaks
@@ -49,11 +49,12 @@ def run(scene: Scene, folder: Path | str, force: bool = False, peaks: RunPeaks |
 
 def _take_all(assembly: Assembly, observer: Observer, clock: Timer) -> None:
     try:
-        before, laid = lay(assembly, clock)
-        if laid is not None:
-            observer.laid(assembly.slack, laid.steps, laid.relaxations)
-        for stage in assembly.scene.stages:
-            before = run_stage(assembly, stage, before, observer, clock)
+        with unmasked():
+            before, laid = lay(assembly, clock)
+            if laid is not None:
+                observer.laid(assembly.slack, laid.steps, laid.relaxations)
+            for stage in assembly.scene.stages:
+                before = run_stage(assembly, stage, before, observer, clock)
         with uninterrupted():
             observer.finish()
     except (SolveError, Interruption) as end:

@@ -21,6 +21,7 @@ ROOT = Path(__file__).parents[2]
 ENDLESS = """
 import os, signal, sys
 from riser_soil.__main__ import main
+from riser_soil.errors import Interruption
 from riser_soil.results.observer import Observer
 
 usual, taken = Observer.record, []
@@ -37,6 +38,11 @@ main()
 """
 
 
+BETWEEN = "os.kill(os.getpid(), signal.SIGNAL)"
+# What the caller of compiled code raises if the signal came in there.
+WITHIN = "raise SystemError('returned a result with an exception set') from Interruption(signal.SIGNAL)"
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_comes_as_an_interruption(number: signal.Signals) -> None:
     before = signal.getsignal(number)
@@ -45,6 +51,14 @@ def test_a_signal_comes_as_an_interruption(number: signal.Signals) -> None:
     assert end.value.exit_status == 128 + number
     assert str(end.value) == f"ended by {number.name} before the first stage; nothing was computed"
     assert signal.getsignal(number) == before
+
+
+def test_a_signal_within_compiled_code_is_one_all_the_same() -> None:
+    with pytest.raises(Interruption) as end, handling_signals():
+        raise SystemError("returned a result with an exception set") from Interruption(signal.SIGINT)
+    assert end.value.number == signal.SIGINT
+    with pytest.raises(SystemError, match="another one"), handling_signals():
+        raise SystemError("another one")
 
 
 def test_no_signal_divides_a_record() -> None:
@@ -149,10 +163,12 @@ def test_ctrl_c_is_heard_while_the_soil_is_meshed(begin: str, tmp_path: Path) ->
     assert done.stderr.splitlines()[-1] == "ended by SIGINT before the first stage; nothing was computed"
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupted_run_keeps_its_last_accepted_step(number: signal.Signals, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("number", "sent"), [(signal.SIGINT, BETWEEN), (signal.SIGTERM, BETWEEN), (signal.SIGINT, WITHIN)]
+)
+def test_an_interrupted_run_keeps_its_last_accepted_step(number: signal.Signals, sent: str, tmp_path: Path) -> None:
     """13 steps of 0.1 s, of which every fifth is recorded, after one static step."""
-    script, out = ENDLESS.replace("SIGNAL", number.name), tmp_path / "out"
+    script, out = ENDLESS.replace(BETWEEN, sent).replace("SIGNAL", number.name), tmp_path / "out"
     call = [sys.executable, "-c", script, str(out)]
     done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 128 + number
