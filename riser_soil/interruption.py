@@ -68,12 +68,15 @@ def handling_signals() -> Iterator[None]:
 
 @contextmanager
 def unmasked() -> Iterator[None]:
-    """Raises the Interruption of a signal that came within compiled code: its caller makes a SystemError of that."""
+    """Raises the Interruption of a signal that came within compiled code: its caller makes a SystemError of that, the
+    import of a compiled module an ImportError.
+    """
     try:
         yield
-    except SystemError as err:
-        if isinstance(err.__cause__, Interruption):
-            raise err.__cause__ from None
+    except (SystemError, ImportError) as err:
+        end = err.__cause__ if isinstance(err.__cause__, Interruption) else _pending.latest
+        if end is not None:
+            raise end from None
         raise
 
 

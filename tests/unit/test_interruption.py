@@ -6,11 +6,14 @@ import signal
 import subprocess
 import sys
 import threading
+from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+import typer
 
+from riser_soil.commands.endings import expected_errors
 from riser_soil.errors import Interruption
 from riser_soil.interruption import agreeing, check, handling_signals, uninterrupted
 from riser_soil.results import Run
@@ -59,6 +62,18 @@ def test_a_signal_within_compiled_code_is_one_all_the_same() -> None:
     assert end.value.number == signal.SIGINT
     with pytest.raises(SystemError, match="another one"), handling_signals():
         raise SystemError("another one")
+
+
+def test_a_signal_within_an_import_is_one_all_the_same(capsys: pytest.CaptureFixture[str]) -> None:
+    """A compiled module that can't be imported for a signal says that it can't be imported, and not why."""
+    with pytest.raises(typer.Exit) as end, handling_signals(), expected_errors():
+        with suppress(Interruption):
+            signal.raise_signal(signal.SIGTERM)
+        raise ImportError("numpy failed to import")
+    assert end.value.exit_code == 128 + signal.SIGTERM
+    assert capsys.readouterr().err == "ended by SIGTERM before the first stage; nothing was computed\n"
+    with pytest.raises(ImportError, match="no such module"), handling_signals(), expected_errors():
+        raise ImportError("no such module")
 
 
 def test_no_signal_divides_a_record() -> None:
