@@ -66,10 +66,14 @@ def test_a_signal_within_compiled_code_is_one_all_the_same() -> None:
 
 def test_a_signal_within_an_import_is_one_all_the_same(capsys: pytest.CaptureFixture[str]) -> None:
     """A compiled module that can't be imported for a signal says that it can't be imported, and not why."""
-    with pytest.raises(typer.Exit) as end, handling_signals(), expected_errors():
+
+    def fails() -> None:
         with suppress(Interruption):
             signal.raise_signal(signal.SIGTERM)
         raise ImportError("numpy failed to import")
+
+    with pytest.raises(typer.Exit) as end, handling_signals(), expected_errors():
+        fails()
     assert end.value.exit_code == 128 + signal.SIGTERM
     assert capsys.readouterr().err == "ended by SIGTERM before the first stage; nothing was computed\n"
     with pytest.raises(ImportError, match="no such module"), handling_signals(), expected_errors():
