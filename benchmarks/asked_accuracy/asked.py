@@ -14,7 +14,7 @@ from benchmarks.asked_accuracy.by_hand import HandSetting, turned
 from benchmarks.asked_accuracy.true_errors import ACCURACY, TrueErrors, run_errors, taken, true_errors
 from benchmarks.error_bars.references import Reference
 from benchmarks.error_bars.scenes import Mapping
-from riser_soil.accuracy.knobs import knobs_of
+from riser_soil.accuracy.knobs import settings_told
 from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.errors import SolveError
 from riser_soil.results.folder import SCENE
@@ -80,7 +80,7 @@ def asked(name: str, mapping: Mapping, reference: Reference, hand: HandSetting |
         if not (folder / SCENE).exists():
             return AskedScene(name, None, said, "none")
         errors, scene = true_errors(folder, reference), read_scene(folder / SCENE)
-        setting = ", ".join(knob.told(scene) for knob in knobs_of(scene))
+        setting = settings_told(scene)
         if hand is None or said:
             return AskedScene(name, errors, said, setting)
         _, chosen = run_errors(scene, beside, reference)

@@ -18,7 +18,7 @@ from benchmarks.asked_accuracy.asked import (
     share_of_all,
     share_of_claims,
 )
-from benchmarks.asked_accuracy.true_errors import ACCURACY
+from benchmarks.asked_accuracy.true_errors import ACCURACY, CERTAIN
 from benchmarks.error_bars.calibration import JudgedScene, share_inside
 from demos.page import table
 from riser_soil import __version__
@@ -77,7 +77,7 @@ def page(scenes: list[AskedScene], others: list[AskedScene], judged: list[Judged
         python=platform.python_version(),
         cores=os.cpu_count(),
         accuracy=100.0 * ACCURACY,
-        certain=30.0 * ACCURACY,
+        certain=100.0 * CERTAIN * ACCURACY,
         block=FIGURES,
         count=len(scenes),
         left_out=sum(each.errors.left_out for each in scenes if each.errors is not None),

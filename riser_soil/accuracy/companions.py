@@ -19,33 +19,29 @@ from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import StatelessObserver, lay, run_stage
 
 
-def peaks_of(scene: Scene, comm: Any) -> RunPeaks:
-    """Peaks of a scene, computed without a results folder; collective, told on rank 0. Raises what a run would."""
-    return observed(scene, comm).peaks
+def peaks_of(scene: Scene, comm: Any, envelope: CurveEnvelope | None = None) -> RunPeaks:
+    """Peaks of a scene, computed without a results folder; collective, told on rank 0. Raises what a run would.
 
-
-def observed(scene: Scene, comm: Any) -> PeakObserver:
-    """As `peaks_of`, with the envelope along the riser."""
+    envelope: follows moments and tensions along the riser, where that is wanted; on rank 0.
+    """
     assembly, clock = build(sized(scene), comm), Timer.new()
-    observer = PeakObserver(assembly)
+    observer = PeakObserver(assembly, envelope)
     with agreeing(comm):
         before, _ = lay(assembly, clock)
         for stage in assembly.scene.stages:
             before = run_stage(assembly, stage, before, observer, clock)
-    return observer
+    return observer.peaks
 
 
 class PeakObserver(StatelessObserver):
-    """Follows a companion: `peaks` has what the summary of a run would have of it, `envelope` what its moments and
-    tensions ask of the elements; on rank 0.
-    """
+    """Follows a companion: `peaks` has what the summary of a run would have of it; on rank 0."""
 
-    def __init__(self, assembly: Assembly) -> None:
+    def __init__(self, assembly: Assembly, envelope: CurveEnvelope | None = None) -> None:
         self._assembly, self._zone = assembly, TouchdownZone(assembly)
         output, soil = assembly.scene.output, assembly.soil
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         self.peaks = RunPeaks(None if soil is None else soil.output_mesh())
-        self.envelope = CurveEnvelope()
+        self._envelope = envelope
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         first = not self.peaks.stages
@@ -61,8 +57,8 @@ class PeakObserver(StatelessObserver):
         if self._assembly.comm.rank == 0:
             seen = self._seen(stepper)
             self.peaks.record(step.t, seen, soil)
-            if last or self.peaks.stages[-1].kind == "dynamic":
-                self.envelope.follow(seen)
+            if self._envelope is not None and (last or self.peaks.stages[-1].kind == "dynamic"):
+                self._envelope.follow(seen)
 
     def relaxed(self, relaxed: object) -> None:
         pass

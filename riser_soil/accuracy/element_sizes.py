@@ -15,13 +15,13 @@ from itertools import pairwise
 
 import numpy as np
 
+from riser_soil.accuracy.headlines import FORCE_FLOOR
 from riser_soil.core.arrays import Array
 from riser_soil.core.snapshot import Instant
 from riser_soil.scene.riser import Segment
 
 GAP = 0.5  # of the accuracy asked: what falls between nodes
 FORGIVEN = 0.2  # of how far a moment is below the largest, or a tension above the least
-TENSION_SCALE = 0.1  # of the largest force, as of headline quantities
 FEWEST = 12  # elements along the whole riser
 GROWTH = 0.3  # of the length of elements from one to the next
 SHRINK = 6.0  # at most, from one run to the next: what is not resolved yet asks for more than it needs
@@ -64,7 +64,7 @@ class CurveEnvelope:
         gap = GAP * share
         largest = self.moment.max()
         of_moment = gap * largest + FORGIVEN * (largest - self.moment)
-        of_tension = gap * TENSION_SCALE * self.force + FORGIVEN * (self.least - self.least.min())
+        of_tension = gap * FORCE_FLOOR * self.force + FORGIVEN * (self.least - self.least.min())
         by_moment, by_tension = self.bends
         with np.errstate(divide="ignore", invalid="ignore"):
             lengths = np.stack([

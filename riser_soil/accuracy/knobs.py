@@ -8,7 +8,7 @@ among its knobs: soil of a mesh file has no mesh to vary, a bed of springs or of
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from riser_soil.core.quantities import MOST_ELEMENTS
@@ -55,6 +55,11 @@ def varied(scene: Scene, knob: Knob, factor: float) -> Scene:
     if turned.riser.element_count > MOST_ELEMENTS:
         raise SceneError(f"{knob.words}, {factor:g} times as fine: more than {MOST_ELEMENTS} elements")
     return turned
+
+
+def settings_told(scene: Scene, knobs: Iterable[Knob] | None = None) -> str:
+    """Settings of the scene in words; knobs: those to tell, all that it has by default."""
+    return ", ".join(knob.told(scene) for knob in (knobs_of(scene) if knobs is None else knobs))
 
 
 def resolved(scene: Scene) -> Scene:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from riser_soil.accuracy.knobs import Knob, varied
+from riser_soil.accuracy.knobs import Knob, settings_told, varied
 from riser_soil.accuracy.study_points import Factors
 from riser_soil.scene.scene import Scene
 
@@ -61,8 +61,7 @@ class Ladders:
 
     def told(self, point: Factors) -> str:
         """The settings in words."""
-        scene = self.scene_at(point)
-        return ", ".join(knob.told(scene) for knob in self.knobs)
+        return settings_told(self.scene_at(point), self.knobs)
 
     def fineness(self, number: int, factor: float) -> float:
         """Of a rung over the scene's, after counts are rounded."""

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from riser_soil.accuracy.chain import COARSER, companions, run_values
-from riser_soil.accuracy.companions import PeakObserver, observed
-from riser_soil.accuracy.element_sizes import graded
+from riser_soil.accuracy.companions import peaks_of
+from riser_soil.accuracy.element_sizes import CurveEnvelope, graded
 from riser_soil.accuracy.error_bars import ErrorBar, RunValues, error_bars
 from riser_soil.accuracy.headlines import headlines
 from riser_soil.accuracy.knobs import KNOBS, varied
 from riser_soil.errors import SolveError
+from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.riser import Segment
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import StaticStage
@@ -39,13 +40,13 @@ def trial(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
     """On a mesh that curvature has graded, with companions; collective. scene: in its first setting."""
     segments = scene.riser.segments
     scene = _meshed(scene, accuracy, comm)
-    scene, seen = _computed(scene, comm)
+    scene, seen, peaks = _computed(scene, comm)
     if _excess(seen, accuracy, comm) > SETTLED:
-        scene, seen = _computed(_graded(scene, segments, seen, accuracy, comm), comm)
+        scene, _, peaks = _computed(_graded(scene, segments, seen, accuracy, comm), comm)
     chain = companions(scene, comm, COMPANIONS)
     if comm.rank != 0:
         return TriedSetting(scene, None, comm.bcast(None))
-    values = run_values(headlines(seen.peaks.told("sampled")), seen.peaks)
+    values = run_values(headlines(peaks.told("sampled")), peaks)
     return TriedSetting(scene, values, comm.bcast(error_bars(values, chain, scene.has_ground)))
 
 
@@ -61,7 +62,7 @@ def _meshed(scene: Scene, accuracy: float, comm: Any) -> Scene:
     """By the static stages that the scene begins with; as it is where there is none."""
     segments, statics = scene.riser.segments, _first_statics(scene)
     for _ in range(SHAPES if statics else 0):
-        part, seen = _computed(scene.model_copy(update={"stages": statics}), comm)
+        part, seen, _ = _computed(scene.model_copy(update={"stages": statics}), comm)
         scene = scene.model_copy(update={"riser": part.riser})
         if _excess(seen, accuracy, comm) <= SETTLED:
             break
@@ -74,23 +75,25 @@ def _first_statics(scene: Scene) -> Sequence[Any]:
     return scene.stages[: dynamic[0]] if dynamic else scene.stages
 
 
-def _computed(scene: Scene, comm: Any) -> tuple[Scene, PeakObserver]:
+def _computed(scene: Scene, comm: Any) -> tuple[Scene, CurveEnvelope, RunPeaks]:
     """The scene, finer where it fails otherwise, and what was seen of it."""
     for _ in range(ATTEMPTS - 1):
+        envelope = CurveEnvelope()
         try:
-            return scene, observed(scene, comm)
+            return scene, envelope, peaks_of(scene, comm, envelope)
         except SolveError:
             scene = finer(scene, dict.fromkeys(HELPING, FINER))
-    return scene, observed(scene, comm)
+    envelope = CurveEnvelope()
+    return scene, envelope, peaks_of(scene, comm, envelope)
 
 
-def _graded(scene: Scene, segments: tuple[Segment, ...], seen: PeakObserver, accuracy: float, comm: Any) -> Scene:
-    made = _on_first(comm, lambda: graded(segments, seen.envelope, accuracy))
+def _graded(scene: Scene, segments: tuple[Segment, ...], seen: CurveEnvelope, accuracy: float, comm: Any) -> Scene:
+    made = _on_first(comm, lambda: graded(segments, seen, accuracy))
     return scene.model_copy(update={"riser": scene.riser.model_copy(update={"segments": made})})
 
 
-def _excess(seen: PeakObserver, accuracy: float, comm: Any) -> float:
-    return _on_first(comm, lambda: seen.envelope.excess(accuracy))
+def _excess(seen: CurveEnvelope, accuracy: float, comm: Any) -> float:
+    return _on_first(comm, lambda: seen.excess(accuracy))
 
 
 def _on_first(comm: Any, found: Callable[[], _Found]) -> _Found:

@@ -16,7 +16,7 @@ from mpi4py import MPI
 from riser_soil.accuracy.barred_run import values_of_run, write_bars
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar
 from riser_soil.accuracy.first_setting import first_setting
-from riser_soil.accuracy.knobs import knobs_of
+from riser_soil.accuracy.knobs import knobs_of, settings_told
 from riser_soil.accuracy.needed import expected, largest, needed, out_of_reach
 from riser_soil.accuracy.screen import print_bars
 from riser_soil.accuracy.search import TriedSetting, finer, trial
@@ -91,11 +91,7 @@ def _finer_run(last: TriedSetting, accuracy: float, folder: Path, force: bool, c
 def _tell(last: TriedSetting, accuracy: float, comm: Any) -> None:
     if comm.rank == 0:
         off, key = largest(last.bars)
-        print(f"accuracy {accuracy:.2%}: with {_setting(last.scene)} it is {off:.2%} ({key})")
-
-
-def _setting(scene: Scene) -> str:
-    return ", ".join(knob.told(scene) for knob in knobs_of(scene))
+        print(f"accuracy {accuracy:.2%}: with {settings_told(last.scene)} it is {off:.2%} ({key})")
 
 
 def _report(last: TriedSetting, accuracy: float, folder: Path, seconds: float) -> None:
@@ -112,7 +108,7 @@ def _missed(last: TriedSetting, accuracy: float, folder: Path, limit: str) -> st
     off, key = largest(last.bars)
     bar = next(bar for bar in last.bars if bar.headline.key == key)
     return (
-        f"accuracy: {accuracy:.2%} was not reached: with {_setting(last.scene)}, {_limits(bar)} leaves {key} at "
+        f"accuracy: {accuracy:.2%} was not reached: with {settings_told(last.scene)}, {_limits(bar)} leaves {key} at "
         f"{off:.2%}{limit}; {folder} has that run, with its error bars: ask for less"
     )
 

@@ -70,7 +70,8 @@ class StagePeaks:
         self._t, self._last = [*self._t[-4:], t], [*self._last[-4:], peaked]
         if self.kind == "dynamic" and len(self._t) >= 3 and self._t[-3] < self._t[-2] < t:
             self.peaks.update(self._t[-2], vertex(np.array(self._t[-3:]), np.array(self._last[-3:])))
-        self._follow_smoothly()
+        if self.kind == "dynamic":
+            self._follow_smoothly()
         self._seen = seen
 
     def _follow_smoothly(self) -> None:

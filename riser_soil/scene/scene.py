@@ -43,8 +43,8 @@ class Scene(BaseModel):
     output: Output = Field(default=Output(), description="what the run writes")
     accuracy: Accuracy | None = Field(
         default=None,
-        description="accuracy of all headline quantities, as 1 % (0.01 to 20 %), in place of elements, time steps, the "
-        "soil's mesh and the penalty: the run chooses them",
+        description="accuracy of all headline quantities, as 1 % or 0.01 (0.01 to 20 %), in place of elements, time "
+        "steps, the soil's mesh and the penalty: the run chooses them",
     )
     error_bars: Literal[True, False] = Field(
         default=False,

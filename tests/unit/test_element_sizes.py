@@ -9,7 +9,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from riser_soil.accuracy.element_sizes import FORGIVEN, GAP, GROWTH, SHRINK, TENSION_SCALE, CurveEnvelope, graded
+from riser_soil.accuracy.element_sizes import FORGIVEN, GAP, GROWTH, SHRINK, CurveEnvelope, graded
+from riser_soil.accuracy.headlines import FORCE_FLOOR
 from riser_soil.core.arrays import Array
 from riser_soil.core.snapshot import Instant
 from riser_soil.scene.riser import Segment
@@ -63,7 +64,7 @@ def test_tension_of_round_off_asks_for_nothing() -> None:
 def test_tension_asks_by_its_scale() -> None:
     tension = 4e4 + 4.0 * (ARC - 50.0) ** 2
     middle = asked(envelope(seen(0.0 * BULGE, tension)), 50.0)
-    assert middle**2 * 8.0 / 8.0 == pytest.approx(GAP * SHARE * TENSION_SCALE * tension.max(), rel=1e-6)
+    assert middle**2 * 8.0 / 8.0 == pytest.approx(GAP * SHARE * FORCE_FLOOR * tension.max(), rel=1e-6)
 
 
 def test_tension_over_stiffness_keeps_elements_to_what_a_cubic_follows() -> None:
