@@ -138,7 +138,7 @@ class Compressed:
 
 COMPRESSED = {
     "heave 5 m, 8 s": Compressed(heaved(5.0, 8.0, 16.0, 8.0), (0.1, 0.05), 230.96e3),
-    "heave 4 m, 7 s": Compressed(heaved(4.0, 7.0, 14.0, 7.0), (0.1,), 194.83e3),
+    "heave 4 m, 7 s": Compressed(heaved(4.0, 7.0, 14.0, 7.0), (0.1, 0.05), 194.83e3),
 }
 
 

@@ -58,6 +58,37 @@ def test_a_corner_after_the_extreme_belongs_to_it() -> None:
     assert found.of_most[0] == pytest.approx(SHARE * 35.0)
 
 
+def turning(*values: float, dt: float = 0.1) -> TimeResolution:
+    found = TimeResolution(1)
+    for n, q in enumerate(values):
+        found.update(dt * n, np.array([q]))
+    return found
+
+
+HILL = (0.0, 4.0, 7.0, 9.0, 10.0, 10.0, 9.0, 7.0, 4.0, 0.0)  # second differences of 1
+
+
+@pytest.mark.parametrize("first", [HILL, ()])
+@pytest.mark.parametrize(("top", "rivals"), [(9.8, True), (9.0, False), (2.0, False)])
+def test_a_sharp_peak_nearly_as_large_as_the_extreme_is_a_rival(
+    first: tuple[float, ...], top: float, rivals: bool
+) -> None:
+    """Before or after the smooth one: 0.3 times 2 top of error, less by 10 - top than the extreme's 10."""
+    found = turning(*first, 0.0, top, 0.0, 0.0, *(() if first else HILL))
+    assert found.of_most[0] == pytest.approx(SHARE * 2.0 * top - (10.0 - top) if rivals else SHARE)
+    mirrored = turning(*(-q for q in (*first, 0.0, top, 0.0, 0.0, *(() if first else HILL))))
+    assert mirrored.of_least[0] == pytest.approx(found.of_most[0])
+
+
+def test_steps_that_are_told_are_those_around_the_rival() -> None:
+    found, t = TimeResolution(1), 0.0
+    for dt, q in ((1.0, 0.0), (1.0, 9.0), (1.0, 9.9), (1.0, 9.9), (1.0, 9.0), (0.5, 0.0), (0.2, 9.8), (0.5, 0.0)):
+        t += dt
+        found.update(t, np.array([q]))
+    assert found.of_most[0] > SHARE * 9.9
+    assert found.steps[1, 0] == pytest.approx(0.5)
+
+
 def test_what_is_not_known_is_not_judged() -> None:
     found = TimeResolution(1)
     for n, q in enumerate((math.nan, 1.0, 2.0, math.nan, 5.0)):
