@@ -9,8 +9,8 @@ from riser_soil.assembly import Assembly, build, sized
 from riser_soil.core.snapshot import Instant
 from riser_soil.core.system import Timer
 from riser_soil.interruption import agreeing
-from riser_soil.results.observer import riser_snapshot
 from riser_soil.results.peaks import RunPeaks
+from riser_soil.results.riser_snapshot import riser_snapshot
 from riser_soil.results.schedule import Schedule
 from riser_soil.results.touchdown_zone import TouchdownZone
 from riser_soil.scene.scene import Scene

@@ -29,19 +29,26 @@ class Figure:
     """A number or vector of the summary, whose extremes over a stage are kept as well.
 
     name: key in the summary, dotted where it is nested. of: the figure by the output's value. size: 1 or 3. node: index
-    by the output's value of the node that it sits on, None where it sits on none; figures of the soil are largest
-    values, and have the indices of all points or cells where they may sit. row: on the screen, None for none.
+    by the output's value of the node that it sits on; figures of the soil are largest values, and have the indices of
+    all points or cells where they may sit. arc: arc length [m] by the output's value, where it sits between nodes. None
+    where there is none. row: on the screen, None for none.
     """
 
     name: str
     of: Callable[[Any], Any] = lambda value: value
     size: int = 1
     node: Callable[[Any], Any] | None = None
+    arc: Callable[[Any], float] | None = None
     row: Row | None = None
 
     @property
     def path(self) -> tuple[str, ...]:
         return tuple(self.name.split("."))
+
+    @property
+    def placed(self) -> bool:
+        """Whether it sits somewhere along the riser."""
+        return self.node is not None or self.arc is not None
 
 
 @dataclass(frozen=True)
@@ -87,6 +94,11 @@ def least(name: str, row: Row | None = None) -> Figure:
 def greatest(name: str, row: Row | None = None) -> Figure:
     """The largest value along the riser, with its place."""
     return Figure(name, lambda along: along.max(), node=lambda along: along.argmax(), row=row)
+
+
+def greatest_between(name: str, row: Row | None = None) -> Figure:
+    """A largest value between nodes, `LargestAlong`, with its place."""
+    return Figure(name, lambda largest: largest.value, arc=lambda largest: largest.arc, row=row)
 
 
 def greatest_in_soil(name: str, row: Row | None = None) -> Figure:

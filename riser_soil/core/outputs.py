@@ -16,6 +16,7 @@ from riser_soil.core.output import (
     angle_deg,
     bend_radius,
     greatest,
+    greatest_between,
     greatest_in_soil,
     least,
     near_greatest,
@@ -51,25 +52,14 @@ ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
     OutputQuantity(
         "bending_moment", "M", "N m", "magnitude of the bending moment", "nodes",
         lambda i: i.riser.bending_moment,
-        figures=(greatest("max_bending_moment", Row("largest bending moment", "kN.m", 1e-3)),),
     ),
     OutputQuantity(
         "curvature", "κ", "m-1", "magnitude of the curvature", "nodes",
         lambda i: i.riser.curvature,
-        figures=(
-            greatest("max_curvature", Row("largest curvature", "1/m")),
-            Figure(
-                "min_bend_radius",
-                lambda k: bend_radius(k.max()),
-                node=lambda k: k.argmax(),
-                row=Row("smallest bend radius", "m"),
-            ),
-        ),
     ),
     OutputQuantity(
         "bend_utilisation", "", "1", "curvature times the smallest bend radius allowed", "nodes",
         lambda i: i.riser.bend_utilisation, "above 1 the pipe is bent too much", needs="min_bend_radius",
-        figures=(greatest("max_bend_utilisation", Row("allowed over actual bend radius")),),
     ),
     OutputQuantity(
         "contact_force", "f", "N m-1", "contact force per length of riser", "nodes",
@@ -182,12 +172,35 @@ OF_MODEL: tuple[OutputQuantity[Instant], ...] = (
         lambda i: i.arc[i.riser.effective_tension.argmin()],
     ),
     OutputQuantity(
-        "min_bend_radius", "", "m", "smallest bend radius, one over the largest curvature of the nodes", "model",
-        lambda i: bend_radius(i.riser.curvature.max()),
+        "largest_bending_moment", "", "N m", "largest bending moment, between nodes too", "summary",
+        lambda i: i.riser.largest_moment,
+        figures=(greatest_between("max_bending_moment", Row("largest bending moment", "kN.m", 1e-3)),),
+    ),
+    OutputQuantity(
+        "largest_curvature", "", "m-1", "largest curvature, between nodes too", "summary",
+        lambda i: i.riser.largest_curvature,
+        figures=(
+            greatest_between("max_curvature", Row("largest curvature", "1/m")),
+            Figure(
+                "min_bend_radius",
+                lambda largest: bend_radius(largest.value),
+                arc=lambda largest: largest.arc,
+                row=Row("smallest bend radius", "m"),
+            ),
+        ),
+    ),
+    OutputQuantity(
+        "largest_bend_utilisation", "", "1", "largest bend utilisation, between nodes too", "summary",
+        lambda i: i.riser.largest_bend_utilisation, needs="min_bend_radius",
+        figures=(greatest_between("max_bend_utilisation", Row("allowed over actual bend radius")),),
+    ),
+    OutputQuantity(
+        "min_bend_radius", "", "m", "smallest bend radius, one over the largest curvature, between nodes too", "model",
+        lambda i: bend_radius(i.riser.largest_curvature.value),
     ),
     OutputQuantity(
         "min_bend_radius_arc", "", "m", "arc length of the smallest bend radius", "model",
-        lambda i: i.arc[i.riser.curvature.argmax()],
+        lambda i: i.riser.largest_curvature.arc,
     ),
     OutputQuantity(
         "max_penetration", "", "m", "deepest penetration of the riser into the seabed", "model",

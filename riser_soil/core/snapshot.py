@@ -7,8 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from riser_soil.core.arrays import Array, IntArray
+
+
+class LargestAlong(NamedTuple):
+    """The largest value along the riser, between nodes too, and its arc length [m]."""
+
+    value: float
+    arc: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +32,10 @@ class RiserSnapshot:
     bending_moment: Array  # (nn,) N.m, magnitude >= 0
     curvature: Array  # (nn,) 1/m, magnitude >= 0
     bend_utilisation: Array  # (nn,) curvature times the least bend radius allowed; nan where none is given
+    largest_moment: LargestAlong  # N.m
+    largest_curvature: LargestAlong  # 1/m
+    largest_bend_utilisation: LargestAlong  # nan where no least bend radius is given
+    tightest_radius: float  # m, where the bend utilisation is largest; the same
     contact_force: Array  # (nn,) N/m, positive where the ground pushes, negative where it holds the riser by suction
     moment_vector: Array  # (nn, 3) N.m, exerted by the part towards `end` on the part towards `start`
     start_force: Array  # (3,) N

@@ -77,7 +77,7 @@ def places_of(name: str) -> slice:
 
 
 def final_state(seen: Instant) -> dict[str, Any]:
-    """The summary's `final`: the figures, with the arc length [m] of those that sit on one node."""
+    """The summary's `final`: the figures, with the arc length [m] of those that sit somewhere along the riser."""
     values = _values(seen)
     final: dict[str, Any] = {}
     for output, figure in _FIGURES:
@@ -85,10 +85,17 @@ def final_state(seen: Instant) -> dict[str, Any]:
         if figure.name in _SOMETIMES and not np.isfinite(found).all():
             continue
         told: Any = [float(x) for x in found] if figure.size > 1 else float(found)
-        if figure.node is not None:
-            told = {"value": told, "arc": float(seen.arc[figure.node(values[output.name])])}
+        if figure.placed:
+            told = {"value": told, "arc": _arc(figure, values[output.name], seen.arc)}
         _put(final, figure.path, told)
     return final
+
+
+def _arc(figure: Figure, value: Any, arc: Array) -> float:
+    if figure.arc is not None:
+        return float(figure.arc(value))
+    assert figure.node is not None
+    return float(arc[figure.node(value)])
 
 
 class Extremes:

@@ -15,8 +15,7 @@ from riser_soil import __version__
 from riser_soil.assembly import Assembly
 from riser_soil.checks.inventory import built, dissipating, left_out, unknowns, working
 from riser_soil.core import outputs
-from riser_soil.core.arrays import Array
-from riser_soil.core.part import Energy, State
+from riser_soil.core.part import Energy
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import ContactSnapshot, Instant, RiserSnapshot, RunFacts, SoilSnapshot, StepStatistics
 from riser_soil.core.system import Timer
@@ -27,19 +26,11 @@ from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.plausibility import Plausibility
 from riser_soil.results.progress import Progress
 from riser_soil.results.record import Recorder
+from riser_soil.results.riser_snapshot import elastic_residual, riser_snapshot
 from riser_soil.results.schedule import Schedule
 from riser_soil.results.screen import print_summary
 from riser_soil.results.settlement_trough import count_of, offsets_of
 from riser_soil.results.touchdown_zone import TouchdownZone
-from riser_soil.riser.line_part import acting_on
-from riser_soil.riser.section_forces import (
-    at_most,
-    element_residual,
-    end_reactions,
-    nodal_residual,
-    section_forces,
-    viscous_residual,
-)
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
@@ -240,56 +231,6 @@ def _known_fields(assembly: Assembly) -> tuple[str, ...]:
         "soil": assembly.soil_contact is not None,
     }
     return outputs.known(assembly.scene.output.fields, [need for need, there in has.items() if there])
-
-
-def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
-    """The riser at the accepted state; on the rank that holds it."""
-    line, state = assembly.line, stepper.now
-    parts = acting_on(line, stepper.system.model.parts)
-    residual = element_residual(line, parts, state)
-    inside = section_forces(line, assembly.elements, state, residual, viscous_residual(line, parts, state))
-    start, end = end_reactions(line, state, residual, nodal_residual(line, parts, state))
-    tangent, position = line.trial(state).turn.tangent @ line.basis.T, line.positions3(state)
-    return RiserSnapshot(
-        position=position,
-        effective_tension=inside.effective_tension,
-        wall_tension=_wall_tension(assembly, inside.effective_tension, position[:, 2]),
-        bending_moment=inside.bending_moment,
-        curvature=inside.curvature,
-        bend_utilisation=_bend_utilisation(assembly, inside.curvature_beside),
-        contact_force=_contact_force(assembly, state),
-        moment_vector=inside.moment,
-        start_force=start.force,
-        end_force=end.force,
-        start_moment=start.moment,
-        end_moment=end.moment,
-        start_tangent=tangent[0, 0],
-        end_tangent=tangent[-1, 1],
-    )
-
-
-def elastic_residual(assembly: Assembly, stepper: TimeStepper) -> Array:
-    """Of the elements (ne, 2 ndof), less what follows from strain rates."""
-    line, state = assembly.line, stepper.now
-    parts = acting_on(line, stepper.system.model.parts)
-    return element_residual(line, parts, state) - viscous_residual(line, parts, state)
-
-
-def _bend_utilisation(assembly: Assembly, curvature: Array) -> Array:
-    """curvature (ne, 2): at the elements' ends."""
-    allowed = assembly.elements.min_bend_radius
-    return at_most(allowed[:, None] * curvature) if allowed.any() else np.full(assembly.line.nodes, np.nan)
-
-
-def _wall_tension(assembly: Assembly, effective: Array, z: Array) -> Array:
-    if assembly.pressures is None:
-        return np.full(assembly.line.nodes, np.nan)
-    return assembly.pressures.wall_tension(effective, z)
-
-
-def _contact_force(assembly: Assembly, state: State) -> Array:
-    forces = (contact.force_per_length(state) for contact in assembly.contacts)
-    return np.asarray(sum(forces, np.zeros(assembly.line.nodes)))
 
 
 def facts(assembly: Assembly) -> RunFacts:

@@ -1,7 +1,8 @@
 """Peaks between samples: the extremes of a stage's figures without what falls between nodes and between steps.
 
-A largest value at a node, or at the end of a step, misses the peak beside it by up to an eighth of the second
-difference there. The vertex of the parabola through the sample and its two neighbours misses it by higher orders.
+An extreme at the end of a step, or a least tension at a node, misses the peak beside it by up to an eighth of the
+second difference there. The vertex of the parabola through the sample and its two neighbours misses it by higher
+orders. Largest moments and curvatures are told between nodes already (`riser.bending_peaks`).
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ _ALTERNATING = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 16.0  # what alternates o
 # The middle one, and those after it, without what alternates, if that lasts; cubics stay as they are.
 RINGLESS = np.eye(5)[2:] - np.outer([1.0, -1.0, 1.0], _ALTERNATING)
 UNEVEN = 1e-6  # of five steps' time, by which they may differ
-_ALONG = {"max_bending_moment": 1.0, "max_curvature": 1.0, "min_effective_tension": -1.0}  # 1: largest, -1: least
+_TENSION = "min_effective_tension"
 
 
 def vertex(t: Array, values: Array) -> Array:
@@ -32,26 +33,23 @@ def vertex(t: Array, values: Array) -> Array:
     return np.asarray(np.where(turns, values[1] - slope**2 / np.where(turns, 4.0 * bend, 1.0), values[1]))
 
 
-def between_nodes(arc: Array, along: Array, sign: float = 1.0) -> float:
-    """Largest value (least for sign -1) along the riser, between nodes too. arc, along: (nn,)."""
-    at = int((sign * along).argmax())
+def least_between_nodes(arc: Array, along: Array) -> float:
+    """Least value along the riser, between nodes too. arc, along: (nn,)."""
+    at = int(along.argmin())
     if not 0 < at < len(along) - 1:
         return float(along[at])
     return float(vertex(arc[at - 1 : at + 2], along[at - 1 : at + 2]))
 
 
 def pack_peaks(seen: Instant) -> Array:
-    """As `pack`, with peaks between nodes in place of those at nodes."""
-    vector, riser = pack(seen), seen.riser
-    along = {"max_bending_moment": riser.bending_moment, "max_curvature": riser.curvature}
-    along["min_effective_tension"] = riser.effective_tension
-    for name, sign in _ALONG.items():
-        vector[places_of(name)] = between_nodes(seen.arc, along[name], sign)
+    """As `pack`, with the least tension between nodes in place of that at nodes."""
+    vector = pack(seen)
+    vector[places_of(_TENSION)] = least_between_nodes(seen.arc, seen.riser.effective_tension)
     return vector
 
 
 class StagePeaks:
-    """Extremes of one stage three ways: as recorded, with peaks between nodes, and between steps as well."""
+    """Extremes of one stage three ways: as recorded, with the tension's between nodes, and between steps as well."""
 
     def __init__(self, name: str, kind: str) -> None:
         self.name, self.kind = name, kind
@@ -98,8 +96,7 @@ class StagePeaks:
             return {"name": self.name, "kind": self.kind, "final": None}
         final = final_state(self._seen)
         if which != "sampled":
-            for name in _ALONG:
-                final[name] = {**final[name], "value": self._last[-1][places_of(name)].item()}
+            final[_TENSION] = {**final[_TENSION], "value": self._last[-1][places_of(_TENSION)].item()}
         extremes = self._smooth_to_the_end() if which == "smooth" else vars(self)[which]
         return {
             "name": self.name, "kind": self.kind, "final": final, "soil": self.soil,

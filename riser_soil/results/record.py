@@ -262,7 +262,7 @@ class Recorder:
         if stage.kind == "dynamic":
             stage.indicators.follow(now, self._latest, step.health, step.ledger)
         stage.final = final_state(seen)
-        stage.bend(now, self._arc, seen.riser)
+        stage.bend(now, seen.riser)
 
     def _record(self, seen: Instant, due: DueOutputs, soil: SoilSnapshot | None) -> None:
         self._last = LastState(seen, soil, due)

@@ -84,7 +84,7 @@ def _figure_rows(stage: dict[str, Any]) -> Iterator[Row]:
         unit, scale = figure.row.unit, figure.row.scale
         if figure.size > 1:
             yield figure.row.words, _place(final, unit, scale)
-        elif figure.node is not None:
+        elif figure.placed:
             yield figure.row.words, _at(final, extremes, unit, scale)
         else:
             yield figure.row.words, _span(final, extremes, unit, scale)

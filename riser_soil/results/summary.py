@@ -12,8 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
-from riser_soil.core.output import bend_radius
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, under, unpacked, within
 from riser_soil.core.snapshot import Ledger, RiserSnapshot, RunFacts, StepStatistics
 from riser_soil.results.figures import Extremes
@@ -93,12 +91,11 @@ class StageTally:
         if abs(ledger.residual) > abs(self.worst_residual[0]):
             self.worst_residual = ledger.residual, t
 
-    def bend(self, t: float, arc: Array, riser: RiserSnapshot) -> None:
+    def bend(self, t: float, riser: RiserSnapshot) -> None:
         """t: s (static stages: load factor)."""
-        at = int(riser.bend_utilisation.argmax())
-        used = float(riser.bend_utilisation[at])
+        used, arc = riser.largest_bend_utilisation
         if used > self.tightest.utilisation:
-            self.tightest = TightestBend(used, bend_radius(riser.curvature[at]), float(arc[at]), t)
+            self.tightest = TightestBend(used, riser.tightest_radius, arc, t)
 
     def count(self, health: StepStatistics) -> None:
         self.steps += 1

@@ -14,11 +14,14 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
+from riser_soil.riser import bending_peaks
 from riser_soil.riser.directors import SpatialOrientation
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.sections import Elements, larger_beside
 from riser_soil.riser.trial import Trial
+
+_BEHIND = np.array([[-1.0], [1.0]])  # of what acts on an element's ends: what the line after exerts on the line before
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +30,8 @@ class SectionForces:
     3) or (nn,).
 
     force N, moment N m; effective_tension N, positive in tension; bending_moment N m and curvature 1/m, magnitudes.
-    curvature_beside (ne, 2): of the elements themselves at their ends; they differ where stiffnesses meet.
+    Of the elements themselves, at their ends (ne, 2): curvature_beside, which differs where stiffnesses meet, and the
+    slopes of moment [N] and curvature [1/m2], which differ where a force or contact acts on a node.
     """
 
     force: Array
@@ -36,6 +40,8 @@ class SectionForces:
     bending_moment: Array
     curvature: Array
     curvature_beside: Array
+    moment_slope: Array
+    curvature_slope: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,26 +85,43 @@ def section_forces(
     the bending moment.
     """
     trial = line.trial(state)
-    force, moment = _nodal_section(line, trial, residual)
+    on_ends, moments_on_ends = end_forces(line, trial, residual)
+    force, moment = _section(on_ends), _section(moments_on_ends)
     tangent = _nodal(trial.turn.tangent[:, 0], trial.turn.tangent[:, 1]) @ line.basis.T
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
     bending = _across(moment, tangent) * larger_beside(elements.bends.astype(float))[:, None]
-    damping = 0.0 if viscous is None else _across(_nodal_section(line, trial, viscous)[1], tangent)
-    first, second = _curvatures(trial, elements, bending - damping)
+    damping = 0.0 if viscous is None else _across(_section(end_forces(line, trial, viscous)[1]), tangent)
+    beside = np.stack(_curvatures(trial, elements, bending - damping), axis=1)
+    magnitude = np.linalg.norm(bending, axis=1)
+    slope = _slopes(line, trial, on_ends, bending)
     return SectionForces(
         force=force,
         moment=moment,
         effective_tension=np.sum(force * tangent, axis=1),
-        bending_moment=np.linalg.norm(bending, axis=1),
-        curvature=_nodal(first, second),
-        curvature_beside=np.stack([first, second], axis=1),
+        bending_moment=magnitude,
+        curvature=_nodal(beside[:, 0], beside[:, 1]),
+        curvature_beside=beside,
+        moment_slope=slope,
+        curvature_slope=_of_curvature(slope, magnitude, beside),
     )
 
 
-def _nodal_section(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]:
-    """Force and moment (nn, 3) that the line after a node exerts on the line before it."""
-    force, moment = end_forces(line, trial, residual)
-    return _nodal(-force[:, 0], force[:, 1]), _nodal(-moment[:, 0], moment[:, 1])
+def _slopes(line: Line, trial: Trial, on_ends: Array, bending: Array) -> Array:
+    """Of the moment's magnitude at the elements' ends (ne, 2); on_ends (ne, 2, 3): forces on these."""
+    slope = np.empty(on_ends.shape[:2])
+    bending_peaks.slopes(bending, on_ends * _BEHIND, trial.turn.tangent @ line.basis.T, slope)
+    return slope
+
+
+def _of_curvature(slope: Array, moment: Array, curvature: Array) -> Array:
+    """Slopes of the curvature (ne, 2), which changes with the moment (nn,)."""
+    beside = np.stack([moment[:-1], moment[1:]], axis=1)
+    return np.divide(slope * curvature, beside, out=np.zeros_like(slope), where=beside > 0.0)
+
+
+def _section(on_ends: Array) -> Array:
+    """What the line after a node exerts on the line before it (nn, 3), from what acts on the elements' ends."""
+    return _nodal(-on_ends[:, 0], on_ends[:, 1])
 
 
 def _across(moment: Array, tangent: Array) -> Array:

@@ -13,6 +13,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.snapshot import (
     ContactSnapshot,
+    LargestAlong,
     Ledger,
     RiserSnapshot,
     RunFacts,
@@ -39,6 +40,10 @@ FACTS = RunFacts(
 SCENE = "title: Touchdown on soft clay\nline_types: {flexible: {outer_diameter: 0.3}}\n"
 
 
+def _largest(arc: Array, values: Array) -> LargestAlong:
+    return LargestAlong(float(values.max()), float(arc[values.argmax()]))
+
+
 @dataclass(frozen=True)
 class Catenary:
     """Inextensible catenary of parameter a [m] in the plane y = 0 that leaves the seabed at arc s0 [m]."""
@@ -62,6 +67,10 @@ class Catenary:
             bending_moment=EI * curvature,
             curvature=curvature,
             bend_utilisation=20.0 * curvature,
+            largest_moment=_largest(arc, EI * curvature),
+            largest_curvature=_largest(arc, curvature),
+            largest_bend_utilisation=_largest(arc, 20.0 * curvature),
+            tightest_radius=1.0 / curvature.max(),
             contact_force=np.where(arc < self.s0, WEIGHT, 0.0),
             moment_vector=moment,
             start_force=np.array([-WEIGHT * a, 0.0, 0.0]),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -26,8 +27,8 @@ def seen(moment: Array, tension: Array, **more: Array) -> Instant:
     line = Catenary(32.0, 30.0)
     vector = np.zeros((ARC.size, 3))
     vector[:, 1] = moment
-    given = {"moment_vector": vector, "bending_moment": np.abs(moment), "effective_tension": tension} | LIMP | more
-    return Instant(ARC, replace(line.riser(ARC), **given), line.touch(ARC))
+    given: dict[str, Any] = {"moment_vector": vector, "bending_moment": np.abs(moment), "effective_tension": tension}
+    return Instant(ARC, replace(line.riser(ARC), **(given | LIMP | more)), line.touch(ARC))
 
 
 def envelope(*instants: Instant) -> CurveEnvelope:

@@ -12,6 +12,7 @@ from riser_soil.core.part import State
 from riser_soil.errors import SceneError
 from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
+from riser_soil.riser.bending_peaks import largest
 from riser_soil.riser.ends import End, Kinematics
 from riser_soil.riser.line import Line
 from riser_soil.riser.loads import AppliedLoad, PointLoads
@@ -150,6 +151,39 @@ def test_small_deflections_give_textbook_section_forces() -> None:
     assert found.bending_moment[[0, 3, -1]] == pytest.approx([2.0 * middle, middle, 2.0 * middle], rel=1e-3)
     assert found.curvature == pytest.approx(found.bending_moment / 2.0e6, rel=1e-12)
     assert found.moment[3, 1] < 0.0 < found.moment[0, 1]  # sagging turns the tangent up, about -y
+
+
+@both_dimensions
+def test_largest_moment_under_an_even_load_lies_between_nodes(dimension: int) -> None:
+    """A beam on two supports, w = 50 N/m: w L²/8 in the middle of 12 m, between nodes at 4.8 and 7.2 m."""
+    line, e = bar(dimension, End(True), End(True), kind=replace(BAR, EI_y=2.0e6, EI_z=2.0e6), count=5)
+    beam = Beam(line, e)
+    solve(line, [beam])
+    state = State.at_rest(1.0, line.size)
+    found = section_forces(line, e, state, element_residual(line, [beam], state))
+    middle = 50.0 * 12.0**2 / 8.0
+    at_nodes = np.stack([found.bending_moment[:-1], found.bending_moment[1:]], axis=1)
+    assert at_nodes.max() == pytest.approx(0.96 * middle, rel=1e-3)
+    moment, arc, element = largest(line.arc, at_nodes, found.moment_slope)
+    assert (moment, arc, element) == (pytest.approx(middle, rel=1e-3), pytest.approx(6.0, abs=1e-3), 2)
+    curvature, arc, _ = largest(line.arc, found.curvature_beside, found.curvature_slope)
+    assert (curvature, arc) == (pytest.approx(middle / 2.0e6, rel=1e-3), pytest.approx(6.0, abs=1e-3))
+
+
+@both_dimensions
+def test_largest_moment_under_a_point_load_is_not_overshot(dimension: int) -> None:
+    """The moment has a corner at the load, at a node beside the middle: P a b/L there, and nowhere more."""
+    kind = SectionProperties(EA=1.0e7, EI_y=2.0e6, EI_z=2.0e6, GJ=1.0e4)
+    line, _ = bar(dimension, End(True), End(True), kind=kind, count=5)
+    e = elements([MeshedSegment.even(kind, 12.0, 5)], Surroundings())
+    parts = (Beam(line, e), PointLoads(line, [AppliedLoad(lambda t: t, 4.8, force=np.array([0.0, 0.0, -50.0]))]))
+    solve(line, parts)
+    state = State.at_rest(1.0, line.size)
+    found = section_forces(line, e, state, element_residual(line, parts, state))
+    at_nodes = np.stack([found.bending_moment[:-1], found.bending_moment[1:]], axis=1)
+    moment, arc, _ = largest(line.arc, at_nodes, found.moment_slope)
+    assert (moment, arc) == (found.bending_moment[2], pytest.approx(4.8))
+    assert moment == pytest.approx(50.0 * 4.8 * 7.2 / 12.0, rel=1e-3)
 
 
 def test_curvature_is_resolved_in_section_axes() -> None:

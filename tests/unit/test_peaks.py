@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from riser_soil.core.snapshot import Instant
+from riser_soil.core.snapshot import Instant, LargestAlong
 from riser_soil.results.figures import pack, places_of
-from riser_soil.results.peaks import RunPeaks, between_nodes, pack_peaks, vertex
+from riser_soil.results.peaks import RunPeaks, least_between_nodes, pack_peaks, vertex
 from tests.support.recorded_run import Catenary
 
 ARC = np.linspace(0.0, 150.0, 31)
@@ -22,34 +22,37 @@ def test_vertex_of_a_parabola_is_exact_at_any_spacing() -> None:
 
 
 def test_peak_between_nodes_is_of_higher_order() -> None:
-    """A cosine's top, sampled at uneven places: the miss falls by 16 as the spacing halves, at the nodes by 4."""
+    """A cosine's bottom, sampled at uneven places: the miss falls by 16 as the spacing halves, at the nodes by 4."""
     missed, at_nodes = [], []
     for h in (0.2, 0.1):
         arc = np.arange(-8, 9) * h + 0.31 * h
-        missed.append(1.0 - between_nodes(arc, np.cos(arc)))
+        missed.append(1.0 + least_between_nodes(arc, -np.cos(arc)))
         at_nodes.append(1.0 - np.cos(arc).max())
-        assert between_nodes(arc, -np.cos(arc), sign=-1.0) == pytest.approx(-between_nodes(arc, np.cos(arc)))
     assert missed[0] / missed[1] == pytest.approx(16.0, rel=0.05)
     assert at_nodes[0] / at_nodes[1] == pytest.approx(4.0, rel=0.05)
 
 
 def test_peak_at_an_end_stays_there() -> None:
-    assert between_nodes(np.array([0.0, 1.0, 2.0]), np.array([3.0, 2.0, 0.0])) == 3.0
+    assert least_between_nodes(np.array([0.0, 1.0, 2.0]), np.array([0.0, 2.0, 3.0])) == 0.0
 
 
 def seen(t: float) -> Instant:
-    """Catenary whose moments grow and fall with time."""
+    """Catenary whose largest moment grows and falls with time."""
     line = Catenary(32.0, 30.0)
     riser = line.riser(ARC)
-    return Instant(ARC, replace(riser, bending_moment=riser.bending_moment * np.cos(t)), line.touch(ARC))
+    moment = LargestAlong(riser.largest_moment.value * float(np.cos(t)), riser.largest_moment.arc)
+    return Instant(ARC, replace(riser, largest_moment=moment), line.touch(ARC))
 
 
 def test_only_what_sits_between_nodes_is_replaced() -> None:
-    plain, peaked = pack(seen(0.0)), pack_peaks(seen(0.0))
+    """Of the figures, the least tension alone is told at nodes."""
+    hanging = replace(seen(0.0).riser, effective_tension=(ARC - 67.0) ** 2)
+    least = Instant(ARC, hanging, seen(0.0).touch)
+    plain, peaked = pack(least), pack_peaks(least)
     changed = np.flatnonzero(~np.isclose(plain, peaked, equal_nan=True))
-    replaced = {places_of(name).start for name in ("max_bending_moment", "max_curvature", "min_effective_tension")}
-    assert set(changed) <= replaced
-    assert peaked[places_of("max_bending_moment")] >= plain[places_of("max_bending_moment")]
+    assert set(changed) == {places_of("min_effective_tension").start}
+    assert plain[changed] == pytest.approx([4.0])
+    assert peaked[changed] == pytest.approx([0.0], abs=1e-9)
 
 
 def test_extremes_of_a_stage_three_ways() -> None:
@@ -63,7 +66,7 @@ def test_extremes_of_a_stage_three_ways() -> None:
         for which in ("sampled", "of_nodes", "peaks")
     }
     top = pack_peaks(seen(0.0))[places_of("max_bending_moment")].item()
-    assert largest["sampled"] == pytest.approx(seen(0.1).riser.bending_moment.max())
+    assert largest["sampled"] == pytest.approx(seen(0.1).riser.largest_moment.value)
     assert largest["of_nodes"] == pytest.approx(top * np.cos(0.1))
     assert largest["peaks"] == pytest.approx(top, rel=3e-4)
 
@@ -74,7 +77,7 @@ def of_five(t: np.ndarray, moment: np.ndarray) -> float:
     peaks.begin_stage("motion", "dynamic")
     line = Catenary(32.0, 30.0)
     for at, size in zip(t, moment, strict=True):
-        riser = replace(line.riser(ARC), bending_moment=np.full(ARC.size, size))
+        riser = replace(line.riser(ARC), largest_moment=LargestAlong(float(size), 0.0))
         peaks.record(float(at), Instant(ARC, riser, line.touch(ARC)))
     largest: float = peaks.told("smooth")["stages"][0]["extremes"]["max_bending_moment"]["max"]
     return largest

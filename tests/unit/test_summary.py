@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.output import angle_deg
-from riser_soil.core.snapshot import ContactSnapshot, Instant, Ledger
+from riser_soil.core.snapshot import ContactSnapshot, Instant, LargestAlong, Ledger
 from riser_soil.results.figures import Extremes, final_state, pack, unpack
 from riser_soil.results.summary import StageTally, Summary, plain_json
 from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary, record
@@ -67,7 +67,8 @@ def test_final_state_of_a_catenary() -> None:
 
 def test_what_is_unknown_is_left_out() -> None:
     nothing = np.full(ARC.size, math.nan)
-    riser = replace(LINE.riser(ARC), wall_tension=nothing, bend_utilisation=nothing)
+    unused = LargestAlong(math.nan, math.nan)
+    riser = replace(LINE.riser(ARC), wall_tension=nothing, largest_bend_utilisation=unused)
     touch, extremes = replace(LINE.touch(ARC), embedment=None), Extremes()
     extremes.update(0.0, pack(Instant(ARC, riser, touch)))
     unknown = {"min_wall_tension", "max_wall_tension", "max_bend_utilisation", "max_embedment"}
@@ -76,7 +77,7 @@ def test_what_is_unknown_is_left_out() -> None:
 
 
 def test_a_straight_pipe_has_no_bend_radius() -> None:
-    riser = replace(LINE.riser(ARC), curvature=np.zeros(ARC.size))
+    riser = replace(LINE.riser(ARC), largest_curvature=LargestAlong(0.0, 0.0))
     final = final_state(Instant(ARC, riser, LINE.touch(ARC)))
     assert plain_json(final)["min_bend_radius"] == {"value": None, "arc": 0.0}
 
@@ -84,13 +85,13 @@ def test_a_straight_pipe_has_no_bend_radius() -> None:
 def test_a_pipe_bent_too_much_is_a_warning() -> None:
     stage = StageTally("heave", "dynamic")
     for t, a in ((0.1, 25.0), (0.2, 16.0), (0.3, 18.0)):
-        stage.bend(t, ARC, Catenary(a, 30.0).riser(ARC))
+        stage.bend(t, Catenary(a, 30.0).riser(ARC))
     assert stage.warnings == [
         "the pipe is bent beyond its min_bend_radius: 1.25 times what is allowed at arc 30 m and 0.2 s, where the bend "
         "radius is 16 m"
     ]
     stage = StageTally("heave", "dynamic")
-    stage.bend(0.1, ARC, Catenary(20.1, 30.0).riser(ARC))
+    stage.bend(0.1, Catenary(20.1, 30.0).riser(ARC))
     assert stage.warnings == []
 
 

@@ -168,14 +168,21 @@ def test_summary_agrees_with_the_series(demo: WatchedRun) -> None:
     np.testing.assert_array_equal(final["end"]["force"], run["end_force"][-1])
     assert final["touchdown_arc"] == run["touchdown_arc"][-1]
     assert final["contact_force"] == run["contact_force_sum"][-1, 2]
-    assert final["max_bending_moment"]["value"] == run["bending_moment"][-1].max()
-    assert final["max_bending_moment"]["arc"] == run.arc[run["bending_moment"][-1].argmax()]
+    assert_beside(run, final["max_bending_moment"], run["bending_moment"][-1])
+    assert_beside(run, final["max_curvature"], run["curvature"][-1])
     assert final["min_effective_tension"]["value"] == run["effective_tension"][-1].min()
     top = run["end_force"][:, 2]
     force = extremes["end"]["force"]
     assert (force["min"][2], force["max"][2]) == (top.min(), top.max())
     assert (force["t_min"][2], force["t_max"][2]) == (run.time[top.argmin()], run.time[top.argmax()])
-    assert extremes["max_curvature"]["max"] == run["curvature"].max()
+    assert run["curvature"].max() <= extremes["max_curvature"]["max"] < 1.01 * run["curvature"].max()
+
+
+def assert_beside(run: Run, largest: Any, at_nodes: Array) -> None:
+    """The largest value lies at the largest node or between it and the next ones, and is not much larger."""
+    at, top = int(at_nodes.argmax()), at_nodes.max()
+    assert run.arc[max(0, at - 1)] <= largest["arc"] <= run.arc[min(at + 1, run.arc.size - 1)]
+    assert top <= largest["value"] < 1.01 * top
 
 
 def test_resolved_scene_computes_the_same_again(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import h5py
@@ -85,21 +86,26 @@ def test_least_tension_and_bend_radius_are_those_of_the_fields(sag: Run) -> None
     for row, (tension, curvature) in enumerate(zip(sag["effective_tension"], sag["curvature"], strict=True)):
         assert sag["min_effective_tension"][row] == tension.min()
         assert sag["min_effective_tension_arc"][row] == sag.arc[tension.argmin()]
-        assert sag["min_bend_radius"][row] == 1.0 / curvature.max()
-        assert sag["min_bend_radius_arc"][row] == sag.arc[curvature.argmax()]
+        assert 0.95 / curvature.max() < sag["min_bend_radius"][row] <= 1.0 / curvature.max()
+        beside = np.abs(sag.arc - sag["min_bend_radius_arc"][row]) <= np.diff(sag.arc).max()
+        assert curvature[beside].max() > 0.99 * curvature.max()
     np.testing.assert_allclose(sag["bend_utilisation"], ALLOWED * sag["curvature"], rtol=1e-12)
 
 
 def test_the_warning_tells_where_and_when_the_pipe_is_bent_most(sag: Run) -> None:
     lay, heave = sag.summary["stages"]
-    used, arc, t = sag["bend_utilisation"], sag.arc, sag.time
+    used, found = sag["bend_utilisation"], heave["extremes"]["max_bend_utilisation"]
     row, node = np.unravel_index(used.argmax(), used.shape)
     assert lay["warnings"] == []
-    assert heave["extremes"]["max_bend_utilisation"]["max"] == used.max() > 1.0
-    assert heave["warnings"][0] == (
-        f"the pipe is bent beyond its min_bend_radius: {used.max():.4g} times what is allowed at arc {arc[node]:.5g} m "
-        f"and {t[row]:.5g} s, where the bend radius is {1.0 / sag['curvature'][row, node]:.4g} m"
+    assert 1.0 < used.max() <= found["max"] < 1.01 * used.max()
+    assert found["t_max"] == sag.time[row]
+    told = re.fullmatch(
+        rf"the pipe is bent beyond its min_bend_radius: {found['max']:.4g} times what is allowed at arc (\S+) m and "
+        rf"{sag.time[row]:.5g} s, where the bend radius is {ALLOWED / found['max']:.4g} m",
+        heave["warnings"][0],
     )
+    assert told is not None
+    assert abs(float(told[1]) - sag.arc[node]) < 0.75
 
 
 def test_units(sag: Run) -> None:

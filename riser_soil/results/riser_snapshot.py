@@ -1,0 +1,102 @@
+"""The riser at an accepted state, as results tell it: forces and bending along it, reactions, largest values."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from riser_soil.assembly import Assembly
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.core.snapshot import LargestAlong, RiserSnapshot
+from riser_soil.riser import bending_peaks
+from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import acting_on
+from riser_soil.riser.section_forces import (
+    SectionForces,
+    at_most,
+    element_residual,
+    end_reactions,
+    nodal_residual,
+    section_forces,
+    viscous_residual,
+)
+from riser_soil.solve.time_stepper import TimeStepper
+
+
+def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
+    """The riser at the accepted state; on the rank that holds it."""
+    line, state = assembly.line, stepper.now
+    parts = acting_on(line, stepper.system.model.parts)
+    residual = element_residual(line, parts, state)
+    inside = section_forces(line, assembly.elements, state, residual, viscous_residual(line, parts, state))
+    start, end = end_reactions(line, state, residual, nodal_residual(line, parts, state))
+    tangent, position = line.trial(state).turn.tangent @ line.basis.T, line.positions3(state)
+    most_used, tightest = _tightest_bend(assembly, inside)
+    return RiserSnapshot(
+        position=position,
+        effective_tension=inside.effective_tension,
+        wall_tension=_wall_tension(assembly, inside.effective_tension, position[:, 2]),
+        bending_moment=inside.bending_moment,
+        curvature=inside.curvature,
+        bend_utilisation=_bend_utilisation(assembly, inside.curvature_beside),
+        largest_moment=_largest(line, _beside(inside.bending_moment), inside.moment_slope),
+        largest_curvature=_largest(line, inside.curvature_beside, inside.curvature_slope),
+        largest_bend_utilisation=most_used,
+        tightest_radius=tightest,
+        contact_force=_contact_force(assembly, state),
+        moment_vector=inside.moment,
+        start_force=start.force,
+        end_force=end.force,
+        start_moment=start.moment,
+        end_moment=end.moment,
+        start_tangent=tangent[0, 0],
+        end_tangent=tangent[-1, 1],
+    )
+
+
+def elastic_residual(assembly: Assembly, stepper: TimeStepper) -> Array:
+    """Of the elements (ne, 2 ndof), less what follows from strain rates."""
+    line, state = assembly.line, stepper.now
+    parts = acting_on(line, stepper.system.model.parts)
+    return element_residual(line, parts, state) - viscous_residual(line, parts, state)
+
+
+def _bend_utilisation(assembly: Assembly, curvature: Array) -> Array:
+    """curvature (ne, 2): at the elements' ends."""
+    allowed = assembly.elements.min_bend_radius
+    return at_most(allowed[:, None] * curvature) if allowed.any() else np.full(assembly.line.nodes, np.nan)
+
+
+def _largest(line: Line, values: Array, slopes: Array) -> LargestAlong:
+    """values, slopes (ne, 2): at the elements' ends."""
+    value, arc, _ = bending_peaks.largest(line.arc, values, slopes)
+    return LargestAlong(value, arc)
+
+
+def _beside(at_nodes: Array) -> Array:
+    """What nodes have (nn,), at the elements' ends (ne, 2)."""
+    return np.stack([at_nodes[:-1], at_nodes[1:]], axis=1)
+
+
+def _tightest_bend(assembly: Assembly, inside: SectionForces) -> tuple[LargestAlong, float]:
+    """The largest bend utilisation, and the radius [m] there; nan where no least radius is given."""
+    allowed = assembly.elements.min_bend_radius[:, None]
+    if not allowed.any():
+        return LargestAlong(math.nan, math.nan), math.nan
+    used, arc, e = bending_peaks.largest(
+        assembly.line.arc, allowed * inside.curvature_beside, allowed * inside.curvature_slope
+    )
+    return LargestAlong(used, arc), float(allowed[e, 0] / used) if used > 0.0 else math.inf
+
+
+def _wall_tension(assembly: Assembly, effective: Array, z: Array) -> Array:
+    if assembly.pressures is None:
+        return np.full(assembly.line.nodes, np.nan)
+    return assembly.pressures.wall_tension(effective, z)
+
+
+def _contact_force(assembly: Assembly, state: State) -> Array:
+    forces = (contact.force_per_length(state) for contact in assembly.contacts)
+    return np.asarray(sum(forces, np.zeros(assembly.line.nodes)))

@@ -1,0 +1,57 @@
+"""Largest bending between nodes: of cubics, parabolas and corners that are known."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from riser_soil.riser.bending_peaks import largest, slopes, top_of_cubic
+
+
+@pytest.mark.parametrize("top", [0.0, 0.2, 0.5, 1.0])
+def test_top_of_a_parabola(top: float) -> None:
+    value, at = top_of_cubic(5.0 - 3.0 * top**2, 5.0 - 3.0 * (1.0 - top) ** 2, 6.0 * top, -6.0 * (1.0 - top))
+    assert (value, at) == (pytest.approx(5.0), pytest.approx(top))
+
+
+def test_top_of_a_cubic() -> None:
+    """x (1 - x) (2 - x): at 1 - 1/sqrt(3), 2/(3 sqrt(3)) high."""
+    value, at = top_of_cubic(0.0, 0.0, 2.0, -1.0)
+    assert (value, at) == (pytest.approx(2.0 / 27.0**0.5), pytest.approx(1.0 - 1.0 / math.sqrt(3.0)))
+
+
+@pytest.mark.parametrize(("rise", "fall"), [(3.0, 3.0), (-3.0, 3.0), (-3.0, -3.0), (0.0, -1.0), (1.0, 0.0)])
+def test_without_a_rise_and_a_fall_the_larger_end_counts(rise: float, fall: float) -> None:
+    assert top_of_cubic(1.0, 2.0, rise, fall) == (2.0, 1.0)
+    assert top_of_cubic(2.0, 1.0, rise, fall) == (2.0, 0.0)
+
+
+def test_of_equal_values_the_first_counts_whatever_rounds() -> None:
+    arc, values = np.arange(4.0), np.full((3, 2), 7.0)
+    values[1:] += 7e-15
+    assert largest(arc, values, np.zeros((3, 2))) == (7.0, 0.0, 0)
+
+
+def test_a_corner_is_not_overshot() -> None:
+    """Steep up to a node, gently down from it."""
+    arc, values = np.array([0.0, 1.0, 3.0, 4.0]), np.array([[0.0, 10.0], [10.0, 9.0], [9.0, 8.5]])
+    slope = np.array([[10.0, 10.0], [-0.5, -0.5], [-0.5, -0.5]])
+    assert largest(arc, values, slope) == (10.0, 1.0, 0)
+
+
+def test_where_the_curvature_jumps_the_larger_side_counts() -> None:
+    arc, values = np.array([0.0, 1.0, 2.0]), np.array([[4.0, 2.0], [8.0, 0.0]])
+    assert largest(arc, values, np.full((2, 2), -5.0)) == (8.0, 1.0, 1)
+
+
+def test_slopes_follow_from_the_shear_across_the_moment() -> None:
+    """A cantilever along x held at 0 and pushed by F at its end s = 2: M = (2 - s) e x F, |M|' = -|F across e|."""
+    force, tangent = np.array([3.0, -4.0, 12.0]), np.array([1.0, 0.0, 0.0])
+    moment = np.array([(2.0 - s) * np.cross(tangent, force) for s in (0.0, 1.0)])
+    out = np.empty((1, 2))
+    slopes(moment, np.tile(force, (1, 2, 1)), np.tile(tangent, (1, 2, 1)), out)
+    assert out == pytest.approx(-math.hypot(4.0, 12.0))
+    slopes(0.0 * moment, np.tile(force, (1, 2, 1)), np.tile(tangent, (1, 2, 1)), out)
+    assert not out.any()
