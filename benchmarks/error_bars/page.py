@@ -24,8 +24,9 @@ too, then half the elements, then a quarter of the penalty, of these what the sc
 source. A difference over ratio^order − 1 is the error by Richardson's extrapolation: order 4 for the elements of a
 riser that hangs, 2 for one that touches down, 2 for time steps, 1 for the soil's cells, ¾ for the penalty; in a
 contact force by a penalty, of which an end held on the ground bears what lies beside it, 1 for the elements and ¼ for
-the penalty; less where the difference is large. What falls between nodes and between steps, by the parabola through
-three samples, is added to mesh and time, and what rings from step to step to the time, then a factor of safety,
+the penalty; less where the difference is large. What falls between nodes, by the cubic within an element or the
+parabola through three nodes, and between steps, by the parabola through three, is added to mesh and time, and what
+rings from step to step to the time, then a factor of safety,
 {factors}; different sources add up as squares do. The smallest bar is {smallest:g} of the quantity's scale
 ([headlines.py](../riser_soil/accuracy/headlines.py)).
 [error_bars.py](../riser_soil/accuracy/error_bars.py) has all of it.

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from riser_soil.accuracy.headlines import Headline
 
@@ -50,12 +50,15 @@ class Companion:
 
 @dataclass(frozen=True)
 class RunValues:
-    """The run's headline quantities: as told, and with peaks between nodes, and between steps too."""
+    """The run's headline quantities: as told, with peaks between nodes, between steps too, without what rings, and at
+    nodes alone; these as told where they are not known.
+    """
 
     told: Mapping[str, Headline]
     of_nodes: Values
     peaks: Values
     smooth: Values
+    at_nodes: Values = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -118,4 +121,4 @@ def gaps(headline: Headline, run: RunValues) -> dict[str, float]:
     steps = STEP_GAP * abs(run.peaks.get(key, nodes) - nodes)
     if key in run.smooth:
         steps += RINGING * abs(run.smooth[key] - nodes)
-    return {"mesh": abs(nodes - value)} | ({"time": steps} if steps else {})
+    return {"mesh": abs(nodes - run.at_nodes.get(key, value))} | ({"time": steps} if steps else {})

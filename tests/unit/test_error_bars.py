@@ -89,6 +89,15 @@ def test_what_falls_between_nodes_is_the_meshs() -> None:
     assert bar.by_source["mesh"] == pytest.approx(SAFETY["mesh"] * 10.0)
 
 
+def test_what_the_moment_tells_between_nodes_is_the_meshs_too() -> None:
+    """As the largest moment is told between nodes, what it is at nodes tells how much falls between."""
+    headline = Headline("hang", "largest bending moment", "N.m", 1010.0, 1.0)
+    key = headline.key
+    seen, nodes = {key: 1010.0}, {key: 1000.0}
+    (bar,) = error_bars(RunValues({key: headline}, seen, seen, seen, nodes), [], touches=False)
+    assert bar.by_source["mesh"] == pytest.approx(SAFETY["mesh"] * 10.0)
+
+
 def test_what_falls_between_steps_and_what_rings_is_the_time_steps() -> None:
     headline = Headline("heave", "top tension", "N", 1000.0, 1000.0)
     key = headline.key
