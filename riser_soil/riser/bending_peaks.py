@@ -2,7 +2,9 @@
 
 A section's moment M changes along the unstressed arc s as M' = F x t, with the section's force F and the unit tangent
 t, so its magnitude as |M|' = M . (F x t)/|M|. Both ends of an element have a value and a slope of their own: the cubic
-through them is the moment itself under an even or linear load, whatever jumps at the nodes.
+through them is the moment itself under an even or linear load, whatever jumps at the nodes. In an element far too long
+for the bend, whose load is borne by tension, it would tower over its ends: it rises above them by no more than twice
+what a parabola with the second differences of the values beside it would.
 """
 
 from __future__ import annotations
@@ -40,9 +42,27 @@ def largest(arc: Array, values: Array, slope: Array) -> tuple[float, float, int]
     for e in range(len(values)):
         L = arc[e + 1] - arc[e]
         top, x = top_of_cubic(values[e, 0], values[e, 1], slope[e, 0] * L, slope[e, 1] * L)
+        top = min(top, max(values[e, 0], values[e, 1]) + 2.0 * L * L / 8.0 * _bend(arc, values, e))
         if top > best + TIE * abs(best):
             best, at, element = top, arc[e] + x * L, e
     return best, at, element
+
+
+@njit
+def _bend(arc: Array, values: Array, e: int) -> float:
+    """The larger second derivative by the values of an element and those beside it; inf of one that is alone."""
+    largest_bend = math.inf if len(values) == 1 else 0.0
+    for other in range(max(e - 1, 0), min(e + 2, len(values))):
+        if other != e:
+            turned = _chord(arc, values, e) - _chord(arc, values, other)
+            both = arc[e + 1] - arc[e] + arc[other + 1] - arc[other]
+            largest_bend = max(largest_bend, 2.0 * abs(turned) / both)
+    return largest_bend
+
+
+@njit
+def _chord(arc: Array, values: Array, e: int) -> float:
+    return (values[e, 1] - values[e, 0]) / (arc[e + 1] - arc[e])
 
 
 @njit

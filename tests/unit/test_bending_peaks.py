@@ -34,6 +34,14 @@ def test_of_equal_values_the_first_counts_whatever_rounds() -> None:
     assert largest(arc, values, np.zeros((3, 2))) == (7.0, 0.0, 0)
 
 
+def test_a_cubic_does_not_tower_over_values_that_hardly_bend() -> None:
+    """Second differences of 0.2 allow for twice 0.2/8 above the larger end; an element alone for all that it has."""
+    values = np.array([[9.8, 10.0], [10.0, 10.0], [10.0, 9.8]])
+    slope = np.array([[0.2, 0.2], [80.0, -80.0], [-0.2, -0.2]])
+    assert largest(np.arange(4.0), values, slope) == (pytest.approx(10.05), pytest.approx(1.5), 1)
+    assert largest(np.arange(2.0), values[1:2], slope[1:2]) == (pytest.approx(30.0), pytest.approx(0.5), 0)
+
+
 def test_a_corner_is_not_overshot() -> None:
     """Steep up to a node, gently down from it."""
     arc, values = np.array([0.0, 1.0, 3.0, 4.0]), np.array([[0.0, 10.0], [10.0, 9.0], [9.0, 8.5]])
