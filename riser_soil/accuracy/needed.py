@@ -47,8 +47,9 @@ def expected(bars: Sequence[ErrorBar], before: RunValues, found: RunValues, fact
     """Bars of a run that is finer by factors than the one `before` with its bars.
 
     Each source's share falls by its order. Where the two runs are further apart than the bar before, that was too
-    small, and so would be the one that follows from it: both are larger in that ratio. Where a single source tells the
-    two apart, its share is no more than they tell, by Richardson's extrapolation.
+    small, and so would be the one that follows from it: both are larger in that ratio. No source's share is more than
+    what it would leave if it told the two apart alone, by Richardson's extrapolation; but as sources may hide one
+    another, a part of it stays.
     """
     known = {bar.headline.key: bar for bar in bars}
     return [_expected(known.get(key), before, found, factors, key) for key in found.told]
@@ -90,8 +91,7 @@ def _expected(
     own = {source: SAFETY[source] * gap for source, gap in gaps(headline, found).items()}
     order = orders(headline.name, bar.by_source.keys(), MESH)
     left = {s: larger * each / factors.get(s, 1.0) ** order[s] for s, each in bar.by_source.items()}
-    if len(factors) == 1:
-        left |= _by_the_two_runs(left, headline.relative(apart), factors, order, headline.scale)
+    left |= _by_the_two_runs(left, headline.relative(apart), factors, order, headline.scale)
     shares = {source: max(own.get(source, 0.0), each) for source, each in (own | left).items()}
     whole = math.hypot(*shares.values()) + SMALLEST * headline.scale
     return replace(bar, headline=headline, bar=whole, by_source=shares)
@@ -100,7 +100,10 @@ def _expected(
 def _by_the_two_runs(
     left: Mapping[str, float], apart: float, factors: Factors, order: Mapping[str, float], scale: float
 ) -> dict[str, float]:
-    """The share of the one source that is finer; apart: the two runs, over the scale."""
-    ((source, ratio),) = factors.items()
-    told = SAFETY[source] * apart * scale / divisor(Companion(source, ratio, {}), apart, order[source])
-    return {source: min(left[source], max(told, BY_CHANCE * left[source]))}
+    """Shares of the sources that are finer; apart: the two runs, over the scale."""
+    shares = {}
+    for source, ratio in factors.items():
+        if ratio > 1.0 and source in left:
+            told = SAFETY[source] * apart * scale / divisor(Companion(source, ratio, {}), apart, order[source])
+            shares[source] = min(left[source], max(told, BY_CHANCE * left[source]))
+    return shares

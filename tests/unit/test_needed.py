@@ -95,9 +95,9 @@ def test_unknown_bars_ask_for_a_finer_setting() -> None:
 
 
 def test_shares_fall_by_their_orders() -> None:
-    (found,) = expected([bar(mesh=0.02, time=0.04)], values(1000.0), values(1010.0), {"mesh": 2.0, "time": 4.0})
+    (found,) = expected([bar(mesh=0.02, time=0.04)], values(1000.0), values(1030.0), {"mesh": 2.0, "time": 4.0})
     assert found.by_source == pytest.approx({"mesh": 5.0, "time": 2.5})
-    assert found.bar == pytest.approx(math.hypot(5.0, 2.5) + SMALLEST * 1010.0)
+    assert found.bar == pytest.approx(math.hypot(5.0, 2.5) + SMALLEST * 1030.0)
 
 
 @pytest.mark.parametrize(
@@ -107,8 +107,22 @@ def test_two_runs_that_one_source_tells_apart_tell_its_share(apart: float, share
     """By Richardson's extrapolation, no less than a part of what was to be expected, and no more than that."""
     (found,) = expected([bar(penalty=0.02)], values(1000.0), values(1000.0 + apart), {"penalty": 4.0 ** (1 / 0.75)})
     assert found.by_source["penalty"] == pytest.approx(share)
-    (both,) = expected([bar(penalty=0.02)], values(1000.0), values(1000.0 + apart), {"penalty": 4.0, "mesh": 2.0})
-    assert both.by_source["penalty"] == pytest.approx(20.0 / 4.0**0.75)
+
+
+def test_two_runs_that_several_sources_tell_apart_bound_the_share_of_each() -> None:
+    """Each as if it were alone, and a part of what was to be expected at least, for they may hide one another."""
+    before, factors = bar(penalty=0.02, soil=0.02), {"penalty": 4.0 ** (1 / 0.75), "soil": 2.0}
+    (near,) = expected([before], values(1000.0), values(1002.0), factors)
+    assert near.by_source["penalty"] == pytest.approx(SAFETY["penalty"] * 2.0 / 3.0)
+    assert near.by_source["soil"] == pytest.approx(SAFETY["soil"] * 2.0 / 1.0)
+    (same,) = expected([before], values(1000.0), values(1000.001), factors)
+    assert same.by_source["penalty"] == pytest.approx(BY_CHANCE * 5.0)
+    assert same.by_source["soil"] == pytest.approx(BY_CHANCE * 10.0)
+
+
+def test_a_source_that_is_no_finer_keeps_its_share() -> None:
+    (found,) = expected([bar(penalty=0.02)], values(1000.0), values(1000.001), {"penalty": 1.0, "time": 2.0})
+    assert found.by_source["penalty"] == pytest.approx(20.0)
 
 
 def test_bars_grow_where_the_runs_are_further_apart_than_they_said() -> None:
