@@ -11,14 +11,16 @@ from pathlib import Path
 from statistics import median
 
 from benchmarks.asked_accuracy.by_hand import HandSetting, turned
-from benchmarks.asked_accuracy.true_errors import ACCURACY, TrueErrors, run_errors, taken, true_errors
+from benchmarks.asked_accuracy.true_errors import TrueErrors, accuracy_of, run_errors, taken, true_errors
 from benchmarks.error_bars.references import Reference
-from benchmarks.error_bars.scenes import Mapping
+from benchmarks.error_bars.scenes import SCENES, Mapping
 from riser_soil.accuracy.knobs import settings_told
 from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.errors import SolveError
 from riser_soil.results.folder import SCENE
 from riser_soil.scene.reader import read_scene, scene_from_mapping
+
+SOIL = {name: scene for name, scene in SCENES.items() if "soil" in scene}
 
 
 class Outcome(Enum):
@@ -58,8 +60,8 @@ class AskedScene:
         return Outcome.REACHED if self.errors is not None and self.errors.within else Outcome.MISSED
 
 
-def asking(mapping: Mapping, accuracy: str | float = f"{100.0 * ACCURACY:g} %") -> Mapping:
-    """The scene without what an accuracy chooses, and with one."""
+def asking(mapping: Mapping, accuracy: str | float = "") -> Mapping:
+    """The scene without what an accuracy chooses, and with one: the calibration's, if none is given."""
     mapping = copy.deepcopy(mapping)
     for segment in mapping["riser"]["segments"]:
         _without(segment, "elements", "element_length")
@@ -67,7 +69,7 @@ def asking(mapping: Mapping, accuracy: str | float = f"{100.0 * ACCURACY:g} %") 
         _without(stage, "time_step", "tolerance")
     _without(mapping.get("contact", {}), "stiffness")
     _without(mapping.get("soil", {}), "mesh")
-    return mapping | {"accuracy": accuracy}
+    return mapping | {"accuracy": accuracy or f"{100.0 * accuracy_of(mapping):g} %"}
 
 
 def asked(name: str, mapping: Mapping, reference: Reference, hand: HandSetting | None = None) -> AskedScene:
@@ -79,7 +81,7 @@ def asked(name: str, mapping: Mapping, reference: Reference, hand: HandSetting |
         said, everything = _run(mapping, folder)
         if not (folder / SCENE).exists():
             return AskedScene(name, None, said, "none")
-        errors, scene = true_errors(folder, reference), read_scene(folder / SCENE)
+        errors, scene = true_errors(folder, reference, accuracy_of(mapping)), read_scene(folder / SCENE)
         setting = settings_told(scene)
         if hand is None or said:
             return AskedScene(name, errors, said, setting)
@@ -102,7 +104,7 @@ def share_of_all(scenes: Iterable[AskedScene]) -> float:
 def median_error(scenes: Iterable[AskedScene]) -> float:
     """Largest true error of a scene over the accuracy, where it claims to reach it."""
     claimed = [each for each in scenes if each.outcome is not Outcome.TOLD]
-    return median(each.errors.largest[0] / ACCURACY for each in claimed if each.errors is not None)
+    return median(each.errors.largest[0] / each.errors.accuracy for each in claimed if each.errors is not None)
 
 
 def costs(scenes: Iterable[AskedScene]) -> list[HandCost]:

@@ -9,6 +9,7 @@ so is solved as far as it can be told; a larger floor for the residual would hid
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 
@@ -41,7 +42,7 @@ class RoundOff:
         but by the round-off of places; x: this rank's increments [m], angles times the lever. Collective.
         """
         step = self._newton_step
-        if step is None or len(norms) < 3 or not min(norms[-1] / norms[-2], norms[-2] / norms[-3]) > STALLED:
+        if step is None or len(norms) < 3 or any(b <= STALLED * a for a, b in pairwise(norms[-3:])):
             return False
         moved, whole = self._total([float(np.sum(step**2)), float(np.sum(x**2))])
         return moved <= max(STILL**2 * whole, (EPS * self._size) ** 2)

@@ -111,6 +111,11 @@ def test_two_runs_that_one_source_tells_apart_tell_its_share(apart: float, share
     assert both.by_source["penalty"] == pytest.approx(20.0 / 4.0**0.75)
 
 
+def test_two_meshes_of_soil_that_agree_may_do_so_by_chance() -> None:
+    (found,) = expected([bar(soil=0.02)], values(1000.0), values(1000.0), {"soil": 2.0})
+    assert found.by_source["soil"] == pytest.approx(10.0)
+
+
 def test_bars_grow_where_the_runs_are_further_apart_than_they_said() -> None:
     before = bar(time=0.02)
     assert before.bar is not None

@@ -47,6 +47,11 @@ def test_a_line_at_rest_moves_by_the_round_off_of_its_places() -> None:
     assert reached(still, norms, size=1e4) == [False, False, True, True]
 
 
+def test_a_residual_that_begins_at_nothing_goes_on() -> None:
+    """As that of a linear start where all is prescribed and nothing touches yet."""
+    assert not any(reached([1e-4, 1e-4], [0.0, 1.0, 1.0]))
+
+
 def test_a_new_step_begins_anew() -> None:
     followed, still = RoundOff(list, 1.0), [1.0, 1.0, 1.0]
     followed.follow(np.zeros(2))
