@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 import tempfile
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -44,7 +45,8 @@ class HandCost:
 class AskedScene:
     """errors: true ones; None where no run was left. said: why the accuracy was not reached, empty where it was.
 
-    setting: the one chosen, in words. cost: None where it is not compared with a setting by hand.
+    setting: the one chosen, in words. seconds: of the processor, for all runs taken for it. cost: None where it is not
+    compared with a setting by hand.
     """
 
     name: str
@@ -52,6 +54,7 @@ class AskedScene:
     said: str
     setting: str
     cost: HandCost | None = None
+    seconds: float = math.nan
 
     @property
     def outcome(self) -> Outcome:
@@ -80,14 +83,14 @@ def asked(name: str, mapping: Mapping, reference: Reference, hand: HandSetting |
             run_errors(turned(mapping, hand.factors), beside, reference)
         said, everything = _run(mapping, folder)
         if not (folder / SCENE).exists():
-            return AskedScene(name, None, said, "none")
+            return AskedScene(name, None, said, "none", None, everything)
         errors, scene = true_errors(folder, reference, accuracy_of(mapping)), read_scene(folder / SCENE)
         setting = settings_told(scene)
         if hand is None or said:
-            return AskedScene(name, errors, said, setting)
+            return AskedScene(name, errors, said, setting, None, everything)
         _, chosen = run_errors(scene, beside, reference)
         _, by_hand = run_errors(turned(mapping, hand.factors), beside, reference)
-        return AskedScene(name, errors, said, setting, HandCost(everything, chosen, by_hand))
+        return AskedScene(name, errors, said, setting, HandCost(everything, chosen, by_hand), everything)
 
 
 def share_of_claims(scenes: Iterable[AskedScene]) -> float:

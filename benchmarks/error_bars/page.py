@@ -33,8 +33,8 @@ sources add up as squares do. The smallest bar is {smallest:g} of the quantity's
 [error_bars.py](../riser_soil/accuracy/error_bars.py) has all of it.
 
 The factors are chosen so that over the {scenes} scenes below, of known answers (each computed with 4 to 16 times
-the elements, a tenth of the step and 51200 times the penalty of a rigid floor; on soil with a quarter of the cells'
-size and of the step, and 32 times the penalty), the bars hold what they say:
+the elements, a tenth of the step and 51200 times the penalty of a rigid floor; on soil with cells of a quarter
+of the size and 32 times the penalty), the bars hold what they say:
 
 | | |
 |---|---:|

@@ -30,10 +30,7 @@ DYNAMIC: Levels = (
     {"elements": 2, "time_step": 4, "penalty": RIGID[0]},
     {"elements": 4, "time_step": 10, "penalty": RIGID[1]},
 )
-SOIL: Levels = (
-    {"elements": 2, "time_step": 2, "penalty": 6, "soil_mesh": 2},
-    {"elements": 4, "time_step": 4, "penalty": 32, "soil_mesh": 4},
-)
+SOIL: Levels = ({"elements": 2, "penalty": 6, "soil_mesh": 2}, {"elements": 4, "penalty": 32, "soil_mesh": 4})
 Reference = dict[str, tuple[float, float]]
 
 

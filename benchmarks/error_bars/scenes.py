@@ -74,17 +74,14 @@ def hose(elements: int, *stages: Mapping, **more: Any) -> Mapping:
     return line(HOSE, *ends, even(40.0, elements), [HANG, *stages], seabed=floor, water=WATER, **more)
 
 
-def pressed(law: Mapping, cells: int, depth: float, contact: Mapping = UPRIGHT, **stage: Any) -> Mapping:
-    """A short stiff pipe, pressed by its ends into a slice of soil; depth: m. cells: to its diameter.
-
-    stage: another way of getting there than in one static stage.
-    """
+def pressed(law: Mapping, cells: int, depth: float, contact: Mapping = UPRIGHT, lifted: float = 0.0) -> Mapping:
+    """A short stiff pipe, pressed by its ends into a slice of soil, then lifted a little; m. cells: to its diameter."""
     pipe = {"outer_diameter": 0.3, "submerged_weight": 500.0, "mass": 120.0, "EA": 1.0e10, "EI": 1.0e7}
     ends = [{"position": [x, 0.0, 0.15], "rotation": "fixed"} for x in (0.0, 0.3)]
-    move = {"move": {"start": [0.0, 0.0, 0.15 - depth], "end": [0.3, 0.0, 0.15 - depth]}}
-    stages, soil = [HANG, stage] if stage else [HANG | move], slice_of(law, cells, 0.15, 0.04)
-    straight: Mapping = {"dimension": 2, "riser": {"initial": "straight"}}
-    return line(pipe, ends[0], ends[1], even(0.3, 8), stages, soil=soil, contact=contact, **straight)
+    down, up = ({"start": [0.0, 0.0, z], "end": [0.3, 0.0, z]} for z in (0.15 - depth, 0.15 - depth + lifted))
+    stages = [HANG | {"move": down}, *([HANG | {"name": "lift", "move": up}] if lifted else [])]
+    more: Mapping = {"contact": contact, "dimension": 2, "riser": {"initial": "straight"}}
+    return line(pipe, *ends, even(0.3, 8), stages, soil=slice_of(law, cells, 0.15, 0.04), **more)
 
 
 def slice_of(law: Mapping, cells: int, at: float, thickness: float) -> Mapping:
@@ -94,31 +91,12 @@ def slice_of(law: Mapping, cells: int, at: float, thickness: float) -> Mapping:
     return {"block": block, "mesh": {"size_at_riser": size, "size_far": 0.3}, "law": law}
 
 
-def down_and_up(depth: float, period: float, steps: int) -> Mapping:
-    """Both ends go down by a depth [m] and up again, once."""
-    harmonic = {"amplitude": [0.0, 0.0, -depth], "period": 2.0 * period}
-    stage: Mapping = {"name": "motion", "kind": "dynamic", "duration": period, "time_step": period / steps}
-    return stage | {"motion": {end: {"harmonic": harmonic} for end in ("start", "end")}}
-
-
 def resting(law: Mapping, weight: float, thickness: float, contact: Mapping = FREELY) -> Mapping:
     """A pipe between hinges sags by its weight [N/m] onto a slice of soil under its middle."""
     pipe = {"outer_diameter": 0.3, "submerged_weight": weight, "mass": 120.0, "EA": 1.0e6, "EI": 5.0e4}
-    soil = slice_of(law, 12, 3.0, thickness)
+    ends, soil = ([0.0, 0.0, 0.148], [6.0, 0.0, 0.148]), slice_of(law, 12, 3.0, thickness)
     straight: Mapping = {"dimension": 2, "riser": {"initial": "straight"}}
-    return line(pipe, [0.0, 0.0, 0.148], [6.0, 0.0, 0.148], even(6.0, 24), [HANG], soil=soil, contact=contact, **straight)
-
-
-def lifted(law: Mapping, cells: int) -> Mapping:
-    """A pipe that lies on a block of soil and is lifted at its end: a touchdown zone without a riser above it."""
-    pipe = {"outer_diameter": 0.3, "submerged_weight": 717.0, "mass": 120.0, "EA": 3.0e8, "EI": 5.0e4}
-    block = {"x": [-0.4, 4.4], "y": [-1.2, 1.2], "depth": 1.2}
-    size = {"along": 0.8, "across": 0.3 / cells, "strip": 0.15}
-    soil = {"block": block, "mesh": {"size_at_riser": size, "size_far": 0.6}, "law": law}
-    stages = [HANG | {"name": "rest"}, HANG | {"name": "lift", "move": {"end": [4.0, 0.0, 0.178]}}]
-    more: Mapping = {"soil": soil, "seabed": SPRING, "contact": {"method": "surface"}, "dimension": 2}
-    ends = [0.0, 0.0, 0.148], [4.0, 0.0, 0.148]
-    return line(pipe, *ends, even(4.0, 10), stages, riser={"initial": "straight"}, **more)
+    return line(pipe, *ends, even(6.0, 24), [HANG], soil=soil, contact=contact, **straight)
 
 
 def cantilever(elements: int, *stages: Mapping, **more: Any) -> Mapping:
@@ -226,10 +204,8 @@ SCENES: dict[str, Mapping] = {
     "pipe pressed on clay": pressed(CLAY, 12, 0.02),
     "pipe pressed on clay that slides": pressed(CLAY, 14, 0.012, FREELY),
     "pipe pressed deep into clay": pressed(CLAY, 10, 0.05),
-    "pipe pressed on cyclic clay and lifted": pressed(CYCLIC, 8, 0.015, **down_and_up(0.015, 10.0, 20)),
+    "pipe pressed on cyclic clay and lifted": pressed(CYCLIC, 10, 0.015, lifted=0.0005),
     "pipe rests on elastic soil": resting(ELASTIC, 300.0, 0.1),
     "pipe rests on clay": resting(CLAY, 200.0, 0.5, UPRIGHT),
     "pipe rests on clay that slides": resting(CLAY, 120.0, 0.8),
-    "pipe lifted from elastic soil": lifted(ELASTIC, 6),
-    "pipe lifted from clay": lifted(CLAY, 6),
 }  # fmt: skip

@@ -70,7 +70,7 @@ def test_page_of_a_random_scene() -> None:
     name = "catenary A"
     known = references.read(FILE)[name]
     found = asked(name, OTHERS[name], known)
-    told = page(made_up(), [found], [judge(name, OTHERS[name], known)])
+    told = page(made_up(), [found], [judge(name, OTHERS[name], known)], made_up())
     assert found.outcome is Outcome.REACHED
     assert "| scenes that truly reach what they ask, of those that claim it | 66.7% |" in block(told, FIGURES)
     assert "- b: missed, 3.00% in hang: top tension" in told
