@@ -203,7 +203,6 @@ SCENES: dict[str, Mapping] = {
     "pipe pressed on elastic soil that slides": pressed(ELASTIC, 24, 0.006, FREELY),
     "pipe pressed on clay": pressed(CLAY, 12, 0.02),
     "pipe pressed on clay that slides": pressed(CLAY, 14, 0.012, FREELY),
-    "pipe pressed deep into clay": pressed(CLAY, 10, 0.05),
     "pipe pressed on cyclic clay and lifted": pressed(CYCLIC, 10, 0.015, lifted=0.0005),
     "pipe rests on elastic soil": resting(ELASTIC, 300.0, 0.1),
     "pipe rests on clay": resting(CLAY, 200.0, 0.5, UPRIGHT),
