@@ -58,10 +58,10 @@ What a run's companions take beside all of it, start-up and files included, the 
 
 The width on which a pipe touches soil grows cell by cell, so that errors fall with the cells' size in jumps, by which
 two meshes may agree by chance. A mesh that is near the run's, √2 times as coarse, tells such jumps far better than one
-twice as coarse: over meshes of 4 to 48 cells to the diameter, under the scenes pressed and resting below, 95 % of the
-errors are within 1.1 times what the two companions tell (clay alone 1.4, elastic soil 0.8), at a median of 3.4 times
-the error; of the second alone, 2 times as coarse, 6.5 times were needed, at a median of 10. Where a pipe just touches
-elastic soil, and where it starts to flow into clay, errors are larger than the orders say.
+twice as coarse. On ladders of meshes, 4 to 48 cells to the diameter, of such scenes as are pressed and resting below,
+the soil's share alone held 87 % of 103 errors (elastic 96 %, clay 79 %), at a median of 3.0 times the error; for 95 %
+it takes a factor of 1.2, on clay of 1.4. By a mesh twice as coarse alone it took 6.5, at a median of 10. On elastic
+soil bars are wider than they need be, as errors there fall faster than by the first order.
 
 The scenes chose the factors, so on other scenes a share a little lower is to be expected. Where the answer hangs on
 a sudden load that excites all modes, or steps are so long that companions show no order, bars are least reliable.

@@ -28,7 +28,7 @@ ORDER = {"time": 2.0, "soil": 1.0, "penalty": 0.75}
 #: a length (4 EI/k)^(1/4) (beam on an elastic foundation), or an element where that is longer; what lies there, the end
 #: bears.
 CONTACT_FORCE, OF_CONTACT_FORCE = "largest contact force", {"mesh": 1.0, "penalty": 0.25}
-SAFETY = {"mesh": 1.5, "time": 2.0, "soil": 1.2, "penalty": 2.1}
+SAFETY = {"mesh": 1.5, "time": 2.0, "soil": 1.0, "penalty": 2.1}
 LARGE = {"mesh": 0.03, "time": 0.01}  # differences, over the scale, that are half way to the divisor 1
 RINGING = 2.0  # times what rings from step to step
 STEP_GAP = 2.0  # times what falls between steps, as later samples fall elsewhere
