@@ -81,7 +81,7 @@ def pressed(law: Mapping, cells: int, depth: float, contact: Mapping = UPRIGHT, 
     down, up = ({"start": [0.0, 0.0, z], "end": [0.3, 0.0, z]} for z in (0.15 - depth, 0.15 - depth + lifted))
     stages = [HANG | {"move": down}, *([HANG | {"name": "lift", "move": up}] if lifted else [])]
     more: Mapping = {"contact": contact, "dimension": 2, "riser": {"initial": "straight"}}
-    return line(pipe, *ends, even(0.3, 8), stages, soil=slice_of(law, cells, 0.15, 0.04), **more)
+    return line(pipe, ends[0], ends[1], even(0.3, 8), stages, soil=slice_of(law, cells, 0.15, 0.04), **more)
 
 
 def slice_of(law: Mapping, cells: int, at: float, thickness: float) -> Mapping:
