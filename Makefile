@@ -60,7 +60,7 @@ bench: setup ## seconds by part of the demo, Newton iterations against the bare 
 parts: setup ## what each part of a scene costs: docs/parts.md
 	$(PYTHON) -m benchmarks.parts --page
 
-bars: setup ## error bars of 51 scenes beside their true errors: docs/error_bars.md
+bars: setup ## error bars of 57 scenes beside their true errors: docs/error_bars.md
 	$(PYTHON) -m benchmarks.error_bars
 
 asked: setup ## scenes that ask for 1 %, whether they reach it and what it costs beside the best by hand: docs/asked_accuracy.md

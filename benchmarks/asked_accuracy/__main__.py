@@ -7,7 +7,7 @@ random scenes' references, anew; each takes some ten minutes.
 import argparse
 
 from benchmarks.asked_accuracy import by_hand
-from benchmarks.asked_accuracy.asked import asked
+from benchmarks.asked_accuracy.asked import SOIL, asked
 from benchmarks.asked_accuracy.other_scenes import FILE, OTHERS
 from benchmarks.asked_accuracy.page import PAGE, page
 from benchmarks.error_bars import references
@@ -23,7 +23,7 @@ if given.by_hand is not None:
 if given.references is not None:
     references.write(given.references or list(OTHERS), OTHERS, FILE)
 hand, of_others = by_hand.read(), references.read(FILE)
-scenes, others, judged = [], [], []
+scenes, others, judged, soil = [], [], [], []
 for name, scene in by_hand.ASKED.items():
     scenes.append(asked(name, scene, known[name], hand[name]))
     print(f"{name}: {scenes[-1].outcome.value}", flush=True)
@@ -32,4 +32,7 @@ for name, scene in OTHERS.items():
     judged.append(judge(name, scene, of_others[name]))
     inside = [each.inside for each in judged[-1].judged if each.certain]
     print(f"{name}: {others[-1].outcome.value}; {sum(inside)} of {len(inside)} error bars inside", flush=True)
-PAGE.write_text(page(scenes, others, judged), encoding="utf-8")
+for name, scene in SOIL.items():
+    soil.append(asked(name, scene, known[name]))
+    print(f"{name}: {soil[-1].outcome.value}", flush=True)
+PAGE.write_text(page(scenes, others, judged, soil), encoding="utf-8")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 import tempfile
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -11,14 +12,16 @@ from pathlib import Path
 from statistics import median
 
 from benchmarks.asked_accuracy.by_hand import HandSetting, turned
-from benchmarks.asked_accuracy.true_errors import ACCURACY, TrueErrors, run_errors, taken, true_errors
+from benchmarks.asked_accuracy.true_errors import TrueErrors, accuracy_of, run_errors, taken, true_errors
 from benchmarks.error_bars.references import Reference
-from benchmarks.error_bars.scenes import Mapping
+from benchmarks.error_bars.scenes import SCENES, Mapping
 from riser_soil.accuracy.knobs import settings_told
 from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.errors import SolveError
 from riser_soil.results.folder import SCENE
 from riser_soil.scene.reader import read_scene, scene_from_mapping
+
+SOIL = {name: scene for name, scene in SCENES.items() if "soil" in scene}
 
 
 class Outcome(Enum):
@@ -42,7 +45,8 @@ class HandCost:
 class AskedScene:
     """errors: true ones; None where no run was left. said: why the accuracy was not reached, empty where it was.
 
-    setting: the one chosen, in words. cost: None where it is not compared with a setting by hand.
+    setting: the one chosen, in words. seconds: of the processor, for all runs taken for it. cost: None where it is not
+    compared with a setting by hand.
     """
 
     name: str
@@ -50,6 +54,7 @@ class AskedScene:
     said: str
     setting: str
     cost: HandCost | None = None
+    seconds: float = math.nan
 
     @property
     def outcome(self) -> Outcome:
@@ -58,8 +63,8 @@ class AskedScene:
         return Outcome.REACHED if self.errors is not None and self.errors.within else Outcome.MISSED
 
 
-def asking(mapping: Mapping, accuracy: str | float = f"{100.0 * ACCURACY:g} %") -> Mapping:
-    """The scene without what an accuracy chooses, and with one."""
+def asking(mapping: Mapping, accuracy: str | float = "") -> Mapping:
+    """The scene without what an accuracy chooses, and with one: the calibration's, if none is given."""
     mapping = copy.deepcopy(mapping)
     for segment in mapping["riser"]["segments"]:
         _without(segment, "elements", "element_length")
@@ -67,7 +72,7 @@ def asking(mapping: Mapping, accuracy: str | float = f"{100.0 * ACCURACY:g} %") 
         _without(stage, "time_step", "tolerance")
     _without(mapping.get("contact", {}), "stiffness")
     _without(mapping.get("soil", {}), "mesh")
-    return mapping | {"accuracy": accuracy}
+    return mapping | {"accuracy": accuracy or f"{100.0 * accuracy_of(mapping):g} %"}
 
 
 def asked(name: str, mapping: Mapping, reference: Reference, hand: HandSetting | None = None) -> AskedScene:
@@ -78,14 +83,14 @@ def asked(name: str, mapping: Mapping, reference: Reference, hand: HandSetting |
             run_errors(turned(mapping, hand.factors), beside, reference)
         said, everything = _run(mapping, folder)
         if not (folder / SCENE).exists():
-            return AskedScene(name, None, said, "none")
-        errors, scene = true_errors(folder, reference), read_scene(folder / SCENE)
+            return AskedScene(name, None, said, "none", None, everything)
+        errors, scene = true_errors(folder, reference, accuracy_of(mapping)), read_scene(folder / SCENE)
         setting = settings_told(scene)
         if hand is None or said:
-            return AskedScene(name, errors, said, setting)
+            return AskedScene(name, errors, said, setting, None, everything)
         _, chosen = run_errors(scene, beside, reference)
         _, by_hand = run_errors(turned(mapping, hand.factors), beside, reference)
-        return AskedScene(name, errors, said, setting, HandCost(everything, chosen, by_hand))
+        return AskedScene(name, errors, said, setting, HandCost(everything, chosen, by_hand), everything)
 
 
 def share_of_claims(scenes: Iterable[AskedScene]) -> float:
@@ -102,7 +107,7 @@ def share_of_all(scenes: Iterable[AskedScene]) -> float:
 def median_error(scenes: Iterable[AskedScene]) -> float:
     """Largest true error of a scene over the accuracy, where it claims to reach it."""
     claimed = [each for each in scenes if each.outcome is not Outcome.TOLD]
-    return median(each.errors.largest[0] / ACCURACY for each in claimed if each.errors is not None)
+    return median(each.errors.largest[0] / each.errors.accuracy for each in claimed if each.errors is not None)
 
 
 def costs(scenes: Iterable[AskedScene]) -> list[HandCost]:

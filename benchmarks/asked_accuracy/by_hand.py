@@ -23,7 +23,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 
 FILE = Path(__file__).with_name("by_hand.json")
-ASKED = {name: scene for name, scene in SCENES.items() if "soil" not in scene}  # on soil the search takes minutes
+ASKED = {name: scene for name, scene in SCENES.items() if "soil" not in scene}
 TURNS = {
     "elements": (0.25, 0.5, 1.0, 2.0, 4.0),
     "time_step": (0.25, 0.5, 1.0, 2.0, 4.0),

@@ -1,6 +1,6 @@
 """Calibrate error bars: compute all scenes with companions, and write the page docs/error_bars.md.
 
-Run from the project's folder. `--references` computes the references anew first, which takes about ten minutes.
+Run from the project's folder. `--references` computes the references anew first, which takes about twenty minutes.
 """
 
 import argparse

@@ -1,25 +1,29 @@
-"""Companions of a run in a chain: coarser soil, then longer steps too, then fewer elements, then a softer penalty."""
+"""Companions of a run in a chain: coarser soil, once more, then longer steps too, fewer elements, a softer penalty."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from riser_soil.accuracy.companions import peaks_of
 from riser_soil.accuracy.error_bars import SOURCES, Companion, RunValues
 from riser_soil.accuracy.headlines import Headline, headlines
-from riser_soil.accuracy.knobs import KNOBS, Knob, knobs_of, varied
+from riser_soil.accuracy.knobs import Knob, knobs_of, varied
 from riser_soil.errors import MeshError, SceneError, SolveError
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.scene import Scene
 
-COARSER = {"soil_mesh": 2.0, "time_step": 5.0, "elements": 2.0, "penalty": 4.0}  # the dearest first
+Ratios = Mapping[str, Sequence[float]]  # by knob, in order
+
+# The dearest first. Contact with soil grows cell by cell: cells a little coarser tell by how much that jumps, coarse
+# ones whether two that agree do so by chance.
+COARSER: Ratios = {"soil_mesh": (2.0**0.5, 2.0), "time_step": (5.0,), "elements": (2.0,), "penalty": (4.0,)}
 LEAST_RATIO = 1.4  # below it two runs are too much alike
 
 
-def companions(scene: Scene, comm: Any, coarser: Mapping[str, float] = COARSER) -> list[Companion]:
-    """Those of a scene, run one after the other; collective, their values on rank 0. coarser: ratios by knob, in order.
+def companions(scene: Scene, comm: Any, coarser: Ratios = COARSER) -> list[Companion]:
+    """Those of a scene, run one after the other; collective, their values on rank 0.
 
     One that fails leaves nothing to compare the next ones with: they are not run.
     """
@@ -56,16 +60,15 @@ class CoarserScene:
     reason: str = ""
 
 
-def _coarser(scene: Scene, coarser: Mapping[str, float]) -> Iterator[CoarserScene]:
+def _coarser(scene: Scene, coarser: Ratios) -> Iterator[CoarserScene]:
     """Scenes ever coarser; one that can't be is None, and the next ones follow the one before it."""
     now = _recording_all(scene)
-    for name, ratio in coarser.items():
-        knob = next(each for each in KNOBS if each.name == name)
-        if not knob.there(scene):
-            continue
-        step = _step(now, knob, ratio)
-        yield step
-        now = step.scene or now
+    knobs = {knob.name: knob for knob in knobs_of(scene)}
+    for name, ratios in coarser.items():
+        for ratio in ratios if name in knobs else ():
+            step = _step(now, knobs[name], ratio)
+            yield step
+            now = step.scene or now
 
 
 def _step(scene: Scene, knob: Knob, ratio: float) -> CoarserScene:

@@ -49,7 +49,8 @@ def expected(bars: Sequence[ErrorBar], before: RunValues, found: RunValues, fact
     Each source's share falls by its order. Where the two runs are further apart than the bar before, that was too
     small, and so would be the one that follows from it: both are larger in that ratio. No source's share is more than
     what it would leave if it told the two apart alone, by Richardson's extrapolation; but as sources may hide one
-    another, a part of it stays.
+    another, a part of it stays. The soil's is not bounded so: two meshes in which contact grows cell by cell may agree
+    by chance.
     """
     known = {bar.headline.key: bar for bar in bars}
     return [_expected(known.get(key), before, found, factors, key) for key in found.told]
@@ -100,10 +101,10 @@ def _expected(
 def _by_the_two_runs(
     left: Mapping[str, float], apart: float, factors: Factors, order: Mapping[str, float], scale: float
 ) -> dict[str, float]:
-    """Shares of the sources that are finer; apart: the two runs, over the scale."""
+    """Shares of the sources that are finer, but for the soil's; apart: the two runs, over the scale."""
     shares = {}
     for source, ratio in factors.items():
-        if ratio > 1.0 and source in left:
+        if ratio > 1.0 and source in left and source != "soil":
             told = SAFETY[source] * apart * scale / divisor(Companion(source, ratio, {}), apart, order[source])
             shares[source] = min(left[source], max(told, BY_CHANCE * left[source]))
     return shares

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from riser_soil.accuracy.chain import COARSER, companions, run_values
+from riser_soil.accuracy.chain import COARSER, Ratios, companions, run_values
 from riser_soil.accuracy.companions import peaks_of
 from riser_soil.accuracy.element_sizes import CurveEnvelope, graded
 from riser_soil.accuracy.error_bars import ErrorBar, RunValues, error_bars
@@ -20,7 +20,7 @@ from riser_soil.scene.stages import StaticStage
 
 SHAPES = 3  # static runs at most that grade the mesh
 SETTLED = 1.5  # elements at most so many times as long as curvature asks for
-COMPANIONS = COARSER | {"time_step": 2.0}  # of the trial, whose steps are long already
+COMPANIONS: Ratios = {**COARSER, "time_step": (2.0,)}  # of the trial, whose steps are long already
 ATTEMPTS, FINER = 3, 2.0  # of a scene that fails, each with elements and steps so much finer
 HELPING = ("elements", "time_step")
 _Found = TypeVar("_Found")

@@ -56,8 +56,7 @@ class Newton:
         snes.setJacobian(self._jacobian, self.system.matrix.mat)
         snes.setConvergenceTest(self._test)
         snes.setTolerances(max_it=self.settings.max_iterations)
-        if self.settings.line_search:
-            snes.setLineSearchPreCheck(self._shorten)
+        snes.setLineSearchPreCheck(self._precheck)
         snes.getKSP().setType(PETSc.KSP.Type.PREONLY)
         factorise_directly(snes.getKSP().getPC(), self.system)
         snes.setOptionsPrefix(PREFIX)
@@ -242,6 +241,11 @@ class Newton:
         residual = self._step.scheme.combine(self._forces, self._past)
         self.system.numbering.add_to_global(residual, f)
 
+    def _precheck(self, x: PETSc.Vec, y: PETSc.Vec) -> bool:
+        """Before a step -y from x is taken; whether it was changed."""
+        self._round_off.follow(y.array_r * self._levers.array_r)
+        return self.settings.line_search and self._shorten(x, y)
+
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> bool:
         """Scale the step -y from x to the length that the line search finds; whether that changed it."""
         tried, found = x.duplicate(), x.duplicate()
@@ -299,15 +303,11 @@ class Newton:
             return CONVERGED
         if norm <= self.settings.floor and (self._taken > 0 or self._answers_load):
             return CONVERGED
-        if not self.settings.line_search and self._at_round_off():
+        if self._round_off.reached(self._x.array_r * self._levers.array_r, self._norms):
             return CONVERGED
         if self._taken >= 4 and norm > 1e6 * self._norms[self._first]:
             return DIVERGED
         return self._next_tangent()
-
-    def _at_round_off(self) -> bool:
-        """Told by full Newton steps alone: a step that a line search has shortened may be small anywhere."""
-        return self._round_off.reached(self._x.array_r * self._levers.array_r, self._norms)
 
     def _next_tangent(self) -> int:
         """Assemble that of the next iteration, if there is one with a tangent of its own; whether it has a place."""

@@ -6,6 +6,7 @@ import pytest
 
 from benchmarks.asked_accuracy import by_hand
 from benchmarks.asked_accuracy.asked import (
+    SOIL,
     AskedScene,
     HandCost,
     Outcome,
@@ -19,7 +20,7 @@ from benchmarks.asked_accuracy.asked import (
 from benchmarks.asked_accuracy.by_hand import ASKED, best, settings
 from benchmarks.asked_accuracy.other_scenes import FILE, OTHERS
 from benchmarks.asked_accuracy.page import FIGURES, page
-from benchmarks.asked_accuracy.true_errors import ACCURACY, TrueErrors
+from benchmarks.asked_accuracy.true_errors import ACCURACY, ON_SOIL, TrueErrors
 from benchmarks.error_bars import references
 from benchmarks.error_bars.calibration import judge
 from demos.page import block
@@ -47,9 +48,9 @@ def test_outcomes_and_shares() -> None:
 
 
 def test_what_is_asked_has_none_of_what_it_chooses() -> None:
-    for mapping in (*ASKED.values(), *OTHERS.values()):
+    for mapping in (*ASKED.values(), *OTHERS.values(), *SOIL.values()):
         before = repr(mapping)
-        assert scene_from_mapping(asking(mapping)).accuracy == ACCURACY
+        assert scene_from_mapping(asking(mapping)).accuracy == (ON_SOIL if "soil" in mapping else ACCURACY)
         assert repr(mapping) == before
 
 
@@ -69,7 +70,7 @@ def test_page_of_a_random_scene() -> None:
     name = "catenary A"
     known = references.read(FILE)[name]
     found = asked(name, OTHERS[name], known)
-    told = page(made_up(), [found], [judge(name, OTHERS[name], known)])
+    told = page(made_up(), [found], [judge(name, OTHERS[name], known)], made_up())
     assert found.outcome is Outcome.REACHED
     assert "| scenes that truly reach what they ask, of those that claim it | 66.7% |" in block(told, FIGURES)
     assert "- b: missed, 3.00% in hang: top tension" in told

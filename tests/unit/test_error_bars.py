@@ -29,6 +29,7 @@ from riser_soil.accuracy.error_bars import (
     orders,
 )
 from riser_soil.accuracy.headlines import Headline
+from riser_soil.accuracy.knobs import KNOBS, settings_told
 from riser_soil.commands.app import app
 from riser_soil.errors import SolveError
 from riser_soil.results.peaks import RunPeaks
@@ -36,6 +37,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 
 KEY = "hang: top tension"
+SOIL_MESH = next(knob for knob in KNOBS if knob.name == "soil_mesh")
 QUICK = ("catenary, 35 elements", "cantilever, tip load", "on springs", "surge, 140 steps", "hose on a rigid floor")
 
 
@@ -67,6 +69,7 @@ def test_elements_that_touch_down_have_a_lower_order(touches: bool, divided: flo
 def test_contact_force_on_a_penalty_falls_by_its_own_orders() -> None:
     assert orders("top tension", {"mesh", "penalty"}, 2.0) == ORDER | {"mesh": 2.0}
     assert orders("largest contact force", {"mesh", "time"}, 2.0) == ORDER | {"mesh": 2.0}  # on springs
+    assert orders("largest contact force", {"mesh", "soil", "penalty"}, 2.0) == ORDER | {"mesh": 2.0}  # soil gives way
     assert orders("largest contact force", {"mesh", "penalty"}, 2.0) == ORDER | {"mesh": 1.0, "penalty": 0.25}
 
 
@@ -82,6 +85,14 @@ def test_sources_follow_one_another_and_add_up_as_squares_do() -> None:
     shares = (SAFETY["time"] * 0.03, SAFETY["mesh"] * 0.04)
     assert (bar.by_source["time"], bar.by_source["mesh"]) == pytest.approx(shares, rel=0.1)
     assert bar.bar == pytest.approx(math.hypot(*bar.by_source.values()) + SMALLEST * 1000.0)
+
+
+def test_of_two_companions_in_one_source_the_larger_share_counts() -> None:
+    """Of first order the two differences are 0.41 and 1.41 times the error; either may be small by chance."""
+    near, far = 2.0**0.5, 2.0 * 2.0**0.5
+    for first, second in ((near - 1.0, far - 1.0), (near - 1.0, near - 1.0), (0.0, far - near)):
+        chain = Companion("soil", near, {KEY: 1000.0 + first}), Companion("soil", 2.0, {KEY: 1000.0 + second})
+        assert bar_of(1000.0, 1000.0, *chain).by_source["soil"] == pytest.approx(SAFETY["soil"])
 
 
 def test_what_falls_between_nodes_is_the_meshs() -> None:
@@ -170,6 +181,21 @@ def test_companions_go_on_from_one_to_the_next(monkeypatch: pytest.MonkeyPatch) 
     assert [each.riser.element_count for each in seen] == [80, 40, 40]
     assert [each.contact and each.contact.stiffness for each in seen] == [1e5, 1e5, 2.5e4]
     assert {each.output.interval for each in seen} == {None}
+
+
+def test_soil_is_coarsened_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[str] = []
+
+    def looks(scene: Scene, comm: object) -> RunPeaks:
+        seen.append(settings_told(scene, [SOIL_MESH]))
+        return RunPeaks()
+
+    monkeypatch.setattr(chain, "peaks_of", looks)
+    found = chain.companions(scene_from_mapping(SCENES["pipe pressed on clay"]), None)
+    assert [each.source for each in found] == ["soil", "soil", "mesh", "penalty"]
+    assert [each.ratio for each in found] == pytest.approx([2.0**0.5, 2.0, 2.0, 4.0])
+    near, far = (f"soil cells of {0.025 * n**0.5:.4g} m across the riser" for n in (2.0, 8.0))
+    assert seen == [near, far, far, far]
 
 
 def test_a_scene_may_ask_for_bars(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from riser_soil.accuracy.error_bars import ORDER, SAFETY, SMALLEST, STEP_GAP, ErrorBar, RunValues
+from riser_soil.accuracy.error_bars import ORDER, SAFETY, SMALLEST, STEP_GAP, Companion, ErrorBar, RunValues, divisor
 from riser_soil.accuracy.headlines import Headline
 from riser_soil.accuracy.needed import (
     BY_CHANCE,
@@ -111,18 +111,25 @@ def test_two_runs_that_one_source_tells_apart_tell_its_share(apart: float, share
 
 def test_two_runs_that_several_sources_tell_apart_bound_the_share_of_each() -> None:
     """Each as if it were alone, and a part of what was to be expected at least, for they may hide one another."""
-    before, factors = bar(penalty=0.02, soil=0.02), {"penalty": 4.0 ** (1 / 0.75), "soil": 2.0}
-    (near,) = expected([before], values(1000.0), values(1002.0), factors)
-    assert near.by_source["penalty"] == pytest.approx(SAFETY["penalty"] * 2.0 / 3.0)
-    assert near.by_source["soil"] == pytest.approx(SAFETY["soil"] * 2.0 / 1.0)
+    before, factors = bar(penalty=0.02, mesh=0.02), {"penalty": 4.0 ** (1 / 0.75), "mesh": 2.0}
+    (near,) = expected([before], values(1000.0), values(1003.0), factors)
+    assert near.by_source["penalty"] == pytest.approx(SAFETY["penalty"] * 3.0 / 3.0)
+    by_mesh = divisor(Companion("mesh", 2.0, {}), 3e-3, MESH)
+    assert near.by_source["mesh"] == pytest.approx(SAFETY["mesh"] * 3.0 / by_mesh, rel=1e-3)
     (same,) = expected([before], values(1000.0), values(1000.001), factors)
     assert same.by_source["penalty"] == pytest.approx(BY_CHANCE * 5.0)
-    assert same.by_source["soil"] == pytest.approx(BY_CHANCE * 10.0)
+    assert same.by_source["mesh"] == pytest.approx(BY_CHANCE * 5.0)
 
 
 def test_a_source_that_is_no_finer_keeps_its_share() -> None:
     (found,) = expected([bar(penalty=0.02)], values(1000.0), values(1000.001), {"penalty": 1.0, "time": 2.0})
     assert found.by_source["penalty"] == pytest.approx(20.0)
+
+
+@pytest.mark.parametrize("factors", [{"soil": 2.0}, {"soil": 2.0, "mesh": 2.0}])
+def test_two_meshes_of_soil_that_agree_may_do_so_by_chance(factors: dict[str, float]) -> None:
+    (found,) = expected([bar(soil=0.02)], values(1000.0), values(1000.0), factors)
+    assert found.by_source["soil"] == pytest.approx(10.0)
 
 
 def test_bars_grow_where_the_runs_are_further_apart_than_they_said() -> None:
