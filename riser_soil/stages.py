@@ -255,7 +255,7 @@ def _load_steps(assembly: Assembly, stage: StaticStage) -> int:
     if assembly.soil is None:
         return asked
     moved = assembly.moved_in(stage) / (MOVED_BY * assembly.scales.diameter)
-    if assembly.soil.path_dependent:
+    if assembly.scene.has_path_dependent_soil:
         moved = max(moved, assembly.pressed_in(stage) / (PRESSED_BY * assembly.scales.diameter) - ROUND_OFF)
     laid = LAID_IN if assembly.cushion is not None and assembly.is_laid_in(stage) else 1
     return max(asked, laid, min(math.ceil(moved), MOST_STEPS))

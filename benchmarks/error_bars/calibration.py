@@ -63,7 +63,8 @@ def judge(name: str, mapping: Mapping, reference: Reference) -> JudgedScene:
     chain = companions(scene, MPI.COMM_WORLD)
     extra = time.process_time() - began - taken
     run = run_values(headlines(peaks.told("sampled")), peaks)
-    bars = [bar for bar in error_bars(run, chain, scene.has_ground) if bar.headline.key in reference]
+    found = error_bars(run, chain, scene.has_ground, scene.has_path_dependent_soil)
+    bars = [bar for bar in found if bar.headline.key in reference]
     judged = [_judged(name, bar, *reference[bar.headline.key]) for bar in bars if bar.bar is not None]
     return JudgedScene(name, judged, [bar for bar in bars if bar.bar is None], (taken, extra))
 

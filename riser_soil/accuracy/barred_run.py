@@ -47,7 +47,7 @@ def _bars(scene: Scene, folder: Path, peaks: RunPeaks, comm: Any) -> list[ErrorB
             raise
     if comm.rank != 0:
         return []
-    return error_bars(values_of_run(folder, peaks), chain, scene.has_ground)
+    return error_bars(values_of_run(folder, peaks), chain, scene.has_ground, scene.has_path_dependent_soil)
 
 
 def values_of_run(folder: Path, peaks: RunPeaks) -> RunValues:

@@ -41,12 +41,12 @@ def companions(scene: Scene, comm: Any, coarser: Ratios = COARSER) -> list[Compa
 def run_values(told: Mapping[str, Headline], peaks: RunPeaks) -> RunValues:
     """Of a run whose peaks were gathered on the way; of the soil, whose peaks may not be, as told."""
     known = {key: headline.value for key, headline in told.items()}
-    found = {which: known | values_of(peaks, which) for which in ("of_nodes", "peaks", "smooth", "at_nodes")}
-    return RunValues(told, **found)
+    of_nodes, between_steps, smooth = (known | values_of(peaks, which) for which in ("of_nodes", "peaks", "smooth"))
+    return RunValues(told, of_nodes, between_steps, smooth)
 
 
 def values_of(peaks: RunPeaks, which: str) -> dict[str, float]:
-    """Of headline quantities by their keys; which: sampled, at_nodes, of_nodes, peaks or smooth."""
+    """Of headline quantities by their keys; which: sampled, of_nodes, peaks or smooth."""
     return {key: headline.value for key, headline in headlines(peaks.told(which)).items()}
 
 

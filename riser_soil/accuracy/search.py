@@ -47,7 +47,8 @@ def trial(scene: Scene, accuracy: float, comm: Any) -> TriedSetting:
     if comm.rank != 0:
         return TriedSetting(scene, None, comm.bcast(None))
     values = run_values(headlines(peaks.told("sampled")), peaks)
-    return TriedSetting(scene, values, comm.bcast(error_bars(values, chain, scene.has_ground)))
+    bars = error_bars(values, chain, scene.has_ground, scene.has_path_dependent_soil)
+    return TriedSetting(scene, values, comm.bcast(bars))
 
 
 def finer(scene: Scene, factors: dict[str, float]) -> Scene:

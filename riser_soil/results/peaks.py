@@ -22,7 +22,6 @@ _ALTERNATING = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 16.0  # what alternates o
 RINGLESS = np.eye(5)[2:] - np.outer([1.0, -1.0, 1.0], _ALTERNATING)
 UNEVEN = 1e-6  # of five steps' time, by which they may differ
 _TENSION = "min_effective_tension"
-_ALONG = ("max_bending_moment", "max_curvature", _TENSION)
 
 
 def vertex(t: Array, values: Array) -> Array:
@@ -49,27 +48,12 @@ def pack_peaks(seen: Instant) -> Array:
     return vector
 
 
-def pack_nodes(seen: Instant) -> Array:
-    """As `pack`, with the largest moment and curvature at nodes in place of those between them."""
-    vector = pack(seen)
-    vector[places_of("max_bending_moment")] = seen.riser.bending_moment.max()
-    vector[places_of("max_curvature")] = seen.riser.curvature.max()
-    return vector
-
-
-def _final(seen: Instant, vector: Array) -> dict[str, Any]:
-    """As `final_state`, with the values along the riser of a packed vector."""
-    final = final_state(seen)
-    return final | {name: {**final[name], "value": vector[places_of(name)].item()} for name in _ALONG}
-
-
 class StagePeaks:
-    """Extremes of one stage: as recorded, at nodes alone, with all between nodes, and between steps as well."""
+    """Extremes of one stage three ways: as recorded, with the tension's between nodes, and between steps as well."""
 
     def __init__(self, name: str, kind: str) -> None:
         self.name, self.kind = name, kind
-        self.sampled, self.at_nodes, self.of_nodes = Extremes(), Extremes(), Extremes()
-        self.peaks, self.smooth = Extremes(), Extremes()
+        self.sampled, self.of_nodes, self.peaks, self.smooth = Extremes(), Extremes(), Extremes(), Extremes()
         self._seen: Instant | None = None
         self.soil: dict[str, Any] = {}
         self._t: list[float] = []
@@ -78,7 +62,6 @@ class StagePeaks:
     def update(self, t: float, seen: Instant) -> None:
         """Of the state that a dynamic stage begins with, and of every accepted step in turn; t: s or load factor."""
         self.sampled.update(t, pack(seen))
-        self.at_nodes.update(t, pack_nodes(seen))
         peaked = pack_peaks(seen)
         for extremes in (self.of_nodes, self.peaks):
             extremes.update(t, peaked)
@@ -108,11 +91,12 @@ class StagePeaks:
         return ended
 
     def told(self, which: str) -> dict[str, Any]:
-        """As the summary tells the stage; which: sampled, at_nodes, of_nodes, peaks or smooth."""
+        """As the summary tells the stage; which: sampled, of_nodes, peaks or smooth."""
         if self._seen is None:
             return {"name": self.name, "kind": self.kind, "final": None}
-        packed = {"sampled": pack, "at_nodes": pack_nodes}.get(which, pack_peaks)
-        final = _final(self._seen, packed(self._seen))
+        final = final_state(self._seen)
+        if which != "sampled":
+            final[_TENSION] = {**final[_TENSION], "value": self._last[-1][places_of(_TENSION)].item()}
         extremes = self._smooth_to_the_end() if which == "smooth" else vars(self)[which]
         return {
             "name": self.name, "kind": self.kind, "final": final, "soil": self.soil,
@@ -143,5 +127,5 @@ class RunPeaks:
             stage.soil = with_largest(stage.soil, self._places, t, soil)
 
     def told(self, which: str) -> dict[str, Any]:
-        """The share of a summary that headline quantities are read from; which: as `StagePeaks.told` has it."""
+        """The share of a summary that headline quantities are read from; which: sampled, of_nodes, peaks or smooth."""
         return {"stages": [stage.told(which) for stage in self.stages]}

@@ -67,6 +67,11 @@ class Scene(BaseModel):
         return self.seabed is not None or self.soil is not None
 
     @property
+    def has_path_dependent_soil(self) -> bool:
+        """Whether the scene has soil for which it matters in what steps it is strained."""
+        return self.soil is not None and self.soil.path_dependent
+
+    @property
     def water_depth(self) -> float:
         """Depth of the water for waves [m]; inf in a scene that has neither ground nor a depth."""
         if self.water is None or self.water.surface_level is None:

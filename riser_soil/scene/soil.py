@@ -233,6 +233,12 @@ class SoilScene(BaseModel):
         return self.block if isinstance(self.block, Block) else None
 
     @property
+    def path_dependent(self) -> bool:
+        """Whether any of its laws is."""
+        laws = [layer.law for layer in self.layers] if self.layers else [self.top_law]
+        return any(law.path_dependent for law in laws)
+
+    @property
     def top_law(self) -> SoilLaw:
         """The law at the seabed: the only one, or the first layer's."""
         law = self.layers[0].law if self.layers else self.law

@@ -7,7 +7,7 @@ initial stress and no state: the caller keeps the history and decides when a tri
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol
 
 from pydantic import BaseModel
 
@@ -70,9 +70,13 @@ class Bearing(NamedTuple):
 
 
 class SoilLaw(BaseModel, ABC):
-    """The model of a soil law in the scene: `kind`, a Literal of one word, and its constants."""
+    """The model of a soil law in the scene: `kind`, a Literal of one word, and its constants.
+
+    path_dependent: whether its history keeps more than the stress, so that it matters in what steps soil is strained.
+    """
 
     model_config = FROZEN
+    path_dependent: ClassVar[bool] = True
     kind: str
 
     @abstractmethod

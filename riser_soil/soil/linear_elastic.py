@@ -24,6 +24,7 @@ else:
 class LinearElastic(SoilLaw):
     """Linear elastic soil."""
 
+    path_dependent: ClassVar[bool] = False
     kind: Literal["linear-elastic"] = Field(description="the law's name")
     E: Stress = Field(description="Young's modulus [Pa]")
     nu: PoissonRatio = Field(description="Poisson's ratio [-]")

@@ -18,7 +18,7 @@ from riser_soil.soil.element import cell_gradients
 from riser_soil.soil.field import SoilField, components
 from riser_soil.soil.gathered import GatheredMesh, gather, gather_rows, top_of
 from riser_soil.soil.grid import DistributedMesh, on_all_ranks
-from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Formula, StressUpdate
+from riser_soil.soil.law import PLASTIC_STRAIN, Formula, StressUpdate
 from riser_soil.soil.layered import LayeredWeight
 
 
@@ -142,11 +142,6 @@ class Soil:
     def _new_answer(self, state: State) -> tuple[Array, StressUpdate]:
         strain = self._strain(state)
         return strain, self.law.update(strain, self._found.history)
-
-    @property
-    def path_dependent(self) -> bool:
-        """Whether the law keeps more than the stress, so that it matters in what steps it is strained."""
-        return len(self.law.columns) > len(STRESS)
 
     def _plastic_strain(self) -> Array:
         """Equivalent plastic strain (n,), 0 for a law without plasticity."""

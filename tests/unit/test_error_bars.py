@@ -12,10 +12,11 @@ from typer.testing import CliRunner
 
 from benchmarks.error_bars import references
 from benchmarks.error_bars.calibration import judge, share_inside
-from benchmarks.error_bars.scenes import SCENES
+from benchmarks.error_bars.scenes import CLAY, SCENES
 from riser_soil.accuracy import chain
 from riser_soil.accuracy.barred_run import run_with_error_bars
 from riser_soil.accuracy.error_bars import (
+    ON_PATH,
     ORDER,
     RINGING,
     SAFETY,
@@ -37,13 +38,17 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 
 KEY = "hang: top tension"
+SOIL = [name for name, scene in SCENES.items() if "soil" in scene]
 SOIL_MESH = next(knob for knob in KNOBS if knob.name == "soil_mesh")
 QUICK = ("catenary, 35 elements", "cantilever, tip load", "on springs", "surge, 140 steps", "hose on a rigid floor")
 
 
-def bar_of(told: float, peak: float, *companions: Companion, touches: bool = False) -> ErrorBar:
+def bar_of(
+    told: float, peak: float, *companions: Companion, touches: bool = False, path_dependent: bool = False
+) -> ErrorBar:
     headline = Headline("hang", "top tension", "N", told, 1000.0)
-    (bar,) = error_bars(RunValues({KEY: headline}, {KEY: peak}, {KEY: peak}, {KEY: peak}), companions, touches)
+    values = RunValues({KEY: headline}, {KEY: peak}, {KEY: peak}, {KEY: peak})
+    (bar,) = error_bars(values, companions, touches, path_dependent)
     return bar
 
 
@@ -95,25 +100,36 @@ def test_of_two_companions_in_one_source_the_larger_share_counts() -> None:
         assert bar_of(1000.0, 1000.0, *chain).by_source["soil"] == pytest.approx(SAFETY["soil"])
 
 
+def test_soil_that_depends_on_its_path_takes_a_larger_factor() -> None:
+    """Clay, or layers of which one is clay; elastic soil does not, nor does a scene without soil."""
+    yields = {name: scene_from_mapping(scene).has_path_dependent_soil for name, scene in SCENES.items()}
+    assert {name for name, found in yields.items() if found} == {name for name in SOIL if "clay" in name}
+    soil = SCENES["pipe pressed on elastic soil"]["soil"]
+    layers = [{"to": 0.5, "law": soil["law"]}, {"law": CLAY}]
+    mixed = {key: value for key, value in soil.items() if key != "law"} | {"layers": layers}
+    scene = scene_from_mapping(SCENES["pipe pressed on elastic soil"] | {"soil": mixed})
+    assert scene.has_path_dependent_soil
+    companion = of_order(1.0, 2.0, 1.0, "soil")
+    elastic, clay = (bar_of(1000.0, 1000.0, companion, path_dependent=found) for found in (False, True))
+    assert (elastic.by_source["soil"], clay.by_source["soil"]) == pytest.approx((SAFETY["soil"], ON_PATH["soil"]))
+
+
 def test_what_falls_between_nodes_is_the_meshs() -> None:
     bar = bar_of(1000.0, 1010.0, Companion("mesh", 2.0, {KEY: 1010.0}))
     assert bar.by_source["mesh"] == pytest.approx(SAFETY["mesh"] * 10.0)
 
 
-def test_what_the_moment_tells_between_nodes_is_the_meshs_too() -> None:
-    """As the largest moment is told between nodes, what it is at nodes tells how much falls between."""
-    headline = Headline("hang", "largest bending moment", "N.m", 1010.0, 1.0)
-    key = headline.key
-    seen, nodes = {key: 1010.0}, {key: 1000.0}
-    (bar,) = error_bars(RunValues({key: headline}, seen, seen, seen, nodes), [], touches=False)
-    assert bar.by_source["mesh"] == pytest.approx(SAFETY["mesh"] * 10.0)
+def test_what_the_moment_gains_between_nodes_is_no_error() -> None:
+    """As the largest moment is told between nodes, by a cubic."""
+    bar = bar_of(1010.0, 1010.0, Companion("mesh", 2.0, {KEY: 1010.0}))
+    assert bar.by_source["mesh"] == 0.0
 
 
 def test_what_falls_between_steps_and_what_rings_is_the_time_steps() -> None:
     headline = Headline("heave", "top tension", "N", 1000.0, 1000.0)
     key = headline.key
     nodes, steps, smooth = {key: 1000.0}, {key: 1004.0}, {key: 997.0}
-    (bar,) = error_bars(RunValues({key: headline}, nodes, steps, smooth), [], touches=False)
+    (bar,) = error_bars(RunValues({key: headline}, nodes, steps, smooth), [], touches=False, path_dependent=False)
     assert bar.by_source["time"] == pytest.approx(SAFETY["time"] * (STEP_GAP * 4.0 + RINGING * 3.0))
 
 

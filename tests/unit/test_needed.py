@@ -101,7 +101,7 @@ def test_shares_fall_by_their_orders() -> None:
 
 
 @pytest.mark.parametrize(
-    ("apart", "share"), [(4.0, SAFETY["penalty"] * 4.0 / 3.0), (1e-3, BY_CHANCE * 5.0), (9.0, 5.0)]
+    ("apart", "share"), [(4.0, SAFETY["penalty"] * 4.0 / 3.0), (1e-3, BY_CHANCE * 5.0), (12.0, 5.0)]
 )
 def test_two_runs_that_one_source_tells_apart_tell_its_share(apart: float, share: float) -> None:
     """By Richardson's extrapolation, no less than a part of what was to be expected, and no more than that."""

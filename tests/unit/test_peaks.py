@@ -55,23 +55,6 @@ def test_only_what_sits_between_nodes_is_replaced() -> None:
     assert peaked[changed] == pytest.approx([0.0], abs=1e-9)
 
 
-def test_moment_and_curvature_at_nodes_alone() -> None:
-    """Of a stage's end and of its extremes; the rest is told as in the summary."""
-    moment, curvature = LargestAlong(9e9, 30.2), LargestAlong(9.0, 30.2)
-    between = replace(seen(0.0).riser, largest_moment=moment, largest_curvature=curvature)
-    peaks = RunPeaks()
-    peaks.begin_stage("motion", "dynamic")
-    peaks.record(0.0, replace(seen(0.0), riser=between))
-    told, nodes = (peaks.told(which)["stages"][0] for which in ("sampled", "at_nodes"))
-    for name, most, at_nodes in (
-        ("max_bending_moment", 9e9, between.bending_moment.max()),
-        ("max_curvature", 9.0, between.curvature.max()),
-    ):
-        assert (told["extremes"][name]["max"], told["final"][name]["value"]) == (most, most)
-        assert (nodes["extremes"][name]["max"], nodes["final"][name]["value"]) == (at_nodes, at_nodes)
-    assert told["extremes"]["end"] == nodes["extremes"]["end"]
-
-
 def test_extremes_of_a_stage_three_ways() -> None:
     """The largest moment passes between two steps of 0.3; a static stage's end is no extreme in time."""
     peaks = RunPeaks()

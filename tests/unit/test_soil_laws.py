@@ -7,7 +7,7 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.soil import mandel
-from riser_soil.soil.law import PLASTIC_STRAIN, Formula
+from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Formula
 from riser_soil.soil.linear_elastic import Elastic, LinearElastic
 from riser_soil.soil.von_mises import PerfectlyPlastic, VonMises
 
@@ -80,6 +80,11 @@ def test_each_column_of_the_history_has_a_name(law: Formula) -> None:
     assert law.start().shape == (3, len(law.columns))
     assert law.update(shear_strain(np.full(3, 0.05)), law.start()).history.shape == (3, len(law.columns))
     assert len(set(law.columns)) == len(law.columns)
+
+
+def test_a_law_depends_on_its_path_if_it_keeps_more_than_the_stress() -> None:
+    assert (LinearElastic.path_dependent, VonMises.path_dependent) == (False, True)
+    assert (len(rock(np.zeros(1), NU).columns), len(clay(np.zeros(1)).columns)) == (len(STRESS), len(STRESS) + 1)
 
 
 def test_simple_shear_yields_at_su_of_the_depth() -> None:
