@@ -119,12 +119,6 @@ def test_what_falls_between_nodes_is_the_meshs() -> None:
     assert bar.by_source["mesh"] == pytest.approx(SAFETY["mesh"] * 10.0)
 
 
-def test_what_the_moment_gains_between_nodes_is_no_error() -> None:
-    """As the largest moment is told between nodes, by a cubic."""
-    bar = bar_of(1010.0, 1010.0, Companion("mesh", 2.0, {KEY: 1010.0}))
-    assert bar.by_source["mesh"] == 0.0
-
-
 def test_what_falls_between_steps_and_what_rings_is_the_time_steps() -> None:
     headline = Headline("heave", "top tension", "N", 1000.0, 1000.0)
     key = headline.key
