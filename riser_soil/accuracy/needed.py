@@ -47,10 +47,10 @@ def expected(bars: Sequence[ErrorBar], before: RunValues, found: RunValues, fact
     """Bars of a run that is finer by factors than the one `before` with its bars.
 
     Each source's share falls by its order. Where the two runs are further apart than the bar before, that was too
-    small, and so would be the one that follows from it: both are larger in that ratio. No source's share is more than
-    what it would leave if it told the two apart alone, by Richardson's extrapolation; but as sources may hide one
-    another, a part of it stays. The soil's is not bounded so: two meshes in which contact grows cell by cell may agree
-    by chance.
+    small, and so would be the one that follows from it: both are larger in that ratio. A source that is finer alone
+    has the share by which it tells the two apart, by Richardson's extrapolation, be it more or less; of several none
+    has more than if it were alone. But as runs may agree by chance, and sources hide one another, a part of each
+    stays. Of the soil it is all: in its meshes contact grows cell by cell, and two agree by chance often.
     """
     known = {bar.headline.key: bar for bar in bars}
     return [_expected(known.get(key), before, found, factors, key) for key in found.told]
@@ -102,9 +102,10 @@ def _by_the_two_runs(
     left: Mapping[str, float], apart: float, factors: Factors, order: Mapping[str, float], scale: float
 ) -> dict[str, float]:
     """Shares of the sources that are finer, but for the soil's; apart: the two runs, over the scale."""
-    shares = {}
-    for source, ratio in factors.items():
-        if ratio > 1.0 and source in left and source != "soil":
-            told = SAFETY[source] * apart * scale / divisor(Companion(source, ratio, {}), apart, order[source])
-            shares[source] = min(left[source], max(told, BY_CHANCE * left[source]))
+    shares, finer = {}, [source for source, ratio in factors.items() if ratio > 1.0]
+    for source in finer:
+        if source in left and source != "soil":
+            whole = divisor(Companion(source, factors[source], {}), apart, order[source])
+            told = max(SAFETY[source] * apart * scale / whole, BY_CHANCE * left[source])
+            shares[source] = told if len(finer) == 1 else min(left[source], told)
     return shares

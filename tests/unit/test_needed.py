@@ -101,10 +101,11 @@ def test_shares_fall_by_their_orders() -> None:
 
 
 @pytest.mark.parametrize(
-    ("apart", "share"), [(4.0, SAFETY["penalty"] * 4.0 / 3.0), (1e-3, BY_CHANCE * 5.0), (12.0, 5.0)]
+    ("apart", "share"),
+    [(4.0, SAFETY["penalty"] * 4.0 / 3.0), (1e-3, BY_CHANCE * 5.0), (12.0, SAFETY["penalty"] * 12.0 / 3.0)],
 )
 def test_two_runs_that_one_source_tells_apart_tell_its_share(apart: float, share: float) -> None:
-    """By Richardson's extrapolation, no less than a part of what was to be expected, and no more than that."""
+    """By Richardson's extrapolation, be it more than was to be expected, but no less than a part of that."""
     (found,) = expected([bar(penalty=0.02)], values(1000.0), values(1000.0 + apart), {"penalty": 4.0 ** (1 / 0.75)})
     assert found.by_source["penalty"] == pytest.approx(share)
 
@@ -119,6 +120,8 @@ def test_two_runs_that_several_sources_tell_apart_bound_the_share_of_each() -> N
     (same,) = expected([before], values(1000.0), values(1000.001), factors)
     assert same.by_source["penalty"] == pytest.approx(BY_CHANCE * 5.0)
     assert same.by_source["mesh"] == pytest.approx(BY_CHANCE * 5.0)
+    (far,) = expected([before], values(1000.0), values(1015.0), factors)
+    assert (far.by_source["penalty"], far.by_source["mesh"]) == pytest.approx((5.0, 5.0))
 
 
 def test_a_source_that_is_no_finer_keeps_its_share() -> None:
@@ -133,10 +136,10 @@ def test_two_meshes_of_soil_that_agree_may_do_so_by_chance(factors: dict[str, fl
 
 
 def test_bars_grow_where_the_runs_are_further_apart_than_they_said() -> None:
-    before = bar(time=0.02)
+    before = bar(time=0.02, mesh=0.004)
     assert before.bar is not None
-    (found,) = expected([before], values(1000.0), values(1000.0 + 3.0 * before.bar), {"time": 2.0})
-    assert found.by_source["time"] == pytest.approx(3.0 * 20.0 / 4.0)
+    (found,) = expected([before], values(1000.0), values(1000.0 + 3.0 * before.bar), {"time": 2.0, "mesh": 2.0})
+    assert (found.by_source["time"], found.by_source["mesh"]) == pytest.approx((3.0 * 20.0 / 4.0, 3.0 * 4.0 / 4.0))
 
 
 def test_what_falls_between_the_runs_own_steps_is_kept() -> None:
