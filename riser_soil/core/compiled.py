@@ -27,7 +27,8 @@ from typing import Any
 import numba
 from numba.core import event
 
-PACKAGE = Path(__file__).parents[1]
+from riser_soil.core.kernel_cache import PACKAGE, KernelCache
+
 NAME = PACKAGE.name
 KEPT = 4  # cache folders of other versions, the latest ones, for those who go back and forth
 IN_USE = 3600.0  # s since its last start within which a run of another version may still need its folder
@@ -35,13 +36,27 @@ ROOM = 1 << 25  # bytes that all kernels need, and some more
 ANNOUNCEMENT = "compiling kernels (once, about 20 s)"
 
 
-def njit(function: Callable[..., object]) -> Any:
-    """Compile a function when it is first called with arguments of new types; its machine code stays on disk."""
+def njit(function: Callable[..., object], apart: bool = False) -> Any:
+    """Compile a function when it is first called with arguments of new types; its machine code stays on disk.
+
+    apart: not inlined where others call it, so that those that call many are compiled in a bearable time.
+    """
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(FOLDER)
+    options: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "arcp"}, "forceinline": not apart}
     try:
-        return numba.njit(cache=True, forceinline=True, error_model="numpy", fastmath={"contract", "arcp"})(function)
+        made = numba.njit(**options)(function)
+        made._cache = KernelCache(function)
+        return made
     finally:
         numba.config.CACHE_DIR = before
+
+
+def inlined(function: Callable[..., object]) -> Any:
+    """Compile a function as a piece of each that calls it, which takes less time where it only calls others in turn.
+
+    Loops have no place in it: numba has been seen to mix up their variables with those of the caller.
+    """
+    return numba.njit(inline="always", error_model="numpy")(function)
 
 
 def fixed(n: int) -> tuple[int, ...]:

@@ -11,11 +11,14 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.compiled import njit
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import Energy, Field, Forces, MatrixBlock, Model, Part, State, Weights, Work, local
 from riser_soil.core.roles import require_roles
 from riser_soil.core.saved_state import Saved
+
+Groups = tuple[Array, Array, Array]
 
 
 @dataclass
@@ -127,13 +130,19 @@ class System:
         summed = iter(self.sum([x for work in mine.values() for x in vars(work).values()]))
         return {name: Work(*(next(summed) for _ in vars(work))) for name, work in mine.items()}
 
-    def work_against(self, bulk: Array, end: Array, u: Array) -> float:
-        """Work [J] that bulk forces F, as their mean, and end-of-step forces E take out over a step."""
-        return self.sum([float((bulk + end) @ u)])[0]
+    def work_in_step(
+        self, first: Forces, bulk: Array, last: Forces, u: Array, share: float
+    ) -> tuple[float, float]:
+        """Work [J] over the increments u of a step: what prescribed motions put in, by the mean reactions, and what the
+        bulk forces F, as their mean, and end-of-step forces E take out.
 
-    def work_of_supports(self, reactions: Array, u: Array) -> float:
-        """Work [J] that prescribed motions put in over a step: mean reactions times increment."""
-        return self.sum([float(reactions @ u[self.prescribed_dofs])])[0]
+        first, last: forces where the step begins and in its balance; bulk: F where it begins, in the step's own axes.
+        share: of the means, what is there as the step begins.
+        """
+        supports = _work_of(self.prescribed_dofs, share, tuple(vars(first).values()), tuple(vars(last).values()), u)
+        against = float((share * bulk + (1.0 - share) * last.force + last.end) @ u)
+        put_in, taken = self.sum([float(supports), against])
+        return put_in, taken
 
     def reactions(self, forces: Forces) -> Array:
         """Reactions at this rank's prescribed dofs [N, N.m]."""
@@ -172,6 +181,16 @@ class System:
     def destroy(self) -> None:
         self.matrix.destroy()
         self.numbering.destroy()
+
+
+@njit
+def _work_of(dofs: IntArray, share: float, first: Groups, last: Groups, u: Array) -> float:
+    """Work of the mean of all groups on some of the dofs."""
+    work = 0.0
+    for i in dofs:
+        begun, ended = first[0][i] + first[1][i] + first[2][i], last[0][i] + last[1][i] + last[2][i]
+        work += (share * begun + (1.0 - share) * ended) * u[i]
+    return work
 
 
 def total(forces: Forces) -> Array:

@@ -1,0 +1,57 @@
+"""numba's cache on disk, so that reading it imports nothing but what the kernel at hand is called with.
+
+numba keeps one index for a function, with all types that it was ever called with, and imports the modules of the
+NamedTuples among them to read it. A kernel that is called with the numbers of any law or part would import all of them;
+and fail where one is gone, as one of a test is in the next run. Here each set of NamedTuples has an index of its own.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+
+PACKAGE = Path(__file__).parents[1]
+
+
+class KernelCache(FunctionCache):
+    """Cache of one function; in the place of that of numba's dispatcher, `_cache`."""
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        self._choose_index(sig)
+        return super().load_overload(sig, target_context)
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        self._choose_index(sig)
+        super().save_overload(sig, data)
+
+    def _choose_index(self, sig: Any) -> None:
+        base = "-".join([self._impl.filename_base, *_mark(set(_named(sig)))])
+        self._cache_file = IndexDataCacheFile(self._cache_path, base, self._impl.locator.get_source_stamp())
+
+
+def _named(types: Iterable[Any]) -> Iterator[type]:
+    """NamedTuples among types of numba, and among what they consist of."""
+    for given in types:
+        if hasattr(given, "instance_class"):
+            yield given.instance_class
+        yield from _named(getattr(given, "types", ()))
+        yield from _named(getattr(given, "field_dict", {}).values())
+
+
+def _mark(classes: set[type]) -> list[str]:
+    """A word for a set of classes, none for the empty one; another one where a source outside the package is edited."""
+    told = sorted(f"{each.__module__}.{each.__qualname__} {_source(each)}" for each in classes)
+    return [hashlib.sha256("\n".join(told).encode()).hexdigest()[:12]] if told else []
+
+
+def _source(named: type) -> str:
+    """Of a class outside the package, as those within have cache folders by their sources."""
+    path = getattr(sys.modules[named.__module__], "__file__", None)
+    if path is None or PACKAGE in Path(path).parents:
+        return ""
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()

@@ -1,0 +1,67 @@
+"""The cache of compiled kernels, by the types of their arguments."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.support.on_ranks import HANGS, environment
+
+NUMBERS = """
+from typing import NamedTuple
+class {name}(NamedTuple):
+    k: float
+"""
+LOOP = """
+import numba
+from riser_soil.core.kernel_cache import KernelCache
+
+@numba.njit
+def twice(numbers):
+    return 2.0 * numbers[0].k
+
+twice._cache = KernelCache(twice.py_func)
+"""
+CALL = """
+import sys
+from loop import twice
+for name in sys.argv[1:]:
+    print(twice(((getattr(__import__(name), name.title()))(1.5),)))
+print(sum(twice.stats.cache_hits.values()), sum(twice.stats.cache_misses.values()), "soft" in sys.modules)
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name in ("hard", "soft"):
+        (tmp_path / f"{name}.py").write_text(NUMBERS.format(name=name.title()), encoding="utf-8")
+    (tmp_path / "loop.py").write_text(LOOP, encoding="utf-8")
+    return tmp_path
+
+
+def called(folder: Path, *names: str) -> list[str]:
+    """Results of calls with the numbers of some modules; hits and misses of the cache, whether `soft` was imported."""
+    around = environment() | {"NUMBA_CACHE_DIR": str(folder / "cache")}
+    around["PYTHONPATH"] = os.pathsep.join([str(folder), *sys.path])
+    call = [sys.executable, "-c", CALL, *names]
+    done = subprocess.run(call, env=around, cwd=folder, capture_output=True, text=True, timeout=HANGS, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.split()
+
+
+def test_kernels_for_other_types_are_neither_read_nor_needed(folder: Path) -> None:
+    assert called(folder, "hard", "soft") == ["3.0", "3.0", "0", "2", "True"]
+    assert called(folder, "hard") == ["3.0", "1", "0", "False"]
+    (folder / "soft.py").unlink()
+    assert called(folder, "hard") == ["3.0", "1", "0", "False"]
+
+
+def test_a_source_outside_the_package_that_was_edited_is_compiled_anew(folder: Path) -> None:
+    called(folder, "hard", "soft")
+    with (folder / "soft.py").open("a", encoding="utf-8") as file:
+        file.write("# edited\n")
+    assert called(folder, "hard", "soft") == ["3.0", "3.0", "1", "1", "True"]
