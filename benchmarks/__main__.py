@@ -2,7 +2,7 @@
 
 import argparse
 
-from benchmarks import adaptive, coupled, impact, riser_only, tank, twins
+from benchmarks import adaptive, coupled, impact, riser_only, tank, twins, waves
 
 argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__).parse_args()
 riser_only.report()
@@ -11,3 +11,4 @@ coupled.report()
 adaptive.report()
 impact.report()
 tank.report()
+waves.report()

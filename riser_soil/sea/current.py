@@ -8,19 +8,26 @@ from dataclasses import dataclass
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 from riser_soil.sea.water import WaterMotion
 
 
+@njit
 def at_heights(z: Array, level: Array, velocity: Array) -> tuple[Array, Array]:
     """Horizontal velocity [m/s] and its derivative by z [1/s], each (n, 2), at heights z (n,).
 
     level (m,) [m] increases; velocity (m, 2) holds there. Linear between the levels, constant beyond them; at a level,
     the derivative is that of the layer above it.
     """
-    slopes = np.zeros((level.size + 1, 2))
-    slopes[1:-1] = np.diff(velocity, axis=0) / np.diff(level)[:, None]
-    values = np.stack([np.interp(z, level, u) for u in velocity.T], axis=-1)
-    return values, slopes[np.searchsorted(level, z, side="right")]
+    values, slopes = np.empty((z.size, 2)), np.zeros((z.size, 2))
+    for p in range(z.size):
+        above = np.searchsorted(level, z[p], side="right")
+        below = max(above - 1, 0)
+        for i in range(2):
+            if 0 < above < level.size:
+                slopes[p, i] = (velocity[above, i] - velocity[below, i]) / (level[above] - level[below])
+            values[p, i] = velocity[below, i] + slopes[p, i] * (z[p] - level[below])
+    return values, slopes
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +42,13 @@ class SteadyCurrent:
     factor: Callable[[float], float]
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        factor = self.factor(t)
-        velocity, slope = at_heights(x[:, 2], self.level, self.velocity)
-        motion.velocity[:, :2] += factor * velocity
-        motion.velocity_gradient[:, :2, 2] += factor * slope
+        _add_to(motion, x[:, 2], self.level, self.velocity, self.factor(t))
+
+
+@njit
+def _add_to(motion: WaterMotion, z: Array, level: Array, velocity: Array, factor: float) -> None:
+    values, slopes = at_heights(z, level, velocity)
+    for p in range(z.size):
+        for i in range(2):
+            motion.velocity[p, i] += factor * values[p, i]
+            motion.velocity_gradient[p, i, 2] += factor * slopes[p, i]

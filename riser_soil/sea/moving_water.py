@@ -16,6 +16,8 @@ Source: Morison et al., Petroleum Transactions 189 (1950), in its relative form.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from riser_soil.core.arrays import Array
@@ -29,15 +31,31 @@ from riser_soil.sea.still_water import Resistance, StationLoads
 from riser_soil.sea.water import Water, WaterMotion
 
 
+class _Seen(NamedTuple):
+    """The motion at a time and places x (ne, ng, d)."""
+
+    t: float
+    x: Array
+    motion: WaterMotion
+
+    def at(self, t: float, x: Array) -> bool:
+        return self.t == t and np.array_equal(self.x, x)
+
+
 class FlowAtStations:
-    """Moving water around the pipe."""
+    """Moving water around the pipe, evaluated once for trials that differ in rates alone: the last motion seen at the
+    latest time and the last one at the time before, where the step begins, are kept.
+    """
 
     def __init__(self, pipe: Pipe, water: Water) -> None:
         self.pipe, self._water = pipe, water
+        self._both = np.kron(pipe.line.basis, pipe.line.basis)  # basis^T G basis for all points in one product
+        self._latest: _Seen | None = None
+        self._before: _Seen | None = None
 
     def at(self, trial: Trial) -> WaterMotion:
         """The water's motion at the stations: arrays (ne, ng, ...) in the line's axes."""
-        motion: WaterMotion = trial.once((self, "motion"), self._evaluate)
+        motion: WaterMotion = trial.once((self, "motion"), self._find)
         return motion
 
     def immersion(self, trial: Trial) -> tuple[Array, Array]:
@@ -45,18 +63,31 @@ class FlowAtStations:
         motion = self.at(trial)
         return motion.immersion, motion.immersion_gradient
 
-    def _evaluate(self, trial: Trial) -> WaterMotion:
-        x, basis = self.pipe.position(trial), self.pipe.line.basis
-        found = self._water(trial.state.t, self.pipe.line.to_global(x).reshape(-1, 3))
-        both = np.kron(basis, basis)  # basis^T G basis for all points in one product
-        at, d = x.shape[:2], x.shape[2]
+    def _find(self, trial: Trial) -> WaterMotion:
+        t, x = trial.state.t, self.pipe.position(trial)
+        for seen in (self._latest, self._before):
+            if seen is not None and seen.at(t, x):
+                return seen.motion
+        if self._latest is not None and self._latest.t != t:
+            self._before = self._latest
+        self._latest = _Seen(t, x, self._evaluate(t, x))
+        return self._latest.motion
+
+    def _evaluate(self, t: float, x: Array) -> WaterMotion:
+        *at, d = x.shape
+        found = self._water(t, self.pipe.line.to_global(x.reshape(-1, d)))
+        seen = found if d == 3 else self._in_plane(found)
+        return WaterMotion(*(part.reshape(*at, *part.shape[1:]) for part in seen))
+
+    def _in_plane(self, found: WaterMotion) -> WaterMotion:
+        basis = self.pipe.line.basis
         return WaterMotion(
-            velocity=(found.velocity @ basis).reshape(*at, d),
-            acceleration=(found.acceleration @ basis).reshape(*at, d),
-            velocity_gradient=(found.velocity_gradient.reshape(-1, 9) @ both).reshape(*at, d, d),
-            acceleration_gradient=(found.acceleration_gradient.reshape(-1, 9) @ both).reshape(*at, d, d),
-            immersion=found.immersion.reshape(at),
-            immersion_gradient=(found.immersion_gradient @ basis).reshape(*at, d),
+            velocity=found.velocity @ basis,
+            acceleration=found.acceleration @ basis,
+            velocity_gradient=(found.velocity_gradient.reshape(-1, 9) @ self._both).reshape(-1, 2, 2),
+            acceleration_gradient=(found.acceleration_gradient.reshape(-1, 9) @ self._both).reshape(-1, 2, 2),
+            immersion=found.immersion,
+            immersion_gradient=found.immersion_gradient @ basis,
         )
 
 
@@ -74,6 +105,9 @@ class RelativeDrag:
     def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
         by = self._still.linearise(self._through(trial), weights)
         return by._replace(position=-by.rate @ self._stream.at(trial).velocity_gradient)
+
+    def numbers(self) -> None:
+        return None
 
     def momentum(self, trial: Trial, v: Array) -> Array:
         return self._still.momentum(trial, v)
@@ -111,6 +145,9 @@ class AcceleratedWater:
             position=by.position + by_a @ water.acceleration_gradient,
             slope=by.slope + stations.follow_slope(by_tau, flow.tau, flow.stretch),
         )
+
+    def numbers(self) -> None:
+        return None
 
     def momentum(self, trial: Trial, v: Array) -> Array:
         return self._loads.momentum(trial, v)

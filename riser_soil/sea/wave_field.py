@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Literal, assert_never
+from typing import Literal
+
+import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.smooth_step import smooth_step
 from riser_soil.sea import waves
 from riser_soil.sea.components import Components
 from riser_soil.sea.water import WaterMotion
@@ -19,7 +20,7 @@ class WaveField:
     The acceleration is the rate of the ramped velocity, the ramp's own share included. depth [m] may be inf.
     surface_level: z of the mean surface [m]. clock: what the waves' clock, which their phases are counted on, shows
     when the stage begins [s]. ramp [s] is counted from the waves' beginning; since: how long they have acted when the
-    stage begins [s], by default what the clock shows.
+    stage begins [s], by default what the clock shows. waves: the same for compiled code.
     """
 
     def __init__(
@@ -32,28 +33,8 @@ class WaveField:
         clock: float = 0.0,
         since: float | None = None,
     ) -> None:
-        self._train, self._depth, self._level = waves.train(components, depth), depth, surface_level
-        self._stretching, self._ramp, self._clock = stretching, ramp, clock
-        self._since = clock if since is None else since
+        times = ramp, clock, clock if since is None else since
+        self.waves = waves.waves(components, depth, surface_level, stretching == "wheeler", *times)
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        time = self._clock + t
-        r, rate, _ = smooth_step(self._since + t, self._ramp)
-        cosine, sine = waves.circular(self._train, time, x)
-        eta, slope = (r * part for part in waves.surface(self._train, cosine, sine))
-        full = waves.kinematics(self._train, cosine, sine, self._heights(x[:, 2] - self._level, eta, slope))
-        motion.velocity[:] += r * full.v
-        motion.velocity_gradient[:] += r * full.dv
-        motion.acceleration[:] += r * full.a + rate * full.v
-        motion.acceleration_gradient[:] += r * full.da + rate * full.dv
-        motion.immersion[:] += eta
-        motion.immersion_gradient[:, :2] += slope
-
-    def _heights(self, z: Array, eta: Array, slope: Array) -> waves.Heights:
-        match self._stretching:
-            case "wheeler":
-                return waves.wheeler(z, eta, slope, self._depth)
-            case "vertical":
-                return waves.vertical(z, self._depth)
-            case _:
-                assert_never(self._stretching)
+        waves.add_to(motion, self.waves, t, np.ascontiguousarray(x))

@@ -1,0 +1,231 @@
+"""Sums of waves as Taylor series about places of a fixed grid, so that a point costs no sum over the components.
+
+The waves of one direction move the water in a plane: s along the direction, z up from the mean surface. With theta
+being a component's phase at s = 0 in water of depth h, velocity and acceleration are of the form
+
+    u + i w = V + conjugate of M,
+    V = sum of G exp(k (z + i s) + i theta),     M = sum of G exp(k (-2 h - z + i s) + i theta),
+
+M being V mirrored at the bottom. Both are exponentials of k x, with x = dz + i ds in V and -dz + i ds in M, about any
+place. So there V is the series
+
+    sum over n < ORDER of c_n x^n,     c_n = sum of (G exp(k (z + i s) + i theta) at the place) k^n/n!,
+
+likewise M, and, in i ds, the surface. du/dz + i dw/dz follow from dV/dx, and d/ds = i d/dz without divergence and curl.
+Of the factors at a place only exp(i theta), which all places share, changes in time.
+
+The places are the middles of squares. At the surface their side is such that k |x| < RADIUS for the shortest wave: the
+remainder is below RADIUS^ORDER/ORDER! = 5e-15 of each component. With depth their sides double, where NEAREST of the
+larger ones fit in above: the remainder exp(k z) (k |x|)^ORDER/ORDER!, largest for k z = -ORDER, is then below 2e-15.
+
+A series hangs on its place and the time alone. It is computed when a point is seen there, and again at another time; so
+nothing hangs on what was evaluated before, and there is nothing to save.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, ComplexArray, IntArray
+from riser_soil.core.compiled import njit
+from riser_soil.sea.places import Places, number, places
+from riser_soil.sea.wave_train import WaveTrain
+
+ORDER = 20
+RADIUS = 1.6
+NEAREST = 3
+DEEPEST = 30.0  # k d beyond which a component is left out at depth d: it has decayed to 1e-13 of what it is above
+LEVELS = 64
+MOST, MEMORY = 8192, 1 << 25  # places kept at most, and bytes for the components' motion there
+
+
+class SeriesAt(NamedTuple):
+    """Series of one or several sums at places. motion: (room, sums, m, 2) the components but for exp(i theta), as real
+    and imaginary part; alive: (room, sums) how many of them count; c: (room, series, 2, ORDER) times powers of `side`.
+    """
+
+    places: Places
+    motion: Array
+    alive: IntArray
+    c: Array
+
+
+class WaveSeries(NamedTuple):
+    """Series of waves. side: of the squares at the surface [m]; powers: (m, ORDER) (k side)^n/n!.
+
+    columns: of the surface, one for each strip of the sea. cells: of the flow; two sums, V and M, and four series, of
+    their velocity and of their acceleration.
+    """
+
+    side: float
+    powers: Array
+    columns: SeriesAt
+    cells: SeriesAt
+
+
+class PlaneFlow(NamedTuple):
+    """Velocity or acceleration u + i w at points (n,), u along the waves and w up, and its derivative by z."""
+
+    value: ComplexArray
+    by_z: ComplexArray
+
+
+class Cell(NamedTuple):
+    """A square of the grid: a number that is its own, its middle s and depth d, and half its side [m]."""
+
+    key: int
+    s: float
+    d: float
+    half: float
+
+
+def wave_series(waves: WaveTrain) -> WaveSeries:
+    """Series of a train's waves, none computed yet."""
+    m, side = waves.k.size, sqrt(2.0) * RADIUS / float(waves.k.max())
+    steps = side * waves.k[:, None] / np.arange(1.0, ORDER)
+    powers = np.concatenate([np.ones((m, 1)), np.cumprod(steps, axis=1)], axis=1)
+    return WaveSeries(side, powers, columns=_room(m, 1, 1), cells=_room(m, 2, 4))
+
+
+def _room(m: int, sums: int, series: int) -> SeriesAt:
+    room = min(MOST, MEMORY // (16 * m * sums) + 1)
+    alive = np.empty((room, sums), np.int64)
+    return SeriesAt(places(room), np.empty((room, sums, m, 2)), alive, np.empty((room, series, 2, ORDER)))
+
+
+@njit
+def surface(of: WaveSeries, waves: WaveTrain, t: float, g: int, s: Array) -> tuple[Array, Array]:
+    """Rise of the surface by the waves of direction g at s (n,) [m], and its slope along s; the train's time is t."""
+    rise, slope, last, place = np.empty(s.size), np.empty(s.size), 0, -1
+    for p in range(s.size):
+        column = int(np.floor(s[p] / of.side))
+        s0 = (column + 0.5) * of.side
+        if place < 0 or column != last:
+            last, place = column, number(of.columns.places, column * len(waves.toward) + g)
+            if of.columns.places.time[place] != t:
+                _sum_surface(of, waves, g, place, s0)
+                of.columns.places.time[place] = t
+        value, by_x = _at_surface(of.columns.c, place, (s[p] - s0) / of.side)
+        rise[p], slope[p] = value, by_x / of.side
+    return rise, slope
+
+
+@njit
+def flow(of: WaveSeries, waves: WaveTrain, t: float, g: int, s: Array, z: Array) -> tuple[PlaneFlow, PlaneFlow]:
+    """Velocity and acceleration by the waves of direction g at s (n,) and z <= 0 (n,) [m]; the train's time is t."""
+    velocity, acceleration, last, place = _at_rest(s.size), _at_rest(s.size), 0, -1
+    for p in range(s.size):
+        if waves.k[waves.first[g]] * -z[p] > DEEPEST:
+            continue
+        cell = _cell(of.side, s[p], -z[p])
+        if place < 0 or cell.key != last:
+            last, place = cell.key, number(of.cells.places, cell.key * len(waves.toward) + g)
+            if of.cells.places.time[place] != t:
+                _sum_flow(of, waves, g, place, cell)
+                of.cells.places.time[place] = t
+        v, v_x, a, a_x = _in_cell(of.cells.c, place, complex(z[p] + cell.d, s[p] - cell.s) / of.side)
+        velocity.value[p], velocity.by_z[p] = v, v_x / of.side
+        acceleration.value[p], acceleration.by_z[p] = a, a_x / of.side
+    return velocity, acceleration
+
+
+@njit
+def _at_rest(n: int) -> PlaneFlow:
+    return PlaneFlow(np.zeros(n, np.complex128), np.zeros(n, np.complex128))
+
+
+@njit
+def _cell(side: float, s: float, d: float) -> Cell:
+    """The square around s and depth d; side: of those at the surface [m]."""
+    level, rows = 0, 2 * NEAREST
+    while d >= rows * side and level < LEVELS - 1:
+        side, level = 2.0 * side, level + 1
+    column, row = int(np.floor(s / side)), min(int(d / side), rows - 1)
+    return Cell((column * LEVELS + level) * rows + row, (column + 0.5) * side, (row + 0.5) * side, 0.5 * side)
+
+
+@njit
+def _at_surface(c: Array, place: int, x: float) -> tuple[float, float]:
+    """The surface and its derivative at x, by Horner's rule."""
+    value, by_x = 0.0, 0.0
+    for n in range(ORDER - 1, -1, -1):
+        by_x, value = by_x * x + value, value * x + c[place, 0, 0, n]
+    return value, by_x
+
+
+@njit
+def _in_cell(c: Array, place: int, x: complex) -> tuple[complex, complex, complex, complex]:
+    """Velocity and acceleration at x, each with its derivative, from all four series at once: their chains of products
+    then run side by side.
+    """
+    v, v_x, a, a_x, mv, mv_x, ma, ma_x = 0j, 0j, 0j, 0j, 0j, 0j, 0j, 0j
+    mirrored = -x.conjugate()
+    for n in range(ORDER - 1, -1, -1):
+        v_x, v = v_x * x + v, v * x + _coefficient(c, place, 0, n)
+        a_x, a = a_x * x + a, a * x + _coefficient(c, place, 1, n)
+        mv_x, mv = mv_x * mirrored + mv, mv * mirrored + _coefficient(c, place, 2, n)
+        ma_x, ma = ma_x * mirrored + ma, ma * mirrored + _coefficient(c, place, 3, n)
+    return v + mv.conjugate(), v_x - mv_x.conjugate(), a + ma.conjugate(), a_x - ma_x.conjugate()
+
+
+@njit
+def _coefficient(c: Array, place: int, series: int, n: int) -> complex:
+    return complex(c[place, series, 0, n], c[place, series, 1, n])
+
+
+@njit
+def _sum_surface(of: WaveSeries, waves: WaveTrain, g: int, place: int, s: float) -> None:
+    at, c = of.columns, of.columns.c
+    if np.isnan(at.places.time[place]):
+        _settle(at, waves, g, place, 0, waves.amplitude, Cell(0, s, 0.0, 0.0))
+    c[place] = 0.0
+    for j in range(waves.first[g], waves.first[g + 1]):
+        value = _now(at.motion, place, 0, j, waves.turned)
+        for n in range(ORDER):
+            c[place, 0, 0, n] += value.real * of.powers[j, n]
+            c[place, 0, 1, n] += value.imag * of.powers[j, n]
+    turn = complex(1.0, 0.0)
+    for n in range(ORDER):
+        c[place, 0, 0, n] = (_coefficient(c, place, 0, n) * turn).real
+        turn *= 1j
+
+
+@njit
+def _sum_flow(of: WaveSeries, waves: WaveTrain, g: int, place: int, cell: Cell) -> None:
+    at, c = of.cells, of.cells.c
+    mirrored = Cell(cell.key, cell.s, 2.0 * waves.depth - cell.d, cell.half)
+    if np.isnan(at.places.time[place]):
+        _settle(at, waves, g, place, 0, waves.speed, cell)
+        _settle(at, waves, g, place, 1, waves.speed, mirrored)
+    c[place] = 0.0
+    for k in range(2):
+        for j in range(waves.first[g], waves.first[g] + at.alive[place, k]):
+            v = _now(at.motion, place, k, j, waves.turned)
+            a = complex(waves.w[j] * v.imag, -waves.w[j] * v.real)
+            for n in range(ORDER):
+                power = of.powers[j, n]
+                c[place, 2 * k, 0, n] += v.real * power
+                c[place, 2 * k, 1, n] += v.imag * power
+                c[place, 2 * k + 1, 0, n] += a.real * power
+                c[place, 2 * k + 1, 1, n] += a.imag * power
+
+
+@njit
+def _settle(at: SeriesAt, waves: WaveTrain, g: int, place: int, k: int, size: Array, cell: Cell) -> None:
+    """The components of sum k at a place, but for exp(i theta), as long as they count within its square."""
+    at.alive[place, k] = 0
+    for j in range(waves.first[g], waves.first[g + 1]):
+        if waves.k[j] * (cell.d - cell.half) > DEEPEST:
+            break
+        here, angle = size[j] * np.exp(-waves.k[j] * cell.d), waves.k[j] * cell.s
+        at.motion[place, k, j, 0], at.motion[place, k, j, 1] = here * np.cos(angle), here * np.sin(angle)
+        at.alive[place, k] += 1
+
+
+@njit
+def _now(motion: Array, place: int, k: int, j: int, turned: Array) -> complex:
+    """A component of sum k at a place and the train's time."""
+    return complex(motion[place, k, j, 0], motion[place, k, j, 1]) * complex(turned[j, 0], turned[j, 1])
