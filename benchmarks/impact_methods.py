@@ -7,15 +7,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.law import Penalty
+from riser_soil.contact.law import Penalty, PenaltyNumbers, ramp
 from riser_soil.contact.seabed_contact import SeabedContact
-from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Predictor
-from riser_soil.seabed.law import SeabedResponse
+from riser_soil.seabed.compiled_law import CompiledLaw, answer, may_act
 
 NEAR = 1e-8  # m: below it a difference quotient of the potential is round-off
 
@@ -54,8 +55,31 @@ class Averaged:
         return self._contact.predict(guess)
 
 
+class DiscreteNumbers(NamedTuple):
+    """As of `DiscreteGradient`."""
+
+    penalty: PenaltyNumbers
+
+
+@may_act.of(DiscreteNumbers)
+def _may_act(law: DiscreteNumbers, penetration: float, history: Array) -> bool:
+    return max(penetration, history[0]) > -law.penalty.smoothing
+
+
+@answer.of(DiscreteNumbers)
+def _answer(law: DiscreteNumbers, penetration: float, history: Array, after: Array) -> tuple[float, float, float]:
+    before, way = history[0], penetration - history[0]
+    after[0] = penetration
+    force, _, stored = ramp(law.penalty, penetration)
+    if abs(way) < NEAR:
+        middle, rise, _ = ramp(law.penalty, 0.5 * (penetration + before))
+        return middle, 0.5 * rise, stored
+    quotient = (stored - ramp(law.penalty, before)[2]) / way
+    return quotient, (force - quotient) / way, stored
+
+
 @dataclass(frozen=True)
-class DiscreteGradient:
+class DiscreteGradient(CompiledLaw):
     """The penalty's potential over a step, difference by difference: f = (psi(d1) - psi(d0))/(d1 - d0).
 
     Its work over the step is the change of the potential, so that with accelerations of the mean velocity (2 beta = 1,
@@ -68,6 +92,10 @@ class DiscreteGradient:
     capacity: float = math.inf
 
     @property
+    def numbers(self) -> DiscreteNumbers:
+        return DiscreteNumbers(self.penalty.numbers)
+
+    @property
     def start(self) -> float:
         return self.penalty.start
 
@@ -77,22 +105,3 @@ class DiscreteGradient:
 
     def initial_history(self, shape: tuple[int, ...]) -> Array:
         return np.full((*shape, 1), -1e3)
-
-    def active(self, penetration: Array, history: Array) -> BoolArray:
-        return np.maximum(penetration, history[..., 0]) > -self.penalty.smoothing
-
-    def update(self, penetration: Array, history: Array) -> SeabedResponse:
-        before = history[..., 0]
-        way = penetration - before
-        near = np.abs(way) < NEAR
-        safe = np.where(near, 1.0, way)
-        quotient = (self.penalty.potential(penetration) - self.penalty.potential(before)) / safe
-        half = 0.5 * (penetration + before)
-        force = np.where(near, self.penalty.force(half), quotient)
-        slope = (self.penalty.force(penetration) - quotient) / safe
-        return SeabedResponse(
-            force,
-            np.where(near, 0.5 * self.penalty.slope(half), slope),
-            np.asarray(penetration[..., None]),
-            self.penalty.potential(penetration),
-        )

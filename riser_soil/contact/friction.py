@@ -6,8 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from riser_soil.contact import friction_stations, seabed_stations
 from riser_soil.contact.coulomb import traction
 from riser_soil.contact.seabed_contact import SeabedContact
+from riser_soil.contact.seabed_loop import FrictionNumbers
 from riser_soil.contact.station_forces import StationForces
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
@@ -15,8 +17,6 @@ from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser import stations
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.trial import Trial
-
-UPRIGHT = 1e-6  # sine of the angle to the ground's normal below which a riser has no axial direction along the ground
 
 
 class FrictionTraction(NamedTuple):
@@ -54,7 +54,7 @@ class CoulombFriction(LinePart):
         super().__init__(contact.line)
         self.contact = contact
         self._mu = np.array([axial, lateral])[: self.line.dimension - 1]
-        self._stiffness = stiffness[:, None, None]
+        self._stiffness = stiffness
         self._begun: FrictionState | None = None
         self._forces = StationForces(self.line, contact.at)
         self._slid: Array = np.zeros(contact.share.shape)
@@ -66,19 +66,19 @@ class CoulombFriction(LinePart):
 
     def _evaluate(self, trial: Trial) -> FrictionTraction:
         found = self.contact.evaluate(trial)
-        touching, at = found.touching, found.touching.elements
-        position, along, t_n = (values[at] for values in self._friction_state(trial))
-        k = self._stiffness[at]
-        elastic = _components(along, t_n - k * (found.position[at] - position))
-        t, by_elastic, by_N = traction(elastic, np.maximum(touching.force, 0.0), self._mu)
-        N_slope = np.where(touching.force > 0.0, touching.slope, 0.0)
-        stuck = k[..., None] * along @ by_elastic @ np.swapaxes(along, -1, -2)
-        pressed = N_slope[..., None, None] * (along @ by_N[..., None]) * touching.normal[..., None, :]
-        return FrictionTraction(at, -(along @ t[..., None])[..., 0], stuck + pressed)
+        touching, begun, k = found.touching, self._friction_state(trial), self._stiffness
+        elastic = friction_stations.elastic_guesses(touching.elements, tuple(begun), k, found.position)
+        tractions = traction(elastic, np.maximum(touching.force, 0.0), self._mu)
+        pressing = touching.force, touching.slope, touching.normal
+        resistance = friction_stations.resistances(touching.elements, begun.along, k, tractions, pressing)
+        return FrictionTraction(touching.elements, *resistance)
 
     def _friction_state(self, trial: Trial) -> FrictionState:
+        return self._friction_state_from(trial.state.t)
+
+    def _friction_state_from(self, t: float) -> FrictionState:
         if self._begun is None:
-            start = self.line.trial(State.at_rest(trial.state.t, trial.state.u.size))
+            start = self.line.trial(State.at_rest(t, self.line.size))
             self._begun = self._friction_state_at(start, np.zeros_like(self.contact.evaluate(start).position))
         return self._begun
 
@@ -101,21 +101,35 @@ class CoulombFriction(LinePart):
         trial = self.line.trial(state)
         self._forces.add_tangent(values[self.line.name], trial, *self.evaluate(trial))
 
+    def numbers(self) -> FrictionNumbers | None:
+        """After those of its contact have been asked for."""
+        shape, d = self.contact.share.shape, self.line.dimension
+        vectors = (np.zeros((*shape, d)) for _ in range(3))
+        position, traction, resistance = vectors
+        along, mu = np.zeros((*shape, d, d - 1)), (float(self._mu[0]), float(self._mu[-1]))
+        self._in_loop = FrictionNumbers(
+            self.contact.in_loop, mu, self._stiffness, position, along, traction, resistance
+        )
+        return self._in_loop
+
+    def renew_numbers(self, t: float) -> None:
+        begun, numbers = self._friction_state_from(t), self._in_loop
+        numbers.position[:], numbers.along[:], numbers.traction[:] = begun
+
     def energy(self, state: State) -> Energy:
         """Stored in what the ground gives elastically along itself."""
         sliding = self.evaluate(self.line.trial(state))
         return Energy(potential=self._stored(sliding.elements, sliding.resistance))
 
     def _stored(self, elements: IntArray, traction: Array) -> float:
-        per_length = 0.5 * np.sum(traction**2 / self._stiffness[elements], axis=2)
-        return float(np.sum(self.contact.share[elements] * per_length))
+        return float(friction_stations.stored(self.contact.share, elements, self._stiffness, traction))
 
     def work(self, before: State, after: State) -> Work:
         """Energy dissipated by friction: its work less the change of the energy stored; never negative."""
         trial = self.line.trial(after)
-        sliding, begun, at = self.evaluate(trial), self._friction_state(trial), self.evaluate(trial).elements
-        moved = self.contact.evaluate(trial).position[at] - begun.position[at]
-        taken = float(np.sum(self.contact.share[at] * np.sum(sliding.resistance * moved, axis=2)))
+        sliding, begun, share = self.evaluate(trial), self._friction_state(trial), self.contact.share
+        way = begun.position, self.contact.evaluate(trial).position
+        taken = seabed_stations.work_of(share, sliding.elements, sliding.resistance, *way)
         stored = self._stored(np.arange(self.line.length.size), begun.traction)
         return Work(dissipated=taken - self.energy(after).potential + stored)
 
@@ -125,19 +139,16 @@ class CoulombFriction(LinePart):
         sliding = self.evaluate(trial)
         traction = np.zeros_like(self.contact.evaluate(trial).position)
         traction[sliding.elements] = -sliding.resistance
-        slid = np.zeros_like(self._slid)
-        slid[sliding.elements] = self._slide(trial, sliding)
+        slid = self._slide(trial, sliding)
         self._begun, self._slid = self._friction_state_at(trial, traction), self._slid + slid
 
     def _slide(self, trial: Trial, sliding: FrictionTraction) -> Array:
-        """Plastic slip of each station (m, ng) in the step, beyond the elastic mobilisation [m]."""
-        at = sliding.elements
-        position, along, t_n = (values[at] for values in self._friction_state(trial))
-        moved = self.contact.evaluate(trial).position[at] - position
-        elastic = (t_n + sliding.resistance) / self._stiffness[at]
-        slid = np.linalg.norm(_components(along, moved - elastic), axis=2)
-        pressed = self.contact.evaluate(trial).touching.force > 0.0
-        return np.where(pressed, slid, 0.0)
+        """Plastic slip of each station (ne, ng) in the step, beyond the elastic mobilisation [m]."""
+        found, begun = self.contact.evaluate(trial), tuple(self._friction_state(trial))
+        slid: Array = friction_stations.slips(
+            sliding.elements, begun, self._stiffness, found.position, sliding.resistance, found.touching.force
+        )
+        return slid
 
     def slip(self) -> Array:
         """Accumulated slip of the riser over the ground at its nodes (nn,) [m], >= 0."""
@@ -171,14 +182,5 @@ def directions(tau: Array, normal: Array) -> Array:
     """Unit vectors (ne, ng, d, d - 1) along the ground: axial, and in space lateral, from the riser's tangents and the
     ground's normals (ne, ng, d); zero where the riser stands upright on the ground.
     """
-    n = normal / np.linalg.norm(normal, axis=2, keepdims=True)
-    axial = tau - np.sum(tau * n, axis=2, keepdims=True) * n
-    length = np.linalg.norm(axial, axis=2, keepdims=True)
-    axial = np.where(length > UPRIGHT, axial / np.maximum(length, UPRIGHT), 0.0)
-    if tau.shape[2] == 2:
-        return axial[..., None]
-    return np.stack([axial, np.cross(n, axial)], axis=-1)
-
-
-def _components(along: Array, vectors: Array) -> Array:
-    return np.asarray((np.swapaxes(along, -1, -2) @ vectors[..., None])[..., 0])
+    found: Array = friction_stations.directions(np.ascontiguousarray(tau), np.ascontiguousarray(normal))
+    return found

@@ -7,11 +7,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import cached_property
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
+from riser_soil.seabed.compiled_law import CompiledLaw, answer, may_act
 from riser_soil.seabed.law import SeabedResponse
 
 #: Penetration of a riser at rest under its own weight, in outer diameters: small beside what a pipe's size
@@ -24,12 +27,41 @@ STIFFNESS_OVER_SOIL = 10.0
 SURFACE_STIFFNESS_OVER_SOIL = 20.0
 
 
+class PenaltyNumbers(NamedTuple):
+    """Stiffness k [N/m2] and smoothing s [m]."""
+
+    stiffness: float
+    smoothing: float
+
+
+@njit
+def ramp(law: PenaltyNumbers, penetration: float) -> tuple[float, float, float]:
+    """f [N/m], df/dδ [N/m2] and ψ [N], see `Penalty`."""
+    k, s = law.stiffness, law.smoothing
+    if abs(penetration) < s:
+        within = penetration + s
+        return k * within**2 / (4.0 * s), k * within / (2.0 * s), k * within**3 / (12.0 * s)
+    if penetration > 0.0:
+        return k * penetration, k, 0.5 * k * penetration**2 + k * s**2 / 6.0
+    return 0.0, 0.0, 0.0
+
+
+@may_act.of(PenaltyNumbers)
+def _may_act(law: PenaltyNumbers, penetration: float, history: Array) -> bool:
+    return penetration > -law.smoothing
+
+
+@answer.of(PenaltyNumbers)
+def _answer(law: PenaltyNumbers, penetration: float, history: Array, after: Array) -> tuple[float, float, float]:
+    return ramp(law, penetration)
+
+
 @dataclass(frozen=True)
-class Penalty:
+class Penalty(CompiledLaw):
     """Ramp f = k·max(δ, 0) with its corner rounded over |δ| < s by the parabola k(δ + s)²/(4s).
 
     stiffness: k [N/m2]. smoothing: s [m], 0 for the plain ramp. f and df/dδ are continuous for s > 0; f ≥ 0
-    always and f(0) = k·s/4: the force starts at a gap of s.
+    always and f(0) = k·s/4: the force starts at a gap of s. Its potential is ψ = ∫f dδ, 0 out of contact.
     """
 
     stiffness: float
@@ -37,23 +69,21 @@ class Penalty:
     columns: ClassVar[tuple[str, ...]] = ()
     capacity: ClassVar[float] = math.inf
 
+    @cached_property
+    def numbers(self) -> PenaltyNumbers:
+        return PenaltyNumbers(float(self.stiffness), float(self.smoothing))
+
     def force(self, penetration: Array) -> Array:
         """f [N/m], same shape as the penetration [m]."""
-        k, s = self.stiffness, self.smoothing
-        ramp = k * np.maximum(penetration, 0.0)
-        return np.where(self._rounded(penetration), k * (penetration + s) ** 2 / self._width(4.0), ramp)
+        return self._at(penetration).force
 
     def slope(self, penetration: Array) -> Array:
         """df/dδ [N/m2]."""
-        k, s = self.stiffness, self.smoothing
-        step = k * (penetration > 0.0)
-        return np.where(self._rounded(penetration), k * (penetration + s) / self._width(2.0), step)
+        return self._at(penetration).slope
 
     def potential(self, penetration: Array) -> Array:
-        """ψ = ∫f dδ [N], 0 out of contact."""
-        k, s = self.stiffness, self.smoothing
-        parabola = np.where(penetration > 0.0, 0.5 * k * penetration**2 + k * s**2 / 6.0, 0.0)
-        return np.where(self._rounded(penetration), k * (penetration + s) ** 3 / self._width(12.0), parabola)
+        """ψ [N]."""
+        return self._at(penetration).stored
 
     @property
     def start(self) -> float:
@@ -67,18 +97,8 @@ class Penalty:
     def initial_history(self, shape: tuple[int, ...]) -> Array:
         return np.empty((*shape, 0))
 
-    def active(self, penetration: Array, history: Array) -> BoolArray:
-        return penetration > -self.smoothing
-
-    def update(self, penetration: Array, history: Array) -> SeabedResponse:
-        return SeabedResponse(self.force(penetration), self.slope(penetration), history, self.potential(penetration))
-
-    def _rounded(self, penetration: Array) -> BoolArray:
-        return np.abs(penetration) < self.smoothing
-
-    def _width(self, factor: float) -> float:
-        """factor·s, or 1 where s = 0 and the rounded branch is empty."""
-        return factor * self.smoothing if self.smoothing > 0.0 else 1.0
+    def _at(self, penetration: Array) -> SeabedResponse:
+        return self.update(penetration, self.initial_history(penetration.shape))
 
 
 def automatic_stiffness(

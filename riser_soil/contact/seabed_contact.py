@@ -7,7 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from riser_soil.contact import seabed_stations
 from riser_soil.contact.line_contact import ContactAlongLine, LineContact
+from riser_soil.contact.seabed_loop import SeabedNumbers, seabed_numbers
 from riser_soil.contact.station_forces import StationForces
 from riser_soil.contact.work_along_step import work_along_step
 from riser_soil.core.arrays import Array, BoolArray, IntArray
@@ -30,8 +32,7 @@ class ContactElements(NamedTuple):
 
     elements (m,). force, slope (m, ng): force per length [N/m] and its derivative by the penetration [N/m2].
     normal (m, ng, d): gradient of the distance from the ground; bend (m, ng, d, d) its derivative, None where zero.
-    resistance (m, ng, d): minus the force per length on the riser [N/m]. history (m, ng, nh) and energy stored per
-    length (m, ng) [N]: what the law tells of a step that ends here.
+    resistance (m, ng, d): minus the force per length on the riser [N/m]. stored (m, ng): energy per length [N].
     """
 
     elements: IntArray
@@ -40,7 +41,6 @@ class ContactElements(NamedTuple):
     normal: Array
     bend: Array | None
     resistance: Array
-    history: Array
     stored: Array
 
 
@@ -78,6 +78,7 @@ class SeabedContact(LineContact):
     ) -> None:
         super().__init__(line, law)
         self.ground, self._radius, self._covered = ground, radius, covered
+        self._frame = seabed_stations.frame_of(line)
         self.at = stations.stations(line.length, rule)
         self._forces = StationForces(line, self.at)
         self.share = line.length[:, None] * rule.weights
@@ -92,21 +93,25 @@ class SeabedContact(LineContact):
 
     def _evaluate(self, trial: Trial) -> StationContact:
         x = stations.interpolate(self.at, trial.q)
-        value, gradient, hessian = self._distance(self.line.to_global(x).reshape(-1, 3))
-        penetration = self._radius[:, None] - value.reshape(x.shape[:2])
-        touched = self.law.active(penetration, self.memory).any(axis=1)
-        at = np.flatnonzero(touched)
-        answer = self.law.update(penetration[at], self.memory[at])
-        normal = (gradient @ self.line.basis).reshape(x.shape)
-        bend = None
-        if hessian is not None:
-            local = self.line.basis.T @ hessian @ self.line.basis
-            bend = local.reshape(*x.shape, x.shape[2])[at]
-        resistance = -answer.force[..., None] * normal[at]
-        touching = ContactElements(
-            at, answer.force, answer.slope, normal[at], bend, resistance, answer.history, answer.stored
+        penetration, normal, bend = self._over_ground(x)
+        at = seabed_stations.touched(self.law.numbers, penetration, self.memory)
+        force, slope, stored, normals, resistance = seabed_stations.answers(
+            self.law.numbers, at, penetration, self.memory, normal
         )
-        return StationContact(x, penetration, normal, touching)
+        bends = None if self.ground.flat else bend[at]
+        return StationContact(
+            x, penetration, normal, ContactElements(at, force, slope, normals, bends, resistance, stored)
+        )
+
+    def _over_ground(self, x: Array) -> tuple[Array, Array, Array]:
+        """Penetration (ne, ng) of stations x (ne, ng, d), its normal, and the normal's derivative, empty where zero."""
+        ne, ng, d = x.shape
+        found = np.empty((ne, ng)), np.empty((ne, ng, d)), np.empty((0 if self.ground.flat else ne, ng, d, d))
+        seabed_stations.over_ground(self._frame, self.ground.numbers, self._radius, x, *found)
+        if self._covered is not None:
+            covered = self._covered(self.line.to_global(x).reshape(-1, 3)[:, :2])
+            found[0][covered.reshape(ne, ng)] = -np.inf
+        return found
 
     def _distance(self, x: Array) -> Distance:
         """From the ground, inf where something else covers it; x (n, 3) in global axes."""
@@ -132,13 +137,25 @@ class SeabedContact(LineContact):
 
     def _by_position(self, t: ContactElements) -> Array:
         """Derivative (m, ng, d, d) of the resistance by the position."""
-        pushed = t.slope[..., None, None] * t.normal[..., :, None] * t.normal[..., None, :]
-        return pushed if t.bend is None else pushed - t.force[..., None, None] * t.bend
+        found: Array = seabed_stations.by_positions(t.force, t.slope, t.normal, t.bend)
+        return found
+
+    def numbers(self) -> SeabedNumbers | None:
+        """None beside soil."""
+        if self._covered is not None:
+            return None
+        ground, law = self.ground.numbers, self.law.numbers
+        stations = self.at, self.share, self._radius, self.memory
+        self.in_loop = seabed_numbers(self.line, *stations, ground, law)
+        return self.in_loop
+
+    def renew_numbers(self, t: float) -> None:
+        self.in_loop.memory[:] = self.memory
 
     def energy(self, state: State) -> Energy:
         """Energy stored by the law, which it can return."""
         touching = self.evaluate(self.line.trial(state)).touching
-        return Energy(potential=float(np.sum(self.share * self._at_stations(touching.elements, touching.stored))))
+        return Energy(potential=seabed_stations.integral(self.share, touching.elements, touching.stored))
 
     def work(self, before: State, after: State) -> Work:
         """Energy dissipated: the work of the force at the end of the step less the change of the energy stored.
@@ -147,27 +164,21 @@ class SeabedContact(LineContact):
         the work of the law along the step is the time scheme's; on ground without a history it is all.
         """
         first, last = (self.evaluate(self.line.trial(state)) for state in (before, after))
-        at = last.touching.elements
-        moved = last.position[at] - first.position[at]
-        taken = float(np.sum(self.share[at] * np.sum(last.touching.resistance * moved, axis=2)))
+        t = last.touching
+        taken = seabed_stations.work_of(self.share, t.elements, t.resistance, first.position, last.position)
         lost = taken - self.energy(after).potential + self.energy(before).potential
         return Work(dissipated=lost, by_scheme=taken - self._by_law(first, last) if self.law.columns else lost)
 
     def _by_law(self, first: StationContact, last: StationContact) -> float:
         """Work [J] of the law along a step."""
-        at = np.union1d(first.touching.elements, last.touching.elements)
-        work = work_along_step(self.law, first.penetration[at], last.penetration[at], self.memory[at])
-        return float(np.sum(self.share[at] * work))
+        work = work_along_step(self.law, first.penetration, last.penetration, self.memory)
+        return float(np.sum(self.share * work))
 
     def commit(self, state: State) -> None:
-        """Keep the law's history: known where something touches, asked for elsewhere."""
+        """Keep the law's history."""
         if self.memory.size:
             found = self.evaluate(self.line.trial(state))
-            memory, free = np.empty_like(self.memory), np.ones(len(self.memory), dtype=bool)
-            free[found.touching.elements] = False
-            memory[found.touching.elements] = found.touching.history
-            memory[free] = self.law.update(found.penetration[free], self.memory[free]).history
-            self.memory = memory
+            self.memory = self.law.update(found.penetration, self.memory).history
 
     def _at_stations(self, elements: IntArray, values: Array) -> Array:
         """Values (m, ng) of some elements' stations, among those of all (ne, ng), 0 elsewhere."""

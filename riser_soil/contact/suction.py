@@ -16,17 +16,55 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import cached_property
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.law import Penalty
-from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.seabed.law import SeabedResponse
+from riser_soil.contact.law import Penalty, PenaltyNumbers, ramp
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
+from riser_soil.seabed.compiled_law import CompiledLaw, answer, may_act
+
+
+class SuctionNumbers(NamedTuple):
+    """The penalty; cap p [N/m] and reach r [m] of the tension, and its place p/k [m]."""
+
+    penalty: PenaltyNumbers
+    cap: float
+    reach: float
+    peak: float
+
+
+@may_act.of(SuctionNumbers)
+def _may_act(law: SuctionNumbers, penetration: float, history: Array) -> bool:
+    in_tension = -penetration < law.reach and history[0] < law.reach
+    return in_tension or may_act(law.penalty, penetration, history)
+
+
+@answer.of(SuctionNumbers)
+def _answer(law: SuctionNumbers, penetration: float, history: Array, after: Array) -> tuple[float, float, float]:
+    force, slope, stored = ramp(law.penalty, penetration)
+    w = min(max(-penetration, 0.0), law.reach)  # as far as it matters
+    tension, stiffness = _tension(law, w, history[0])
+    after[0] = 0.0 if penetration >= 0.0 else max(-penetration, history[0])
+    return force - tension, slope + stiffness, stored + 0.5 * tension * w
+
+
+@njit
+def _tension(law: SuctionNumbers, w: float, widest: float) -> tuple[float, float]:
+    """Tension and its derivative by the opening w >= 0."""
+    if w >= law.reach:
+        return 0.0, 0.0
+    fall = law.cap / (law.reach - law.peak)
+    at = min(max(w, widest, law.peak), law.reach)
+    secant = fall * (law.reach - at) / at
+    falling = w > max(widest, law.peak)
+    return secant * w, -fall if falling else (secant if w > 0.0 else 0.0)
 
 
 @dataclass(frozen=True)
-class SuctionLaw:
+class SuctionLaw(CompiledLaw):
     """Penalty law with suction: tension up to a cap on uplift, zero from an opening of `reach` on.
 
     penalty: the law in compression. cap [N/m], reach [m] > cap/stiffness: ValueError else.
@@ -48,37 +86,13 @@ class SuctionLaw:
     def _peak(self) -> float:
         return self.cap / self.penalty.stiffness
 
+    @cached_property
+    def numbers(self) -> SuctionNumbers:
+        return SuctionNumbers(self.penalty.numbers, float(self.cap), float(self.reach), self._peak)
+
     @property
     def start(self) -> float:
         return self.penalty.start
 
     def initial_history(self, shape: tuple[int, ...]) -> Array:
         return np.full((*shape, 1), np.inf)
-
-    def active(self, penetration: Array, history: Array) -> BoolArray:
-        in_tension = (-penetration < self.reach) & (history[..., 0] < self.reach)
-        return self.penalty.active(penetration, history) | in_tension
-
-    def update(self, penetration: Array, history: Array) -> SeabedResponse:
-        pushed, w = self.penalty.update(penetration, history[..., :0]), self._opening(penetration)
-        tension, stiffness = self._tension(w, history[..., 0])
-        opened = np.maximum(-penetration[..., None], history)
-        return SeabedResponse(
-            pushed.force - tension,
-            pushed.slope + stiffness,
-            np.where(penetration[..., None] >= 0.0, 0.0, opened),
-            pushed.stored + 0.5 * tension * w,
-        )
-
-    def _opening(self, penetration: Array) -> Array:
-        """Opening as far as it matters [m]."""
-        return np.clip(-penetration, 0.0, self.reach)
-
-    def _tension(self, w: Array, widest: Array) -> tuple[Array, Array]:
-        """Tension and its derivative by the opening w >= 0."""
-        fall = self.cap / (self.reach - self._peak)
-        at = np.clip(np.maximum(w, widest), self._peak, self.reach)
-        secant = fall * (self.reach - at) / at
-        falling = (w > np.maximum(widest, self._peak)) & (w < self.reach)
-        stiffness = np.where(falling, -fall, np.where(w > 0.0, secant, 0.0))
-        return secant * w, np.where(w < self.reach, stiffness, 0.0)

@@ -2,34 +2,63 @@
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
+from riser_soil.seabed.compiled_law import answer
 from riser_soil.seabed.law import NormalLaw
 
 #: Panels of the way within the ground, where the laws are smooth, and of that above it, where suction has corners.
 WITHIN, ABOVE = 2, 4
-_GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
+#: Gauss points of a panel, by places and weights in 0..1.
+_GAUSS = ((0.5 - 0.5 * math.sqrt(0.6), 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + 0.5 * math.sqrt(0.6), 5.0 / 18.0))
 
 
 def work_along_step(law: NormalLaw, before: Array, after: Array, history: Array) -> Array:
     """Work per length (...) [N] of the force against the penetration, from `before` to `after` (...) [m] by one way.
 
-    history (..., nh): at the beginning. Without a history the force has a potential and the work is its change, so
-    that such ground dissipates nothing. Else the law is integrated by Gauss points, in panels within the ground and
-    above it, as far as there is a force.
+    history (..., nh): at the beginning. See `work_at`.
     """
-    if not law.columns:
-        return np.asarray(law.update(after, history).stored - law.update(before, history).stored)
-    work = _between(law, np.maximum(before, 0.0), np.maximum(after, 0.0), history, WITHIN)
-    if law.reach > 0.0:
-        first, last = (np.clip(z, -law.reach, 0.0) for z in (before, after))
-        work += _between(law, first, last, history, ABOVE)
+    work = np.empty(before.size)
+    rows = np.ascontiguousarray(history).reshape(before.size, history.shape[-1])
+    _work_each(law.numbers, law.reach, before.reshape(-1), after.reshape(-1), rows, work)
+    return work.reshape(before.shape)
+
+
+@njit
+def _work_each(law: Any, reach: float, before: Array, after: Array, history: Array, work: Array) -> None:
+    room = np.empty(history.shape[1])
+    for i in range(work.size):
+        work[i] = work_at(law, reach, before[i], after[i], history[i], room)
+
+
+@njit
+def work_at(law: Any, reach: float, before: float, after: float, history: Array, room: Array) -> float:
+    """Work per length [N] at one point, whose history is (nh,); room (nh,) is written to.
+
+    Without a history the force has a potential and the work is its change, so that such ground dissipates nothing.
+    Else the law is integrated by Gauss points, in panels within the ground and above it, as far as there is a force.
+    """
+    if history.size == 0:
+        return answer(law, after, history, room)[2] - answer(law, before, history, room)[2]
+    work = _between(law, max(before, 0.0), max(after, 0.0), history, room, WITHIN)
+    if reach > 0.0:
+        first, last = min(max(before, -reach), 0.0), min(max(after, -reach), 0.0)
+        work += _between(law, first, last, history, room, ABOVE)
     return work
 
 
-def _between(law: NormalLaw, first: Array, last: Array, history: Array, panels: int) -> Array:
-    places = ((np.arange(panels)[:, None] + 0.5 * (_GAUSS + 1.0)) / panels).ravel()
-    z = first + places.reshape(-1, *(1,) * first.ndim) * (last - first)
-    force = law.update(z, np.broadcast_to(history, (*z.shape, history.shape[-1]))).force
-    return np.asarray(np.tensordot(np.tile(0.5 * _WEIGHTS / panels, panels), force, 1) * (last - first))
+@njit
+def _between(law: Any, first: float, last: float, history: Array, room: Array, panels: int) -> float:
+    if first == last:
+        return 0.0
+    mean = 0.0
+    for panel in range(panels):
+        for place, weight in _GAUSS:
+            z = first + (panel + place) / panels * (last - first)
+            mean += weight / panels * answer(law, z, history, room)[0]
+    return mean * (last - first)

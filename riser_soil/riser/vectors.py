@@ -2,7 +2,8 @@
 
 A `Vec` is a tuple of three floats, a `Mat` a tuple of three rows. Tuples live in registers, so a kernel
 allocates nothing per element. `vector` and `matrix` read them from arrays, `store` writes a matrix to one;
-`np.array(A)` works too, also in compiled code.
+`np.array(A)` works too, also in compiled code. In the plane the third component is 0: `padded`,
+`padded_matrix`, `put` and `put_matrix` take arrays of two components or three.
 """
 
 import math
@@ -32,6 +33,35 @@ def store(A: Mat, out: Array) -> None:
     out[0, 0], out[0, 1], out[0, 2] = A[0]
     out[1, 0], out[1, 1], out[1, 2] = A[1]
     out[2, 0], out[2, 1], out[2, 2] = A[2]
+
+
+@njit
+def padded(a: Array) -> Vec:
+    """The vector stored in an array of shape (2,) or (3,)."""
+    return (a[0], a[1], a[2] if a.size > 2 else 0.0)
+
+
+@njit
+def padded_matrix(a: Array) -> Mat:
+    """The matrix stored in an array of shape (2, 2) or (3, 3)."""
+    return (padded(a[0]), padded(a[1]), padded(a[2]) if len(a) > 2 else (0.0, 0.0, 0.0))
+
+
+@njit
+def put(v: Vec, out: Array) -> None:
+    """Write the vector v to `out`, shape (2,) or (3,)."""
+    out[0], out[1] = v[0], v[1]
+    if out.size > 2:
+        out[2] = v[2]
+
+
+@njit
+def put_matrix(A: Mat, out: Array) -> None:
+    """Write the matrix A to `out`, shape (2, 2) or (3, 3)."""
+    put(A[0], out[0])
+    put(A[1], out[1])
+    if len(out) > 2:
+        put(A[2], out[2])
 
 
 @njit

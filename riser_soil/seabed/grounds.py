@@ -6,12 +6,24 @@ on a plane, and nearly so on a profile.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from functools import cached_property
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.by_type import by_type
+from riser_soil.core.compiled import njit
+
+Vec = tuple[float, float, float]
+Mat = tuple[Vec, Vec, Vec]
+
+
+@by_type
+def distance_at(ground: Any, x: Vec) -> Any:
+    """Distance of a point x in global axes from a ground of these numbers [m], its gradient and its hessian [1/m]."""
 
 
 class Distance(NamedTuple):
@@ -22,25 +34,60 @@ class Distance(NamedTuple):
     hessian: Array | None
 
 
-class Ground(Protocol):
-    """A surface that the riser may touch."""
+class Ground(ABC):
+    """A surface that the riser may touch. flat: the hessian of the distance from it is zero."""
+
+    flat: ClassVar[bool]
+
+    @property
+    @abstractmethod
+    def numbers(self) -> Any:
+        """Its shape as compiled code takes it: a NamedTuple, whose type chooses the kernel of `distance_at`."""
+
+    @property
+    @abstractmethod
+    def highest(self) -> float:
+        """No point higher than this [m] is below the ground; inf where there is no such height."""
 
     def distance(self, x: Array) -> Distance:
         """Distance of points x (n, 3) in global axes."""
-        ...
+        n = len(x)
+        found = np.empty(n), np.empty((n, 3)), np.empty((0 if self.flat else n, 3, 3))
+        _distances(self.numbers, np.ascontiguousarray(x, dtype=float), *found)
+        return Distance(*found[:2], None if self.flat else found[2])
 
-    @property
-    def highest(self) -> float:
-        """No point higher than this [m] is below the ground; inf where there is no such height."""
-        ...
+
+@njit
+def _distances(ground: Any, x: Array, value: Array, gradient: Array, hessian: Array) -> None:
+    for i in range(len(x)):
+        d, by_x, twice = distance_at(ground, (x[i, 0], x[i, 1], x[i, 2]))
+        value[i] = d
+        gradient[i, 0], gradient[i, 1], gradient[i, 2] = by_x
+        if len(hessian) > 0:
+            for j in range(3):
+                hessian[i, j, 0], hessian[i, j, 1], hessian[i, j, 2] = twice[j]
+
+
+class PlaneNumbers(NamedTuple):
+    """As of `Plane`."""
+
+    point: Vec
+    normal: Vec
+
+
+@distance_at.of(PlaneNumbers)
+def _distance_at(ground: PlaneNumbers, x: Vec) -> tuple[float, Vec, Mat]:
+    p, n, zero = ground.point, ground.normal, (0.0, 0.0, 0.0)
+    return (x[0] - p[0]) * n[0] + (x[1] - p[1]) * n[1] + (x[2] - p[2]) * n[2], n, (zero, zero, zero)
 
 
 @dataclass(frozen=True, eq=False)
-class Plane:
+class Plane(Ground):
     """A plane through a point (3,) [m] with the unit normal (3,), which points out of the ground."""
 
     point: Array
     normal: Array
+    flat: ClassVar[bool] = True
 
     @classmethod
     def level(cls, height: float) -> Plane:
@@ -52,9 +99,11 @@ class Plane:
         uphill = np.array([np.cos(direction), np.sin(direction), 0.0])
         return cls(point, np.cos(slope) * np.array([0.0, 0.0, 1.0]) - np.sin(slope) * uphill)
 
+    @cached_property
+    def numbers(self) -> PlaneNumbers:
+        (x, y, z), (a, b, c) = map(float, self.point), map(float, self.normal)
+        return PlaneNumbers((x, y, z), (a, b, c))
+
     @property
     def highest(self) -> float:
         return float(self.point[2]) if self.normal[2] == 1.0 else np.inf
-
-    def distance(self, x: Array) -> Distance:
-        return Distance((x - self.point) @ self.normal, np.broadcast_to(self.normal, x.shape), None)

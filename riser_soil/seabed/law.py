@@ -6,7 +6,7 @@ Penetration δ = −gap [m]; force f [N/m] pushes the two sides apart.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from pydantic import BaseModel
 
@@ -38,6 +38,11 @@ class NormalLaw(Protocol):
 
     @property
     def columns(self) -> tuple[str, ...]: ...
+
+    @property
+    def numbers(self) -> Any:
+        """Its constants as compiled code takes them: a NamedTuple, whose type chooses the law's kernels."""
+        ...
 
     @property
     def start(self) -> float:

@@ -7,9 +7,11 @@ from itertools import pairwise
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin, AubenyBiscontinFormula
+from riser_soil.seabed.aubeny_biscontin import AubenyBiscontin
+from riser_soil.seabed.aubeny_biscontin_formula import AubenyBiscontinFormula
 from riser_soil.seabed.law import NormalLaw
-from riser_soil.seabed.randolph_quiggin import RandolphQuiggin, RandolphQuigginFormula
+from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
+from riser_soil.seabed.randolph_quiggin_formula import RandolphQuigginFormula
 
 
 def randolph_quiggin(D: float, su: float, su_gradient: float = 0.0, **constants: float) -> RandolphQuigginFormula:

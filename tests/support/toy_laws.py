@@ -6,18 +6,19 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import ClassVar, Literal, TypeVar
+from typing import ClassVar, Literal, NamedTuple, TypeVar
 
 import numpy as np
 from pydantic import BaseModel, Field
 
-from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array
 from riser_soil.core.kinds import registry
 from riser_soil.core.quantities import BedStiffness, PoissonRatio, PositiveWeightPerLength, Stress
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed
 from riser_soil.scene.soil import SoilScene
-from riser_soil.seabed.law import SeabedLaw, SeabedResponse
+from riser_soil.seabed.compiled_law import CompiledLaw, answer, may_act
+from riser_soil.seabed.law import SeabedLaw
 from riser_soil.soil import mandel
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Formula, SoilLaw, StressUpdate
 from riser_soil.soil.linear_elastic import LinearElastic
@@ -121,7 +122,7 @@ class PlasticSpring(SeabedLaw):
 
 
 @dataclass(frozen=True)
-class PlasticBed:
+class PlasticBed(CompiledLaw):
     """History (..., 1): plastic penetration [m]."""
 
     given: PlasticSpring
@@ -130,16 +131,32 @@ class PlasticBed:
     start: ClassVar[float] = 0.0
     reach: ClassVar[float] = 0.0
 
+    @property
+    def numbers(self) -> PlasticNumbers:
+        return PlasticNumbers(self.given.k, self.given.limit, self.given.h)
+
     def initial_history(self, shape: tuple[int, ...]) -> Array:
         return np.zeros((*shape, 1))
 
-    def active(self, penetration: Array, history: Array) -> BoolArray:
-        return (penetration > history[..., 0]) | (history[..., 0] > 0.0)
 
-    def update(self, penetration: Array, history: Array) -> SeabedResponse:
-        k, h, before = self.given.k, self.given.h, history[..., 0]
-        slip = np.maximum(k * (penetration - before) - self.given.limit - h * before, 0.0) / (k + h)
-        plastic = before + slip
-        elastic = np.maximum(penetration - plastic, 0.0)
-        slope = np.where(slip > 0.0, k * h / (k + h), k * (elastic > 0.0))
-        return SeabedResponse(k * elastic, slope, plastic[..., None], 0.5 * k * elastic**2 + 0.5 * h * plastic**2)
+class PlasticNumbers(NamedTuple):
+    """As of `PlasticSpring`."""
+
+    k: float
+    limit: float
+    h: float
+
+
+@may_act.of(PlasticNumbers)
+def _may_act(law: PlasticNumbers, penetration: float, history: Array) -> bool:
+    return penetration > history[0] or history[0] > 0.0
+
+
+@answer.of(PlasticNumbers)
+def _answer(law: PlasticNumbers, penetration: float, history: Array, after: Array) -> tuple[float, float, float]:
+    k, h, before = law.k, law.h, history[0]
+    slip = max(k * (penetration - before) - law.limit - h * before, 0.0) / (k + h)
+    plastic = after[0] = before + slip
+    elastic = max(penetration - plastic, 0.0)
+    slope = k * h / (k + h) if slip > 0.0 else (k if elastic > 0.0 else 0.0)
+    return k * elastic, slope, 0.5 * k * elastic**2 + 0.5 * h * plastic**2

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from riser_soil.seabed.aubeny_biscontin_formula import bounding_loop
 from tests.support.soil_loops import after, at, aubeny_biscontin, forces, through
 
 D, SU = 0.3, 2000.0
@@ -62,9 +63,9 @@ def test_turn_within_the_loop_starts_with_the_stiffness_and_meets_the_edges() ->
 
 @pytest.mark.parametrize("deepest", [2e-4, 2e-3, 0.02, 0.045, 0.09])
 def test_the_loop_ends_at_the_surface_or_below(deepest: float) -> None:
-    loop = LAW._loop(np.array([deepest]))
-    assert loop.y3[0] >= -1e-12
-    assert loop.y3[0] == pytest.approx(0.0, abs=1e-12) or loop.tension[0] == pytest.approx(0.203 * loop.P1[0])
+    loop = bounding_loop(LAW.numbers, deepest)
+    assert loop.y3 >= -1e-12
+    assert loop.y3 == pytest.approx(0.0, abs=1e-12) or loop.tension == pytest.approx(0.203 * loop.P1)
 
 
 def test_a_light_pipe_rests_on_elastic_ground() -> None:

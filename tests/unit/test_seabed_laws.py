@@ -11,9 +11,10 @@ from scipy.integrate import quad
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.seabed.bearing import PowerLaw, Strength, displaced
+from riser_soil.seabed.bearing import Strength
 from riser_soil.seabed.grounds import Plane
 from riser_soil.seabed.law import NormalLaw
+from riser_soil.seabed.pipe_bearing import PowerLaw, displaced
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.sample_line import START, Sample, sample
@@ -169,8 +170,8 @@ def test_bearing_resistance() -> None:
 
 
 def test_displaced_area_of_half_a_pipe_and_of_a_whole_one() -> None:
-    integral, area, width = displaced(np.array([-0.1, 0.5 * D, D, 2.0 * D]), D)
+    integral, area, width = np.vectorize(displaced)(np.array([-0.1, 0.5 * D, D, 2.0 * D]), D)
     half = 0.125 * np.pi * D**2
     np.testing.assert_allclose(area, [0.0, half, 2.0 * half, 2.0 * half], atol=1e-15)
     np.testing.assert_allclose(width, [0.0, D, 0.0, 0.0], atol=1e-15)
-    assert integral[-1] == pytest.approx(quad(lambda z: displaced(np.array(z), D)[1], 0.0, 2.0 * D, points=[D])[0])
+    assert integral[-1] == pytest.approx(quad(lambda z: displaced(z, D)[1], 0.0, 2.0 * D, points=[D])[0])

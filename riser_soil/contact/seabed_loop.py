@@ -1,0 +1,180 @@
+"""Contact with a seabed and friction on it in the compiled loop over a riser alone, see `part_kernels`."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from riser_soil.contact.coulomb import Pair, return_map
+from riser_soil.contact.friction_stations import elastic_guess, read_along, resistance_by_position, vector_of
+from riser_soil.contact.seabed_stations import LineFrame, by_position, distance_in, frame_of
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.compiled import fixed, njit
+from riser_soil.riser import stations
+from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.line import Line
+from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
+from riser_soil.riser.vectors import Vec, dot, padded, put, put_matrix, scale, sub
+from riser_soil.seabed.compiled_law import answer, may_act
+
+
+class Found(NamedTuple):
+    """What was found last at the stations: which elements touch (ne,); position and normal (ne, ng, d); penetration,
+    force, its slope and energy stored (ne, ng); the law's history (nh,) after a step, which nobody keeps.
+    """
+
+    touches: BoolArray
+    position: Array
+    normal: Array
+    penetration: Array
+    force: Array
+    slope: Array
+    stored: Array
+    after: Array
+
+
+class SeabedNumbers(NamedTuple):
+    """A `SeabedContact`: its stations and their share of arc length (ne, ng), radius (ne,), memory (ne, ng, nh), and
+    the numbers of its ground and law; room for an element, and for the force and its derivative at a station.
+    """
+
+    at: stations.Stations
+    share: Array
+    radius: Array
+    memory: Array
+    frame: LineFrame
+    ground: Any
+    law: Any
+    found: Found
+    element: stations.ElementRoom
+    f: Array
+    by: Array
+
+
+class FrictionNumbers(NamedTuple):
+    """A `CoulombFriction` at the stations of a contact: coefficients, stiffness (ne,), its `FrictionState`, and minus
+    the traction found last (ne, ng, d).
+    """
+
+    contact: SeabedNumbers
+    mu: Pair
+    stiffness: Array
+    position: Array
+    along: Array
+    traction: Array
+    resistance: Array
+
+
+def seabed_numbers(
+    line: Line, at: stations.Stations, share: Array, radius: Array, memory: Array, ground: Any, law: Any
+) -> SeabedNumbers:
+    """With the room that they need; ground and law: their numbers."""
+    (ne, ng), d = share.shape, line.dimension
+    position, normal = np.zeros((ne, ng, d)), np.zeros((ne, ng, d))
+    penetration, force, slope, stored = (np.zeros((ne, ng)) for _ in range(4))
+    touches, after = np.zeros(ne, dtype=np.bool_), np.zeros(memory.shape[2])
+    found = Found(touches, position, normal, penetration, force, slope, stored, after)
+    element = stations.element_room(ng, 2 * line.ndof, fixed(d))
+    room = found, element, np.zeros(d), np.zeros((d, d))
+    return SeabedNumbers(at, share, radius, memory.copy(), frame_of(line), ground, law, *room)
+
+
+@add_forces.of(SeabedNumbers)
+def _contact_forces(part: SeabedNumbers, at: Configuration, out: LineForces) -> None:
+    found = part.found
+    for e in range(part.radius.size):
+        touches = False
+        for g in range(part.share.shape[1]):
+            stations.put_value(part.at.N[e, g], at.q[e], found.position[e, g], at.D)
+            value, normal, _ = distance_in(part.frame, part.ground, padded(found.position[e, g]))
+            found.penetration[e, g] = part.radius[e] - value
+            put(normal, found.normal[e, g])
+            touches |= may_act(part.law, found.penetration[e, g], part.memory[e, g])
+        found.touches[e] = touches
+        if touches:
+            _press(part, at, e, out)
+
+
+@njit
+def _press(part: SeabedNumbers, at: Configuration, e: int, out: LineForces) -> None:
+    """Forces on an element that touches."""
+    found = part.found
+    for g in range(part.share.shape[1]):
+        force, slope, stored = answer(part.law, found.penetration[e, g], part.memory[e, g], found.after)
+        found.force[e, g], found.slope[e, g], found.stored[e, g] = force, slope, stored
+        put(scale(-force, padded(found.normal[e, g])), part.f)
+        stations.add_integrand(part.at.weighted[e, g], part.f, out.end_q[e], at.D)
+
+
+@add_tangent.of(SeabedNumbers)
+def _contact_tangent(part: SeabedNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    found, room = part.found, part.element
+    for e in range(part.radius.size):
+        if not found.touches[e]:
+            continue
+        for g in range(part.share.shape[1]):
+            _, _, bend = distance_in(part.frame, part.ground, padded(found.position[e, g]))
+            put_matrix(by_position(found.force[e, g], found.slope[e, g], padded(found.normal[e, g]), bend), part.by)
+            room.change[g] = 0.0
+            stations.add_position(room.change[g], part.at.N[e, g], part.by, 1.0, at.P[e], at.D, at.R)
+        stations.add_element(K[e], room, part.at.weighted[e], at.P[e], at.D, at.R)
+
+
+@add_energy.of(SeabedNumbers)
+def _contact_energy(part: SeabedNumbers, at: Configuration, energy: Array) -> None:
+    for e in range(part.radius.size):
+        if part.found.touches[e]:
+            for g in range(part.share.shape[1]):
+                energy[2] += part.share[e, g] * part.found.stored[e, g]
+
+
+@njit
+def _elastic(part: FrictionNumbers, e: int, g: int) -> Pair:
+    """t* of `coulomb` at a station."""
+    moved = sub(padded(part.contact.found.position[e, g]), padded(part.position[e, g]))
+    guess: Pair = elastic_guess(
+        read_along(part.along[e, g]), padded(part.traction[e, g]), part.stiffness[e], moved
+    )
+    return guess
+
+
+@add_forces.of(FrictionNumbers)
+def _friction_forces(part: FrictionNumbers, at: Configuration, out: LineForces) -> None:
+    """After those of the contact that it belongs to."""
+    contact = part.contact
+    for e in range(part.stiffness.size):
+        if not contact.found.touches[e]:
+            continue
+        for g in range(contact.share.shape[1]):
+            t, _, _ = return_map(_elastic(part, e, g), max(contact.found.force[e, g], 0.0), part.mu)
+            put(scale(-1.0, vector_of(read_along(part.along[e, g]), t)), part.resistance[e, g])
+            stations.add_integrand(contact.at.weighted[e, g], part.resistance[e, g], out.end_q[e], at.D)
+
+
+@add_tangent.of(FrictionNumbers)
+def _friction_tangent(part: FrictionNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    contact, found, room = part.contact, part.contact.found, part.contact.element
+    for e in range(part.stiffness.size):
+        if not found.touches[e]:
+            continue
+        for g in range(contact.share.shape[1]):
+            force, normal = found.force[e, g], padded(found.normal[e, g])
+            _, by_elastic, by_N = return_map(_elastic(part, e, g), max(force, 0.0), part.mu)
+            slope = found.slope[e, g] if force > 0.0 else 0.0
+            ways = read_along(part.along[e, g])
+            put_matrix(
+                resistance_by_position(ways, part.stiffness[e], by_elastic, by_N, slope, normal), contact.by
+            )
+            room.change[g] = 0.0
+            stations.add_position(room.change[g], contact.at.N[e, g], contact.by, 1.0, at.P[e], at.D, at.R)
+        stations.add_element(K[e], room, contact.at.weighted[e], at.P[e], at.D, at.R)
+
+
+@add_energy.of(FrictionNumbers)
+def _friction_energy(part: FrictionNumbers, at: Configuration, energy: Array) -> None:
+    for e in range(part.stiffness.size):
+        if part.contact.found.touches[e]:
+            for g in range(part.contact.share.shape[1]):
+                t: Vec = padded(part.resistance[e, g])
+                energy[2] += 0.5 * part.contact.share[e, g] / part.stiffness[e] * dot(t, t)

@@ -1,0 +1,142 @@
+"""Compiled loops over the stations of a line in contact with a seabed, and what they do at one station.
+
+Vectors are in the line's axes, the third component 0 in the plane. Arrays (ne, ng, d) hold those of all stations, and
+(m, ng, d) those of the elements that touch.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
+from riser_soil.riser.line import Line
+from riser_soil.riser.vectors import (
+    Mat,
+    Vec,
+    add,
+    dot,
+    isotropic,
+    matadd,
+    matmul,
+    matrix,
+    matscale,
+    matvec,
+    outer,
+    padded,
+    padded_matrix,
+    put,
+    put_matrix,
+    sub,
+    transpose,
+    vecmat,
+    vector,
+)
+from riser_soil.seabed.compiled_law import answer, may_act
+from riser_soil.seabed.grounds import distance_at
+
+
+class LineFrame(NamedTuple):
+    """Origin [m] and axes of a line, global; the rows of `axes` are unit vectors, the third 0 in the plane."""
+
+    origin: Vec
+    axes: Mat
+
+
+def frame_of(line: Line) -> LineFrame:
+    """The frame of a line's coordinates."""
+    axes = np.zeros((3, 3))
+    axes[: line.dimension] = line.basis.T
+    return LineFrame(vector(line.origin), matrix(axes))
+
+
+@njit
+def distance_in(frame: LineFrame, ground: Any, x: Vec) -> tuple[float, Vec, Mat]:
+    """Distance of a point from the ground [m], its gradient and hessian [1/m], in the line's axes as x is."""
+    value, gradient, hessian = distance_at(ground, add(frame.origin, vecmat(x, frame.axes)))
+    return value, matvec(frame.axes, gradient), matmul(matmul(frame.axes, hessian), transpose(frame.axes))
+
+
+@njit
+def by_position(force: float, slope: float, normal: Vec, bend: Mat) -> Mat:
+    """Derivative by the position of minus the force per length on the riser; bend: derivative of the normal."""
+    return matadd(matscale(slope, outer(normal, normal)), matscale(-force, bend))
+
+
+@njit
+def over_ground(
+    frame: LineFrame, ground: Any, radius: Array, x: Array, penetration: Array, normal: Array, bend: Array
+) -> None:
+    """Write penetration (ne, ng), its normal and the normal's derivative (ne, ng, d, d) at stations x (ne, ng, d).
+
+    The last only where it has room, as on a flat ground it has not. radius (ne,).
+    """
+    for e in range(x.shape[0]):
+        for g in range(x.shape[1]):
+            value, gradient, hessian = distance_in(frame, ground, padded(x[e, g]))
+            penetration[e, g] = radius[e] - value
+            put(gradient, normal[e, g])
+            if bend.size > 0:
+                put_matrix(hessian, bend[e, g])
+
+
+@njit
+def touched(law: Any, penetration: Array, memory: Array) -> IntArray:
+    """Elements (m,) that have a station where the law may act; memory (ne, ng, nh)."""
+    found = np.zeros(len(penetration), dtype=np.bool_)
+    for e in range(penetration.shape[0]):
+        for g in range(penetration.shape[1]):
+            found[e] |= may_act(law, penetration[e, g], memory[e, g])
+    return np.flatnonzero(found)
+
+
+@njit
+def answers(law: Any, elements: IntArray, penetration: Array, memory: Array, normal: Array) -> tuple[Array, ...]:
+    """Force, slope and energy stored (m, ng), normal and resistance (m, ng, d) of some elements."""
+    m, ng, d = elements.size, normal.shape[1], normal.shape[2]
+    force, slope, stored = np.empty((m, ng)), np.empty((m, ng)), np.empty((m, ng))
+    normals, resistance, after = np.empty((m, ng, d)), np.empty((m, ng, d)), np.empty(memory.shape[2])
+    for i in range(m):
+        e = elements[i]
+        for g in range(ng):
+            force[i, g], slope[i, g], stored[i, g] = answer(law, penetration[e, g], memory[e, g], after)
+            for j in range(d):
+                normals[i, g, j], resistance[i, g, j] = normal[e, g, j], -force[i, g] * normal[e, g, j]
+    return force, slope, stored, normals, resistance
+
+
+@njit
+def by_positions(force: Array, slope: Array, normal: Array, bend: Array | None) -> Array:
+    """`by_position` (m, ng, d, d) of elements; bend: None where it is zero."""
+    out = np.empty((*normal.shape, normal.shape[2]))
+    for m in range(force.shape[0]):
+        for g in range(force.shape[1]):
+            n, turning = padded(normal[m, g]), isotropic(0.0)
+            if bend is not None:
+                turning = padded_matrix(bend[m, g])
+            put_matrix(by_position(force[m, g], slope[m, g], n, turning), out[m, g])
+    return out
+
+
+@njit
+def integral(share: Array, elements: IntArray, values: Array) -> float:
+    """Of values (m, ng) over some elements; share (ne, ng) [m]."""
+    total = 0.0
+    for m in range(elements.size):
+        for g in range(share.shape[1]):
+            total += share[elements[m], g] * values[m, g]
+    return total
+
+
+@njit
+def work_of(share: Array, elements: IntArray, force: Array, before: Array, after: Array) -> float:
+    """Work of a force per length (m, ng, d) on the stations of some elements from one place to another (ne, ng, d)."""
+    total = 0.0
+    for m in range(elements.size):
+        for g in range(share.shape[1]):
+            e = elements[m]
+            way = sub(padded(after[e, g]), padded(before[e, g]))
+            total += share[e, g] * dot(padded(force[m, g]), way)
+    return total
