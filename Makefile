@@ -54,7 +54,7 @@ stress: setup ## stiff and extreme scenes with known answers, each in a process 
 fuzz: setup ## 600 mutated scenes, each in a process with limits: how they end; also among those of verify
 	$(PYTHON) -m tests.fuzz.run --count 600 --seed 1
 
-bench: setup ## seconds by part of the demo, Newton iterations against the bare work in them, energy of an impact by scheme
+bench: setup ## seconds by part of the demo, Newton iterations against the bare work in them, waves against plain sums, energy of an impact by scheme
 	$(PYTHON) -m benchmarks
 
 parts: setup ## what each part of a scene costs: docs/parts.md

@@ -14,7 +14,7 @@ from statistics import median
 
 import numpy as np
 
-from benchmarks.riser_only import Bench, surging, timed
+from benchmarks.riser_only import CATENARY, ELEMENTS, surging, timed
 from benchmarks.stage import TimedStage
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State, Weights
@@ -24,32 +24,34 @@ from riser_soil.riser.midpoint_directors import directors
 from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.structural_damping import StructuralDamping
 
-ELEMENTS, REPEATS = 100, 300
-STEPS = 100  # whole steps, and Newton iterations with a new tangent
+COUNT, REPEATS = 100, 300
+STEPS = 100  # whole steps, and their Newton iterations
 WEIGHTS = Weights(inertia=1.0, force=1.0, shift_v=20.0, shift_a=400.0)
 
 Action = Callable[[], object]
 
 
 def report() -> None:
-    print(f"in a plane and in space, {ELEMENTS} elements:")
+    print(f"in a plane and in space, {COUNT} elements:")
     for name, (plane, space) in measure().items():
         print(f"  {name}: {plane:.0f} us and {space:.0f} us, space / plane {space / plane:.1f}")
 
 
 def measure() -> dict[str, tuple[float, float]]:
     """Medians in us, of the plane and of space."""
-    stages = [surging(dimension, ELEMENTS) for dimension in (2, 3)]
+    stages = [in_surge(dimension) for dimension in (2, 3)]
     kernels = [actions(stage) for stage in stages]
     found = {name: in_turn([each[name] for each in kernels], REPEATS) for name in kernels[0]}
-    benches = [Bench(stage) for stage in stages]
-    iterations = [[timed_iteration(bench) for bench in benches] for _ in range(STEPS)]
-    found["Newton iteration"] = medians(iterations)
+    found["Newton iteration"] = medians([[timed_iteration(stage) for stage in stages] for _ in range(STEPS)])
     found["step"] = in_turn([functools.partial(stage.walk, 1) for stage in stages], STEPS)
-    for bench, stage in zip(benches, stages, strict=True):
-        bench.destroy()
+    for stage in stages:
         stage.destroy()
     return found
+
+
+def in_surge(dimension: int) -> TimedStage:
+    sizes = f"dimension={dimension}", ELEMENTS.format(COUNT)
+    return surging(CATENARY, *sizes, "line_types.flexible.GJ=2.0e4")
 
 
 def in_turn(pair: Sequence[Action], repeats: int) -> tuple[float, float]:
@@ -63,10 +65,11 @@ def medians(seconds: list[list[float]]) -> tuple[float, float]:
     return plane, space
 
 
-def timed_iteration(bench: Bench) -> float:
-    """Seconds of an iteration with a new tangent, in the next step."""
-    step = bench.stage.stepper.next_step(bench.stage.control)
-    return timed(lambda: bench._solve_fully(step)) / bench.full_iterations
+def timed_iteration(stage: TimedStage) -> float:
+    """Seconds of an iteration of the next step."""
+    step, before = stage.stepper.next_step(stage.control), stage.newton.iterations
+    seconds = timed(lambda: stage.newton.solve(step))
+    return seconds / (stage.newton.iterations - before)
 
 
 def actions(stage: TimedStage) -> dict[str, Action]:

@@ -20,9 +20,9 @@ from riser_soil.seating import seat
 from riser_soil.solve.automatic_steps import AutoSteps
 from riser_soil.solve.dynamic_relaxation import RelaxationResult, relax
 from riser_soil.solve.local_error import first_step
-from riser_soil.solve.newton import Newton
 from riser_soil.solve.solution import NewtonSettings
 from riser_soil.solve.step_control import Control, StepControl
+from riser_soil.solve.step_solver import StepSolver, solver_of
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
 LAID_IN = 8  # load steps on soil, at least
@@ -125,7 +125,8 @@ def _take(
     system = System(assembly.comm, model, clock)
     if not isinstance(begin, State):
         _restore(system, begin)
-    newton = Newton(system, replace(_settings(assembly), linear_start=_starts_at_rest(assembly, stage)))
+    settings = replace(_settings(assembly), linear_start=_starts_at_rest(assembly, stage))
+    newton = solver_of(system, scheme_of(stage), settings, assembly.scene.solver.newton)
     try:
         run = _begin_run(assembly, stage, system, newton, begin, observer)
         return _walk(run, checkpoint)
@@ -165,7 +166,7 @@ class StageRun:
 
 
 def _begin_run(
-    assembly: Assembly, stage: Stage, system: System, newton: Newton, begin: State | Saved, observer: StageObserver
+    assembly: Assembly, stage: Stage, system: System, newton: StepSolver, begin: State | Saved, observer: StageObserver
 ) -> StageRun:
     if isinstance(begin, State):
         stepper = TimeStepper(system, newton, scheme_of(stage), replace(begin, t=0.0))

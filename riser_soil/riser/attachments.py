@@ -19,6 +19,7 @@ from riser_soil.core.part import Energy, Forces, State, Traits, Weights
 from riser_soil.riser import hermite
 from riser_soil.riser.line import UP, Line
 from riser_soil.riser.line_part import LinePart
+from riser_soil.riser.load_kernels import GivenForces
 
 
 @dataclass(frozen=True)
@@ -115,6 +116,9 @@ class Attachments(LinePart):
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         self.line.trial(state).add_turning(values[self.line.name], weights.force, self._F)
+
+    def numbers(self) -> GivenForces:
+        return GivenForces(self._F, np.empty(0), potential=True)
 
     def energy(self, state: State) -> Energy:
         """Potential of weight less buoyancy, zero at the origin of the axes."""

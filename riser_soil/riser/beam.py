@@ -9,6 +9,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights
 from riser_soil.riser import uniform_load
+from riser_soil.riser.beam_kernels import PlanarBeam, SpatialBeam
 from riser_soil.riser.elastic import elastic_elements
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
@@ -62,6 +63,15 @@ class Beam(LinePart):
         self._elastic.add_tangent(K, weights.force, trial)
         trial.add_turning(K, weights.force, trial.once((self, "load"), self._load_forces))
         uniform_load.add_tangent(K, weights.force, trial.turn.P, *at)
+
+    def numbers(self) -> PlanarBeam | SpatialBeam:
+        kind = PlanarBeam if self.line.dimension == 2 else SpatialBeam
+        elastic = self._elastic
+        self._load_now = self._load.copy()
+        return kind(elastic.reference, elastic.section, self.line.length, self._load_now)
+
+    def renew_numbers(self, t: float) -> None:
+        np.multiply(self.factor(t), self._load, out=self._load_now)
 
     def energy(self, state: State) -> Energy:
         """Strain energy, and the potential of weight and load, zero at the origin of the axes."""

@@ -132,9 +132,17 @@ def strain_energy(chord: Array, frame1: Array, frame2: Array, ref: SpatialRefere
     """Strain energy (ne,) in J; arguments as in `forces`."""
     U = np.empty(len(chord))
     for e in range(len(chord)):
-        at = shape(ref.L[e], vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
-        U[e] = energy(stiffness(ref, section, e), at.strain, difference(at.strain, _unstressed(ref, e)))
+        U[e] = element_energy(e, chord, frame1, frame2, ref, section)
     return U
+
+
+@njit
+def element_energy(
+    e: int, chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, section: SpatialSection
+) -> float:
+    """That of element e."""
+    at = shape(ref.L[e], vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
+    return energy(stiffness(ref, section, e), at.strain, difference(at.strain, _unstressed(ref, e)))
 
 
 @njit
@@ -169,10 +177,24 @@ def forces(chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, se
     """Internal forces f (ne, 12) for chords (ne, 3) and section frames (ne, 3, 3) of both ends."""
     f = np.empty((len(chord), 12))
     for e in range(len(chord)):
-        at = shape(ref.L[e], vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
-        response = _respond(stiffness(ref, section, e), _unstressed(ref, e), at)
-        put_forces(at.frame.axes, response.forces, f[e])
+        put_element_forces(e, chord, frame1, frame2, ref, section, f[e])
     return f
+
+
+@njit
+def put_element_forces(
+    e: int,
+    chord: Array,
+    frame1: Array,
+    frame2: Array,
+    ref: SpatialReference,
+    section: SpatialSection,
+    f: Array,
+) -> None:
+    """Write forces f (12,) of element e; all else as in `forces`."""
+    at = shape(ref.L[e], vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
+    response = _respond(stiffness(ref, section, e), _unstressed(ref, e), at)
+    put_forces(at.frame.axes, response.forces, f)
 
 
 @njit

@@ -105,12 +105,28 @@ def forces(
     """
     f = np.empty((len(chord), 6))
     for e in range(len(chord)):
-        at = corotate(chord[e], direction1[e], direction2[e])
-        rates = _rates_of(at, chord_rate[e], turn_rate[e], turn_rate[e + 1])
-        element = element_at(ref, viscosity, e)
-        N, m1, m2 = stress_variation(element, at, 0.0, rates.stretch, rates.theta1, rates.theta2)
-        put_forces(at.axis, nodal_forces(at, N, m1, m2), f[e])
+        put_element_forces(e, chord, direction1, direction2, ref, viscosity, chord_rate, turn_rate, f[e])
     return f
+
+
+@njit
+def put_element_forces(
+    e: int,
+    chord: Array,
+    direction1: Array,
+    direction2: Array,
+    ref: PlanarReference,
+    viscosity: PlanarSection,
+    chord_rate: Array,
+    turn_rate: Array,
+    f: Array,
+) -> None:
+    """Write forces f (6,) of element e; all else as in `forces`."""
+    at = corotate(chord[e], direction1[e], direction2[e])
+    rates = _rates_of(at, chord_rate[e], turn_rate[e], turn_rate[e + 1])
+    element = element_at(ref, viscosity, e)
+    N, m1, m2 = stress_variation(element, at, 0.0, rates.stretch, rates.theta1, rates.theta2)
+    put_forces(at.axis, nodal_forces(at, N, m1, m2), f)
 
 
 @njit
@@ -127,20 +143,37 @@ def tangent(
     """Derivative K (ne, 6, 6) of `forces` by displacements and angles, which the rates follow by shift_v [1/s]."""
     K = np.empty((len(chord), 6, 6))
     for e in range(len(chord)):
-        at = corotate(chord[e], direction1[e], direction2[e])
-        rates = _rates_of(at, chord_rate[e], turn_rate[e], turn_rate[e + 1])
-        element = element_at(ref, viscosity, e)
-        N, m1, m2 = stress_variation(element, at, 0.0, rates.stretch, rates.theta1, rates.theta2)
-        force = nodal_forces(at, N, m1, m2).force
-        c, s = at.axis
-        moves = (
-            _move(at, STILL, 1.0, 0.0),
-            _move(at, (c, -s), 0.0, 0.0),
-            _move(at, (s, c), 0.0, 0.0),
-            _move(at, STILL, 0.0, 1.0),
-        )
-        for j in range(4):
-            put_forces(at.axis, _vary(element, at, N, force, rates, moves[j], shift_v), K[e, :, 2 + j])
-        for i in range(6):
-            K[e, i, 0], K[e, i, 1] = -K[e, i, 3], -K[e, i, 4]
+        put_element_tangent(e, chord, direction1, direction2, ref, viscosity, chord_rate, turn_rate, shift_v, K[e])
     return K
+
+
+@njit
+def put_element_tangent(
+    e: int,
+    chord: Array,
+    direction1: Array,
+    direction2: Array,
+    ref: PlanarReference,
+    viscosity: PlanarSection,
+    chord_rate: Array,
+    turn_rate: Array,
+    shift_v: float,
+    K: Array,
+) -> None:
+    """Write the tangent K (6, 6) of element e; all else as in `tangent`."""
+    at = corotate(chord[e], direction1[e], direction2[e])
+    rates = _rates_of(at, chord_rate[e], turn_rate[e], turn_rate[e + 1])
+    element = element_at(ref, viscosity, e)
+    N, m1, m2 = stress_variation(element, at, 0.0, rates.stretch, rates.theta1, rates.theta2)
+    force = nodal_forces(at, N, m1, m2).force
+    c, s = at.axis
+    moves = (
+        _move(at, STILL, 1.0, 0.0),
+        _move(at, (c, -s), 0.0, 0.0),
+        _move(at, (s, c), 0.0, 0.0),
+        _move(at, STILL, 0.0, 1.0),
+    )
+    for j in range(4):
+        put_forces(at.axis, _vary(element, at, N, force, rates, moves[j], shift_v), K[:, 2 + j])
+    for i in range(6):
+        K[i, 0], K[i, 1] = -K[i, 3], -K[i, 4]

@@ -130,10 +130,26 @@ def forces(
     """
     f = np.empty((len(chord), 12))
     for e in range(len(chord)):
-        D = stiffness(ref, viscosity, e)
-        at, _, response = _element(D, chord[e], frame1[e], frame2[e], chord_rate[e], spin[e], spin[e + 1])
-        put_forces(at.frame.axes, response.forces, f[e])
+        put_element_forces(e, chord, frame1, frame2, ref, viscosity, chord_rate, spin, f[e])
     return f
+
+
+@njit
+def put_element_forces(
+    e: int,
+    chord: Array,
+    frame1: Array,
+    frame2: Array,
+    ref: SpatialReference,
+    viscosity: SpatialSection,
+    chord_rate: Array,
+    spin: Array,
+    f: Array,
+) -> None:
+    """Write forces f (12,) of element e; all else as in `forces`."""
+    D = stiffness(ref, viscosity, e)
+    at, _, response = _element(D, chord[e], frame1[e], frame2[e], chord_rate[e], spin[e], spin[e + 1])
+    put_forces(at.frame.axes, response.forces, f)
 
 
 @njit
@@ -185,18 +201,36 @@ def tangent(
     """
     K = np.empty((len(chord), 12, 12))
     for e in range(len(chord)):
-        D = stiffness(ref, viscosity, e)
-        at, flow, response = _element(D, chord[e], frame1[e], frame2[e], chord_rate[e], spin[e], spin[e + 1])
-        _shift_columns(D, at, flow, response, shift_v, K[e])
-        for end in range(2):
-            n, first = e + end, 3 + 6 * end
-            H, R = matrix(nodes.H[n]), matrix(nodes.R[n])
-            for k in range(3):
-                w, faster = transpose(H)[k], scale(shift_v, transpose(R)[k])
-                put_forces(at.frame.axes, _turn_column(D, at, flow, response, w, faster, end), K[e, :, first + k])
-        for end in range(2):
-            n, moment = e + end, response.forces.moment2 if end else response.forces.moment1
-            spatial = vecmat(moment, at.frame.axes)
-            H, Rn, Theta = matrix(nodes.H[n]), matrix(nodes.Rn[n]), vector(nodes.Theta[n])
-            rows_to_increments(K[e], 3 + 6 * end, spatial, H, Rn, Theta)
+        put_element_tangent(e, chord, frame1, frame2, ref, viscosity, chord_rate, spin, nodes, shift_v, K[e])
     return K
+
+
+@njit
+def put_element_tangent(
+    e: int,
+    chord: Array,
+    frame1: Array,
+    frame2: Array,
+    ref: SpatialReference,
+    viscosity: SpatialSection,
+    chord_rate: Array,
+    spin: Array,
+    nodes: NodeRotations,
+    shift_v: float,
+    K: Array,
+) -> None:
+    """Write the tangent K (12, 12) of element e; all else as in `tangent`."""
+    D = stiffness(ref, viscosity, e)
+    at, flow, response = _element(D, chord[e], frame1[e], frame2[e], chord_rate[e], spin[e], spin[e + 1])
+    _shift_columns(D, at, flow, response, shift_v, K)
+    for end in range(2):
+        n, first = e + end, 3 + 6 * end
+        H, R = matrix(nodes.H[n]), matrix(nodes.R[n])
+        for k in range(3):
+            w, faster = transpose(H)[k], scale(shift_v, transpose(R)[k])
+            put_forces(at.frame.axes, _turn_column(D, at, flow, response, w, faster, end), K[:, first + k])
+    for end in range(2):
+        n, moment = e + end, response.forces.moment2 if end else response.forces.moment1
+        spatial = vecmat(moment, at.frame.axes)
+        H, Rn, Theta = matrix(nodes.H[n]), matrix(nodes.Rn[n]), vector(nodes.Theta[n])
+        rows_to_increments(K, 3 + 6 * end, spatial, H, Rn, Theta)

@@ -11,9 +11,10 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser import beam2d, beam3d, increments
-from riser_soil.riser.directors import PlanarFrames, PlanarOrientation, SpatialFrames, SpatialOrientation
 from riser_soil.riser.line import Line
+from riser_soil.riser.planar_directors import PlanarFrames, PlanarOrientation
 from riser_soil.riser.sections import Elements
+from riser_soil.riser.spatial_directors import SpatialFrames, SpatialOrientation
 from riser_soil.riser.trial import Trial
 
 

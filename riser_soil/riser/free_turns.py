@@ -8,7 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.riser.directors import Orientation, SpatialOrientation
+from riser_soil.riser.directors import Orientation
+from riser_soil.riser.spatial_directors import SpatialOrientation
 
 STILL = 1e-9  # of the line's length, or a radian: what moves less does not move
 

@@ -71,33 +71,38 @@ def consistent_mass(L: Array, mass: Array) -> Array:
 @njit
 def interleave(nodal: Array, directors: Array, D: Size) -> Array:
     """q (ne, 4, d) of nodal translations (nn, ≥ d) and directors at element ends (ne, 2, d)."""
-    ne, d = directors.shape[0], len(D)
-    q = np.empty((ne, 4, d))
-    for e in range(ne):
+    q = np.empty((directors.shape[0], 4, len(D)))
+    put_interleaved(nodal, directors, q, D)
+    return q
+
+
+@njit
+def put_interleaved(nodal: Array, directors: Array, q: Array, D: Size) -> None:
+    """Write what `interleave` returns."""
+    for e in range(directors.shape[0]):
         for side in range(2):
-            for i in range(d):
+            for i in range(len(D)):
                 q[e, 2 * side, i] = nodal[e + side, i]
                 q[e, 2 * side + 1, i] = directors[e, side, i]
-    return q
 
 
 def weigh(M: Array, q: Array) -> Array:
     """M q of each element (ne, 4, d) for matrices M (ne, 4, 4) of shape functions."""
-    F: Array = _weigh(M, q, fixed(q.shape[2]))
+    F = np.zeros(q.shape)
+    add_weighed(M, q, F, fixed(q.shape[2]))
     return F
 
 
 @njit
-def _weigh(M: Array, q: Array, D: Size) -> Array:
-    F = np.empty((q.shape[0], 4, len(D)))
+def add_weighed(M: Array, q: Array, F: Array, D: Size) -> None:
+    """Add what `weigh` returns to F (ne, 4, d)."""
     for e in range(q.shape[0]):
         for a in range(4):
             for i in range(len(D)):
                 total = 0.0
                 for b in range(4):
                     total += M[e, a, b] * q[e, b, i]
-                F[e, a, i] = total
-    return F
+                F[e, a, i] += total
 
 
 def pull_back(F: Array, P: Array) -> Array:
@@ -125,11 +130,12 @@ def _pull_back(F: Array, P: Array, D: Size, R: Size) -> Array:
 
 def collect(F: Array, P: Array, nodal: Array) -> None:
     """Add F (ne, 4, d) conjugate to q, pulled back and summed along the chain, to nodal (nn, d + r)."""
-    _collect(F, P, nodal, fixed(P.shape[2]), fixed(P.shape[3]))
+    collect_nodal(F, P, nodal, fixed(P.shape[2]), fixed(P.shape[3]))
 
 
 @njit
-def _collect(F: Array, P: Array, nodal: Array, D: Size, R: Size) -> None:
+def collect_nodal(F: Array, P: Array, nodal: Array, D: Size, R: Size) -> None:
+    """What `collect` does, for compiled code."""
     d = len(D)
     for e in range(P.shape[0]):
         for side in range(2):
@@ -147,11 +153,12 @@ def add_mass(out: Array, scale: float, P: Array, columns: Array, shift: float, M
 
     D: `shift` for positions, `columns` (ne, 2, d, r) for tangents.
     """
-    _add_mass(out, scale, P, columns, shift, M, fixed(P.shape[2]), fixed(P.shape[3]))
+    add_mass_to(out, scale, P, columns, shift, M, fixed(P.shape[2]), fixed(P.shape[3]))
 
 
 @njit
-def _add_mass(out: Array, scale: float, P: Array, columns: Array, shift: float, M: Array, D: Size, R: Size) -> None:
+def add_mass_to(out: Array, scale: float, P: Array, columns: Array, shift: float, M: Array, D: Size, R: Size) -> None:
+    """What `add_mass` does, for compiled code."""
     d, r = len(D), len(R)
     n = d + r
     S = np.zeros((4, d, 2 * n))  # M D of one element

@@ -22,8 +22,14 @@ def _moment_to_increments(moment: Array, H: Mat) -> None:
 def forces_to_increments(f: Array, H: Array) -> None:
     """Turn the moments in f (ne, 12), conjugate to spins, into those of rotation vectors; H is (nn, 3, 3)."""
     for e in range(len(f)):
-        _moment_to_increments(f[e, 3:6], matrix(H[e]))
-        _moment_to_increments(f[e, 9:12], matrix(H[e + 1]))
+        element_to_increments(e, f[e], H)
+
+
+@njit
+def element_to_increments(e: int, f: Array, H: Array) -> None:
+    """The same of one element, f (12,)."""
+    _moment_to_increments(f[3:6], matrix(H[e]))
+    _moment_to_increments(f[9:12], matrix(H[e + 1]))
 
 
 @njit

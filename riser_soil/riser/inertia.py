@@ -6,6 +6,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights
 from riser_soil.riser.attachments import Masses
 from riser_soil.riser.hermite import add_mass, consistent_mass, weigh
+from riser_soil.riser.inertia_kernels import Mass
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.trial import Trial
@@ -62,6 +63,9 @@ class Inertia(LinePart):
         trial.add_turning(K, weights.inertia, trial.once((self, "F"), self._F))
         columns, shift = trial.columns(weights)[2]
         add_mass(K, weights.inertia, trial.turn.P, columns, shift, self.M)
+
+    def numbers(self) -> Mass:
+        return Mass(self.M)
 
     def energy(self, state: State) -> Energy:
         rate = self.line.trial(state).q_rate

@@ -18,9 +18,11 @@ from riser_soil.core.part import MatrixBlock, State
 from riser_soil.core.saved_state import Saved, under, values_of, within
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
-from riser_soil.riser.directors import Frames, PlanarFrames, SpatialFrames
+from riser_soil.riser.directors import Frames
 from riser_soil.riser.ends import End, SupportRotation
 from riser_soil.riser.free_turns import free_turns, unit_lengths
+from riser_soil.riser.planar_directors import PlanarFrames
+from riser_soil.riser.spatial_directors import SpatialFrames
 from riser_soil.riser.trial import Trial
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -156,7 +158,11 @@ class Line:
     @property
     def translation_dofs(self) -> IntArray:
         """Local numbers of the translations (nn, d)."""
-        first = self.offset + self.ndof * np.arange(self.nodes, dtype=np.int64)
+        return self.offset + self._translations
+
+    @cached_property
+    def _translations(self) -> IntArray:
+        first = self.ndof * np.arange(self.nodes, dtype=np.int64)
         return np.asarray(first[:, None] + np.arange(self.dimension), dtype=np.int64)
 
     @cached_property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, MatrixBlock, Part, State, Work
@@ -22,6 +23,16 @@ class LinePart:
     def blocks(self) -> dict[str, MatrixBlock]:
         """All dofs of each element."""
         return {self.line.name: self.line.element_block()}
+
+    def numbers(self) -> tuple[Any, ...] | None:
+        """The part in numbers, for the compiled loop over a riser alone, see `part_kernels`; None without.
+
+        Asked for once a stage, so that what changes is an array that is written to, see `renew_numbers`.
+        """
+        return None
+
+    def renew_numbers(self, t: float) -> None:
+        """Write what depends on the time alone into the numbers that were asked for last."""
 
     def energy(self, state: State) -> Energy:
         return Energy()
@@ -48,3 +59,8 @@ class LinePart:
 def acting_on(line: Line, parts: Iterable[Part]) -> list[LinePart]:
     """Those of the parts that act on this line and say where."""
     return [part for part in parts if isinstance(part, LinePart) and part.line is line]
+
+
+def overrides(part: LinePart, method: str) -> bool:
+    """Whether a part has a method of its own in the place of the base's, which does nothing."""
+    return getattr(type(part), method) is not getattr(LinePart, method)

@@ -11,9 +11,10 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Traits, Weights, Work
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
-from riser_soil.riser.directors import SpatialOrientation, moment_stiffness
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
+from riser_soil.riser.load_kernels import GivenForces
+from riser_soil.riser.spatial_directors import SpatialOrientation, moment_stiffness
 from riser_soil.riser.trial import Trial
 
 
@@ -132,6 +133,20 @@ class PointLoads(LinePart):
         K[element, at : at + 3, at : at + 3] += np.array(
             moment_stiffness(turn.Rn[node], turn.Theta[node], moment)
         )
+
+    def numbers(self) -> GivenForces | None:
+        """None with moments in space."""
+        if self._moments and self.line.dimension == 3:
+            return None
+        F = np.zeros((self.line.length.size, 4, self.line.dimension))
+        self._numbers = GivenForces(F, np.zeros(self.line.nodes if self._moments else 0), potential=False)
+        return self._numbers
+
+    def renew_numbers(self, t: float) -> None:
+        self._numbers.F[:] = self._F(t, self._loads)
+        self._numbers.moment[:] = 0.0
+        for load, node in self._moments:
+            self._numbers.moment[node] -= self._moment(load, t) @ self.line.normal
 
     def work(self, before: State, after: State) -> Work:
         """Work of the mean loads over the step."""

@@ -20,10 +20,10 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.riser.directors import SpatialOrientation
 from riser_soil.riser.line import Line
 from riser_soil.riser.section_forces import end_forces
 from riser_soil.riser.sections import Elements
+from riser_soil.riser.spatial_directors import SpatialOrientation
 from riser_soil.riser.trial import Trial
 
 

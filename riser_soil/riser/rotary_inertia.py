@@ -7,9 +7,11 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights
 from riser_soil.riser import rotary_moments
-from riser_soil.riser.directors import PlanarFrames, SpatialFrames
+from riser_soil.riser.inertia_kernels import PlanarRotaryMass, SpatialRotaryMass
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
+from riser_soil.riser.planar_directors import PlanarFrames
+from riser_soil.riser.spatial_directors import SpatialFrames
 
 
 class PlanarSections:
@@ -20,6 +22,7 @@ class PlanarSections:
 
     def __init__(self, inertia: Array) -> None:
         self._inertia = inertia
+        self.numbers = PlanarRotaryMass(inertia)
 
     def forces(self, u: Array, v: Array, a: Array) -> Array:
         """Moments (ne, 2, 1) from the nodes' rotation dofs, increments and rates (nn, 1)."""
@@ -42,7 +45,8 @@ class SpatialSections:
 
     def __init__(self, across: Array, polar: Array, T0: Array) -> None:
         about_axes = np.stack([polar, across, across], axis=1)[:, None, None, :]
-        self._J = np.ascontiguousarray(T0 * about_axes @ np.swapaxes(T0, 2, 3))
+        self._J: Array = np.ascontiguousarray(T0 * about_axes @ np.swapaxes(T0, 2, 3))
+        self.numbers = SpatialRotaryMass(self._J)
 
     def forces(self, u: Array, v: Array, a: Array) -> Array:
         """Moments (ne, 2, 3) from the nodes' rotation dofs, increments and rates (nn, 3)."""
@@ -106,6 +110,9 @@ class RotaryInertia(LinePart):
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         turning = map(self._turning, (state.u, state.v, state.a))
         self._sections.add_tangent(values[self.line.name], weights, *turning)
+
+    def numbers(self) -> PlanarRotaryMass | SpatialRotaryMass:
+        return self._sections.numbers
 
     def energy(self, state: State) -> Energy:
         return Energy(kinetic=self._sections.kinetic_energy(self._turning(state.v)))

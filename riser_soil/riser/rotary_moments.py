@@ -49,10 +49,16 @@ def moments(J: Array, Theta: Array, W: Array, A: Array) -> Array:
     out = np.empty((J.shape[0], 2, 3))
     for e in range(J.shape[0]):
         for side in range(2):
-            n = e + side
-            m = _moment(matrix(J[e, side]), vector(W[n]), vector(A[n]))
-            out[e, side, 0], out[e, side, 1], out[e, side, 2] = matvec(left_tangent(vector(Theta[n])), m)
+            out[e, side, 0], out[e, side, 1], out[e, side, 2] = end_moment(J, e, side, Theta, W, A)
     return out
+
+
+@njit
+def end_moment(J: Array, e: int, side: int, Theta: Array, W: Array, A: Array) -> Vec:
+    """That of one end."""
+    n = e + side
+    m = _moment(matrix(J[e, side]), vector(W[n]), vector(A[n]))
+    return matvec(left_tangent(vector(Theta[n])), m)
 
 
 @njit

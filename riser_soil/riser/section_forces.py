@@ -15,10 +15,10 @@ import numpy as np
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
 from riser_soil.riser import bending_peaks
-from riser_soil.riser.directors import SpatialOrientation
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.sections import Elements, larger_beside
+from riser_soil.riser.spatial_directors import SpatialOrientation
 from riser_soil.riser.trial import Trial
 
 _BEHIND = np.array([[-1.0], [1.0]])  # of what acts on an element's ends: what the line after exerts on the line before

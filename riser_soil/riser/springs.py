@@ -7,9 +7,10 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.riser import rotations
-from riser_soil.riser.directors import SpatialOrientation, moment_stiffness
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
+from riser_soil.riser.load_kernels import PlanarSpring, SpatialSpring
+from riser_soil.riser.spatial_directors import SpatialOrientation, moment_stiffness
 
 
 class EndSpring(LinePart):
@@ -57,6 +58,14 @@ class EndSpring(LinePart):
         material = self.stiffness * H.T @ np.array(rotations.left_tangent_inverse(phi)) @ H
         frame, Theta = turn.Rn[self.node], turn.Theta[self.node]
         return np.asarray(material + np.array(moment_stiffness(frame, Theta, self.stiffness * phi)))
+
+    def numbers(self) -> PlanarSpring | SpatialSpring:
+        kind = PlanarSpring if self.line.dimension == 2 else SpatialSpring
+        self._support = self.line.support(self.node, 0.0).copy()
+        return kind(self.node, self.stiffness, self._support)
+
+    def renew_numbers(self, t: float) -> None:
+        self._support[:] = self.line.support(self.node, t)
 
     def energy(self, state: State) -> Energy:
         phi = self._rotation(state)

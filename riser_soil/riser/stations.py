@@ -73,12 +73,18 @@ def _interpolate(N: Array, q: Array, D: Size) -> Array:
     out = np.empty((ne, ng, d))
     for e in range(ne):
         for g in range(ng):
-            for i in range(d):
-                total = 0.0
-                for a in range(4):
-                    total += N[e, g, a] * q[e, a, i]
-                out[e, g, i] = total
+            put_value(N[e, g], q[e], out[e, g], D)
     return out
+
+
+@njit
+def put_value(N: Array, q: Array, out: Array, D: Size) -> None:
+    """Write the value (d,) at one station, N (4,), of an element's q (4, d)."""
+    for i in range(len(D)):
+        total = 0.0
+        for a in range(4):
+            total += N[a] * q[a, i]
+        out[i] = total
 
 
 def motion(
@@ -113,15 +119,22 @@ def _unit_tangents(dN: Array, chord: Array, ends: Array, D: Size) -> tuple[Array
     tau, stretch = np.empty((ne, ng, d)), np.empty((ne, ng))
     for e in range(ne):
         for g in range(ng):
-            square = 0.0
-            for i in range(d):
-                x = dN[e, g, 2] * chord[e, i] + dN[e, g, 1] * ends[e, 0, i] + dN[e, g, 3] * ends[e, 1, i]
-                tau[e, g, i] = x
-                square += x * x
-            stretch[e, g] = math.sqrt(square)
-            for i in range(d):
-                tau[e, g, i] /= stretch[e, g]
+            stretch[e, g] = put_unit_tangent(dN[e, g], chord[e], ends[e], tau[e, g], D)
     return tau, stretch
+
+
+@njit
+def put_unit_tangent(dN: Array, chord: Array, ends: Array, tau: Array, D: Size) -> float:
+    """Write the unit tangent (d,) at one station, dN (4,), of an element with end tangents (2, d); its stretch |x'|."""
+    square = 0.0
+    for i in range(len(D)):
+        x = dN[2] * chord[i] + dN[1] * ends[0, i] + dN[3] * ends[1, i]
+        tau[i] = x
+        square += x * x
+    stretch = math.sqrt(square)
+    for i in range(len(D)):
+        tau[i] /= stretch
+    return stretch
 
 
 def integrate(at: Stations, f: Array) -> Array:
@@ -133,15 +146,19 @@ def integrate(at: Stations, f: Array) -> Array:
 @njit
 def _integrate(weighted: Array, f: Array, D: Size) -> Array:
     ne, ng, d = f.shape[0], f.shape[1], len(D)
-    out = np.empty((ne, 4, d))
+    out = np.zeros((ne, 4, d))
     for e in range(ne):
-        for a in range(4):
-            for i in range(d):
-                total = 0.0
-                for g in range(ng):
-                    total += weighted[e, g, a] * f[e, g, i]
-                out[e, a, i] = total
+        for g in range(ng):
+            add_integrand(weighted[e, g], f[e, g], out[e], D)
     return out
+
+
+@njit
+def add_integrand(weighted: Array, f: Array, F: Array, D: Size) -> None:
+    """Add to F (4, d) of an element what the force per length f (d,) at one station, weighted (4,), has in it."""
+    for a in range(4):
+        for i in range(len(D)):
+            F[a, i] += weighted[a] * f[i]
 
 
 def inner(share: Array, f: Array, g: Array) -> float:
@@ -168,16 +185,22 @@ def follow_slope(A: Array, tau: Array, stretch: Array) -> Array:
 
 @njit
 def _follow_slope(A: Array, tau: Array, stretch: Array, D: Size) -> Array:
-    out = np.empty_like(A)
+    out = A.copy()
     for e in range(tau.shape[0]):
         for g in range(tau.shape[1]):
-            for i in range(len(D)):
-                along = 0.0
-                for j in range(len(D)):
-                    along += A[e, g, i, j] * tau[e, g, j]
-                for j in range(len(D)):
-                    out[e, g, i, j] = (A[e, g, i, j] - along * tau[e, g, j]) / stretch[e, g]
+            to_slope(out[e, g], tau[e, g], stretch[e, g], D)
     return out
+
+
+@njit
+def to_slope(A: Array, tau: Array, stretch: float, D: Size) -> None:
+    """Turn the derivative by tau at one station, A (d, d), into that by x'."""
+    for i in range(len(D)):
+        along = 0.0
+        for j in range(len(D)):
+            along += A[i, j] * tau[j]
+        for j in range(len(D)):
+            A[i, j] = (A[i, j] - along * tau[j]) / stretch
 
 
 class DofDerivatives(NamedTuple):
@@ -190,9 +213,6 @@ class DofDerivatives(NamedTuple):
     shift_a: float
 
 
-Place = tuple[int, int, int]  # element, station, end of the element
-
-
 class Derivatives(NamedTuple):
     """Derivatives (ne, ng, d, d) of a force per length by x, by x', and by the rate and acceleration of x."""
 
@@ -202,7 +222,7 @@ class Derivatives(NamedTuple):
     acceleration: Array
 
 
-class _Room(NamedTuple):
+class ElementRoom(NamedTuple):
     """Room for one element: how the forces at its stations follow its dofs (ng, d, n), how what is conjugate to q does
     (4, d, n), and both as matrices (ng, d n) and (4, d n), whose long rows fill vector registers.
     """
@@ -214,13 +234,14 @@ class _Room(NamedTuple):
 
 
 @njit
-def _room(ng: int, n: int, D: Size) -> _Room:
+def element_room(ng: int, n: int, D: Size) -> ElementRoom:
+    """Room for an element of n dofs with ng stations."""
     change, S = np.empty((ng, len(D), n)), np.empty((4, len(D), n))
-    return _Room(change, S, change.reshape(ng, len(D) * n), S.reshape(4, len(D) * n))
+    return ElementRoom(change, S, change.reshape(ng, len(D) * n), S.reshape(4, len(D) * n))
 
 
 @njit
-def _add_block(out: Array, room: _Room, weighted: Array, P: Array, D: Size, R: Size) -> None:
+def add_element(out: Array, room: ElementRoom, weighted: Array, P: Array, D: Size, R: Size) -> None:
     """Add to out (n, n) of an element the integral of what is in the room; weighted (ng, 4), P (2, d, r)."""
     room.rows[:] = 0.0
     for g in range(room.changes.shape[0]):
@@ -240,36 +261,52 @@ def add_tangent(out: Array, at: Stations, by: Derivatives, columns: DofDerivativ
 def _add_tangent(out: Array, at: tuple, by: tuple, columns: tuple, D: Size, R: Size) -> None:
     """Takes plain tuples: numba reads named ones half a microsecond slower."""
     at, by, columns = Stations(*at), Derivatives(*by), DofDerivatives(*columns)
-    room = _room(by.slope.shape[1], out.shape[1], D)
+    room = element_room(by.slope.shape[1], out.shape[1], D)
     for e in range(by.slope.shape[0]):
         for g in range(by.slope.shape[1]):
-            for side in range(2):
-                _put_change(room.change[g], (e, g, side), at, by, columns, D, R)
-        _add_block(out[e], room, at.weighted[e], columns.q[e], D, R)
+            put_slope(room.change[g], at.dN[e, g], by.slope[e, g], columns.q[e], D, R)
+            add_position(room.change[g], at.N[e, g], by.position[e, g], 1.0, columns.q[e], D, R)
+            add_position(room.change[g], at.N[e, g], by.rate[e, g], columns.shift_v, columns.rate[e], D, R)
+            add_position(
+                room.change[g], at.N[e, g], by.acceleration[e, g], columns.shift_a, columns.acceleration[e], D, R
+            )
+        add_element(out[e], room, at.weighted[e], columns.q[e], D, R)
 
 
 @njit
-def _put_change(
-    change: Array, place: Place, at: Stations, by: Derivatives, columns: DofDerivatives, D: Size, R: Size
-) -> None:
-    """Write how the force at a station of an element follows the dofs of one of its ends to change (d, n)."""
-    e, g, side = place
-    d, first = len(D), side * (len(D) + len(R))
-    position, tangent = at.N[e, g, 2 * side], at.N[e, g, 2 * side + 1]
-    by_chord, by_end = at.dN[e, g, 2 * side], at.dN[e, g, 2 * side + 1]
-    for i in range(d):
-        for j in range(d):
-            moving = by.position[e, g, i, j] + columns.shift_v * by.rate[e, g, i, j]
-            moving += columns.shift_a * by.acceleration[e, g, i, j]
-            change[i, first + j] = by_chord * by.slope[e, g, i, j] + position * moving
-        for k in range(len(R)):
-            sloping, turning = 0.0, 0.0
+def put_slope(change: Array, dN: Array, by: Array, P: Array, D: Size, R: Size) -> None:
+    """Write how the force at a station, dN (4,), follows the dofs of its element to change (d, n): by its derivative by
+    x' (d, d), P (2, d, r) being that of the tangents.
+    """
+    d = len(D)
+    for side in range(2):
+        first, by_chord, by_end = side * (d + len(R)), dN[2 * side], dN[2 * side + 1]
+        for i in range(d):
             for j in range(d):
-                sloping += by.slope[e, g, i, j] * columns.q[e, side, j, k]
-                turning += by.position[e, g, i, j] * columns.q[e, side, j, k]
-                turning += by.rate[e, g, i, j] * columns.rate[e, side, j, k]
-                turning += by.acceleration[e, g, i, j] * columns.acceleration[e, side, j, k]
-            change[i, first + d + k] = by_end * sloping + tangent * turning
+                change[i, first + j] = by_chord * by[i, j]
+            for k in range(len(R)):
+                sloping = 0.0
+                for j in range(d):
+                    sloping += by[i, j] * P[side, j, k]
+                change[i, first + d + k] = by_end * sloping
+
+
+@njit
+def add_position(change: Array, N: Array, by: Array, shift: float, map: Array, D: Size, R: Size) -> None:
+    """Add how the force at a station, N (4,), follows the dofs of its element to change (d, n): by its derivative by x,
+    x. or x.. (d, d), which follow the positions by `shift` and the rotations by the tangents' map (2, d, r).
+    """
+    d = len(D)
+    for side in range(2):
+        first, position, tangent = side * (d + len(R)), N[2 * side], N[2 * side + 1]
+        for i in range(d):
+            for j in range(d):
+                change[i, first + j] += position * shift * by[i, j]
+            for k in range(len(R)):
+                turning = 0.0
+                for j in range(d):
+                    turning += by[i, j] * map[side, j, k]
+                change[i, first + d + k] += tangent * turning
 
 
 def add_stiffness(out: Array, at: Stations, elements: IntArray, by_position: Array, P: Array) -> None:
@@ -283,25 +320,10 @@ def add_stiffness(out: Array, at: Stations, elements: IntArray, by_position: Arr
 def _add_stiffness(
     out: Array, N: Array, weighted: Array, elements: IntArray, by_position: Array, P: Array, D: Size, R: Size
 ) -> None:
-    room = _room(by_position.shape[1], out.shape[1], D)
+    room = element_room(by_position.shape[1], out.shape[1], D)
     for m in range(elements.size):
         e = elements[m]
         for g in range(by_position.shape[1]):
-            for side in range(2):
-                _put_stiffness(room.change[g], (e, g, side), N, by_position[m], P, D, R)
-        _add_block(out[e], room, weighted[e], P[e], D, R)
-
-
-@njit
-def _put_stiffness(change: Array, place: Place, N: Array, by_position: Array, P: Array, D: Size, R: Size) -> None:
-    """Write as `_put_change` does, for a force that depends on the position alone: by_position (ng, d, d)."""
-    e, g, side = place
-    d, first, position, tangent = len(D), side * (len(D) + len(R)), N[e, g, 2 * side], N[e, g, 2 * side + 1]
-    for i in range(d):
-        for j in range(d):
-            change[i, first + j] = position * by_position[g, i, j]
-        for k in range(len(R)):
-            turning = 0.0
-            for j in range(d):
-                turning += by_position[g, i, j] * P[e, side, j, k]
-            change[i, first + d + k] = tangent * turning
+            room.change[g] = 0.0
+            add_position(room.change[g], N[e, g], by_position[m, g], 1.0, P[e], D, R)
+        add_element(out[e], room, weighted[e], P[e], D, R)

@@ -9,6 +9,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State, Traits, Weights, Work
 from riser_soil.riser import damping2d, damping3d, increments
+from riser_soil.riser.damping_kernels import PlanarViscosity, SpatialViscosity
 from riser_soil.riser.elastic import ElasticElements, PlanarElements, elastic_elements, spatial
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
@@ -22,6 +23,10 @@ class ViscousElements(ABC):
     def __init__(self, elements: ElasticElements, beta: Array) -> None:
         self._elements = elements
         self._viscosity = type(elements.section)(*(beta * stiffness for stiffness in elements.section))
+        self.numbers = self._numbers(beta.size)
+
+    @abstractmethod
+    def _numbers(self, ne: int) -> PlanarViscosity | SpatialViscosity: ...
 
     @abstractmethod
     def _rates(self, trial: Trial, v: Array) -> tuple[Array, Array]:
@@ -44,6 +49,9 @@ class ViscousElements(ABC):
 class PlanarDamping(ViscousElements):
     """Viscous elements of a planar line; forces and tangent cost a quarter of those in space (`benchmarks.twins`)."""
 
+    def _numbers(self, ne: int) -> PlanarViscosity:
+        return PlanarViscosity(self._elements.reference, self._viscosity, np.empty((ne, 2)))
+
     def _rates(self, trial: Trial, v: Array) -> tuple[Array, Array]:
         return np.diff(v[:, :2], axis=0), np.ascontiguousarray(v[:, 2])
 
@@ -56,6 +64,9 @@ class PlanarDamping(ViscousElements):
 
 class SpatialDamping(ViscousElements):
     """Viscous elements of a line in space."""
+
+    def _numbers(self, ne: int) -> SpatialViscosity:
+        return SpatialViscosity(self._elements.reference, self._viscosity, np.empty((ne, 3)), np.empty((ne + 1, 3)))
 
     def _rates(self, trial: Trial, v: Array) -> tuple[Array, Array]:
         return np.diff(v[:, :3], axis=0), np.einsum("nij,nj->ni", spatial(trial).R, v[:, 3:])
@@ -102,6 +113,9 @@ class StructuralDamping(LinePart):
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         trial, v = self.line.trial(state), self.line.nodal(state.v)
         values[self.line.name] += weights.force * self._damping.tangent(trial, v, float(weights.shift_v))
+
+    def numbers(self) -> PlanarViscosity | SpatialViscosity:
+        return self._damping.numbers
 
     def work(self, before: State, after: State) -> Work:
         """Energy that the mean forces take out over the step."""

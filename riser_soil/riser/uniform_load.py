@@ -78,43 +78,51 @@ def potential(chord: Array, middle: Array, tangent: Array, L: Array, w: Array) -
 
 @njit
 def _potential(D: Size, chord: Array, middle: Array, tangent: Array, L: Array, w: Array) -> Array:
-    ne, d = chord.shape[0], len(D)
-    V, e = np.empty(ne), np.empty(d)
-    for k in range(ne):
-        _axis(D, chord[k], e)
-        V[k] = -L[k] * _dot(D, w[k], middle[k])
-        for end in range(2):
-            t = tangent[k, end]
-            c = _dot(D, e, t)
-            psi = _factor(c)[0] * (_dot(D, w[k], t) - c * _dot(D, w[k], e))
-            V[k] -= (1 - 2 * end) * L[k] * L[k] / 12.0 * psi
+    V, e = np.empty(chord.shape[0]), np.empty(len(D))
+    for k in range(chord.shape[0]):
+        V[k] = element_potential(D, chord[k], middle[k], tangent[k], L[k], w[k], e)
+    return V
+
+
+@njit
+def element_potential(D: Size, chord: Array, middle: Array, tangent: Array, L: float, w: Array, e: Array) -> float:
+    """That of one element; e (d,): room."""
+    _axis(D, chord, e)
+    V = -L * _dot(D, w, middle)
+    for end in range(2):
+        t = tangent[end]
+        c = _dot(D, e, t)
+        psi = _factor(c)[0] * (_dot(D, w, t) - c * _dot(D, w, e))
+        V -= (1 - 2 * end) * L * L / 12.0 * psi
     return V
 
 
 def residual(chord: Array, tangent: Array, L: Array, w: Array) -> Array:
     """F = dV/dq (ne, 4, d); arguments as in `potential`."""
-    found: Array = _residual(fixed(chord.shape[1]), chord, tangent, L, w)
-    return found
+    F = np.zeros((chord.shape[0], 4, chord.shape[1]))
+    add_residual(fixed(chord.shape[1]), chord, tangent, L, w, F)
+    return F
 
 
 @njit
-def _residual(D: Size, chord: Array, tangent: Array, L: Array, w: Array) -> Array:
-    ne, d = chord.shape[0], len(D)
-    F, e, t, by_t, by_e = np.empty((ne, 4, d)), np.empty(d), np.empty(d), np.empty(d), np.empty(d)
-    for k in range(ne):
+def add_residual(D: Size, chord: Array, tangent: Array, L: Array, w: Array, F: Array) -> None:
+    """Add what `residual` returns to F (ne, 4, d)."""
+    d = len(D)
+    e, t, by_t, by_e = np.empty(d), np.empty(d), np.empty(d), np.empty(d)
+    for k in range(chord.shape[0]):
         l, load = _axis(D, chord[k], e), w[k]
         for i in range(d):
-            F[k, 0, i] = F[k, 2, i] = -0.5 * L[k] * w[k, i]
+            F[k, 0, i] -= 0.5 * L[k] * w[k, i]
+            F[k, 2, i] -= 0.5 * L[k] * w[k, i]
         for end in range(2):
             factor = (2 * end - 1) * L[k] * L[k] / 12.0
             t[:] = tangent[k, end]
             _psi_slopes(D, e, t, load, _factor(_dot(D, e, t)), by_t, by_e)
             along = _dot(D, e, by_e)
             for i in range(d):
-                F[k, 2 * end + 1, i] = factor * by_t[i]
+                F[k, 2 * end + 1, i] += factor * by_t[i]
                 F[k, 2, i] += factor * (by_e[i] - e[i] * along) / l
                 F[k, 0, i] -= factor * (by_e[i] - e[i] * along) / l
-    return F
 
 
 @njit
@@ -149,7 +157,7 @@ def add_tangent(out: Array, weight: float, P: Array, chord: Array, tangent: Arra
     """Add weight times the derivative of the residual by the dofs to out (ne, n, n), P = dt/dTheta (ne, 2, d, r) held;
     other arguments as in `potential`.
     """
-    _add_tangent(fixed(P.shape[2]), fixed(P.shape[3]), out, weight, P, chord, tangent, L, w)
+    add_tangent_to(fixed(P.shape[2]), fixed(P.shape[3]), out, weight, P, chord, tangent, L, w)
 
 
 @njit
@@ -188,9 +196,10 @@ def _add_turning_block(
 
 
 @njit
-def _add_tangent(
+def add_tangent_to(
     D: Size, R: Size, out: Array, weight: float, P: Array, chord: Array, tangent: Array, L: Array, w: Array
 ) -> None:
+    """What `add_tangent` does, for compiled code."""
     d, n = len(D), len(D) + len(R)
     e, t, by_t, by_e, row = np.empty(d), np.empty(d), np.empty(d), np.empty(d), np.empty(d)
     tt, te, ee, dd = np.empty((d, d)), np.empty((d, d)), np.empty((d, d)), np.empty((d, d))

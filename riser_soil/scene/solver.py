@@ -1,6 +1,6 @@
 """Scene language: settings of the nonlinear solver."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, Field
 
@@ -33,4 +33,9 @@ class Solver(BaseModel):
         default="auto",
         description="smallest time step before the solve fails [s], or auto: 1e-4 of the stage's time step, with "
         "automatic steps 1e-7 of its duration",
+    )
+    newton: Literal["snes", "compiled"] = Field(
+        default="snes",
+        description="the code that solves the steps; snes: PETSc's; compiled: a compiled loop for the time steps of a "
+        "riser alone, with the same results, and SNES for all else",
     )

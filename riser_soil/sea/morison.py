@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser.line_part import LinePart
@@ -36,6 +38,9 @@ class Morison(LinePart):
         self._pipe.add_tangent(K, trial, weights, self._loads.derivatives(trial, weights))
         inertia, force = self._q_forces(trial)
         trial.add_turning(K, 1.0, weights.inertia * inertia + weights.force * force)
+
+    def numbers(self) -> tuple[Any, ...] | None:
+        return self._loads.numbers()
 
     def energy(self, state: State) -> Energy:
         """Kinetic energy of the added mass at the pipe's own velocity."""

@@ -32,14 +32,61 @@ def added_masses(rho: float, diameter: Array, normal: Array, tangential: Array) 
 
 
 @njit
-def _split(v: Array, tau: Array, e: int, g: int, D: Size) -> tuple[float, float]:
-    """Speed along tau and speed across it at one point."""
+def _split(v: Array, tau: Array, D: Size) -> tuple[float, float]:
+    """Speed along tau and speed across it of a vector (d,)."""
     along, square = 0.0, 0.0
     for i in range(len(D)):
-        along += v[e, g, i] * tau[e, g, i]
+        along += v[i] * tau[i]
     for i in range(len(D)):
-        square += (v[e, g, i] - along * tau[e, g, i]) ** 2
+        square += (v[i] - along * tau[i]) ** 2
     return along, math.sqrt(square)
+
+
+@njit
+def put_drag(v: Array, tau: Array, c: Array, f: Array, D: Size) -> None:
+    """Write the resistance to the rate at one point, f (d,)."""
+    along, speed = _split(v, tau, D)
+    across, lengthwise = c[0] * speed, c[1] * abs(along) * along
+    for i in range(len(D)):
+        f[i] = across * (v[i] - along * tau[i]) + lengthwise * tau[i]
+
+
+@njit
+def put_added(a: Array, tau: Array, m: Array, f: Array, D: Size) -> None:
+    """Write the resistance to the acceleration at one point, f (d,)."""
+    along, _ = _split(a, tau, D)
+    for i in range(len(D)):
+        f[i] = m[0] * a[i] + (m[1] - m[0]) * along * tau[i]
+
+
+@njit
+def put_drag_derivatives(v: Array, tau: Array, c: Array, by_v: Array, by_tau: Array, D: Size) -> None:
+    """Write d drag/dv and d drag/dtau at one point, each (d, d); at rest both are zero."""
+    along, speed = _split(v, tau, D)
+    normal, tangential = c[0] * speed, 2.0 * c[1] * abs(along)
+    bend = c[0] / speed if speed > 0.0 else 0.0
+    for i in range(len(D)):
+        across_i = v[i] - along * tau[i]
+        for j in range(len(D)):
+            dyad = bend * across_i * (v[j] - along * tau[j])
+            one = 1.0 if i == j else 0.0
+            both = tau[i] * tau[j]
+            turned = tau[i] * v[j]
+            by_v[i, j] = normal * (one - both) + dyad + tangential * both
+            by_tau[i, j] = tangential * (turned + 0.5 * along * one)
+            by_tau[i, j] -= normal * (turned + along * one) + along * dyad
+
+
+@njit
+def put_added_derivatives(a: Array, tau: Array, m: Array, by_a: Array, by_tau: Array, D: Size) -> None:
+    """Write d added/da and d added/dtau at one point, each (d, d)."""
+    excess = m[1] - m[0]
+    along, _ = _split(a, tau, D)
+    for i in range(len(D)):
+        for j in range(len(D)):
+            one = 1.0 if i == j else 0.0
+            by_a[i, j] = m[0] * one + excess * tau[i] * tau[j]
+            by_tau[i, j] = excess * (tau[i] * a[j] + along * one)
 
 
 def resistance(v: Array, a: Array, tau: Array, c: Array, m: Array) -> tuple[Array, Array]:
@@ -50,19 +97,11 @@ def resistance(v: Array, a: Array, tau: Array, c: Array, m: Array) -> tuple[Arra
 
 @njit
 def _resistance(v: Array, a: Array, tau: Array, c: Array, m: Array, D: Size) -> tuple[Array, Array]:
-    return _added(a, tau, m, D), _drag(v, tau, c, D)
-
-
-@njit
-def _drag(v: Array, tau: Array, c: Array, D: Size) -> Array:
-    f = np.empty_like(v)
+    drag = np.empty_like(v)
     for e in range(v.shape[0]):
         for g in range(v.shape[1]):
-            along, speed = _split(v, tau, e, g, D)
-            across, lengthwise = c[e, 0] * speed, c[e, 1] * abs(along) * along
-            for i in range(len(D)):
-                f[e, g, i] = across * (v[e, g, i] - along * tau[e, g, i]) + lengthwise * tau[e, g, i]
-    return f
+            put_drag(v[e, g], tau[e, g], c[e], drag[e, g], D)
+    return _added(a, tau, m, D), drag
 
 
 def resistance_derivatives(v: Array, a: Array, tau: Array, c: Array, m: Array) -> tuple[Array, Array, Array]:
@@ -75,32 +114,13 @@ def resistance_derivatives(v: Array, a: Array, tau: Array, c: Array, m: Array) -
 def _resistance_derivatives(
     v: Array, a: Array, tau: Array, c: Array, m: Array, D: Size
 ) -> tuple[Array, Array, Array]:
-    by_v, by_tau = _drag_derivatives(v, tau, c, D)
-    by_a, added_by_tau = _added_derivatives(a, tau, m, D)
-    return by_v, by_a, by_tau + added_by_tau
-
-
-@njit
-def _drag_derivatives(v: Array, tau: Array, c: Array, D: Size) -> tuple[Array, Array]:
-    """d drag/dv and d drag/dtau; at rest both are zero."""
     ne, ng, d = v.shape[0], v.shape[1], len(D)
     by_v, by_tau = np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d))
     for e in range(ne):
         for g in range(ng):
-            along, speed = _split(v, tau, e, g, D)
-            normal, tangential = c[e, 0] * speed, 2.0 * c[e, 1] * abs(along)
-            bend = c[e, 0] / speed if speed > 0.0 else 0.0
-            for i in range(d):
-                across_i = v[e, g, i] - along * tau[e, g, i]
-                for j in range(d):
-                    dyad = bend * across_i * (v[e, g, j] - along * tau[e, g, j])
-                    one = 1.0 if i == j else 0.0
-                    both = tau[e, g, i] * tau[e, g, j]
-                    turned = tau[e, g, i] * v[e, g, j]
-                    by_v[e, g, i, j] = normal * (one - both) + dyad + tangential * both
-                    by_tau[e, g, i, j] = tangential * (turned + 0.5 * along * one)
-                    by_tau[e, g, i, j] -= normal * (turned + along * one) + along * dyad
-    return by_v, by_tau
+            put_drag_derivatives(v[e, g], tau[e, g], c[e], by_v[e, g], by_tau[e, g], D)
+    by_a, added_by_tau = _added_derivatives(a, tau, m, D)
+    return by_v, by_a, by_tau + added_by_tau
 
 
 def added(a: Array, tau: Array, m: Array) -> Array:
@@ -114,9 +134,7 @@ def _added(a: Array, tau: Array, m: Array, D: Size) -> Array:
     f = np.empty_like(a)
     for e in range(a.shape[0]):
         for g in range(a.shape[1]):
-            along, _ = _split(a, tau, e, g, D)
-            for i in range(len(D)):
-                f[e, g, i] = m[e, 0] * a[e, g, i] + (m[e, 1] - m[e, 0]) * along * tau[e, g, i]
+            put_added(a[e, g], tau[e, g], m[e], f[e, g], D)
     return f
 
 
@@ -131,12 +149,6 @@ def _added_derivatives(a: Array, tau: Array, m: Array, D: Size) -> tuple[Array, 
     ne, ng, d = a.shape[0], a.shape[1], len(D)
     by_a, by_tau = np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d))
     for e in range(ne):
-        excess = m[e, 1] - m[e, 0]
         for g in range(ng):
-            along, _ = _split(a, tau, e, g, D)
-            for i in range(d):
-                for j in range(d):
-                    one = 1.0 if i == j else 0.0
-                    by_a[e, g, i, j] = m[e, 0] * one + excess * tau[e, g, i] * tau[e, g, j]
-                    by_tau[e, g, i, j] = excess * (tau[e, g, i] * a[e, g, j] + along * one)
+            put_added_derivatives(a[e, g], tau[e, g], m[e], by_a[e, g], by_tau[e, g], D)
     return by_a, by_tau

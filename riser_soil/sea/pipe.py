@@ -42,6 +42,11 @@ class Pipe:
         self.line, self._points = line, points
         self.at = stations.stations(line.length) if points is None else points.at
 
+    @property
+    def points_alone(self) -> bool:
+        """Whether it is seen at single points, not all along."""
+        return self._points is not None
+
     @cached_property
     def share(self) -> Array:
         """Arc length that each station stands for (ne, ng) [m]."""

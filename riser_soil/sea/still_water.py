@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import fixed
 from riser_soil.core.part import Weights
 from riser_soil.riser import stations
-from riser_soil.riser.stations import Derivatives
+from riser_soil.riser.stations import Derivatives, element_room
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import morison_law as law
+from riser_soil.sea.morison_kernels import StillWaterNumbers, station_room
 from riser_soil.sea.pipe import Pipe, StationFlow
 
 
@@ -30,6 +32,10 @@ class StationLoads(Protocol):
 
     def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
         """Derivatives of both groups, weighted and summed."""
+        ...
+
+    def numbers(self) -> tuple[Any, ...] | None:
+        """The loads in numbers, see `LinePart.numbers`."""
         ...
 
     def momentum(self, trial: Trial, v: Array) -> Array:
@@ -50,6 +56,9 @@ class Resistance(ABC):
 
     def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
         return self.linearise(self.pipe.flow(trial), weights)
+
+    def numbers(self) -> tuple[Any, ...] | None:
+        return None
 
     @abstractmethod
     def momentum(self, trial: Trial, v: Array) -> Array:
@@ -74,6 +83,14 @@ class StillWater(Resistance):
     def __init__(self, pipe: Pipe, drag: Array, mass: Array) -> None:
         super().__init__(pipe)
         self._drag, self.mass = drag, mass
+
+    def numbers(self) -> StillWaterNumbers | None:
+        """None where the pipe is seen at single points."""
+        if self.pipe.points_alone:
+            return None
+        d, n, at = self.pipe.line.dimension, 2 * self.pipe.line.ndof, self.pipe.at
+        room = element_room(at.N.shape[1], n, fixed(d))
+        return StillWaterNumbers(at, self.pipe.share, self._drag, self.mass, station_room(d), room)
 
     def momentum(self, trial: Trial, v: Array) -> Array:
         return law.added(v, self.pipe.flow(trial).tau, self.mass)

@@ -92,5 +92,8 @@ class PartlyWet:
         wetted = Derivatives(*(wet.share[..., None, None] * d for d in by))
         return wetted._replace(position=wetted.position + whole[..., :, None] * wet.gradient[..., None, :])
 
+    def numbers(self) -> None:
+        return None
+
     def momentum(self, trial: Trial, v: Array) -> Array:
         return self._wetting.at(trial).share[..., None] * self._loads.momentum(trial, v)

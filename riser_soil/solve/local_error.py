@@ -23,7 +23,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
@@ -113,5 +114,17 @@ def _farthest(system: System, values: Array) -> float:
 
 def _largest(system: System, values: Array) -> float:
     """The same of this rank's values."""
-    moved = (values[line.translation_dofs] for line in system.model.lines)
-    return math.sqrt(max(float(np.einsum("ij,ij->i", x, x).max()) for x in moved))
+    return max(float(_longest(values, line.translation_dofs)) for line in system.model.lines)
+
+
+@njit
+def _longest(values: Array, dofs: IntArray) -> float:
+    """Largest norm of vectors whose dofs are the rows (n, d)."""
+    largest = 0.0
+    for n in range(dofs.shape[0]):
+        square = 0.0
+        for i in range(dofs.shape[1]):
+            square += values[dofs[n, i]] ** 2
+        if not square <= largest:  # nor where it is not a number
+            largest = square
+    return math.sqrt(largest)

@@ -11,7 +11,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Forces, State, local
+from riser_soil.core.part import Energy, Forces, State, Work, local
 from riser_soil.core.roles import Adaptive, with_role
 from riser_soil.core.system import System
 from riser_soil.solve.failed_step import place_of_largest, reason_name
@@ -160,6 +160,12 @@ class Newton:
     def _taken(self) -> int:
         """Iterations of the step so far; a residual that is not finite at its start is none."""
         return max(len(self._norms) - 1, 0)
+
+    def turned_over(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
+        """Energy stored at the end of a step solved from an accepted state, and what each part turned over in it;
+        collective.
+        """
+        return self.system.energy(solution.state), self.system.work(before, solution.state)
 
     def require_admissible(self, state: State) -> None:
         """Raise NotConvergedError where a state in balance is none of the line."""

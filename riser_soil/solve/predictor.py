@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 from riser_soil.core.saved_state import Saved
 
 STEPS = 4  # that a smooth motion is continued from, at most
@@ -26,34 +27,52 @@ class Extrapolation:
     """
 
     def __init__(self, size: int, smooth: bool) -> None:
-        self._size, self._most = size, STEPS if smooth else 1
-        self._differences: list[Array] = []
-        self._steps: list[float] = []
+        self._most = STEPS if smooth else 1
+        self._differences: Array = np.zeros((0, size))
+        self._steps: Array = np.zeros(0)
 
     def increments(self, dt: float) -> Array:
         """The increments of a step of dt to come; nothing moves before a first step was accepted."""
-        total, largest = np.zeros(self._size), math.inf
-        factor = span = dt
-        for order, (difference, step) in enumerate(zip(self._differences, self._steps, strict=True), start=1):
-            term = factor * difference
-            size = float(np.abs(term).max())
-            if order > PARABOLA and size > FALL * largest:
-                break
-            total += term
-            largest, span = size, span + step
-            factor *= span
-        return total
+        found: Array = _extrapolated(self._differences, self._steps, dt)
+        return found
 
     def accept(self, increments: Array, dt: float) -> None:
         """Continue from a step of dt that has been taken."""
-        found, span, kept = [increments / dt], dt, self._most - 1
-        for before, step in zip(self._differences[:kept], self._steps, strict=False):
-            span += step
-            found.append((found[-1] - before) / span)
-        self._differences, self._steps = found, [dt, *self._steps[:kept]]
+        self._differences, self._steps = _accepted(self._differences, self._steps, increments, dt, self._most)
 
     def state(self) -> Saved:
-        return {"differences": np.array(self._differences), "steps": np.array(self._steps)}
+        return {"differences": self._differences, "steps": self._steps}
 
     def restore(self, saved: Saved) -> None:
-        self._differences, self._steps = list(saved["differences"]), [float(dt) for dt in saved["steps"]]
+        self._differences, self._steps = saved["differences"], saved["steps"]
+
+
+@njit
+def _extrapolated(differences: Array, steps: Array, dt: float) -> Array:
+    total, largest = np.zeros(differences.shape[1]), math.inf
+    factor = span = dt
+    for order in range(differences.shape[0]):
+        size = 0.0
+        for i in range(total.size):
+            size = max(size, abs(factor * differences[order, i]))
+        if order >= PARABOLA and size > FALL * largest:
+            break
+        for i in range(total.size):
+            total[i] += factor * differences[order, i]
+        largest, span = size, span + steps[order]
+        factor *= span
+    return total
+
+
+@njit
+def _accepted(differences: Array, steps: Array, increments: Array, dt: float, most: int) -> tuple[Array, Array]:
+    """Differences (k, n) and sizes of the steps (k,) with a further one, at most so many."""
+    kept = min(differences.shape[0] + 1, most)
+    found, sizes = np.empty((kept, increments.size)), np.empty(kept)
+    found[0], sizes[0], span = increments / dt, dt, dt
+    for order in range(1, kept):
+        span += steps[order - 1]
+        sizes[order] = steps[order - 1]
+        for i in range(increments.size):
+            found[order, i] = (found[order - 1, i] - differences[order - 1, i]) / span
+    return found, sizes

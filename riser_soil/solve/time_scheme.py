@@ -77,8 +77,9 @@ class Scheme(Protocol):
         """Local residual from the forces there and from `past`."""
         ...
 
-    def mean(self, start: Array, balanced: Array) -> Array:
-        """Mean over the step, of second order, of what follows from the forces at its start and there."""
+    @property
+    def start_share(self) -> float:
+        """Share of what there is at the step's start in its mean, of second order; the rest: where it is balanced."""
         ...
 
 
@@ -88,6 +89,7 @@ class Static:
 
     dynamic = False
     lag = stiff_lag = error_constant = 0.0
+    start_share = 0.5
 
     def renews_history(self, smooth: bool) -> bool:
         return False
@@ -108,9 +110,6 @@ class Static:
     def balanced_at(self, before: State, end: State, dt: float) -> State:
         return end
 
-    def mean(self, start: Array, balanced: Array) -> Array:
-        return 0.5 * (start + balanced)
-
     def past(self, start: Forces | None) -> Array | None:
         return None
 
@@ -127,6 +126,7 @@ class GeneralizedAlpha:
     beta: float
     gamma: float
     dynamic = True
+    start_share = 0.5
 
     @classmethod
     def newmark(cls, beta: float = 0.25, gamma: float = 0.5) -> GeneralizedAlpha:
@@ -176,9 +176,6 @@ class GeneralizedAlpha:
     def balanced_at(self, before: State, end: State, dt: float) -> State:
         return end
 
-    def mean(self, start: Array, balanced: Array) -> Array:
-        return 0.5 * (start + balanced)
-
     def past(self, start: Forces | None) -> Array | None:
         if start is None:
             return None
@@ -217,6 +214,7 @@ class Midpoint:
     dynamic = True
     lag = stiff_lag = 0.0
     error_constant = 1.0 / 12.0
+    start_share = 0.0
 
     def renews_history(self, smooth: bool) -> bool:
         return False
@@ -245,6 +243,3 @@ class Midpoint:
     def combine(self, forces: Forces, past: Array | None) -> Array:
         """Twice the balance, as the parts differentiate by half the increment."""
         return 2.0 * (forces.inertia + forces.force + forces.end)
-
-    def mean(self, start: Array, balanced: Array) -> Array:
-        return balanced

@@ -15,12 +15,12 @@ from riser_soil.core.system import System, total
 from riser_soil.errors import SolveError
 from riser_soil.solve.energy_gain import LARGEST, EnergyGain
 from riser_soil.solve.local_error import LocalError, committed_error
-from riser_soil.solve.newton import Newton
 from riser_soil.solve.predictor import Extrapolation
 from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.solution import NotConvergedError, Solution, Step
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.step_end import CommittedStep
+from riser_soil.solve.step_solver import StepSolver
 from riser_soil.solve.time_scheme import Scheme
 
 ENERGY_ROUND_OFF = 1e-9  # of the potential energy, whose zero is far away
@@ -64,7 +64,7 @@ class TimeStepper:
     def __init__(
         self,
         system: System,
-        newton: Newton,
+        newton: StepSolver,
         scheme: Scheme,
         before: State | Saved,
         largest_gain: float = LARGEST,
@@ -173,16 +173,14 @@ class TimeStepper:
 
     def _account(self, solution: Solution, control: Control, cuts: int) -> AcceptedStep:
         """Energy balance of the step: stored, dissipated and external."""
-        state = solution.state
-        turned = self.system.work(self.before, state)
-        reactions = self.scheme.mean(*(self.system.reactions(f) for f in (self._forces, solution.forces)))
-        supports = self.system.work_of_supports(reactions, state.u)
+        energy, turned = self.newton.turned_over(self.before, solution)
         start = self._forces if self._history is None else self._history
-        bulk = self.scheme.mean(start.force, solution.forces.force)
-        against = self.system.work_against(bulk, solution.forces.end, state.u)
+        supports, against = self.system.work_in_step(
+            self._forces, start.force, solution.forces, solution.state.u, self.scheme.start_share
+        )
         braking = against - supports - sum(work.inertial for work in turned.values())
         turned["supports"] = Work(external=supports)
-        return AcceptedStep(control.target, control.dt, solution, cuts, self.system.energy(state), turned, braking)
+        return AcceptedStep(control.target, control.dt, solution, cuts, energy, turned, braking)
 
     def _reject_energy_gain(self, step: AcceptedStep) -> None:
         """NotConvergedError for a dynamic step that creates energy, so that it is cut."""

@@ -12,10 +12,11 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, Part, State, Traits, Weights
 from riser_soil.riser import hermite, loads, rotary_moments, springs, stations
-from riser_soil.riser.directors import PlanarOrientation, SpatialOrientation
 from riser_soil.riser.line_part import acting_on
+from riser_soil.riser.planar_directors import PlanarOrientation
 from riser_soil.riser.rotary_inertia import RotaryInertia
 from riser_soil.riser.section_forces import element_residual, nodal_residual
+from riser_soil.riser.spatial_directors import SpatialOrientation
 from riser_soil.riser.structural_damping import StructuralDamping
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import waterline, wet_section

@@ -9,10 +9,10 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State, Weights
-from riser_soil.riser.directors import SpatialOrientation
 from riser_soil.riser.line import Line
 from riser_soil.riser.midpoint_directors import DirectorMotion
 from riser_soil.riser.midpoint_inertia import MidpointInertia, MidpointRotaryInertia, over_steps
+from riser_soil.riser.spatial_directors import SpatialOrientation
 from riser_soil.solve.time_scheme import Midpoint
 from tests.support.dense_chain import residual, tangent
 from tests.support.sample_line import Sample, sample

@@ -17,8 +17,8 @@ from riser_soil.core.part import State
 from riser_soil.errors import SceneError
 from riser_soil.motion.rao import RaoTable
 from riser_soil.riser import rotations
-from riser_soil.riser.directors import SpatialFrames
 from riser_soil.riser.ends import SupportRotation
+from riser_soil.riser.spatial_directors import SpatialFrames
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping

@@ -1,0 +1,200 @@
+"""Configuration of a whole line in arrays, for the compiled loop over a riser alone.
+
+A line's accepted configuration (`PlanarBase`, `SpatialBase`) and the increments and rates of its dofs give a trial
+configuration, written into arrays that are allocated once: all that the parts' kernels need to know of the line.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.by_type import by_type
+from riser_soil.core.compiled import fixed, njit
+from riser_soil.riser import hermite, planar_directors, spatial_directors
+from riser_soil.riser.hermite import Size
+from riser_soil.riser.line import Line
+from riser_soil.riser.planar_directors import PlanarFrames
+
+
+class PlanarBase(NamedTuple):
+    """Accepted configuration of a plane line: places (nn, 2), chords (ne, 2) and angles (nn,); alpha0 (ne, 2)."""
+
+    x: Array
+    chord: Array
+    angle: Array
+    alpha0: Array
+
+
+class SpatialBase(NamedTuple):
+    """Accepted configuration in space: places (nn, 3), chords (ne, 3), frames R (nn, 3, 3); T0 (ne, 2, 3, 3)."""
+
+    x: Array
+    chord: Array
+    R: Array
+    T0: Array
+
+
+class PlanarConfiguration(NamedTuple):
+    """Trial configuration of a plane line; see `directors` and `hermite`. D and R: see `fixed`.
+
+    angle (nn,); end_angle (ne, 2); tangent (ne, 2, 2); P (ne, 2, 2, 1); q, rate and acceleration (ne, 4, 2); v and a
+    (nn, 3): rates and accelerations of the dofs.
+    """
+
+    x: Array
+    chord: Array
+    angle: Array
+    end_angle: Array
+    tangent: Array
+    P: Array
+    q: Array
+    rate: Array
+    acceleration: Array
+    v: Array
+    a: Array
+    D: Size
+    R: Size
+
+
+class SpatialConfiguration(NamedTuple):
+    """Trial configuration of a line in space; see `directors` and `hermite`. D and R: see `fixed`.
+
+    Rn and frames (nn, 3, 3): before and after the rotation increments Theta (nn, 3); H (nn, 3, 3); frame1 and frame2
+    (ne, 3, 3) of element ends, T0 (ne, 2, 3, 3) unstressed; tangent (ne, 2, 3); P (ne, 2, 3, 3); q, rate and
+    acceleration (ne, 4, 3); v and a (nn, 6): rates and accelerations of the dofs.
+    """
+
+    x: Array
+    chord: Array
+    Rn: Array
+    Theta: Array
+    frames: Array
+    H: Array
+    frame1: Array
+    frame2: Array
+    T0: Array
+    tangent: Array
+    P: Array
+    q: Array
+    rate: Array
+    acceleration: Array
+    v: Array
+    a: Array
+    D: Size
+    R: Size
+
+
+Base = PlanarBase | SpatialBase
+Configuration = PlanarConfiguration | SpatialConfiguration
+
+
+class Maps(NamedTuple):
+    """How the rates and accelerations of element ends' tangents (ne, 2, d, r) follow the rotation dofs; the shifts."""
+
+    rate: Array
+    acceleration: Array
+    shift_v: float
+    shift_a: float
+
+
+def base_of(line: Line) -> Base:
+    """The accepted configuration of a line, as it is kept there."""
+    if isinstance(line.frames, PlanarFrames):
+        return PlanarBase(line.x, line.chord, line.frames.angle, line.frames.alpha0)
+    return SpatialBase(line.x, line.chord, line.frames.R, line.frames.T0)
+
+
+def room_for(line: Line) -> Configuration:
+    """A configuration's arrays, to be written to."""
+    nn, ne, d, r = line.nodes, line.length.size, line.dimension, line.frames.dofs
+    shapes = {"x": (nn, d), "chord": (ne, d), "tangent": (ne, 2, d), "P": (ne, 2, d, r), "v": (nn, d + r)}
+    shapes |= {"q": (ne, 4, d), "rate": (ne, 4, d), "acceleration": (ne, 4, d), "a": (nn, d + r)}
+    given: dict[str, Any] = {"D": fixed(d), "R": fixed(r)}
+    if isinstance(line.frames, PlanarFrames):
+        shapes |= {"angle": (nn,), "end_angle": (ne, 2)}
+        return PlanarConfiguration(**given, **_empty(shapes))
+    shapes |= {"Rn": (nn, 3, 3), "Theta": (nn, 3), "frames": (nn, 3, 3), "H": (nn, 3, 3)}
+    shapes |= {"frame1": (ne, 3, 3), "frame2": (ne, 3, 3)}
+    return SpatialConfiguration(T0=line.frames.T0, **given, **_empty(shapes))
+
+
+def _empty(shapes: dict[str, tuple[int, ...]]) -> dict[str, Any]:
+    return {name: np.empty(shape) for name, shape in shapes.items()}
+
+
+@by_type
+def place(at: Configuration, base: Base, u: Array, v: Array, a: Array) -> None:
+    """Write the configuration after increments u, with rates v and accelerations a (nn, ndof) of the dofs."""
+
+
+@by_type
+def put_maps(at: Configuration, maps: Maps) -> None:
+    """Write the maps of a configuration with their shifts."""
+
+
+@by_type
+def put_turning(at: Configuration, F: Array, G: Array) -> None:
+    """Write to G (ne, 2, r, r) the derivative of P^T F by the rotation dofs, F (ne, 2, d) held."""
+
+
+@place.of(PlanarConfiguration)
+def _place_in_plane(at: PlanarConfiguration, base: PlanarBase, u: Array, v: Array, a: Array) -> None:
+    _move(at, base, u, v, a)
+    for n in range(u.shape[0]):
+        at.angle[n] = base.angle[n] + u[n, 2]
+    ne = at.P.shape[0]
+    normal = at.P.reshape((ne, 2, 2))
+    planar_directors.put_ends(at.angle, base.alpha0, at.end_angle, at.tangent, normal)
+    planar_directors.put_motion(at.tangent, normal, v, a, at.rate, at.acceleration)
+    hermite.put_interleaved(at.x, at.tangent, at.q, at.D)
+
+
+@place.of(SpatialConfiguration)
+def _place_in_space(at: SpatialConfiguration, base: SpatialBase, u: Array, v: Array, a: Array) -> None:
+    _move(at, base, u, v, a)
+    at.Theta[:] = u[:, 3:]
+    at.Rn[:] = base.R
+    spatial_directors.orient(base.R, at.Theta, base.T0, at.frames, at.H, at.frame1, at.frame2, at.tangent, at.P)
+    spatial_directors.put_motion(at.frames, base.T0, v, a, at.rate, at.acceleration)
+    hermite.put_interleaved(at.x, at.tangent, at.q, at.D)
+
+
+@njit
+def _move(at: Configuration, base: Base, u: Array, v: Array, a: Array) -> None:
+    nn, d = at.x.shape
+    for n in range(nn):
+        for i in range(d):
+            at.x[n, i] = base.x[n, i] + u[n, i]
+        for i in range(u.shape[1]):
+            at.v[n, i], at.a[n, i] = v[n, i], a[n, i]
+    for e in range(nn - 1):
+        for i in range(d):
+            at.chord[e, i] = base.chord[e, i] + (u[e + 1, i] - u[e, i])
+
+
+@put_maps.of(PlanarConfiguration)
+def _put_maps_in_plane(at: PlanarConfiguration, maps: Maps) -> None:
+    normal = at.P.reshape((at.P.shape[0], 2, 2))
+    planar_directors.put_maps(
+        at.tangent, normal, at.v[:, 2:], at.a[:, 2:], maps.shift_v, maps.shift_a, maps.rate, maps.acceleration
+    )
+
+
+@put_maps.of(SpatialConfiguration)
+def _put_maps_in_space(at: SpatialConfiguration, maps: Maps) -> None:
+    spatial_directors.put_maps(
+        at.frames, at.H, at.T0, at.v[:, 3:], at.a[:, 3:], maps.shift_v, maps.shift_a, maps.rate, maps.acceleration
+    )
+
+
+@put_turning.of(PlanarConfiguration)
+def _put_turning_in_plane(at: PlanarConfiguration, F: Array, G: Array) -> None:
+    planar_directors.put_geometric(at.tangent, F, G)
+
+
+@put_turning.of(SpatialConfiguration)
+def _put_turning_in_space(at: SpatialConfiguration, F: Array, G: Array) -> None:
+    spatial_directors.put_geometric(at.Rn, at.H, at.Theta, at.tangent, F, G)

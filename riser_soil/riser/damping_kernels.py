@@ -1,0 +1,111 @@
+"""Kernels of structural damping, see `part_kernels`."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.riser import beam2d, beam3d, damping2d, damping3d, increments
+from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
+from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
+from riser_soil.riser.vectors import matrix, matvec, vector
+
+
+class PlanarViscosity(NamedTuple):
+    """Viscous elements of a plane line; room for the rates of the chords (ne, 2)."""
+
+    reference: beam2d.PlanarReference
+    viscosity: beam2d.PlanarSection
+    chord_rate: Array
+
+
+class SpatialViscosity(NamedTuple):
+    """Viscous elements of a line in space; room for the rates of the chords (ne, 3) and spatial spins (nn, 3)."""
+
+    reference: beam3d.SpatialReference
+    viscosity: beam3d.SpatialSection
+    chord_rate: Array
+    spin: Array
+
+
+@add_forces.of(PlanarViscosity)
+def _planar_forces(part: PlanarViscosity, at: PlanarConfiguration, out: LineForces) -> None:
+    f, first, second = np.empty(6), at.end_angle[:, 0], at.end_angle[:, 1]
+    part.chord_rate[:] = at.v[1:, :2] - at.v[:-1, :2]
+    for e in range(at.chord.shape[0]):
+        damping2d.put_element_forces(
+            e, at.chord, first, second, part.reference, part.viscosity, part.chord_rate, at.v[:, 2], f
+        )
+        for i in range(3):
+            out.force[e, i] += f[i]
+            out.force[e + 1, i] += f[3 + i]
+
+
+@add_tangent.of(PlanarViscosity)
+def _planar_tangent(part: PlanarViscosity, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    own, first, second = np.empty((6, 6)), at.end_angle[:, 0], at.end_angle[:, 1]
+    for e in range(at.chord.shape[0]):
+        damping2d.put_element_tangent(
+            e,
+            at.chord,
+            first,
+            second,
+            part.reference,
+            part.viscosity,
+            part.chord_rate,
+            at.v[:, 2],
+            maps.shift_v,
+            own,
+        )
+        for i in range(6):
+            for j in range(6):
+                K[e, i, j] += weights.force * own[i, j]
+
+
+@add_forces.of(SpatialViscosity)
+def _spatial_forces(part: SpatialViscosity, at: SpatialConfiguration, out: LineForces) -> None:
+    f = np.empty(12)
+    part.chord_rate[:] = at.v[1:, :3] - at.v[:-1, :3]
+    for n in range(at.v.shape[0]):
+        spin = matvec(matrix(at.frames[n]), vector(at.v[n, 3:]))
+        part.spin[n, 0], part.spin[n, 1], part.spin[n, 2] = spin
+    for e in range(at.chord.shape[0]):
+        damping3d.put_element_forces(
+            e, at.chord, at.frame1, at.frame2, part.reference, part.viscosity, part.chord_rate, part.spin, f
+        )
+        increments.element_to_increments(e, f, at.H)
+        for i in range(6):
+            out.force[e, i] += f[i]
+            out.force[e + 1, i] += f[6 + i]
+
+
+@add_tangent.of(SpatialViscosity)
+def _spatial_tangent(
+    part: SpatialViscosity, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
+) -> None:
+    own, nodes = np.empty((12, 12)), damping3d.NodeRotations(at.frames, at.H, at.Rn, at.Theta)
+    for e in range(at.chord.shape[0]):
+        damping3d.put_element_tangent(
+            e,
+            at.chord,
+            at.frame1,
+            at.frame2,
+            part.reference,
+            part.viscosity,
+            part.chord_rate,
+            part.spin,
+            nodes,
+            maps.shift_v,
+            own,
+        )
+        for i in range(12):
+            for j in range(12):
+                K[e, i, j] += weights.force * own[i, j]
+
+
+@add_energy.of(PlanarViscosity)
+@add_energy.of(SpatialViscosity)
+def _energy(part: PlanarViscosity | SpatialViscosity, at: PlanarConfiguration, energy: Array) -> None:
+    """Nothing is stored."""

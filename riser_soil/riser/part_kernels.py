@@ -1,0 +1,66 @@
+"""What the compiled loop over a riser alone asks of its parts, see `by_type`: forces, tangent, energy, work.
+
+A part that takes part in the loop has its `numbers`: a NamedTuple of arrays, and kernels for that type. They are the
+functions that its methods call, too, so that each formula is in one place.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.by_type import by_type, each
+from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.line import Line
+
+
+class LineForces(NamedTuple):
+    """Residuals by group, see `core.part`: conjugate to q (ne, 4, d), and to the dofs of the nodes (nn, ndof)."""
+
+    inertia_q: Array
+    force_q: Array
+    end_q: Array
+    inertia: Array
+    force: Array
+    end: Array
+
+
+class LineWeights(NamedTuple):
+    """Weights of the groups I and F in the tangent."""
+
+    inertia: float
+    force: float
+
+
+def forces_of(line: Line) -> LineForces:
+    """Room for the residuals of a line."""
+    conjugate = (np.zeros((line.length.size, 4, line.dimension)) for _ in range(3))
+    return LineForces(*conjugate, *(np.zeros((line.nodes, line.ndof)) for _ in range(3)))
+
+
+@by_type
+def add_forces(part: tuple, at: Configuration, out: LineForces) -> None:
+    """Add a part's residual in a configuration to the `LineForces`."""
+
+
+@by_type
+def add_tangent(part: tuple, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    """Add to K (ne, n, n) the derivative of a part's residual by the dofs, without that of P in `LineForces`."""
+
+
+@by_type
+def add_energy(part: tuple, at: Configuration, energy: Array) -> None:
+    """Add a part's energy to (3,): kinetic, strain, potential [J]."""
+
+
+@by_type
+def add_work(part: tuple, first: Configuration, last: Configuration, work: Array) -> None:
+    """Add what a part turns over in a step between two configurations to work (4,): dissipated, external, inertial, by
+    the scheme, as in `core.part.Work` [J].
+    """
+
+
+add_forces_of_each, add_tangent_of_each, add_energy_of_each = map(each, (add_forces, add_tangent, add_energy))
+add_work_of_each = each(add_work, last_by_part=True)

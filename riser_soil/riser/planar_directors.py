@@ -1,0 +1,151 @@
+"""Node orientations (directors) of a plane line: an angle per node; see `directors`."""
+
+import math
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.compiled import njit
+from riser_soil.core.saved_state import Saved
+
+Maps = tuple[Array, Array, Array]
+
+
+class PlanarOrientation:
+    """Trial orientation of a plane line. angle (nn,) [rad], initial angle of element ends alpha0 (ne, 2)."""
+
+    def __init__(self, angle: Array, alpha0: Array) -> None:
+        self.angle, both = angle, (*alpha0.shape, 2)
+        self.end_angle, self.tangent, self.normal = np.empty(alpha0.shape), np.empty(both), np.empty(both)
+        put_ends(angle, alpha0, self.end_angle, self.tangent, self.normal)
+
+    def at(self, node: int) -> Array:
+        """Orientation of a node: its angle (1,)."""
+        return self.angle[node : node + 1]
+
+    @property
+    def P(self) -> Array:
+        return self.normal[..., None]
+
+    @property
+    def wound(self) -> BoolArray:
+        """Elements (ne,) whose ends differ by more than half a turn."""
+        return np.asarray(np.abs(self.end_angle[:, 1] - self.end_angle[:, 0]) > np.pi)
+
+    def motion(self, v: Array, a: Array) -> tuple[Array, Array]:
+        """q' and q'' (ne, 4, 2) from rates and accelerations of the dofs (nn, 3)."""
+        rate, acceleration = (np.empty((len(self.tangent), 4, 2)) for _ in range(2))
+        put_motion(self.tangent, self.normal, v, a, rate, acceleration)
+        return rate, acceleration
+
+    def maps(self, v: Array, a: Array, shift_v: float, shift_a: float) -> Maps:
+        first, second = (np.empty(self.P.shape) for _ in range(2))
+        put_maps(self.tangent, self.normal, v, a, shift_v, shift_a, first, second)
+        return self.P, first, second
+
+    def geometric(self, F: Array) -> Array:
+        """(ne, 2, 1, 1) from the residual conjugate to the tangents, F (ne, 2, 2)."""
+        G = np.empty((len(F), 2, 1, 1))
+        put_geometric(self.tangent, F, G)
+        return G
+
+    def state(self) -> Saved:
+        """Arrays from which `PlanarFrames.turn_of` restores the orientation."""
+        return {"angle": self.angle}
+
+
+class PlanarFrames:
+    """Committed node angles of a plane line; angles grow without limit.
+
+    A trial with its rates and their derivatives costs about 0.6 of one of `SpatialFrames`, and with half the dofs a
+    Newton iteration as well; a step costs 0.7 (`benchmarks.twins`).
+
+    angle: (nn,) rad from the unstressed configuration. alpha0: unstressed tangent angle at element ends (ne,
+    2).
+    """
+
+    dofs = 1
+
+    def __init__(self, angle: Array, alpha0: Array) -> None:
+        self.angle, self.alpha0 = angle, alpha0
+
+    def turned(self, orientation: Array, rotation: Array) -> Array:
+        """An orientation turned by an angle (1,)."""
+        return orientation + rotation
+
+    def rotation(self, first: Array, second: Array) -> Array:
+        """Angle (1,) from one orientation to another."""
+        return second - first
+
+    def increment(self, node: int, orientation: Array) -> Array:
+        """Increment (1,) that brings a node to an orientation."""
+        return orientation - self.angle[node]
+
+    def in_body_axes(self, orientation: Array, rate: Array) -> Array:
+        """An angular rate (1,) as the dofs have it."""
+        return rate
+
+    def turn(self, increment: Array) -> PlanarOrientation:
+        return PlanarOrientation(self.angle + increment[:, 0], self.alpha0)
+
+    def in_new_axes(self, moment: Array, increment: Array) -> Array:
+        """Moments (nn, 1) conjugate to the increment, as the next one has them."""
+        return moment
+
+    def commit(self, increment: Array) -> None:
+        self.angle = self.angle + increment[:, 0]
+
+    def turn_of(self, saved: Saved) -> PlanarOrientation:
+        return PlanarOrientation(saved["angle"], self.alpha0)
+
+    def state(self) -> Saved:
+        return {"angle": self.angle}
+
+    def restore(self, saved: Saved) -> None:
+        self.angle = saved["angle"]
+
+
+@njit
+def put_ends(angle: Array, alpha0: Array, end_angle: Array, tangent: Array, normal: Array) -> None:
+    """Write angle (ne, 2), tangent and normal (ne, 2, 2) of element ends."""
+    for e in range(alpha0.shape[0]):
+        for side in range(2):
+            end_angle[e, side] = angle[e + side] + alpha0[e, side]
+            cosine, sine = math.cos(end_angle[e, side]), math.sin(end_angle[e, side])
+            tangent[e, side, 0], tangent[e, side, 1] = cosine, sine
+            normal[e, side, 0], normal[e, side, 1] = -sine, cosine
+
+
+@njit
+def put_motion(tangent: Array, normal: Array, v: Array, a: Array, rate: Array, acceleration: Array) -> None:
+    """Write q' and q'' (ne, 4, 2) from rates and accelerations of the dofs (nn, 3)."""
+    for e in range(tangent.shape[0]):
+        for side in range(2):
+            w, alpha = v[e + side, 2], a[e + side, 2]
+            for i in range(2):
+                t, n = tangent[e, side, i], normal[e, side, i]
+                rate[e, 2 * side, i], acceleration[e, 2 * side, i] = v[e + side, i], a[e + side, i]
+                rate[e, 2 * side + 1, i] = w * n
+                acceleration[e, 2 * side + 1, i] = alpha * n - w**2 * t
+
+
+@njit
+def put_maps(
+    tangent: Array, normal: Array, v: Array, a: Array, shift_v: float, shift_a: float, first: Array, second: Array
+) -> None:
+    """Write the derivatives of t' and t'' by the angle, each (ne, 2, 2, 1), from angular rates v and a (nn, 1)."""
+    for e in range(tangent.shape[0]):
+        for side in range(2):
+            w, alpha = v[e + side, 0], a[e + side, 0]
+            for i in range(2):
+                t, n = tangent[e, side, i], normal[e, side, i]
+                first[e, side, i, 0] = shift_v * n - w * t
+                second[e, side, i, 0] = (shift_a - w**2) * n - (alpha + 2.0 * shift_v * w) * t
+
+
+@njit
+def put_geometric(tangent: Array, F: Array, G: Array) -> None:
+    """Write d(n . F)/dangle (ne, 2, 1, 1) at fixed F (ne, 2, 2): the normal turns against the tangent."""
+    for e in range(tangent.shape[0]):
+        for side in range(2):
+            G[e, side, 0, 0] = -tangent[e, side, 0] * F[e, side, 0] - tangent[e, side, 1] * F[e, side, 1]

@@ -1,0 +1,284 @@
+"""Node orientations (directors) of a line in space: a rotation matrix per node; see `directors`."""
+
+import math
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.compiled import njit
+from riser_soil.core.saved_state import Saved
+from riser_soil.riser import rotations
+from riser_soil.riser.vectors import (
+    Mat,
+    Vec,
+    cross,
+    dot,
+    isotropic,
+    matadd,
+    matmul,
+    matrix,
+    matscale,
+    matvec,
+    outer,
+    scale,
+    skew,
+    store,
+    sub,
+    transpose,
+    vector,
+)
+from riser_soil.riser.vectors import add as plus
+
+Maps = tuple[Array, Array, Array]
+
+
+class SpatialOrientation:
+    """Trial orientation of a line in space; see `SpatialFrames` for the arguments."""
+
+    def __init__(self, Rn: Array, Theta: Array, T0: Array) -> None:
+        self.Rn, self.Theta, self.T0 = Rn, Theta, T0
+        ne = len(T0)
+        self.R, self.H = np.empty_like(Rn), np.empty_like(Rn)
+        self.frame1, self.frame2, self.tangent = np.empty((ne, 3, 3)), np.empty((ne, 3, 3)), np.empty((ne, 2, 3))
+        self.P = np.empty((ne, 2, 3, 3))
+        orient(Rn, Theta, T0, self.R, self.H, self.frame1, self.frame2, self.tangent, self.P)
+
+    def at(self, node: int) -> Array:
+        """Orientation of a node: its frame (3, 3)."""
+        return self.R[node]
+
+    @property
+    def wound(self) -> BoolArray:
+        """Elements (ne,) whose ends turn by increments that differ by more than half a turn."""
+        return _wound(self.Theta)
+
+    def motion(self, v: Array, a: Array) -> tuple[Array, Array]:
+        """q' and q'' (ne, 4, 3) from rates and accelerations of the dofs (nn, 6), angular ones in body axes."""
+        rate, acceleration = (np.empty((len(self.T0), 4, 3)) for _ in range(2))
+        put_motion(self.R, self.T0, v, a, rate, acceleration)
+        return rate, acceleration
+
+    def in_space(self, moment: Array, nodes: IntArray) -> Array:
+        """Moments (n, 3) in global axes of those conjugate to the rotation increments of some nodes (n,)."""
+        return _in_space(self.Rn, self.Theta, moment, nodes)
+
+    def maps(self, v: Array, a: Array, shift_v: float, shift_a: float) -> Maps:
+        first, second = np.empty_like(self.P), np.empty_like(self.P)
+        put_maps(self.R, self.H, self.T0, v, a, shift_v, shift_a, first, second)
+        return self.P, first, second
+
+    def geometric(self, F: Array) -> Array:
+        """(ne, 2, 3, 3) from the residual conjugate to the tangents, F (ne, 2, 3)."""
+        G = np.empty((len(F), 2, 3, 3))
+        put_geometric(self.Rn, self.H, self.Theta, self.tangent, F, G)
+        return G
+
+    def state(self) -> Saved:
+        """Arrays from which `SpatialFrames.turn_of` restores the orientation, to the last bit."""
+        return {"R": self.Rn, "increment": self.Theta}
+
+
+class SpatialFrames:
+    """Committed node frames of a line in space.
+
+    R: (nn, 3, 3), identity in the unstressed configuration. T0: unstressed frames at element ends (ne, 2, 3,
+    3), their columns tangent and normals.
+    """
+
+    dofs = 3
+
+    def __init__(self, R: Array, T0: Array) -> None:
+        self.R, self.T0 = np.ascontiguousarray(R), np.ascontiguousarray(T0)
+
+    def turned(self, orientation: Array, rotation: Array) -> Array:
+        """An orientation turned by a rotation vector (3,) in global axes."""
+        return np.array(rotations.exp(vector(rotation))) @ orientation
+
+    def rotation(self, first: Array, second: Array) -> Array:
+        """Rotation vector (3,) in global axes, no longer than pi, from one orientation to another."""
+        return np.array(rotations.log(matrix(second @ first.T)))
+
+    def increment(self, node: int, orientation: Array) -> Array:
+        """Increment (3,), no longer than pi, that brings a node to an orientation."""
+        return np.array(rotations.log(matrix(self.R[node].T @ orientation)))
+
+    def in_body_axes(self, orientation: Array, rate: Array) -> Array:
+        """An angular rate (3,) in global axes as the dofs have it."""
+        return np.asarray(orientation.T @ rate)
+
+    def turn(self, increment: Array) -> SpatialOrientation:
+        return SpatialOrientation(self.R, np.ascontiguousarray(increment), self.T0)
+
+    def in_new_axes(self, moment: Array, increment: Array) -> Array:
+        """Moments (nn, 3) conjugate to the increment, as the next one has them: those in the turned body's axes."""
+        return _to_body_axes(moment, increment)
+
+    def commit(self, increment: Array) -> None:
+        """Keep R, brought back to a rotation to second order (round-off would pile up over many steps)."""
+        self.R = _turned(self.R, increment)
+
+    def turn_of(self, saved: Saved) -> SpatialOrientation:
+        return SpatialOrientation(saved["R"], saved["increment"], self.T0)
+
+    def state(self) -> Saved:
+        return {"R": self.R}
+
+    def restore(self, saved: Saved) -> None:
+        self.R = saved["R"]
+
+
+@njit
+def orient(
+    Rn: Array, Theta: Array, T0: Array, R: Array, H: Array, first: Array, second: Array, tangent: Array, P: Array
+) -> None:
+    """Write R and H of the nodes, frames and tangents of the elements' ends, and P."""
+    put_node_frames(Rn, Theta, R, H)
+    put_end_frames(R, T0, first, second, tangent)
+    for e in range(T0.shape[0]):
+        for side in range(2):
+            store(matscale(-1.0, matmul(skew(vector(tangent[e, side])), matrix(H[e + side]))), P[e, side])
+
+
+@njit
+def _in_space(Rn: Array, Theta: Array, moment: Array, nodes: IntArray) -> Array:
+    """H^-T m, that is Rn T_R^-1 m."""
+    out = np.empty((nodes.size, 3))
+    for i in range(nodes.size):
+        inverse = transpose(rotations.left_tangent_inverse(vector(Theta[nodes[i]])))
+        out[i, 0], out[i, 1], out[i, 2] = matvec(matrix(Rn[nodes[i]]), matvec(inverse, vector(moment[i])))
+    return out
+
+
+@njit
+def _turned(Rn: Array, Theta: Array) -> Array:
+    """R = Rn exp(Theta) (nn, 3, 3), rounded to 3 R/2 - R R' R/2."""
+    out = np.empty_like(Rn)
+    for i in range(Rn.shape[0]):
+        R = matmul(matrix(Rn[i]), rotations.exp(vector(Theta[i])))
+        square = matmul(R, transpose(R))
+        store(matadd(matscale(1.5, R), matscale(-0.5, matmul(square, R))), out[i])
+    return out
+
+
+@njit
+def _wound(Theta: Array) -> BoolArray:
+    wound = np.empty(Theta.shape[0] - 1, dtype=np.bool_)
+    for e in range(wound.size):
+        turn = sub(vector(Theta[e + 1]), vector(Theta[e]))
+        wound[e] = dot(turn, turn) > math.pi**2
+    return wound
+
+
+@njit
+def _to_body_axes(moment: Array, Theta: Array) -> Array:
+    """T_R^-1 and the turn to the new axes together are the transpose of T_R^-1, that is T_L^-1."""
+    out = np.empty_like(moment)
+    for i in range(moment.shape[0]):
+        turned = matvec(rotations.left_tangent_inverse(vector(Theta[i])), vector(moment[i]))
+        out[i, 0], out[i, 1], out[i, 2] = turned
+    return out
+
+
+@njit
+def node_frames(Rn: Array, Theta: Array) -> tuple[Array, Array]:
+    """R = Rn exp(Theta) and H = Rn T_L(Theta), which gives the spatial spin H dTheta; each (nn, 3, 3)."""
+    R, H = np.empty_like(Rn), np.empty_like(Rn)
+    put_node_frames(Rn, Theta, R, H)
+    return R, H
+
+
+@njit
+def put_node_frames(Rn: Array, Theta: Array, R: Array, H: Array) -> None:
+    """Write what `node_frames` returns."""
+    for i in range(Rn.shape[0]):
+        before, turn = matrix(Rn[i]), vector(Theta[i])
+        store(matmul(before, rotations.exp(turn)), R[i])
+        store(matmul(before, rotations.left_tangent(turn)), H[i])
+
+
+@njit
+def put_end_frames(R: Array, T0: Array, first: Array, second: Array, tangent: Array) -> None:
+    """Write frames T = R T0 at the first and second end of each element, each (ne, 3, 3), and tangents (ne, 2, 3)."""
+    for e in range(T0.shape[0]):
+        store(matmul(matrix(R[e]), matrix(T0[e, 0])), first[e])
+        store(matmul(matrix(R[e + 1]), matrix(T0[e, 1])), second[e])
+        for i in range(3):
+            tangent[e, 0, i], tangent[e, 1, i] = first[e, i, 0], second[e, i, 0]
+
+
+@njit
+def _double_cross(w: Vec, t0: Vec) -> Mat:
+    """d(w x (w x t0))/dw."""
+    return matadd(isotropic(dot(w, t0)), matadd(outer(w, t0), matscale(-2.0, outer(t0, w))))
+
+
+@njit
+def _end_rates(R: Mat, t0: Vec, w: Vec, alpha: Vec) -> tuple[Vec, Vec]:
+    """t' and t'' of one end from the angular velocity and acceleration in body axes."""
+    turning = cross(w, t0)
+    return matvec(R, turning), matvec(R, plus(cross(alpha, t0), cross(w, turning)))
+
+
+@njit
+def _t0(T0: Array) -> Vec:
+    """Unstressed tangent of an end with the frame T0 (3, 3)."""
+    return (T0[0, 0], T0[1, 0], T0[2, 0])
+
+
+@njit
+def put_motion(R: Array, T0: Array, v: Array, a: Array, rate: Array, acceleration: Array) -> None:
+    """Write q' and q'' (ne, 4, 3) from rates and accelerations of the dofs (nn, 6), angular ones in body axes."""
+    for e in range(T0.shape[0]):
+        for side in range(2):
+            n, at = e + side, 2 * side + 1
+            turned = _end_rates(matrix(R[n]), _t0(T0[e, side]), vector(v[n, 3:]), vector(a[n, 3:]))
+            rate[e, at, 0], rate[e, at, 1], rate[e, at, 2] = turned[0]
+            acceleration[e, at, 0], acceleration[e, at, 1], acceleration[e, at, 2] = turned[1]
+            for i in range(3):
+                rate[e, 2 * side, i], acceleration[e, 2 * side, i] = v[n, i], a[n, i]
+
+
+@njit
+def put_maps(
+    R: Array,
+    H: Array,
+    T0: Array,
+    v: Array,
+    a: Array,
+    shift_v: float,
+    shift_a: float,
+    first: Array,
+    second: Array,
+) -> None:
+    """Write d t'/dTheta = -[t'] H - shift_v R [t0] and d t''/dTheta = -[t''] H - shift_a R [t0] + shift_v R d(W x (W
+    x t0))/dW, each (ne, 2, 3, 3), from angular rates and accelerations v and a (nn, 3).
+    """
+    for e in range(T0.shape[0]):
+        for side in range(2):
+            frame, spin = matrix(R[e + side]), matrix(H[e + side])
+            t0, w = _t0(T0[e, side]), vector(v[e + side])
+            rate, acceleration = _end_rates(frame, t0, w, vector(a[e + side]))
+            lever = skew(scale(-1.0, t0))
+            turned = matmul(skew(scale(-1.0, rate)), spin)
+            store(matadd(turned, matscale(shift_v, matmul(frame, lever))), first[e, side])
+            turned = matmul(skew(scale(-1.0, acceleration)), spin)
+            change = matadd(matscale(shift_a, lever), matscale(shift_v, _double_cross(w, t0)))
+            store(matadd(turned, matmul(frame, change)), second[e, side])
+
+
+@njit
+def moment_stiffness(Rn: Mat, Theta: Vec, m: Vec) -> Mat:
+    """d(H^T m)/dTheta at fixed spatial moment m."""
+    return rotations.right_tangent_derivative(Theta, matvec(transpose(Rn), m))
+
+
+@njit
+def put_geometric(Rn: Array, H: Array, Theta: Array, t: Array, F: Array, G: Array) -> None:
+    """Write d(H^T (t x F))/dTheta (ne, 2, 3, 3) at fixed F (ne, 2, 3): H turns, and so does t."""
+    for e in range(t.shape[0]):
+        for side in range(2):
+            node, spin = e + side, matrix(H[e + side])
+            tangent, force = vector(t[e, side]), vector(F[e, side])
+            turning = matmul(transpose(spin), matmul(matmul(skew(force), skew(tangent)), spin))
+            lever = moment_stiffness(matrix(Rn[node]), vector(Theta[node]), cross(tangent, force))
+            store(matadd(turning, lever), G[e, side])

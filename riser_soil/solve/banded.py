@@ -1,0 +1,69 @@
+"""Banded LU factorisation with partial pivoting, for the compiled loop over a riser alone.
+
+A matrix of n rows with b entries on either side of its diagonal lies there by rows: entry (i, j) at ab[i, j - i + b],
+|j - i| <= b. Row exchanges fill b further places to the right. Below the last row there are b rows of zeros, so that
+all rows are alike and their loops have lengths that are known beforehand.
+Source: Golub & Van Loan, Matrix Computations (2013), 4.3.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import fixed, njit
+from riser_soil.riser.hermite import Size
+
+HUGE = 1e300  # a pivot beyond it is no number to divide by
+
+
+def room(n: int, b: int) -> tuple[Array, Size]:
+    """Room for a matrix (n + b, 3 b + 1), all zero, and its band as `factorise` takes it."""
+    return np.zeros((n + b, 3 * b + 1)), fixed(b)
+
+
+@njit
+def factorise(ab: Array, pivots: IntArray, B: Size) -> bool:
+    """Factorise a matrix in place; whether it is regular. pivots (n,): the rows that were taken as pivots'; B: see
+    `room`.
+    """
+    b = len(B)
+    for k in range(pivots.size):
+        p, largest = k, abs(ab[k, b])
+        for i in range(1, len(B) + 1):
+            if abs(ab[k + i, b - i]) > largest:
+                p, largest = k + i, abs(ab[k + i, b - i])
+        if not 0.0 < largest < HUGE:
+            return False
+        pivots[k] = p
+        pivot = ab[k, b:]
+        if p != k:
+            other = ab[p, b - (p - k) :]
+            for j in range(2 * len(B) + 1):
+                pivot[j], other[j] = other[j], pivot[j]
+        inverse = 1.0 / pivot[0]
+        for i in range(1, len(B) + 1):
+            row = ab[k + i, b - i :]
+            factor = row[0] * inverse
+            row[0] = factor
+            if factor != 0.0:
+                for j in range(1, 2 * len(B) + 1):
+                    row[j] -= factor * pivot[j]
+    return True
+
+
+@njit
+def solve(ab: Array, pivots: IntArray, x: Array, B: Size) -> None:
+    """Solve with the factors of `factorise`: the right-hand side x (n,) becomes the solution."""
+    n, b = pivots.size, len(B)
+    for k in range(n):
+        p = pivots[k]
+        if p != k:
+            x[k], x[p] = x[p], x[k]
+        for i in range(1, min(b, n - 1 - k) + 1):
+            x[k + i] -= ab[k + i, b - i] * x[k]
+    for k in range(n - 1, -1, -1):
+        total = x[k]
+        for j in range(1, min(2 * b, n - 1 - k) + 1):
+            total -= ab[k, b + j] * x[k + j]
+        x[k] = total / ab[k, b]

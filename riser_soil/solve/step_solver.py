@@ -1,0 +1,43 @@
+"""The solver of a stage's steps: PETSc's SNES, or for the time steps of a riser alone a compiled loop."""
+
+from __future__ import annotations
+
+from typing import Literal, Protocol
+
+from riser_soil.core.part import Energy, State, Work
+from riser_soil.core.system import System
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.riser_newton import RiserNewton, runs_compiled
+from riser_soil.solve.solution import NewtonSettings, Solution, Step
+from riser_soil.solve.time_scheme import Scheme
+
+NewtonKind = Literal["snes", "compiled"]
+
+
+class StepSolver(Protocol):
+    """Newton's method for the steps of a stage; see `Newton`."""
+
+    settings: NewtonSettings
+    iterations: int
+    rests: bool
+
+    def solve(self, step: Step) -> Solution: ...
+
+    def turned_over(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
+        """Energy stored at the end of the step solved last, from the accepted state `before`, and what each part turned
+        over in it, those of one name together; collective.
+        """
+        ...
+
+    def require_stable(self, solution: Solution) -> None: ...
+
+    def renew(self) -> None: ...
+
+    def destroy(self) -> None: ...
+
+
+def solver_of(system: System, scheme: Scheme, settings: NewtonSettings, kind: NewtonKind) -> StepSolver:
+    """SNES, or where it is asked for and can be, the compiled loop."""
+    if kind == "compiled" and runs_compiled(system, scheme):
+        return RiserNewton(system, settings)
+    return Newton(system, settings)

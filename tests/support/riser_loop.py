@@ -1,0 +1,126 @@
+"""The compiled loop over a riser alone beside the methods of its parts, and beside SNES."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from benchmarks.stage import TimedStage, last_stage
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
+from riser_soil.core.held import Held, hold
+from riser_soil.core.part import Energy, Forces, State
+from riser_soil.core.system import Timer
+from riser_soil.riser.configuration import Base, base_of
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.riser_loop import HeldRiser, StepNumbers, account, put_forces, put_tangent
+from riser_soil.solve.riser_newton import RiserNewton, riser_of
+from tests.support.dense_chain import tangent
+from tests.support.differences import WEIGHTS, error
+from tests.support.sample_line import Sample, sample
+
+SCENES = Path(__file__).parent.parent / "scenes"
+
+
+def all_parts(at: Sample) -> list[Any]:
+    """One of each kind that has kernels."""
+    makers: list[Callable[[Sample], Any]] = [Sample.beam, Sample.inertia, Sample.rotary, Sample.damping]
+    makers += [Sample.morison, Sample.turned_spring, Sample.attachments, Sample.forces]
+    return [make(at) for make in makers] + ([at.moments()] if at.line.dimension == 2 else [])
+
+
+@njit
+def put_all(held: Held, base: Base, step: StepNumbers) -> None:
+    """Forces and tangent of the parts at the increments of a step, its rates taken as they are."""
+    riser: HeldRiser = held.value
+    put_forces(riser, base, step.u, step.v, step.a)
+    put_tangent(riser, step)
+
+
+class Compiled:
+    """Parts of a line in the loop, evaluated at a state."""
+
+    def __init__(self, at: Sample, parts: list[Any], state: State) -> None:
+        line = at.line
+        free, one = np.zeros(line.size, dtype=bool), np.ones(line.size)
+        self.riser, self.base = riser_of(line, parts, free, one), base_of(line)
+        self.held = hold(self.riser)
+        for part in parts:
+            part.renew_numbers(state.t)
+        u, v, a = (values.reshape(line.nodes, line.ndof) for values in (state.u, state.v, state.a))
+        weights = WEIGHTS.inertia, WEIGHTS.force, WEIGHTS.shift_v, WEIGHTS.shift_a
+        put_all(self.held, self.base, StepNumbers(*weights, u, v, a, v, a, np.zeros_like(u)))
+
+    def account(self, before: State) -> tuple[Energy, Array]:
+        energy, rows = np.empty(3), np.empty((len(self.riser.turning), 4))
+        rates = (values.reshape(self.riser.fixed.shape) for values in (before.v, before.a))
+        account(self.held, self.base, *rates, energy, rows)
+        return Energy(*energy), rows
+
+    def dense(self) -> Array:
+        """The matrix (n, n) that was written to the band."""
+        n, b = self.riser.fixed.size, len(self.riser.room.band)
+        K = np.zeros((n, n))
+        for i in range(n):
+            for j in range(max(0, i - b), min(n, i + b + 1)):
+                K[i, j] = self.riser.room.ab[i, j - i + b]
+        return K
+
+
+PIPE = "line_types.flexible."
+IN_SPACE = ("dimension=3", "riser.segments.0.elements=12", PIPE + "GJ=2.0e4", "solver.tolerance=1e-9")
+CASES = {
+    "surge in a plane": ("catenary", ("dimension=2", "riser.segments.0.elements=15")),
+    "surge in space, damped": ("catenary", (*IN_SPACE, PIPE + "damping={ratio: 0.02, frequency: 1.0}")),
+    "hose on a floor": ("tank", ("riser.segments.0.elements=40",)),
+}
+
+
+def walked(case: str, newton: str, steps: int, *more: str) -> TimedStage:
+    scene, overrides = CASES[case]
+    stage = last_stage(SCENES / f"{scene}.yaml", (*overrides, f"solver.newton={newton}", *more), Timer.new())
+    stage.walk(steps)
+    return stage
+
+
+def require_kernels_of_parts(dimension: int) -> None:
+    """Forces, tangent, energy and work of the loop are those of the parts' methods."""
+    at = sample(dimension)
+    parts, before, state = all_parts(at), at.state(2), at.state(1)
+    compiled, expected = Compiled(at, parts, state), Forces.zeros(state.u.size)
+    for part in parts:
+        part.residual(state, expected)
+    for group in ("inertia", "force", "end"):
+        values = getattr(expected, group)
+        found = getattr(compiled.riser.forces, group).ravel()
+        assert np.abs(found - values).max() <= 1e-12 * np.abs(expected.force).max()
+    assert error(compiled.dense(), tangent(parts, state, WEIGHTS)) < 1e-12
+    begun = State(before.t, 0.0 * before.u, before.v, before.a)
+    energy, (morison,) = compiled.account(begun)
+    stored: Energy = sum((part.energy(state) for part in parts), Energy())
+    for name, joules in vars(stored).items():
+        assert getattr(energy, name) == pytest.approx(joules, rel=1e-12)
+    turned = next(part for part in parts if part.name == "morison").work(begun, state)
+    np.testing.assert_allclose(morison, [turned.dissipated, turned.external, turned.inertial, 0.0], rtol=1e-10)
+
+
+def require_steps_of_snes(case: str) -> None:
+    """Iterations, states and energy turned over of a scene's steps by the loop are those by SNES."""
+    compiled, snes = (walked(case, newton, 25) for newton in ("compiled", "snes"))
+    assert isinstance(compiled.newton, RiserNewton)
+    assert isinstance(snes.newton, Newton)
+    assert compiled.iterations == snes.iterations
+    place, expected_place = (stage.assembly.line.positions3(stage.stepper.before) for stage in (compiled, snes))
+    np.testing.assert_allclose(place, expected_place, rtol=0.0, atol=1e-9)
+    found, expected = compiled.stepper, snes.stepper
+    np.testing.assert_allclose(found.before.v, expected.before.v, rtol=0.0, atol=1e-7)
+    assert found.energy.total == pytest.approx(expected.energy.total, rel=1e-9)
+    assert compiled._taken.turned.keys() == snes._taken.turned.keys()
+    for name, work in snes._taken.turned.items():
+        mine = [*vars(compiled._taken.turned[name]).values()]
+        np.testing.assert_allclose(mine, [*vars(work).values()], rtol=1e-6, atol=1e-6)
+    assert compiled._taken.braking == pytest.approx(snes._taken.braking, rel=1e-6)

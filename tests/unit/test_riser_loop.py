@@ -1,0 +1,85 @@
+"""The compiled loop over a riser alone: its kernels are those of the parts, and its steps are those of SNES.
+
+`tests/verification/test_riser_loop.py` has the same in space and on a floor, which take longer to compile.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.linalg import solve_banded
+
+from benchmarks.stage import last_stage
+from riser_soil.core.part import Part
+from riser_soil.core.system import Timer
+from riser_soil.errors import SolveError
+from riser_soil.riser.line_part import LinePart
+from riser_soil.solve import banded
+from riser_soil.solve.newton import Newton
+from tests.support import sample_water
+from tests.support.riser_loop import CASES, SCENES, require_kernels_of_parts, require_steps_of_snes, walked
+from tests.support.sample_line import sample
+
+
+def test_kernels_in_a_plane_are_those_of_the_parts() -> None:
+    require_kernels_of_parts(2)
+
+
+def test_steps_in_a_plane_are_those_of_snes() -> None:
+    require_steps_of_snes("surge in a plane")
+
+
+@pytest.mark.parametrize("name", ["current", "waves", "half_out", "modules", "floating"])
+def test_parts_without_kernels_say_so(name: str) -> None:
+    part: Part = getattr(sample_water, name)(sample(2))
+    assert isinstance(part, LinePart)
+    assert part.numbers() is None
+
+
+def test_moments_in_space_have_no_kernels() -> None:
+    assert sample(3).moments().numbers() is None
+
+
+@pytest.mark.parametrize(("n", "b"), [(3, 2), (9, 2), (40, 5), (66, 11)])
+def test_banded_factors_solve(n: int, b: int) -> None:
+    rng = np.random.default_rng(n)
+    ab, band = banded.room(n, b)
+    columns = np.zeros((2 * b + 1, n))  # as scipy has them: entry (i, j) at [b + i - j, j]
+    for i in range(n):
+        for j in range(max(0, i - b), min(n, i + b + 1)):
+            ab[i, j - i + b] = columns[b + i - j, j] = 0.0 if i == j else rng.normal()  # pivots must be exchanged
+    load, pivots = rng.normal(size=n), np.zeros(n, dtype=np.int64)
+    expected = solve_banded((b, b), columns, load)
+    assert banded.factorise(ab, pivots, band)
+    banded.solve(ab, pivots, load, band)
+    np.testing.assert_allclose(load, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("wrong", [0.0, np.nan, np.inf])
+def test_a_singular_matrix_is_told(wrong: float) -> None:
+    ab, band = banded.room(3, 1)
+    ab[:3, 1] = 1.0
+    ab[1, 1] = wrong
+    assert not banded.factorise(ab, np.zeros(3, dtype=np.int64), band)
+
+
+@pytest.mark.parametrize(
+    "override",
+    [
+        "stages.1.scheme={midpoint: {}}",
+        "water.current={profile: [[-100.0, 0.5, 0.0], [0.0, 0.5, 0.0]]}",
+    ],
+)
+def test_other_scenes_are_left_to_snes(override: str) -> None:
+    scene, overrides = CASES["surge in a plane"]
+    asked = *overrides, override, "solver.newton=compiled"
+    assert isinstance(last_stage(SCENES / f"{scene}.yaml", asked, Timer.new()).newton, Newton)
+
+
+def test_a_step_that_fails_says_why_as_snes_does() -> None:
+    told = []
+    for newton in ("compiled", "snes"):
+        with pytest.raises(SolveError, match="no convergence") as failure:
+            walked("surge in a plane", newton, 200, "solver.max_iterations=1", "solver.tolerance=1e-12")
+        told.append(str(failure.value))
+    assert told[0] == told[1]
