@@ -6,6 +6,8 @@ import pytest
 
 from tests.support.riser_loop import CASES, require_kernels_of_parts, require_steps_of_snes
 
+pytestmark = pytest.mark.verify
+
 
 def test_kernels_in_space_are_those_of_the_parts() -> None:
     require_kernels_of_parts(3)
