@@ -32,7 +32,7 @@ class TimedStage:
         solver = assembly.scene.solver
         self.system = System(assembly.comm, assembly.begin(stage), clock)
         settings = NewtonSettings(solver.tolerance, solver.max_iterations, assembly.scales.force_floor)
-        self.newton = solver_of(self.system, scheme_of(stage), settings, solver.newton)
+        self.newton = solver_of(self.system, scheme_of(stage), settings, solver.newton == "compiled")
         self.stepper = TimeStepper(self.system, self.newton, scheme_of(stage), replace(before, t=0.0))
         self.control = steps_of(assembly, stage, self.stepper)
         self.iterations, self.seconds = 0, 0.0

@@ -126,7 +126,7 @@ def _take(
     if not isinstance(begin, State):
         _restore(system, begin)
     settings = replace(_settings(assembly), linear_start=_starts_at_rest(assembly, stage))
-    newton = solver_of(system, scheme_of(stage), settings, assembly.scene.solver.newton)
+    newton = solver_of(system, scheme_of(stage), settings, assembly.scene.solver.newton == "compiled")
     try:
         run = _begin_run(assembly, stage, system, newton, begin, observer)
         return _walk(run, checkpoint)

@@ -8,6 +8,7 @@ from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.system import System
+from riser_soil.solve.solution import largest_at
 
 
 def reason_name(reason: int) -> str:
@@ -27,4 +28,4 @@ def place_of_largest(system: System, residual: Array, first: int) -> str:
     k = int(np.argmax(values)) if len(values) else -1
     mine = (float(values[k]), first + k) if k >= 0 else (-1.0, -1)
     worst, row = max(system.comm.allgather(mine))
-    return f"the largest residual, {worst:.3g} N, sits at the {system.describe(row)}"
+    return largest_at(worst, system.describe(row))

@@ -18,7 +18,7 @@ from riser_soil.solve.failed_step import place_of_largest, reason_name
 from riser_soil.solve.line_search import step_length
 from riser_soil.solve.linear_solver import PREFIX, complaint, defaults, factorise_directly
 from riser_soil.solve.round_off import RoundOff
-from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError
+from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError, told
 from riser_soil.solve.stability import prescribe_free_turns, unstable_modes
 from riser_soil.solve.time_scheme import Static
 
@@ -338,10 +338,9 @@ class Newton:
 
     def _reason(self, reason: int, complained: str = "") -> str:
         """Why the step did not converge: PETSc's reason, or what the linear solver has complained of."""
-        norms = ", ".join(f"{n:.3g}" for n in self._norms[-3:])
         why = complained or reason_name(reason)
         place = place_of_largest(self.system, self._weighed(), self._f.getOwnershipRange()[0])
-        return f"{why} after {self._taken} iterations (last residual norms {norms} N); {place}"
+        return told(why, self._norms, place)
 
     def _weighed(self) -> Array:
         """This rank's residual [N], moments over the lever."""

@@ -17,7 +17,7 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
 from riser_soil.riser.part_kernels import add_work, forces_of
 from riser_soil.solve import banded, riser_loop
-from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step
+from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, largest_at, told
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
 
 WHY = {
@@ -123,17 +123,15 @@ class RiserNewton:
         return Forces(*(group.ravel().copy() for group in (forces.inertia, forces.force, forces.end)))
 
     def _reason(self, outcome: int, norms: list[float]) -> str:
-        last = ", ".join(f"{norm:.3g}" for norm in norms[-3:])
-        return f"{WHY[outcome]} after {len(norms) - 1} iterations (last residual norms {last} N); " + self._place(
-            np.where(self.system.prescribed, 0.0, self._riser.residual.ravel()) / self.system.levers
-        )
+        residual = np.where(self.system.prescribed, 0.0, self._riser.residual.ravel()) / self.system.levers
+        return told(WHY[outcome], norms, self._place(residual))
 
     def _place(self, residual: Array) -> str:
         """The largest residual, in words."""
         if not np.isfinite(residual).all():
             return "the residual is not finite"
         k = int(np.argmax(np.abs(residual)))
-        return f"the largest residual, {abs(residual[k]):.3g} N, sits at the {self._line.describe(k)}"
+        return largest_at(abs(residual[k]), self._line.describe(k))
 
     def require_stable(self, solution: Solution) -> None:
         """Time steps need not be stable equilibria."""

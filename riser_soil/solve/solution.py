@@ -23,6 +23,17 @@ class UnstableError(NotConvergedError):
         self.solution = solution
 
 
+def told(why: str, norms: list[float], place: str) -> str:
+    """Why a step failed, the last of its residual's norms [N], and where the residual sits."""
+    last = ", ".join(f"{norm:.3g}" for norm in norms[-3:])
+    return f"{why} after {max(len(norms) - 1, 0)} iterations (last residual norms {last} N); {place}"
+
+
+def largest_at(residual: float, place: str) -> str:
+    """The largest residual [N] and its place, in words."""
+    return f"the largest residual, {residual:.3g} N, sits at the {place}"
+
+
 @dataclass(frozen=True)
 class NewtonSettings:
     """tolerance: of the residual's norm, relative to the norm of the forces in play, moments over the

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, Protocol
+from typing import Protocol
 
 from riser_soil.core.part import Energy, State, Work
 from riser_soil.core.system import System
@@ -10,8 +10,6 @@ from riser_soil.solve.newton import Newton
 from riser_soil.solve.riser_newton import RiserNewton, runs_compiled
 from riser_soil.solve.solution import NewtonSettings, Solution, Step
 from riser_soil.solve.time_scheme import Scheme
-
-NewtonKind = Literal["snes", "compiled"]
 
 
 class StepSolver(Protocol):
@@ -36,8 +34,8 @@ class StepSolver(Protocol):
     def destroy(self) -> None: ...
 
 
-def solver_of(system: System, scheme: Scheme, settings: NewtonSettings, kind: NewtonKind) -> StepSolver:
+def solver_of(system: System, scheme: Scheme, settings: NewtonSettings, compiled: bool) -> StepSolver:
     """SNES, or where it is asked for and can be, the compiled loop."""
-    if kind == "compiled" and runs_compiled(system, scheme):
+    if compiled and runs_compiled(system, scheme):
         return RiserNewton(system, settings)
     return Newton(system, settings)
