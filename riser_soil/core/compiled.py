@@ -19,8 +19,8 @@ import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterable
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +33,7 @@ NAME = PACKAGE.name
 KEPT = 4  # cache folders of other versions, the latest ones, for those who go back and forth
 IN_USE = 3600.0  # s since its last start within which a run of another version may still need its folder
 ROOM = 1 << 25  # bytes that all kernels need, and some more
+OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "arcp"}}
 ANNOUNCEMENT = "compiling kernels (once, about 20 s)"
 
 
@@ -41,12 +42,18 @@ def njit(function: Callable[..., object], apart: bool = False) -> Any:
 
     apart: not inlined where others call it, so that those that call many are compiled in a bearable time.
     """
-    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(FOLDER)
-    options: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "arcp"}, "forceinline": not apart}
-    try:
-        made = numba.njit(**options)(function)
+    with caching():
+        made = numba.njit(**OPTIONS, forceinline=not apart)(function)
         made._cache = KernelCache(function)
         return made
+
+
+@contextmanager
+def caching() -> Iterator[None]:
+    """Functions that are made meanwhile have their cache in this version's folder."""
+    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(FOLDER)
+    try:
+        yield
     finally:
         numba.config.CACHE_DIR = before
 

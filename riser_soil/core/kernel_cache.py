@@ -30,8 +30,20 @@ class KernelCache(FunctionCache):
         super().save_overload(sig, data)
 
     def _choose_index(self, sig: Any) -> None:
-        base = "-".join([self._impl.filename_base, *_mark(set(_named(sig)))])
+        base = "-".join([self._impl.filename_base, *_marks(sig)])
         self._cache_file = IndexDataCacheFile(self._cache_path, base, self._impl.locator.get_source_stamp())
+
+
+class EntryCache(FunctionCache):
+    """Cache of a function whose name says all of what it depends on, see `mark`."""
+
+    def _index_key(self, sig: Any, codegen: Any) -> Any:
+        return codegen.magic_tuple()
+
+
+def mark(kinds: Iterable[Any]) -> str:
+    """A word for types of numba; another one where a source outside the package is edited."""
+    return hashlib.sha256(" ".join([*map(str, kinds), *_marks(kinds)]).encode()).hexdigest()[:12]
 
 
 def _named(types: Iterable[Any]) -> Iterator[type]:
@@ -43,9 +55,9 @@ def _named(types: Iterable[Any]) -> Iterator[type]:
         yield from _named(getattr(given, "field_dict", {}).values())
 
 
-def _mark(classes: set[type]) -> list[str]:
-    """A word for a set of classes, none for the empty one; another one where a source outside the package is edited."""
-    told = sorted(f"{each.__module__}.{each.__qualname__} {_source(each)}" for each in classes)
+def _marks(kinds: Iterable[Any]) -> list[str]:
+    """A word for the NamedTuples among types, if there are any; another one where their source is edited."""
+    told = sorted(f"{each.__module__}.{each.__qualname__} {_source(each)}" for each in set(_named(kinds)))
     return [hashlib.sha256("\n".join(told).encode()).hexdigest()[:12]] if told else []
 
 

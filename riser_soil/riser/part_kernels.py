@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.by_type import by_type, each
+from riser_soil.core.by_type import by_type
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.line import Line
 
@@ -60,7 +60,3 @@ def add_work(part: tuple, first: Configuration, last: Configuration, work: Array
     """Add what a part turns over in a step between two configurations to work (4,): dissipated, external, inertial, by
     the scheme, as in `core.part.Work` [J].
     """
-
-
-add_forces_of_each, add_tangent_of_each, add_energy_of_each = map(each, (add_forces, add_tangent, add_energy))
-add_work_of_each = each(add_work, last_by_part=True)

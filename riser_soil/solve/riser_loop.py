@@ -1,7 +1,8 @@
-"""Newton's method for a time step of a riser alone, as one compiled loop over its parts.
+"""Newton's method for a time step of a riser alone, as one compiled loop.
 
-The same equations, weights and tests as in `newton`, which solves whatever has more than a riser. `part_kernels` says
-what the loop asks of the parts.
+The same equations, weights and tests as in `newton`, which solves whatever has more than a riser. What it calls are
+kernels bound to their arguments (`core.bound`): those here, which every riser has, and those of its parts, see
+`part_kernels`. So it is compiled once for all risers.
 """
 
 from __future__ import annotations
@@ -10,59 +11,16 @@ import math
 from typing import NamedTuple
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.core.compiled import inlined, njit
-from riser_soil.core.held import Held
-from riser_soil.riser.configuration import Base, Configuration, Maps, place, put_maps, put_turning
+from riser_soil.core.bound import Calls, call_each
+from riser_soil.core.compiled import njit
+from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size, add_geometric, collect_nodal
-from riser_soil.riser.part_kernels import (
-    LineForces,
-    LineWeights,
-    add_energy_of_each,
-    add_forces_of_each,
-    add_tangent_of_each,
-    add_work_of_each,
-)
+from riser_soil.riser.part_kernels import LineForces, LineWeights
 from riser_soil.solve import banded
 from riser_soil.solve.round_off import EPS, STALLED, STILL
 
-CONVERGED, NOT_FINITE, SINGULAR, DIVERGED, TOO_MANY = range(5)
+GOING_ON, CONVERGED, NOT_FINITE, SINGULAR, DIVERGED, TOO_MANY = range(6)
 DIVERGES = 1e6  # times the first norm
-
-
-class TangentRoom(NamedTuple):
-    """Room for the tangent: maps; element matrices K (ne, n, n); what is conjugate to the tangents (ne, 2, d), and its
-    turning (ne, 2, r, r); the matrix as in `banded`, its pivots and its band. nothing (nn, ndof): zero.
-    """
-
-    maps: Maps
-    K: Array
-    conjugate: Array
-    turning: Array
-    ab: Array
-    pivots: IntArray
-    band: Size
-    nothing: Array
-
-
-class HeldRiser(NamedTuple):
-    """A riser alone, held for a stage: the numbers of its parts, and of those that turn over energy; room for trial
-    states and for the tangent.
-
-    at: configuration evaluated last; first: where a step begins. Arrays (nn, ndof): fixed and free dofs; levers;
-    residual [N] of the last trial; increments of the last iteration, for `RoundOff`.
-    """
-
-    parts: tuple
-    turning: tuple
-    at: Configuration
-    first: Configuration
-    forces: LineForces
-    room: TangentRoom
-    fixed: BoolArray
-    free: BoolArray
-    levers: Array
-    residual: Array
-    last: Array
 
 
 class StepNumbers(NamedTuple):
@@ -70,16 +28,36 @@ class StepNumbers(NamedTuple):
     from v0 and a0 by the shifts, but for what is fixed, whose rates are in v0 and a0. past: see `time_scheme`.
     """
 
-    inertia: float
-    force: float
-    shift_v: float
-    shift_a: float
     u: Array
     v0: Array
     a0: Array
     v: Array
     a: Array
     past: Array
+
+
+class Dofs(NamedTuple):
+    """What is known of the dofs, (nn, ndof): whether they are fixed; levers [m] of moments; residual [N] of the last
+    trial; increments of the last iteration [m], for `RoundOff`.
+    """
+
+    fixed: BoolArray
+    levers: Array
+    residual: Array
+    last: Array
+
+
+class TangentRoom(NamedTuple):
+    """Room for the tangent: element matrices K (ne, n, n); what is conjugate to the tangents (ne, 2, d), and its
+    turning (ne, 2, r, r); the matrix as in `banded`, its pivots and its band.
+    """
+
+    K: Array
+    conjugate: Array
+    turning: Array
+    ab: Array
+    pivots: IntArray
+    band: Size
 
 
 class StopLimits(NamedTuple):
@@ -90,87 +68,157 @@ class StopLimits(NamedTuple):
     reuse: float
     most: int
     least: int
-    answers_load: bool
+    answers_load: int
     size: float
 
 
-@inlined
-def _evaluate(riser: HeldRiser, base: Base, step: StepNumbers) -> None:
-    """Forces and residual of the trial increments."""
-    _follow(step.u, step.v0, step.shift_v, riser.fixed, step.v)
-    _follow(step.u, step.a0, step.shift_a, riser.fixed, step.a)
-    put_forces(riser, base, step.u, step.v, step.a)
-    weights = LineWeights(step.inertia, step.force)
-    _combine(riser.forces.inertia, riser.forces.force, riser.forces.end, step.past, weights, riser.residual)
+class Progress(NamedTuple):
+    """norms (most + 1,): of the residuals [N] so far; ending (2,): the outcome, and the iterations taken."""
+
+    norms: Array
+    ending: IntArray
 
 
 @njit
-def _follow(u: Array, first: Array, shift: float, fixed: BoolArray, out: Array) -> None:
-    """Write rates that follow the increments by a shift, but for those of fixed dofs."""
-    for n in range(u.shape[0]):
-        for i in range(u.shape[1]):
-            out[n, i] = first[n, i] + (0.0 if fixed[n, i] else shift * u[n, i])
+def solve_step(evaluate: Calls, renew: Calls, improve: Calls, reuse: Array, progress: Progress) -> None:
+    """Solve a step. Kernels to call at each trial, for a new tangent, and for its answer to the residual; reuse (1,):
+    a tangent serves again after an iteration that leaves less than this share of the residual.
+    """
+    norms, ending = progress
+    ending[0], ending[1] = GOING_ON, 0
+    while True:
+        call_each(evaluate)
+        taken = ending[1]
+        if ending[0] == GOING_ON and (taken == 0 or not norms[taken] < reuse[0] * norms[taken - 1]):
+            call_each(renew)
+        if ending[0] != GOING_ON:
+            return
+        call_each(improve)
+        ending[1] += 1
 
 
 @njit
-def _combine(inertia: Array, force: Array, end: Array, past: Array, weights: LineWeights, residual: Array) -> None:
-    """Write the residual of the weighted groups."""
-    for n in range(residual.shape[0]):
-        for i in range(residual.shape[1]):
-            bulk = weights.inertia * inertia[n, i] + weights.force * force[n, i]
-            residual[n, i] = bulk + end[n, i] + past[n, i]
-
-
-@inlined
-def put_forces(riser: HeldRiser, base: Base, u: Array, v: Array, a: Array) -> None:
-    """Write the line's configuration and forces after increments u, with rates v and a (nn, ndof)."""
-    at, forces = riser.at, riser.forces
-    place(at, base, u, v, a)
-    _clear(forces)
-    add_forces_of_each(riser.parts, at, forces)
-    collect_nodal(forces.inertia_q, at.P, forces.inertia, at.D, at.R)
-    collect_nodal(forces.force_q, at.P, forces.force, at.D, at.R)
-    collect_nodal(forces.end_q, at.P, forces.end, at.D, at.R)
+def follow(step: StepNumbers, maps: Maps, dofs: Dofs) -> None:
+    """Write the rates that follow the increments, but for those of fixed dofs."""
+    for n in range(step.u.shape[0]):
+        for i in range(step.u.shape[1]):
+            moved = 0.0 if dofs.fixed[n, i] else step.u[n, i]
+            step.v[n, i] = step.v0[n, i] + maps.shift_v * moved
+            step.a[n, i] = step.a0[n, i] + maps.shift_a * moved
 
 
 @njit
-def _clear(forces: LineForces) -> None:
+def clear(forces: LineForces) -> None:
+    """Write zero."""
     for conjugate in (forces.inertia_q, forces.force_q, forces.end_q):
         conjugate[:] = 0.0
     for nodal in (forces.inertia, forces.force, forces.end):
         nodal[:] = 0.0
 
 
-@inlined
-def put_tangent(riser: HeldRiser, step: StepNumbers) -> None:
-    """The tangent at the configuration that was evaluated last, into the banded matrix."""
-    at, forces, room = riser.at, riser.forces, riser.room
-    K = room.K
-    weights = LineWeights(step.inertia, step.force)
-    maps = Maps(room.maps.rate, room.maps.acceleration, step.shift_v, step.shift_a)
-    K[:] = 0.0
-    put_maps(at, maps)
-    add_tangent_of_each(riser.parts, at, maps, weights, K)
-    _weigh(forces, weights, room.conjugate)
-    put_turning(at, room.conjugate, room.turning)
-    add_geometric(K, 1.0, room.turning, len(at.D))
-    _fill(K, riser.fixed, room.ab)
+@njit
+def collect(at: Configuration, forces: LineForces) -> None:
+    """Add what is conjugate to q to what is conjugate to the dofs."""
+    collect_nodal(forces.inertia_q, at.P, forces.inertia, at.D, at.R)
+    collect_nodal(forces.force_q, at.P, forces.force, at.D, at.R)
+    collect_nodal(forces.end_q, at.P, forces.end, at.D, at.R)
 
 
 @njit
-def _weigh(forces: LineForces, weights: LineWeights, conjugate: Array) -> None:
-    """Write what is conjugate to the tangents of the elements' ends (ne, 2, d), groups weighted."""
-    for e in range(conjugate.shape[0]):
+def combine(forces: LineForces, step: StepNumbers, weights: LineWeights, dofs: Dofs) -> None:
+    """Write the residual of the weighted groups."""
+    for n in range(dofs.residual.shape[0]):
+        for i in range(dofs.residual.shape[1]):
+            bulk = weights.inertia * forces.inertia[n, i] + weights.force * forces.force[n, i]
+            dofs.residual[n, i] = bulk + forces.end[n, i] + step.past[n, i]
+
+
+@njit
+def judge(forces: LineForces, step: StepNumbers, dofs: Dofs, limits: StopLimits, progress: Progress) -> None:
+    """Write the norm of the residual and what follows from it."""
+    norms, ending = progress
+    taken = ending[1]
+    norm = _norm(dofs)
+    norms[taken] = norm
+    if not math.isfinite(norm):
+        ending[0] = NOT_FINITE
+        return
+    if taken >= limits.least:
+        small = norm <= limits.floor and (taken > 0 or limits.answers_load > 0)
+        small = small or norm <= limits.tolerance * _scale(forces, dofs)
+        if small or _at_round_off(step.u, dofs, limits, norms, taken):
+            ending[0] = CONVERGED
+            return
+        if taken >= 4 and norm > DIVERGES * norms[0]:
+            ending[0] = DIVERGED
+            return
+    if taken >= limits.most:
+        ending[0] = TOO_MANY
+
+
+@njit
+def _norm(dofs: Dofs) -> float:
+    """Norm [N] of the residual of what is free, moments over the lever."""
+    square = 0.0
+    for n in range(dofs.fixed.shape[0]):
+        for i in range(dofs.fixed.shape[1]):
+            if not dofs.fixed[n, i]:
+                square += (dofs.residual[n, i] / dofs.levers[n, i]) ** 2
+    return math.sqrt(square)
+
+
+@njit
+def _scale(forces: LineForces, dofs: Dofs) -> float:
+    """Norm of the forces in play: reactions, inertia, contact."""
+    reactions, moving, contact = 0.0, 0.0, 0.0
+    for n in range(dofs.fixed.shape[0]):
+        for i in range(dofs.fixed.shape[1]):
+            inertia, end = forces.inertia[n, i] / dofs.levers[n, i], forces.end[n, i] / dofs.levers[n, i]
+            moving += inertia**2
+            contact += end**2
+            if dofs.fixed[n, i]:
+                reactions += (inertia + forces.force[n, i] / dofs.levers[n, i] + end) ** 2
+    return math.sqrt(max(reactions, moving, contact))
+
+
+@njit
+def _at_round_off(u: Array, dofs: Dofs, limits: StopLimits, norms: Array, taken: int) -> bool:
+    """See `RoundOff`."""
+    moved, whole = 0.0, 0.0
+    for n in range(u.shape[0]):
+        for i in range(u.shape[1]):
+            if not dofs.fixed[n, i]:
+                x = u[n, i] * dofs.levers[n, i]
+                moved += (x - dofs.last[n, i]) ** 2
+                whole += x * x
+                dofs.last[n, i] = x
+    if taken < 2 or not min(norms[taken] / norms[taken - 1], norms[taken - 1] / norms[taken - 2]) > STALLED:
+        return False
+    return moved <= max(STILL**2 * whole, (EPS * limits.size) ** 2)
+
+
+@njit
+def clear_tangent(room: TangentRoom) -> None:
+    """Write zero."""
+    room.K[:] = 0.0
+
+
+@njit
+def weigh(forces: LineForces, weights: LineWeights, room: TangentRoom) -> None:
+    """Write what is conjugate to the tangents of the elements' ends, groups weighted."""
+    for e in range(room.conjugate.shape[0]):
         for side in range(2):
             k = 2 * side + 1
-            for i in range(conjugate.shape[2]):
+            for i in range(room.conjugate.shape[2]):
                 bulk = weights.inertia * forces.inertia_q[e, k, i] + weights.force * forces.force_q[e, k, i]
-                conjugate[e, side, i] = bulk + forces.end_q[e, k, i]
+                room.conjugate[e, side, i] = bulk + forces.end_q[e, k, i]
 
 
 @njit
-def _fill(K: Array, fixed: BoolArray, ab: Array) -> None:
-    """Sum element matrices into a banded one, with ones on the diagonal for what is fixed."""
+def fill(room: TangentRoom, dofs: Dofs) -> None:
+    """Sum element matrices into the banded one, with ones on the diagonal for what is fixed."""
+    K, ab, fixed = room.K, room.ab, dofs.fixed
+    add_geometric(K, 1.0, room.turning, room.conjugate.shape[2])
     ndof = fixed.shape[1]
     b = 2 * ndof - 1
     ab[:] = 0.0
@@ -188,100 +236,29 @@ def _fill(K: Array, fixed: BoolArray, ab: Array) -> None:
 
 
 @njit
-def _norm(values: Array, counted: BoolArray, levers: Array) -> float:
-    """Norm [N] of those of the forces (nn, ndof) that are counted, moments over the lever."""
-    square = 0.0
-    for n in range(values.shape[0]):
-        for i in range(values.shape[1]):
-            if counted[n, i]:
-                square += (values[n, i] / levers[n, i]) ** 2
-    return math.sqrt(square)
+def factorise(room: TangentRoom, progress: Progress) -> None:
+    """Factorise the matrix."""
+    if not banded.factorise(room.ab, room.pivots, room.band):
+        progress.ending[0] = SINGULAR
 
 
 @njit
-def _scale(inertia: Array, force: Array, end: Array, fixed: BoolArray, levers: Array) -> float:
-    """Norm of the forces in play: reactions, inertia, contact."""
-    reactions, moving, contact = 0.0, 0.0, 0.0
-    for n in range(fixed.shape[0]):
-        for i in range(fixed.shape[1]):
-            lever = levers[n, i]
-            moving += (inertia[n, i] / lever) ** 2
-            contact += (end[n, i] / lever) ** 2
-            if fixed[n, i]:
-                reactions += ((inertia[n, i] + force[n, i] + end[n, i]) / lever) ** 2
-    return math.sqrt(max(reactions, moving, contact))
+def improve(room: TangentRoom, step: StepNumbers, dofs: Dofs) -> None:
+    """Take what the factorised tangent answers to the residual off the increments."""
+    for n in range(step.u.shape[0]):
+        for i in range(step.u.shape[1]):
+            if dofs.fixed[n, i]:
+                dofs.residual[n, i] = 0.0
+    change = dofs.residual.reshape(dofs.residual.size)
+    banded.solve(room.ab, room.pivots, change, room.band)
+    for n in range(step.u.shape[0]):
+        for i in range(step.u.shape[1]):
+            if not dofs.fixed[n, i]:
+                step.u[n, i] -= dofs.residual[n, i]
 
 
 @njit
-def _at_round_off(
-    u: Array, last: Array, fixed: BoolArray, levers: Array, size: float, norms: Array, taken: int
-) -> bool:
-    """See `RoundOff`; last (nn, ndof): the increments of the last iteration, written anew."""
-    moved, whole = 0.0, 0.0
-    for n in range(fixed.shape[0]):
-        for i in range(fixed.shape[1]):
-            if not fixed[n, i]:
-                x = u[n, i] * levers[n, i]
-                moved += (x - last[n, i]) ** 2
-                whole += x * x
-                last[n, i] = x
-    if taken < 2 or not min(norms[taken] / norms[taken - 1], norms[taken - 1] / norms[taken - 2]) > STALLED:
-        return False
-    return moved <= max(STILL**2 * whole, (EPS * size) ** 2)
-
-
-@njit
-def solve_step(held: Held, base: Base, step: StepNumbers, limits: StopLimits, norms: Array) -> tuple[int, int]:
-    """Solve a step: outcome and number of iterations; norms (most + 1,): of the residuals [N]."""
-    riser: HeldRiser = held.value
-    forces = riser.forces
-    taken, first, ndof = 0, 0.0, step.u.shape[1]
-    while True:
-        _evaluate(riser, base, step)
-        norm = _norm(riser.residual, riser.free, riser.levers)
-        norms[taken] = norm
-        if taken == 0:
-            first = norm
-        if not math.isfinite(norm):
-            return NOT_FINITE, taken
-        if taken >= limits.least:
-            scale = _scale(forces.inertia, forces.force, forces.end, riser.fixed, riser.levers)
-            if norm <= limits.tolerance * scale:
-                return CONVERGED, taken
-            if norm <= limits.floor and (taken > 0 or limits.answers_load):
-                return CONVERGED, taken
-            if _at_round_off(step.u, riser.last, riser.fixed, riser.levers, limits.size, norms, taken):
-                return CONVERGED, taken
-            if taken >= 4 and norm > DIVERGES * first:
-                return DIVERGED, taken
-        if taken >= limits.most:
-            return TOO_MANY, taken
-        if taken == 0 or not norm < limits.reuse * norms[taken - 1]:
-            put_tangent(riser, step)
-            if not banded.factorise(riser.room.ab, riser.room.pivots, riser.room.band):
-                return SINGULAR, taken
-        for n in range(riser.fixed.shape[0]):
-            for i in range(ndof):
-                if riser.fixed[n, i]:
-                    riser.residual[n, i] = 0.0
-        change = riser.residual.reshape(riser.residual.size)
-        banded.solve(riser.room.ab, riser.room.pivots, change, riser.room.band)
-        for n in range(riser.fixed.shape[0]):
-            for i in range(ndof):
-                if not riser.fixed[n, i]:
-                    step.u[n, i] -= riser.residual[n, i]
-        taken += 1
-
-
-@njit
-def account(held: Held, base: Base, v: Array, a: Array, energy: Array, work: Array) -> None:
-    """Write the energy (3,) of the configuration evaluated last, and the work (parts, 4) of those that turn over some.
-
-    v, a (nn, ndof): rates and accelerations where the step begins.
-    """
-    riser: HeldRiser = held.value
-    place(riser.first, base, riser.room.nothing, v, a)
+def clear_account(energy: Array, work: Array) -> None:
+    """Write zero."""
     energy[:] = 0.0
     work[:] = 0.0
-    add_energy_of_each(riser.parts, riser.at, energy)
-    add_work_of_each(riser.turning, riser.first, riser.at, work)

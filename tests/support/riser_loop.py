@@ -11,14 +11,12 @@ import pytest
 
 from benchmarks.stage import TimedStage, last_stage
 from riser_soil.core.arrays import Array
-from riser_soil.core.compiled import njit
-from riser_soil.core.held import Held, hold
 from riser_soil.core.part import Energy, Forces, State
 from riser_soil.core.system import Timer
-from riser_soil.riser.configuration import Base, base_of
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.riser_loop import HeldRiser, StepNumbers, account, put_forces, put_tangent
-from riser_soil.solve.riser_newton import RiserNewton, riser_of
+from riser_soil.solve.packed_riser import PackedRiser
+from riser_soil.solve.riser_loop import StopLimits
+from riser_soil.solve.riser_newton import RiserNewton
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
 from tests.support.sample_line import Sample, sample
@@ -33,41 +31,28 @@ def all_parts(at: Sample) -> list[Any]:
     return [make(at) for make in makers] + ([at.moments()] if at.line.dimension == 2 else [])
 
 
-@njit
-def put_all(held: Held, base: Base, step: StepNumbers) -> None:
-    """Forces and tangent of the parts at the increments of a step, its rates taken as they are."""
-    riser: HeldRiser = held.value
-    put_forces(riser, base, step.u, step.v, step.a)
-    put_tangent(riser, step)
-
-
 class Compiled:
     """Parts of a line in the loop, evaluated at a state."""
 
     def __init__(self, at: Sample, parts: list[Any], state: State) -> None:
         line = at.line
-        free, one = np.zeros(line.size, dtype=bool), np.ones(line.size)
-        self.riser, self.base = riser_of(line, parts, free, one), base_of(line)
-        self.held = hold(self.riser)
+        numbers, free = [part.numbers() for part in parts], np.zeros(line.size, dtype=bool)
+        self.riser = PackedRiser(line, numbers, free, np.ones(line.size), most=1)
         for part in parts:
             part.renew_numbers(state.t)
-        u, v, a = (values.reshape(line.nodes, line.ndof) for values in (state.u, state.v, state.a))
-        weights = WEIGHTS.inertia, WEIGHTS.force, WEIGHTS.shift_v, WEIGHTS.shift_a
-        put_all(self.held, self.base, StepNumbers(*weights, u, v, a, v, a, np.zeros_like(u)))
-
-    def account(self, before: State) -> tuple[Energy, Array]:
-        energy, rows = np.empty(3), np.empty((len(self.riser.turning), 4))
-        rates = (values.reshape(self.riser.fixed.shape) for values in (before.v, before.a))
-        account(self.held, self.base, *rates, energy, rows)
-        return Energy(*energy), rows
+        v, a = state.v - WEIGHTS.shift_v * state.u, state.a - WEIGHTS.shift_a * state.u
+        self.riser.begin(State(state.t, state.u, v, a), None, WEIGHTS, StopLimits(0.0, 0.0, 0.0, 1, 0, 0, 0.0))
+        self.riser.evaluate()
+        self.riser.tangent()
 
     def dense(self) -> Array:
         """The matrix (n, n) that was written to the band."""
-        n, b = self.riser.fixed.size, len(self.riser.room.band)
+        room = self.riser.room
+        n, b = room.pivots.size, len(room.band)
         K = np.zeros((n, n))
         for i in range(n):
             for j in range(max(0, i - b), min(n, i + b + 1)):
-                K[i, j] = self.riser.room.ab[i, j - i + b]
+                K[i, j] = room.ab[i, j - i + b]
         return K
 
 
@@ -100,10 +85,11 @@ def require_kernels_of_parts(dimension: int) -> None:
         assert np.abs(found - values).max() <= 1e-12 * np.abs(expected.force).max()
     assert error(compiled.dense(), tangent(parts, state, WEIGHTS)) < 1e-12
     begun = State(before.t, 0.0 * before.u, before.v, before.a)
-    energy, (morison,) = compiled.account(begun)
+    joules, (morison,) = compiled.riser.account(begun)
+    energy = Energy(*joules)
     stored: Energy = sum((part.energy(state) for part in parts), Energy())
-    for name, joules in vars(stored).items():
-        assert getattr(energy, name) == pytest.approx(joules, rel=1e-12)
+    for name, expected_energy in vars(stored).items():
+        assert getattr(energy, name) == pytest.approx(expected_energy, rel=1e-12)
     turned = next(part for part in parts if part.name == "morison").work(begun, state)
     np.testing.assert_allclose(morison, [turned.dissipated, turned.external, turned.inertial, 0.0], rtol=1e-10)
 

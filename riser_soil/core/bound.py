@@ -1,0 +1,116 @@
+"""Kernels bound to their arguments: compiled functions that are called by address, from compiled code or Python.
+
+A loop that calls them knows neither their arguments nor these' types. So it is compiled once, not once for each set of
+parts; and each kernel once, whatever others there are. A call takes some 10 ns, from Python 0.2 us.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.core import event
+from numba.core.ccallback import CFunc
+from numba.extending import intrinsic
+
+from riser_soil.core.arrays import IntArray
+from riser_soil.core.compiled import OPTIONS, caching, njit
+from riser_soil.core.kernel_cache import EntryCache, mark
+from riser_soil.core.packed import Packed
+
+_entries: dict[tuple[Any, ...], CFunc] = {}
+
+
+class Bound:
+    """A kernel and its arguments, which are kept; what it returns is lost. Called without arguments."""
+
+    def __init__(self, kernel: Any, *arguments: Packed) -> None:
+        self._entry = _entry(kernel, *(each.kind for each in arguments))
+        self._addresses = np.array([each.address for each in arguments], dtype=np.int64)
+        self._kept, self._call = arguments, self._entry.ctypes
+        self.function, self.row = self._entry.address, int(self._addresses.ctypes.data)
+
+    def __call__(self) -> None:
+        self._call(self.row)
+
+
+class Calls(NamedTuple):
+    """Bound kernels for compiled code: addresses of functions and of where those of their arguments lie (n,)."""
+
+    functions: IntArray
+    rows: IntArray
+
+
+@njit
+def call_each(given: Calls) -> None:
+    """Call bound kernels one after the other."""
+    for n in range(given.functions.size):
+        _call(given.functions[n], given.rows[n])
+
+
+class InTurn:
+    """Kernels that are called one after the other; calls: the same for compiled code, as long as this lives."""
+
+    def __init__(self, *bound: Bound) -> None:
+        columns = [each.function for each in bound], [each.row for each in bound]
+        self.kernels = bound
+        self.calls = Packed(Calls(*(np.array(column, dtype=np.int64) for column in columns)))
+
+    def __call__(self) -> None:
+        for each in self.kernels:
+            each()
+
+
+def _entry(kernel: Any, *kinds: Any) -> CFunc:
+    """The function of one address that calls a kernel with arguments of these types, which it finds there."""
+    key = kernel, *kinds
+    if key not in _entries:
+        _entries[key] = _compiled(kernel, types.Tuple(kinds))
+    return _entries[key]
+
+
+def _compiled(kernel: Any, kinds: Any) -> CFunc:
+    """Its name tells it apart from all others, on disk and in the machine code."""
+
+    def calling(row: int) -> None:
+        kernel(*_arguments(row, kinds))
+
+    calling.__module__ = kernel.py_func.__module__
+    calling.__qualname__ = calling.__name__ = f"{kernel.py_func.__name__}_{mark(kinds)}"
+    entry: Any = CFunc(calling, ((types.intp,), types.void), {}, OPTIONS)
+    with caching(), event.trigger_event("numba:compile"):
+        entry._cache = EntryCache(calling)
+        entry.compile()
+    return entry
+
+
+@intrinsic
+def _arguments(context: Any, row: Any, kinds: Any) -> Any:
+    """In compiled code: a tuple of what lies where a row of addresses points to."""
+    both = kinds.instance_type
+
+    def load(target: Any, builder: Any, signature: Any, given: Any) -> Any:
+        addresses = builder.inttoptr(given[0], target.get_value_type(types.intp).as_pointer())
+        values = []
+        for n, kind in enumerate(both):
+            model = target.data_model_manager[kind]
+            address = builder.load(builder.gep(addresses, [target.get_constant(types.intp, n)]))
+            place = builder.inttoptr(address, model.get_data_type().as_pointer())
+            values.append(model.load_from_data_pointer(builder, place))
+        return target.make_tuple(builder, both, values)
+
+    return both(row, kinds), load
+
+
+@intrinsic
+def _call(context: Any, function: Any, row: Any) -> Any:
+    """In compiled code: call a function by its address."""
+
+    def call(target: Any, builder: Any, signature: Any, given: Any) -> Any:
+        kind = ir.FunctionType(ir.VoidType(), [target.get_value_type(types.intp)])
+        builder.call(builder.inttoptr(given[0], kind.as_pointer()), [given[1]])
+        return target.get_dummy_value()
+
+    return types.void(types.intp, types.intp), call

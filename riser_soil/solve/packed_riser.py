@@ -1,0 +1,134 @@
+"""A riser alone in numbers, packed for the compiled loop: parts bound to their kernels, and room for what is solved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.bound import Bound, InTurn
+from riser_soil.core.packed import Packed
+from riser_soil.core.part import State, Weights
+from riser_soil.riser.configuration import Maps, base_of, place, put_maps, put_turning, room_for
+from riser_soil.riser.line import Line
+from riser_soil.riser.part_kernels import LineWeights, add_energy, add_forces, add_tangent, add_work, forces_of
+from riser_soil.solve import banded
+from riser_soil.solve import riser_loop as loop
+from riser_soil.solve.riser_loop import Dofs, Progress, StepNumbers, StopLimits, TangentRoom
+
+Numbers = tuple[Any, ...]
+
+
+class PackedRiser:
+    """A line and its parts, whose arrays it shares; step, forces, dofs, room, progress: what the loop writes to.
+
+    numbers: of the parts; prescribed, levers (size,): of the line's dofs; most: iterations of a step.
+    """
+
+    def __init__(
+        self, line: Line, numbers: Sequence[Numbers], prescribed: BoolArray, levers: Array, most: int
+    ) -> None:
+        self._line, shape = line, (line.nodes, line.ndof)
+        turning = [each for each in numbers if type(each) in add_work.kernels]
+        self.step, self._begun = StepNumbers(*_zeros(6, shape)), _zeros(2, shape)
+        self.forces, self.room = forces_of(line), _tangent_room(line)
+        self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(2, shape))
+        self.progress = Progress(np.zeros(most + 1), np.zeros(2, dtype=np.int64))
+        self._energy, self._work, self._reuse = np.zeros(3), np.zeros((len(turning), 4)), np.zeros(1)
+        self._maps, self._weights = Packed(_maps_of(line)), Packed(LineWeights(0.0, 0.0))
+        self._limits = Packed(StopLimits(0.0, 0.0, 0.0, most, 0, 0, 0.0))
+        base, at, begun = base_of(line), room_for(line), room_for(line)
+        self._base, now, then = Packed(type(base)(*map(np.copy, base))), Packed(at), Packed(begun)
+        step, forces, room, dofs, progress = map(Packed, (self.step, self.forces, self.room, self.dofs, self.progress))
+        maps, weights, limits, K = self._maps, self._weights, self._limits, Packed(self.room.K)
+        motion = [Packed(values) for values in (self.step.u, self.step.v, self.step.a)]
+        start = [Packed(values) for values in (np.zeros(shape), *self._begun)]
+        joules, rows = Packed(self._energy), [Packed(row) for row in self._work]
+        self.evaluate = InTurn(
+            Bound(loop.follow, step, maps, dofs),
+            _bound(place, at, self._base, *motion),
+            Bound(loop.clear, forces),
+            *(_bound(add_forces, each, now, forces) for each in numbers),
+            Bound(loop.collect, now, forces),
+            Bound(loop.combine, forces, step, weights, dofs),
+            Bound(loop.judge, forces, step, dofs, limits, progress),
+        )
+        self.tangent = InTurn(
+            _bound(put_maps, at, maps),
+            Bound(loop.clear_tangent, room),
+            *(_bound(add_tangent, each, now, maps, weights, K) for each in numbers),
+            Bound(loop.weigh, forces, weights, room),
+            _bound(put_turning, at, Packed(self.room.conjugate), Packed(self.room.turning)),
+            Bound(loop.fill, room, dofs),
+        )
+        renew = InTurn(*self.tangent.kernels, Bound(loop.factorise, room, progress))
+        improve = InTurn(Bound(loop.improve, room, step, dofs))
+        self._loop = self.evaluate, renew, improve
+        self._solve = Bound(loop.solve_step, *(each.calls for each in self._loop), Packed(self._reuse), progress)
+        self._account = InTurn(
+            _bound(place, begun, self._base, *start),
+            Bound(loop.clear_account, joules, Packed(self._work)),
+            *(_bound(add_energy, each, now, joules) for each in numbers),
+            *(_bound(add_work, each, then, now, row) for each, row in zip(turning, rows, strict=True)),
+        )
+
+    def begin(self, state: State, past: Array | None, weights: Weights, limits: StopLimits) -> None:
+        """Begin a step.
+
+        state: the first guess, and the rates of no increments but those that are prescribed; past: see `time_scheme`.
+        """
+        for kept, given in zip(self._base.value, base_of(self._line), strict=True):
+            kept[...] = given
+        step, maps = self.step, self._maps
+        for kept, given in ((step.u, state.u), (step.v0, state.v), (step.a0, state.a)):
+            kept.ravel()[:] = given
+        step.past.ravel()[:] = 0.0 if past is None else past
+        maps.renew(Maps(maps.value.rate, maps.value.acceleration, weights.shift_v, weights.shift_a))
+        self._weights.renew(LineWeights(weights.inertia, weights.force))
+        self._limits.renew(limits)
+        self._reuse[0] = limits.reuse
+
+    def solve(self) -> tuple[int, int]:
+        """Solve the step: the outcome, see `riser_loop`, and the number of iterations."""
+        self._solve()
+        outcome, taken = self.progress.ending.tolist()
+        return outcome, taken
+
+    def solved(self, t: float) -> State:
+        """The state of the step solved last."""
+        return State(t, *(values.ravel().copy() for values in (self.step.u, self.step.v, self.step.a)))
+
+    def account(self, before: State) -> tuple[Array, Array]:
+        """Energy (3,) at the end of the step solved last, and work (parts that have kernels for it, 4) in it."""
+        for kept, rates in zip(self._begun, (before.v, before.a), strict=True):
+            kept.ravel()[:] = rates
+        self._account()
+        return self._energy, self._work
+
+
+def _bound(stub: Any, numbers: Numbers, *arguments: Packed) -> Bound:
+    return Bound(stub.kernels[type(numbers)], Packed(numbers), *arguments)
+
+
+def _zeros(n: int, shape: tuple[int, int]) -> list[Array]:
+    return [np.zeros(shape) for _ in range(n)]
+
+
+def _maps_of(line: Line) -> Maps:
+    ne, d, r = line.length.size, line.dimension, line.frames.dofs
+    return Maps(np.empty((ne, 2, d, r)), np.empty((ne, 2, d, r)), 0.0, 0.0)
+
+
+def _tangent_room(line: Line) -> TangentRoom:
+    ne, d, r, n = line.length.size, line.dimension, line.frames.dofs, line.ndof
+    matrix, band = banded.room(line.size, 2 * n - 1)
+    return TangentRoom(
+        np.empty((ne, 2 * n, 2 * n)),
+        np.empty((ne, 2, d)),
+        np.empty((ne, 2, r, r)),
+        matrix,
+        np.empty(line.size, dtype=np.int64),
+        band,
+    )
