@@ -33,7 +33,7 @@ class Packed:
     def renew(self, value: Any) -> None:
         """Put another value of the same type in its place."""
         self.value = value
-        self._layout.pack_into(self._memory, 0, *_words(value))
+        self._layout.pack_into(self._memory.data, 0, *_words(value))
 
 
 def _layout(value: Any) -> Iterator[str]:
