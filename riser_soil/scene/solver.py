@@ -35,7 +35,7 @@ class Solver(BaseModel):
         "automatic steps 1e-7 of its duration",
     )
     newton: Literal["snes", "compiled"] = Field(
-        default="snes",
-        description="the code that solves the steps; snes: PETSc's; compiled: a compiled loop for the time steps of a "
-        "riser alone, with the same results, and SNES for all else",
+        default="compiled",
+        description="the code that solves the steps; compiled: a compiled loop for the time steps of a riser alone, and "
+        "PETSc's SNES for all else; snes: SNES throughout, with the same results",
     )
