@@ -28,7 +28,7 @@ from riser_soil.core.snapshot import (
 )
 from riser_soil.errors import SceneError, WriteError
 from riser_soil.results import folder as run_folder
-from riser_soil.results.figures import final_state, pack
+from riser_soil.results.figures import pack
 from riser_soil.results.folder import FolderLock
 from riser_soil.results.indicators import StageIndicators
 from riser_soil.results.netcdf import SeriesFile, ledger_variables
@@ -261,7 +261,7 @@ class Recorder:
         stage.extremes.update(now, self._latest)
         if stage.kind == "dynamic":
             stage.indicators.follow(now, self._latest, step.health, step.ledger)
-        stage.final = final_state(seen)
+        stage.seen = seen
         stage.bend(now, seen.riser)
 
     def _record(self, seen: Instant, due: DueOutputs, soil: SoilSnapshot | None) -> None:

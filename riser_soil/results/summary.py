@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, under, unpacked, within
-from riser_soil.core.snapshot import Ledger, RiserSnapshot, RunFacts, StepStatistics
-from riser_soil.results.figures import Extremes
+from riser_soil.core.snapshot import Instant, Ledger, RiserSnapshot, RunFacts, StepStatistics
+from riser_soil.results.figures import Extremes, final_state
 from riser_soil.results.folder import write_atomically
 from riser_soil.results.indicators import StageIndicators
 
-_NOT_PLAIN = ("extremes", "energy", "worst_residual", "tightest", "implausible", "soil", "indicators")
+_NOT_PLAIN = ("seen", "extremes", "energy", "worst_residual", "tightest", "implausible", "soil", "indicators")
 DOUBTFUL = 0.01  # share of the energy turned over above which what is wrong in its balance is a warning
 
 
@@ -65,7 +65,10 @@ class TightestBend:
 
 @dataclass
 class StageTally:
-    """Statistics of one stage, gathered while it runs. time: s simulated in it (0 in statics)."""
+    """Statistics of one stage, gathered while it runs.
+
+    time: s simulated in it (0 in statics); seen: its last step, until the summary of its `final` state is asked for.
+    """
 
     name: str
     kind: str
@@ -76,6 +79,7 @@ class StageTally:
     step_cuts: int = 0
     relaxations: int = 0
     branch_switches: int = 0
+    seen: Instant | None = None
     final: dict[str, Any] | None = None
     extremes: Extremes = field(default_factory=Extremes)
     energy: Ledger = field(default_factory=Ledger)
@@ -112,7 +116,12 @@ class StageTally:
             return "relaxation"
         return "load steps" if self.step_cuts else "newton"
 
+    def _finish(self) -> None:
+        if self.seen is not None:
+            self.final, self.seen = final_state(self.seen), None
+
     def as_dict(self) -> dict[str, Any]:
+        self._finish()
         plain = {k: v for k, v in vars(self).items() if k not in _NOT_PLAIN}
         extremes = self.extremes.nested() if self.steps else None
         told = {"method": self.method, "extremes": extremes, "energy": self._energy, "warnings": self.warnings}
@@ -136,7 +145,8 @@ class StageTally:
         return [*tight, *self.implausible, *off, *self.indicators.warnings()]
 
     def state(self) -> Saved:
-        plain = {name: value for name, value in vars(self).items() if name not in ("extremes", "indicators")}
+        self._finish()
+        plain = {name: value for name, value in vars(self).items() if name not in ("seen", "extremes", "indicators")}
         told = plain | {"energy": asdict(self.energy), "tightest": asdict(self.tightest)}
         return gathered(self._followers) | {"told": packed(told)}
 

@@ -38,6 +38,10 @@ class PlanarOrientation:
         put_motion(self.tangent, self.normal, v, a, rate, acceleration)
         return rate, acceleration
 
+    def moment_maps(self, axes: Array) -> Array:
+        """Maps (nn, 3, 1) of moments conjugate to angles to those in global axes; axes (3, 1): its normal."""
+        return np.repeat(axes[None], len(self.angle), axis=0)
+
     def maps(self, v: Array, a: Array, shift_v: float, shift_a: float) -> Maps:
         first, second = (np.empty(self.P.shape) for _ in range(2))
         put_maps(self.tangent, self.normal, v, a, shift_v, shift_a, first, second)

@@ -67,7 +67,7 @@ def _sections(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]:
 
 def _over_stiffness(trial: Trial, elements: Elements, moment: Array) -> Array:
     """Curvatures (ne, 2, 3) of moments, global axes; about the section axes where there are two stiffnesses."""
-    y, z = elements.flexibility()
+    y, z = elements.flexibility
     if not isinstance(trial.turn, SpatialOrientation):
         return np.asarray(moment * y[:, None, None])
     frames = np.stack([trial.turn.frame1, trial.turn.frame2], axis=1)

@@ -7,25 +7,25 @@ meshes.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.riser import bending_peaks
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
-from riser_soil.riser.sections import Elements, larger_beside
+from riser_soil.riser.sections import Elements
 from riser_soil.riser.spatial_directors import SpatialOrientation
 from riser_soil.riser.trial import Trial
 
-_BEHIND = np.array([[-1.0], [1.0]])  # of what acts on an element's ends: what the line after exerts on the line before
 
-
-@dataclass(frozen=True, eq=False)
-class SectionForces:
+class SectionForces(NamedTuple):
     """Section forces and moments at nodes, exerted by the line after a node on the line before it, in global axes: (nn,
     3) or (nn,).
 
@@ -84,48 +84,84 @@ def section_forces(
     residual: from `element_residual`; viscous: from `viscous_residual`, for the curvature follows from the rest of
     the bending moment.
     """
-    trial = line.trial(state)
+    trial, nn, ne = line.trial(state), line.nodes, line.length.size
     on_ends, moments_on_ends = end_forces(line, trial, residual)
-    force, moment = _section(on_ends), _section(moments_on_ends)
-    tangent = _nodal(trial.turn.tangent[:, 0], trial.turn.tangent[:, 1]) @ line.basis.T
-    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
-    bending = _across(moment, tangent) * larger_beside(elements.bends.astype(float))[:, None]
-    damping = 0.0 if viscous is None else _across(_section(end_forces(line, trial, viscous)[1]), tangent)
-    beside = np.stack(_curvatures(trial, elements, bending - damping), axis=1)
-    magnitude = np.linalg.norm(bending, axis=1)
-    slope = _slopes(line, trial, on_ends, bending)
-    return SectionForces(
-        force=force,
-        moment=moment,
-        effective_tension=np.sum(force * tangent, axis=1),
-        bending_moment=magnitude,
-        curvature=_nodal(beside[:, 0], beside[:, 1]),
-        curvature_beside=beside,
-        moment_slope=slope,
-        curvature_slope=_of_curvature(slope, magnitude, beside),
-    )
+    damping = np.zeros((ne, 2, 3)) if viscous is None else end_forces(line, trial, viscous)[1]
+    at_nodes, at_ends = ((nn, 3), (nn, 3), nn, nn, nn), ((ne, 2),) * 3
+    out = SectionForces(*(np.empty(shape) for shape in (*at_nodes, *at_ends)))
+    free, tangent = np.empty((nn, 3)), trial.turn.tangent @ line.basis.T
+    _put_at_nodes(on_ends, moments_on_ends, damping, tangent, elements.bends_beside, free, out)
+    _put_curvatures(free, *_frames(trial), *elements.flexibility, out)
+    return out
 
 
-def _slopes(line: Line, trial: Trial, on_ends: Array, bending: Array) -> Array:
-    """Of the moment's magnitude at the elements' ends (ne, 2); on_ends (ne, 2, 3): forces on these."""
-    slope = np.empty(on_ends.shape[:2])
-    bending_peaks.slopes(bending, on_ends * _BEHIND, trial.turn.tangent @ line.basis.T, slope)
-    return slope
+def _frames(trial: Trial) -> tuple[Array, Array]:
+    """Section frames (ne, 3, 3) at the elements' ends; none in a plane, where there is one stiffness."""
+    if isinstance(trial.turn, SpatialOrientation):
+        return trial.turn.frame1, trial.turn.frame2
+    return np.empty((0, 3, 3)), np.empty((0, 3, 3))
 
 
-def _of_curvature(slope: Array, moment: Array, curvature: Array) -> Array:
-    """Slopes of the curvature (ne, 2), which changes with the moment (nn,)."""
-    beside = np.stack([moment[:-1], moment[1:]], axis=1)
-    return np.divide(slope * curvature, beside, out=np.zeros_like(slope), where=beside > 0.0)
+@njit
+def _put_at_nodes(
+    on_ends: Array, moments: Array, damping: Array, tangent: Array, bends: Array, free: Array, out: SectionForces
+) -> None:
+    """Forces, moments and the moment's slope; free (nn, 3): the bending moment less the damping's.
+
+    on_ends, moments, damping (ne, 2, 3): on the elements' ends; tangent: there; bends (nn,): 1, or 0 between chains.
+    """
+    nn = len(free)
+    bending, behind = np.empty((nn, 3)), np.empty(on_ends.shape)
+    for n in range(nn):
+        viscous, t = np.zeros(3), np.zeros(3)
+        force, moment = out.force[n], out.moment[n]
+        share = 1.0 if n == 0 or n == nn - 1 else 0.5
+        for i in range(3):
+            force[i] = moment[i] = 0.0
+            for e, end, sign in ((n - 1, 1, share), (n, 0, -share)):
+                if 0 <= e < nn - 1:
+                    behind[e, end, i] = sign / share * on_ends[e, end, i]
+                    force[i] += sign * on_ends[e, end, i]
+                    moment[i] += sign * moments[e, end, i]
+                    viscous[i] += sign * damping[e, end, i]
+                    t[i] += tangent[e, end, i]
+        size = math.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2])
+        tension, twist, twist_rate, square = 0.0, 0.0, 0.0, 0.0
+        for i in range(3):
+            t[i] /= size
+            tension += force[i] * t[i]
+            twist += moment[i] * t[i]
+            twist_rate += viscous[i] * t[i]
+        for i in range(3):
+            bending[n, i] = (moment[i] - twist * t[i]) * bends[n]
+            free[n, i] = bending[n, i] - (viscous[i] - twist_rate * t[i])
+            square += bending[n, i] ** 2
+        out.effective_tension[n], out.bending_moment[n] = tension, math.sqrt(square)
+    bending_peaks.slopes(bending, behind, tangent, out.moment_slope)
 
 
-def _section(on_ends: Array) -> Array:
-    """What the line after a node exerts on the line before it (nn, 3), from what acts on the elements' ends."""
-    return _nodal(-on_ends[:, 0], on_ends[:, 1])
+@njit
+def _put_curvatures(free: Array, first: Array, second: Array, y: Array, z: Array, out: SectionForces) -> None:
+    """Curvatures: bending moment over stiffness, about the section axes where there are two stiffnesses.
 
-
-def _across(moment: Array, tangent: Array) -> Array:
-    return np.asarray(moment - np.sum(moment * tangent, axis=1, keepdims=True) * tangent)
+    free (nn, 3): the moment that bends; first, second: see `_frames`; y, z (ne,): 1/EI.
+    """
+    beside = out.curvature_beside
+    out.curvature[:] = 0.0
+    for e in range(len(beside)):
+        for end in range(2):
+            M = free[e + end]
+            if len(first) == 0:
+                k = math.sqrt(M[0] * M[0] + M[1] * M[1] + M[2] * M[2]) * y[e]
+            else:
+                F = first[e] if end == 0 else second[e]
+                about_y = F[0, 1] * M[0] + F[1, 1] * M[1] + F[2, 1] * M[2]
+                about_z = F[0, 2] * M[0] + F[1, 2] * M[1] + F[2, 2] * M[2]
+                k = math.hypot(about_y * y[e], about_z * z[e])
+            n, size = e + end, out.bending_moment[e + end]
+            beside[e, end] = k
+            out.curvature[n] += k if n == 0 or n == len(beside) else 0.5 * k
+            out.curvature_slope[e, end] = out.moment_slope[e, end] * k / size if size > 0.0 else 0.0
 
 
 def end_reactions(
@@ -136,59 +172,48 @@ def end_reactions(
     residual: from `element_residual`; nodal: from `nodal_residual`. A spring is a support, so its moment belongs to the
     reaction.
     """
-    force, moment = end_forces(line, line.trial(state), residual)
+    trial = line.trial(state)
+    force, moment = end_forces(line, trial, residual)
     at_nodes = np.zeros((line.nodes, line.ndof)) if nodal is None else nodal
-    extra_force, extra_moment = _global(line, line.trial(state), at_nodes[[0, -1]], np.array([0, -1]))
+    maps, d = _moment_maps(line, trial), line.dimension
+    start, end = ((line.basis @ at_nodes[n, :d], maps[n] @ at_nodes[n, d:]) for n in (0, -1))
     return (
-        Reaction(force[0, 0] + extra_force[0], moment[0, 0] + extra_moment[0]),
-        Reaction(force[-1, 1] + extra_force[1], moment[-1, 1] + extra_moment[1]),
+        Reaction(force[0, 0] + start[0], moment[0, 0] + start[1]),
+        Reaction(force[-1, 1] + end[0], moment[-1, 1] + end[1]),
     )
 
 
 def end_forces(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]:
     """Force and moment on the elements' ends, each (ne, 2, 3), global axes."""
-    first, second = residual[:, : line.ndof], residual[:, line.ndof :]
-    nodes = np.arange(line.nodes, dtype=np.int64)
-    ends = [_global(line, trial, first, nodes[:-1]), _global(line, trial, second, nodes[1:])]
-    return np.stack([f for f, _ in ends], axis=1), np.stack([m for _, m in ends], axis=1)
+    shape = line.length.size, 2, 3
+    force, moment = np.empty(shape), np.empty(shape)
+    residual, basis = np.ascontiguousarray(residual), np.ascontiguousarray(line.basis)
+    _put_end_forces(residual, basis, _moment_maps(line, trial), force, moment)
+    return force, moment
 
 
-def _global(line: Line, trial: Trial, dofs: Array, nodes: IntArray) -> tuple[Array, Array]:
-    """Forces and moments (n, 3) in global axes from those conjugate to the dofs of the nodes (n, ndof)."""
-    force, rest = dofs[:, : line.dimension] @ line.basis.T, dofs[:, line.dimension :]
-    if isinstance(trial.turn, SpatialOrientation):
-        return force, trial.turn.in_space(rest, nodes)
-    return force, rest * line.normal
+def _moment_maps(line: Line, trial: Trial) -> Array:
+    """Maps (nn, 3, r) of what is conjugate to the rotation dofs of nodes to moments in global axes."""
+    maps: Array = trial.once("moment maps", lambda trial: trial.turn.moment_maps(line.turning_axes))
+    return maps
 
 
-def _nodal(first: Array, second: Array) -> Array:
-    """Mean (nn, ...) of what the elements have at their first and second ends; the only value at the line's
-    ends.
-    """
-    total = np.concatenate([first, second[-1:]])
-    total[1:-1] = 0.5 * (first[1:] + second[:-1])
-    return total
+@njit
+def _put_end_forces(residual: Array, basis: Array, maps: Array, force: Array, moment: Array) -> None:
+    """basis (3, d): the line's axes; maps: of `_moment_maps`."""
+    d, r = basis.shape[1], maps.shape[2]
+    for e in range(len(force)):
+        for end in range(2):
+            k = end * (d + r)
+            for i in range(3):
+                push, turn = 0.0, 0.0
+                for j in range(d):
+                    push += basis[i, j] * residual[e, k + j]
+                for j in range(r):
+                    turn += maps[e + end, i, j] * residual[e, k + d + j]
+                force[e, end, i], moment[e, end, i] = push, turn
 
 
 def at_most(beside: Array) -> Array:
     """The larger (nn,) of what the elements beside a node have there (ne, 2)."""
     return np.maximum(np.append(beside[:, 0], -np.inf), np.append(-np.inf, beside[:, 1]))
-
-
-def _curvatures(trial: Trial, elements: Elements, bending: Array) -> tuple[Array, Array]:
-    """Bending moment over stiffness at both ends of the elements (ne,), about the section axes where there are two
-    stiffnesses.
-    """
-    if isinstance(trial.turn, SpatialOrientation):
-        return (
-            _section_curvature(trial.turn.frame1, bending[:-1], elements),
-            _section_curvature(trial.turn.frame2, bending[1:], elements),
-        )
-    magnitude, flexibility = np.linalg.norm(bending, axis=1), elements.flexibility()[0]
-    return magnitude[:-1] * flexibility, magnitude[1:] * flexibility
-
-
-def _section_curvature(frame: Array, moment: Array, elements: Elements) -> Array:
-    about = np.einsum("eij,ei->ej", frame, moment)
-    y, z = elements.flexibility()
-    return np.hypot(about[:, 1] * y, about[:, 2] * z)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -94,6 +95,12 @@ class Elements:
         """Whether an element has bending stiffness (ne,), or is a chain's."""
         return np.asarray(self.EI_y > 0.0)
 
+    @cached_property
+    def bends_beside(self) -> Array:
+        """1 at nodes (nn,) beside an element with bending stiffness, else 0."""
+        return larger_beside(self.bends.astype(float))
+
+    @cached_property
     def flexibility(self) -> tuple[Array, Array]:
         """1/EI (ne,) about both section axes [1/(N.m2)], 0 of a chain: no moment bends it."""
         y, z = (np.divide(1.0, EI, out=np.zeros_like(EI), where=self.bends) for EI in (self.EI_y, self.EI_z))

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.compiled import njit
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser import rotations
@@ -58,9 +58,11 @@ class SpatialOrientation:
         put_motion(self.R, self.T0, v, a, rate, acceleration)
         return rate, acceleration
 
-    def in_space(self, moment: Array, nodes: IntArray) -> Array:
-        """Moments (n, 3) in global axes of those conjugate to the rotation increments of some nodes (n,)."""
-        return _in_space(self.Rn, self.Theta, moment, nodes)
+    def moment_maps(self, axes: Array) -> Array:
+        """Maps (nn, 3, 3) of moments conjugate to the rotation increments to those in global axes; axes: unit."""
+        maps = np.empty_like(self.Rn)
+        _put_moment_maps(self.Rn, self.Theta, maps)
+        return maps
 
     def maps(self, v: Array, a: Array, shift_v: float, shift_a: float) -> Maps:
         first, second = np.empty_like(self.P), np.empty_like(self.P)
@@ -140,13 +142,11 @@ def orient(
 
 
 @njit
-def _in_space(Rn: Array, Theta: Array, moment: Array, nodes: IntArray) -> Array:
-    """H^-T m, that is Rn T_R^-1 m."""
-    out = np.empty((nodes.size, 3))
-    for i in range(nodes.size):
-        inverse = transpose(rotations.left_tangent_inverse(vector(Theta[nodes[i]])))
-        out[i, 0], out[i, 1], out[i, 2] = matvec(matrix(Rn[nodes[i]]), matvec(inverse, vector(moment[i])))
-    return out
+def _put_moment_maps(Rn: Array, Theta: Array, maps: Array) -> None:
+    """H^-T, that is Rn T_R^-1."""
+    for n in range(len(Rn)):
+        inverse = transpose(rotations.left_tangent_inverse(vector(Theta[n])))
+        store(matmul(matrix(Rn[n]), inverse), maps[n])
 
 
 @njit

@@ -36,6 +36,6 @@ class Solver(BaseModel):
     )
     newton: Literal["snes", "compiled"] = Field(
         default="compiled",
-        description="the code that solves the steps; compiled: a compiled loop for the time steps of a riser alone, and "
-        "PETSc's SNES for all else; snes: SNES throughout, with the same results",
+        description="the code that solves the steps; compiled: a compiled loop for the time steps of a riser alone, "
+        "and PETSc's SNES for all else; snes: SNES throughout, with the same results",
     )
