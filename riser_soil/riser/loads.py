@@ -142,11 +142,11 @@ class PointLoads(LinePart):
         self._numbers = GivenForces(F, np.zeros(self.line.nodes if self._moments else 0), potential=False)
         return self._numbers
 
-    def renew_numbers(self, t: float) -> None:
-        self._numbers.F[:] = self._F(t, self._loads)
+    def renew_numbers(self, start: float, end: float) -> None:
+        self._numbers.F[:] = self._F(end, self._loads)
         self._numbers.moment[:] = 0.0
         for load, node in self._moments:
-            self._numbers.moment[node] -= self._moment(load, t) @ self.line.normal
+            self._numbers.moment[node] -= self._moment(load, end) @ self.line.normal
 
     def work(self, before: State, after: State) -> Work:
         """Work of the mean loads over the step."""

@@ -64,7 +64,7 @@ class RiserNewton:
         """Solve a step or raise NotConvergedError."""
         since = time.perf_counter()
         for part in self._renewed:
-            part.renew_numbers(step.t)
+            part.renew_numbers(step.before.t, step.t)
         numbers = self._step_numbers(step)
         base, limits = base_of(self._line), self._limits(step)
         outcome, taken = riser_loop.solve_step(self._held, base, numbers, limits, self._norms)

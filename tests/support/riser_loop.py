@@ -19,10 +19,21 @@ from riser_soil.riser.configuration import Base, base_of
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.riser_loop import HeldRiser, StepNumbers, account, put_forces, put_tangent
 from riser_soil.solve.riser_newton import RiserNewton, riser_of
+from tests.support import sample_water
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
 from tests.support.sample_line import Sample, sample
 
+TURNING = "morison", "buoyancy"  # parts whose kernels say what they turn over
+IN_WATER = (
+    sample_water.current,
+    sample_water.half_out_in_waves,
+    sample_water.modules,
+    sample_water.modules_half_out_in_waves,
+    sample_water.modules_floating,
+    sample_water.floating,
+    sample_water.floating_in_waves,
+)
 SCENES = Path(__file__).parent.parent / "scenes"
 
 
@@ -44,13 +55,13 @@ def put_all(held: Held, base: Base, step: StepNumbers) -> None:
 class Compiled:
     """Parts of a line in the loop, evaluated at a state."""
 
-    def __init__(self, at: Sample, parts: list[Any], state: State) -> None:
+    def __init__(self, at: Sample, parts: list[Any], before: State, state: State) -> None:
         line = at.line
         free, one = np.zeros(line.size, dtype=bool), np.ones(line.size)
         self.riser, self.base = riser_of(line, parts, free, one), base_of(line)
         self.held = hold(self.riser)
         for part in parts:
-            part.renew_numbers(state.t)
+            part.renew_numbers(before.t, state.t)
         u, v, a = (values.reshape(line.nodes, line.ndof) for values in (state.u, state.v, state.a))
         weights = WEIGHTS.inertia, WEIGHTS.force, WEIGHTS.shift_v, WEIGHTS.shift_a
         put_all(self.held, self.base, StepNumbers(*weights, u, v, a, v, a, np.zeros_like(u)))
@@ -88,10 +99,21 @@ def walked(case: str, newton: str, steps: int, *more: str) -> TimedStage:
 
 
 def require_kernels_of_parts(dimension: int) -> None:
-    """Forces, tangent, energy and work of the loop are those of the parts' methods."""
+    """Forces, tangent, energy and work of the loop are those of the methods of one part of each kind."""
     at = sample(dimension)
-    parts, before, state = all_parts(at), at.state(2), at.state(1)
-    compiled, expected = Compiled(at, parts, state), Forces.zeros(state.u.size)
+    require_kernels(at, all_parts(at))
+
+
+def require_kernels_in_water(dimension: int) -> None:
+    """The same in water that moves or covers a part, and on modules. The second time with its motion seen before."""
+    for make in IN_WATER:
+        at = sample(dimension)
+        require_kernels(at, [make(at)])
+
+
+def require_kernels(at: Sample, parts: list[Any]) -> None:
+    before, state = at.state(2, t=0.4), at.state(1)
+    compiled, expected = Compiled(at, parts, before, state), Forces.zeros(state.u.size)
     for part in parts:
         part.residual(state, expected)
     for group in ("inertia", "force", "end"):
@@ -100,12 +122,13 @@ def require_kernels_of_parts(dimension: int) -> None:
         assert np.abs(found - values).max() <= 1e-12 * np.abs(expected.force).max()
     assert error(compiled.dense(), tangent(parts, state, WEIGHTS)) < 1e-12
     begun = State(before.t, 0.0 * before.u, before.v, before.a)
-    energy, (morison,) = compiled.account(begun)
+    energy, rows = compiled.account(begun)
     stored: Energy = sum((part.energy(state) for part in parts), Energy())
     for name, joules in vars(stored).items():
         assert getattr(energy, name) == pytest.approx(joules, rel=1e-12)
-    turned = next(part for part in parts if part.name == "morison").work(begun, state)
-    np.testing.assert_allclose(morison, [turned.dissipated, turned.external, turned.inertial, 0.0], rtol=1e-10)
+    for part, row in zip((part for part in parts if part.name in TURNING), rows, strict=True):
+        turned = part.work(begun, state)
+        np.testing.assert_allclose(row, [turned.dissipated, turned.external, turned.inertial, 0.0], rtol=1e-10)
 
 
 def require_steps_of_snes(case: str) -> None:

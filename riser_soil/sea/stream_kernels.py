@@ -1,0 +1,141 @@
+"""The water around a pipe in the compiled loop over a riser alone: its motion at the stations, found once a trial."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.held import Held, hold
+from riser_soil.riser import stations
+from riser_soil.riser.hermite import Size
+from riser_soil.sea.flows import SeaNumbers, motion_room, put_in_plane, put_motion
+from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.water import WaterMotion
+
+START, END = 0, 1  # of a step
+
+
+class SeenWater(NamedTuple):
+    """The water at the n = ne ng stations of a pipe where a step starts and where it ends.
+
+    t, found (2,): times of the step, and those at which the motion was found, nan at first; motion (2, n, …): in the
+    line's axes.
+    """
+
+    t: Array
+    found: Array
+    motion: WaterMotion
+
+
+class Stream(NamedTuple):
+    """The sea that a pipe is in. element (ne,) and N (ne, ng, 4): those of the line that the stations lie in; origin
+    (3,) and basis (3, d) of the line; x, place (n, 3): stations of a trial, and those of the motion found last; room
+    (n, 3) for motion in global axes.
+    """
+
+    sea: SeaNumbers
+    seen: SeenWater
+    element: IntArray
+    N: Array
+    origin: Array
+    basis: Array
+    x: Array
+    place: Array
+    room: WaterMotion
+    D: Size
+
+
+class WaterInLoop(NamedTuple):
+    """A held `Stream`, and what it sees. All parts that act at the same stations share them."""
+
+    stream: Held
+    seen: SeenWater
+
+
+def water_in_loop(pipe: Pipe, sea: SeaNumbers) -> WaterInLoop:
+    """The sea around a pipe, its motion found nowhere yet."""
+    line, n = pipe.line, pipe.share.size
+    seen = SeenWater(np.full(2, np.nan), np.full(2, np.nan), motion_room(n, line.dimension, (2,)))
+    at = pipe.element, pipe.at.N, line.origin, np.ascontiguousarray(line.basis)
+    places = np.zeros((n, 3)), np.zeros((n, 3))
+    return WaterInLoop(hold(Stream(sea, seen, *at, *places, motion_room(n, 3), fixed(line.dimension))), seen)
+
+
+def bring(seen: SeenWater, start: float, end: float) -> None:
+    """Bring the water to the times of a step, which starts where the last one ended, or that which is tried anew."""
+    if seen.found[END] == start and seen.found[START] != start:
+        for values in seen.motion:
+            values[START] = values[END]
+        seen.found[START] = start
+    seen.t[:] = start, end
+
+
+@partial(njit, apart=True)
+def see(held: Held, q: Array, when: int) -> None:
+    """Find the motion at the START or END of a step, q (ne, 4, d), unless it is known there: at the start there is but
+    one place.
+    """
+    stream: Stream = held.value
+    seen = stream.seen
+    known = seen.found[when] == seen.t[when]
+    if known and when == START:
+        return
+    _place(stream, q)
+    if known and _same(stream.x, stream.place):
+        return
+    _find(stream, when)
+
+
+@njit
+def _find(stream: Stream, when: int) -> None:
+    """Find the motion at the places x."""
+    seen = stream.seen
+    motion = _at_time(seen.motion, when)
+    if len(stream.D) == 3:
+        put_motion(stream.sea, motion, seen.t[when], stream.x)
+    else:
+        put_motion(stream.sea, stream.room, seen.t[when], stream.x)
+        put_in_plane(stream.room, stream.basis, motion)
+    seen.found[when] = seen.t[when]
+    if when == END:
+        stream.place[:] = stream.x
+
+
+@njit
+def _at_time(motion: WaterMotion, when: int) -> WaterMotion:
+    return WaterMotion(
+        motion.velocity[when],
+        motion.acceleration[when],
+        motion.velocity_gradient[when],
+        motion.acceleration_gradient[when],
+        motion.immersion[when],
+        motion.immersion_gradient[when],
+    )
+
+
+@njit
+def _place(stream: Stream, q: Array) -> None:
+    """Write the stations' places in global axes."""
+    inside = np.empty(len(stream.D))
+    for m in range(stream.N.shape[0]):
+        for g in range(stream.N.shape[1]):
+            stations.put_value(stream.N[m, g], q[stream.element[m]], inside, stream.D)
+            p = m * stream.N.shape[1] + g
+            for i in range(3):
+                x = stream.origin[i]
+                for a in range(len(stream.D)):
+                    x += stream.basis[i, a] * inside[a]
+                stream.x[p, i] = x
+
+
+@njit
+def _same(x: Array, y: Array) -> bool:
+    for p in range(x.shape[0]):
+        for i in range(3):
+            if x[p, i] != y[p, i]:
+                return False
+    return True
