@@ -11,7 +11,8 @@ from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
 from riser_soil.sea import waterline
-from riser_soil.sea.stream_kernels import END, START, SeenWater, see
+from riser_soil.sea.stream_kernels import SeenWater, see_end, see_start
+from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope
 
 
@@ -35,7 +36,7 @@ class DryStationNumbers(NamedTuple):
 
 class DryPipeNumbers(NamedTuple):
     """A `DryPipe`. flat: see `Buoyancy`. Room for one element: its tangent, heights of its q (4,) and of its stations
-    (ng,), dry lengths (4,).
+    (ng,), dry lengths and those before the step (4,).
     """
 
     stream: Held
@@ -50,35 +51,36 @@ class DryPipeNumbers(NamedTuple):
     z: Array
     heights: Array
     dry: Array
+    before: Array
 
 
 @njit
-def _lost(part: DryStationNumbers, when: int, m: int, g: int) -> float:
+def _lost(part: DryStationNumbers, water: WaterMotion, m: int, g: int) -> float:
     """Force per length on a station, downwards."""
-    h = part.seen.motion.immersion[when, m * part.share.shape[1] + g]
+    h = water.immersion[m * part.share.shape[1] + g]
     lost: float = part.displaced[m] * (1.0 - wet_share(h, part.span[m, g]))
     return lost
 
 
 @add_forces.of(DryStationNumbers)
 def _station_forces(part: DryStationNumbers, at: Configuration, out: LineForces) -> None:
-    see(part.stream, at.q, END)
+    see_end(part.stream, at.q)
     for m in range(part.element.size):
         for g in range(part.share.shape[1]):
-            part.f[len(at.D) - 1] = _lost(part, END, m, g)
+            part.f[len(at.D) - 1] = _lost(part, part.seen.end, m, g)
             stations.add_integrand(part.at.weighted[m, g], part.f, out.force_q[part.element[m]], at.D)
 
 
 @add_tangent.of(DryStationNumbers)
 def _station_tangent(part: DryStationNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    motion, up = part.seen.motion, len(at.D) - 1
+    water, up = part.seen.end, len(at.D) - 1
     for m in range(part.element.size):
         e = part.element[m]
         for g in range(part.share.shape[1]):
             p = m * part.share.shape[1] + g
-            slope = -weights.force * part.displaced[m] * wet_slope(motion.immersion[END, p], part.span[m, g])
+            slope = -weights.force * part.displaced[m] * wet_slope(water.immersion[p], part.span[m, g])
             for j in range(len(at.D)):
-                part.by_x[up, j] = slope * motion.immersion_gradient[END, p, j]
+                part.by_x[up, j] = slope * water.immersion_gradient[p, j]
             part.change.change[g] = 0.0
             stations.add_position(part.change.change[g], part.at.N[m, g], part.by_x, 1.0, at.P[e], at.D, at.R)
         stations.add_element(K[e], part.change, part.at.weighted[m], at.P[e], at.D, at.R)
@@ -90,7 +92,7 @@ def _station_energy(part: DryStationNumbers, at: Configuration, energy: Array) -
         return
     for m in range(part.element.size):
         for g in range(part.share.shape[1]):
-            h = part.seen.motion.immersion[END, m * part.share.shape[1] + g]
+            h = part.seen.end.immersion[m * part.share.shape[1] + g]
             energy[2] += part.share[m, g] * part.displaced[m] * dry_height(h, part.span[m, g])
 
 
@@ -98,19 +100,19 @@ def _station_energy(part: DryStationNumbers, at: Configuration, energy: Array) -
 def _station_work(part: DryStationNumbers, first: Configuration, last: Configuration, work: Array) -> None:
     if part.flat:
         return
-    see(part.stream, first.q, START)
+    see_start(part.stream, first.q)
     up = len(last.D) - 1
     for m in range(part.element.size):
         e = part.element[m]
         for g in range(part.share.shape[1]):
-            risen = 0.0
+            risen, lost = 0.0, _lost(part, part.seen.start, m, g) + _lost(part, part.seen.end, m, g)
             for a in range(4):
                 risen += part.at.N[m, g, a] * (last.q[e, a, up] - first.q[e, a, up])
-            work[1] -= 0.5 * part.share[m, g] * (_lost(part, START, m, g) + _lost(part, END, m, g)) * risen
+            work[1] -= 0.5 * part.share[m, g] * lost * risen
 
 
 @njit
-def _element(part: DryPipeNumbers, at: Configuration, when: int, e: int) -> waterline.WetElement:
+def _element(part: DryPipeNumbers, at: Configuration, water: WaterMotion, e: int) -> waterline.WetElement:
     """An element, its heights in the room."""
     up, ng = len(at.D) - 1, part.heights.size
     for a in range(4):
@@ -119,16 +121,16 @@ def _element(part: DryPipeNumbers, at: Configuration, when: int, e: int) -> wate
         part.heights[g] = 0.0
         for a in range(4):
             part.heights[g] += part.at.N[e, g, a] * part.z[a]
-    h = part.seen.motion.immersion[when, e * ng : (e + 1) * ng]
+    h = water.immersion[e * ng : (e + 1) * ng]
     return waterline.WetElement(part.z, h, part.heights, part.length[e], part.width[e])
 
 
 @add_forces.of(DryPipeNumbers)
 def _pipe_forces(part: DryPipeNumbers, at: Configuration, out: LineForces) -> None:
-    see(part.stream, at.q, END)
+    see_end(part.stream, at.q)
     up = len(at.D) - 1
     for e in range(part.length.size):
-        waterline.put_dry_lengths(part.points, _element(part, at, END, e), part.dry)
+        waterline.put_dry_lengths(part.points, _element(part, at, part.seen.end, e), part.dry)
         for a in range(4):
             out.force_q[e, a, up] += part.displaced[e] * part.dry[a]
 
@@ -138,8 +140,8 @@ def _pipe_tangent(part: DryPipeNumbers, at: Configuration, maps: Maps, weights: 
     ng = part.heights.size
     for e in range(part.length.size):
         weight, N = weights.force * part.displaced[e], part.at.N[e]
-        gradient = part.seen.motion.immersion_gradient[END, e * ng : (e + 1) * ng]
-        wet = _element(part, at, END, e)
+        gradient = part.seen.end.immersion_gradient[e * ng : (e + 1) * ng]
+        wet = _element(part, at, part.seen.end, e)
         waterline.add_element_tangent(K[e], part.points, wet, N, gradient, weight, at.P[e], part.room, at.D, at.R)
 
 
@@ -147,26 +149,18 @@ def _pipe_tangent(part: DryPipeNumbers, at: Configuration, maps: Maps, weights: 
 def _pipe_energy(part: DryPipeNumbers, at: Configuration, energy: Array) -> None:
     if part.flat:
         for e in range(part.length.size):
-            energy[2] += part.displaced[e] * waterline.dry_potential(part.points, _element(part, at, END, e))
+            energy[2] += part.displaced[e] * waterline.dry_potential(part.points, _element(part, at, part.seen.end, e))
 
 
 @add_work.of(DryPipeNumbers)
 def _pipe_work(part: DryPipeNumbers, first: Configuration, last: Configuration, work: Array) -> None:
     if part.flat:
         return
-    see(part.stream, first.q, START)
-    for e in range(part.length.size):
-        _take(part, first, last, START, e, work)
-        _take(part, first, last, END, e, work)
-
-
-@njit
-def _take(
-    part: DryPipeNumbers, first: Configuration, last: Configuration, when: int, e: int, work: Array
-) -> None:
-    """Half the work of the force on an element where the step starts or ends."""
+    see_start(part.stream, first.q)
     up = len(last.D) - 1
-    wet = _element(part, first, when, e) if when == START else _element(part, last, when, e)
-    waterline.put_dry_lengths(part.points, wet, part.dry)
-    for a in range(4):
-        work[1] -= 0.5 * part.displaced[e] * part.dry[a] * (last.q[e, a, up] - first.q[e, a, up])
+    for e in range(part.length.size):
+        waterline.put_dry_lengths(part.points, _element(part, first, part.seen.start, e), part.before)
+        waterline.put_dry_lengths(part.points, _element(part, last, part.seen.end, e), part.dry)
+        for a in range(4):
+            risen = last.q[e, a, up] - first.q[e, a, up]
+            work[1] -= 0.5 * part.displaced[e] * (part.before[a] + part.dry[a]) * risen

@@ -63,6 +63,7 @@ class DryPipe:
             z=np.zeros(4),
             heights=np.zeros(ng),
             dry=np.zeros(4),
+            before=np.zeros(4),
         )
 
     def _wet(self, trial: Trial) -> WetElements:

@@ -28,10 +28,10 @@ def add_flow(flow: tuple, motion: WaterMotion, t: float, x: Array) -> None:
 add_each_flow = each(add_flow)
 
 
-def motion_room(n: int, d: int, times: tuple[int, ...] = ()) -> WaterMotion:
-    """Room for the motion of n points in d dimensions, at several times if given; zero."""
+def motion_room(n: int, d: int) -> WaterMotion:
+    """Room for the motion of n points in d dimensions, zero."""
     shapes = (d,), (d,), (d, d), (d, d), (), (d,)
-    return WaterMotion(*(np.zeros((*times, n, *shape)) for shape in shapes))
+    return WaterMotion(*(np.zeros((n, *shape)) for shape in shapes))
 
 
 @njit

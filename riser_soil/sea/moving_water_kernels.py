@@ -15,7 +15,8 @@ from riser_soil.riser.hermite import Size
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
 from riser_soil.sea import morison_law as law
 from riser_soil.sea.pipe import Pipe
-from riser_soil.sea.stream_kernels import END, START, SeenWater, WaterInLoop, see
+from riser_soil.sea.stream_kernels import SeenWater, WaterInLoop, see_end, see_start
+from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wet_section import wet_share, wet_slope
 
 
@@ -96,49 +97,54 @@ def moving_water(water: WaterInLoop, pipe: Pipe, drag: Array, mass: Array) -> Mo
 
 
 @njit
-def _look(part: MovingWaterNumbers, at: Configuration, when: int, m: int, g: int, room: FlowRoom) -> float:
-    """What is found at a station at the START or END of a step, without the wet share; the stretch |x'|."""
-    e, p = part.element[m], m * part.share.shape[1] + g
+def _move(part: MovingWaterNumbers, at: Configuration, m: int, g: int, room: FlowRoom) -> float:
+    """Motion and tangent of the pipe at a station; the stretch |x'|."""
+    e = part.element[m]
     stations.put_value(part.at.N[m, g], at.rate[e], room.v, at.D)
     stations.put_value(part.at.N[m, g], at.acceleration[e], room.a, at.D)
     stretch: float = stations.put_unit_tangent(part.at.dN[m, g], at.chord[e], at.tangent[e], room.tau, at.D)
-    for i in range(len(at.D)):
-        room.through[i] = room.v[i] - part.seen.motion.velocity[when, p, i]
-        room.tau[i] = 0.0 if part.alike else room.tau[i]
-    law.put_added(room.a, room.tau, part.mass[m], room.inertia, at.D)
-    law.put_drag(room.through, room.tau, part.drag[m], room.force, at.D)
-    law.put_added(part.seen.motion.acceleration[when, p], room.tau, part.pushed[m], room.f, at.D)
-    for i in range(len(at.D)):
-        room.force[i] -= room.f[i]
+    if part.alike:
+        room.tau[:] = 0.0
     return stretch
 
 
 @njit
-def _wet(part: MovingWaterNumbers, when: int, m: int, g: int) -> float:
-    """The wet share of a station."""
-    if not part.partly:
-        return 1.0
-    share: float = wet_share(part.seen.motion.immersion[when, m * part.share.shape[1] + g], part.span[m, g])
-    return share
+def _resist(part: MovingWaterNumbers, water: WaterMotion, m: int, g: int, room: FlowRoom, D: Size) -> None:
+    """Resistance at a station in motion, as if it were wet."""
+    p = m * part.share.shape[1] + g
+    for i in range(len(D)):
+        room.through[i] = room.v[i] - water.velocity[p, i]
+    law.put_added(room.a, room.tau, part.mass[m], room.inertia, D)
+    law.put_drag(room.through, room.tau, part.drag[m], room.force, D)
+    law.put_added(water.acceleration[p], room.tau, part.pushed[m], room.f, D)
+    for i in range(len(D)):
+        room.force[i] -= room.f[i]
 
 
 @njit
-def _weigh(room: FlowRoom, share: float, D: Size) -> None:
-    for i in range(len(D)):
-        room.inertia[i] *= share
-        room.force[i] *= share
+def _wet(part: MovingWaterNumbers, water: WaterMotion, m: int, g: int) -> float:
+    """The wet share of a station."""
+    if not part.partly:
+        return 1.0
+    share: float = wet_share(water.immersion[m * part.share.shape[1] + g], part.span[m, g])
+    return share
 
 
 @add_forces.of(MovingWaterNumbers)
 def _forces(part: MovingWaterNumbers, at: Configuration, out: LineForces) -> None:
-    see(part.stream, at.q, END)
+    see_end(part.stream, at.q)
+    room, water = part.room, part.seen.end
     for m in range(part.element.size):
         e = part.element[m]
         for g in range(part.share.shape[1]):
-            _look(part, at, END, m, g, part.room)
-            _weigh(part.room, _wet(part, END, m, g), at.D)
-            stations.add_integrand(part.at.weighted[m, g], part.room.inertia, out.inertia_q[e], at.D)
-            stations.add_integrand(part.at.weighted[m, g], part.room.force, out.force_q[e], at.D)
+            _move(part, at, m, g, room)
+            _resist(part, water, m, g, room, at.D)
+            share = _wet(part, water, m, g)
+            for i in range(len(at.D)):
+                room.inertia[i] *= share
+                room.force[i] *= share
+            stations.add_integrand(part.at.weighted[m, g], room.inertia, out.inertia_q[e], at.D)
+            stations.add_integrand(part.at.weighted[m, g], room.force, out.force_q[e], at.D)
 
 
 @add_tangent.of(MovingWaterNumbers)
@@ -147,8 +153,9 @@ def _tangent(part: MovingWaterNumbers, at: Configuration, maps: Maps, weights: L
     for m in range(part.element.size):
         e = part.element[m]
         for g in range(part.share.shape[1]):
-            stretch = _look(part, at, END, m, g, part.room)
-            _differentiate(part, m, g, weights, at.D)
+            stretch = _move(part, at, m, g, part.room)
+            _resist(part, part.seen.end, m, g, part.room, at.D)
+            _differentiate(part, part.seen.end, m, g, weights, at.D)
             stations.to_slope(by.by_tau, part.room.tau, stretch, at.D)
             change, N = part.change.change[g], part.at.N[m, g]
             stations.put_slope(change, part.at.dN[m, g], by.by_tau, at.P[e], at.D, at.R)
@@ -159,24 +166,26 @@ def _tangent(part: MovingWaterNumbers, at: Configuration, maps: Maps, weights: L
 
 
 @njit
-def _differentiate(part: MovingWaterNumbers, m: int, g: int, weights: LineWeights, D: Size) -> None:
-    """Write the weighted derivatives of the force at a station that has been looked at."""
-    room, by, motion, p = part.room, part.by, part.seen.motion, m * part.share.shape[1] + g
+def _differentiate(
+    part: MovingWaterNumbers, water: WaterMotion, m: int, g: int, weights: LineWeights, D: Size
+) -> None:
+    """Write the weighted derivatives of the force at a station whose resistance is known."""
+    room, by, p = part.room, part.by, m * part.share.shape[1] + g
     law.put_drag_derivatives(room.through, room.tau, part.drag[m], by.by_v, by.by_tau, D)
     law.put_added_derivatives(room.a, room.tau, part.mass[m], by.by_a, by.more, D)
-    law.put_added_derivatives(motion.acceleration[END, p], room.tau, part.pushed[m], by.by_u, by.yet_more, D)
-    share, steep = _wet(part, END, m, g), 0.0
+    law.put_added_derivatives(water.acceleration[p], room.tau, part.pushed[m], by.by_u, by.yet_more, D)
+    share, steep = _wet(part, water, m, g), 0.0
     if part.partly:
-        steep = wet_slope(motion.immersion[END, p], part.span[m, g])
+        steep = wet_slope(water.immersion[p], part.span[m, g])
     inertia, force = share * weights.inertia, share * weights.force
     for i in range(len(D)):
         whole = weights.inertia * room.inertia[i] + weights.force * room.force[i]
         for j in range(len(D)):
             followed = 0.0
             for k in range(len(D)):
-                followed += by.by_v[i, k] * motion.velocity_gradient[END, p, k, j]
-                followed += by.by_u[i, k] * motion.acceleration_gradient[END, p, k, j]
-            by.by_x[i, j] = steep * whole * motion.immersion_gradient[END, p, j] - force * followed
+                followed += by.by_v[i, k] * water.velocity_gradient[p, k, j]
+                followed += by.by_u[i, k] * water.acceleration_gradient[p, k, j]
+            by.by_x[i, j] = steep * whole * water.immersion_gradient[p, j] - force * followed
             by.by_tau[i, j] = force * (by.by_tau[i, j] - by.yet_more[i, j]) + inertia * by.more[i, j]
     for i in range(len(D)):
         for j in range(len(D)):
@@ -190,22 +199,25 @@ def _energy(part: MovingWaterNumbers, at: Configuration, energy: Array) -> None:
     room = part.room
     for m in range(part.element.size):
         for g in range(part.share.shape[1]):
-            _look(part, at, END, m, g, room)
+            _move(part, at, m, g, room)
             law.put_added(room.v, room.tau, part.mass[m], room.f, at.D)
+            share = part.share[m, g] * _wet(part, part.seen.end, m, g)
             for i in range(len(at.D)):
-                energy[0] += 0.5 * part.share[m, g] * _wet(part, END, m, g) * room.v[i] * room.f[i]
+                energy[0] += 0.5 * share * room.v[i] * room.f[i]
 
 
 @add_work.of(MovingWaterNumbers)
 def _work(part: MovingWaterNumbers, first: Configuration, last: Configuration, work: Array) -> None:
     """See `Morison.work`."""
-    see(part.stream, first.q, START)
-    resisted, changed = 0.0, 0.0
+    see_start(part.stream, first.q)
+    resisted, changed, seen = 0.0, 0.0, part.seen
     for m in range(part.element.size):
         for g in range(part.share.shape[1]):
-            _look(part, first, START, m, g, part.first)
-            _look(part, last, END, m, g, part.room)
-            before, after = _wet(part, START, m, g), _wet(part, END, m, g)
+            _move(part, first, m, g, part.first)
+            _resist(part, seen.start, m, g, part.first, last.D)
+            _move(part, last, m, g, part.room)
+            _resist(part, seen.end, m, g, part.room, last.D)
+            before, after = _wet(part, seen.start, m, g), _wet(part, seen.end, m, g)
             resisted += part.share[m, g] * _resisted(part, first, last, m, g, before, after)
             changed += part.share[m, g] * _changed(part, m, before, after, last.D)
     if part.dissipative:

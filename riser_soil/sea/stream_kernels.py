@@ -16,19 +16,20 @@ from riser_soil.sea.flows import SeaNumbers, motion_room, put_in_plane, put_moti
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.water import WaterMotion
 
-START, END = 0, 1  # of a step
+START, END = 0, 1
 
 
 class SeenWater(NamedTuple):
     """The water at the n = ne ng stations of a pipe where a step starts and where it ends.
 
-    t, found (2,): times of the step, and those at which the motion was found, nan at first; motion (2, n, …): in the
-    line's axes.
+    t, found (2,): times of the step's START and END, and those at which the motion was found, nan at first; start and
+    end: that motion in the line's axes.
     """
 
     t: Array
     found: Array
-    motion: WaterMotion
+    start: WaterMotion
+    end: WaterMotion
 
 
 class Stream(NamedTuple):
@@ -59,7 +60,7 @@ class WaterInLoop(NamedTuple):
 def water_in_loop(pipe: Pipe, sea: SeaNumbers) -> WaterInLoop:
     """The sea around a pipe, its motion found nowhere yet."""
     line, n = pipe.line, pipe.share.size
-    seen = SeenWater(np.full(2, np.nan), np.full(2, np.nan), motion_room(n, line.dimension, (2,)))
+    seen = SeenWater(np.full(2, np.nan), np.full(2, np.nan), *(motion_room(n, line.dimension) for _ in range(2)))
     at = pipe.element, pipe.at.N, line.origin, np.ascontiguousarray(line.basis)
     places = np.zeros((n, 3)), np.zeros((n, 3))
     return WaterInLoop(hold(Stream(sea, seen, *at, *places, motion_room(n, 3), fixed(line.dimension))), seen)
@@ -68,53 +69,43 @@ def water_in_loop(pipe: Pipe, sea: SeaNumbers) -> WaterInLoop:
 def bring(seen: SeenWater, start: float, end: float) -> None:
     """Bring the water to the times of a step, which starts where the last one ended, or that which is tried anew."""
     if seen.found[END] == start and seen.found[START] != start:
-        for values in seen.motion:
-            values[START] = values[END]
+        for at_start, at_end in zip(seen.start, seen.end, strict=True):
+            at_start[:] = at_end
         seen.found[START] = start
     seen.t[:] = start, end
 
 
 @partial(njit, apart=True)
-def see(held: Held, q: Array, when: int) -> None:
-    """Find the motion at the START or END of a step, q (ne, 4, d), unless it is known there: at the start there is but
-    one place.
-    """
+def see_start(held: Held, q: Array) -> None:
+    """Find the motion at the start of a step, q (ne, 4, d), unless it is known there."""
     stream: Stream = held.value
-    seen = stream.seen
-    known = seen.found[when] == seen.t[when]
-    if known and when == START:
-        return
+    t, found = stream.seen.t[START], stream.seen.found
+    if found[START] != t:
+        _place(stream, q)
+        _find(stream, stream.seen.start, t)
+        found[START] = t
+
+
+@partial(njit, apart=True)
+def see_end(held: Held, q: Array) -> None:
+    """Find the motion of a trial, q (ne, 4, d), unless it is known there: parts at the same stations ask in turn."""
+    stream: Stream = held.value
+    t, found = stream.seen.t[END], stream.seen.found
     _place(stream, q)
-    if known and _same(stream.x, stream.place):
-        return
-    _find(stream, when)
-
-
-@njit
-def _find(stream: Stream, when: int) -> None:
-    """Find the motion at the places x."""
-    seen = stream.seen
-    motion = _at_time(seen.motion, when)
-    if len(stream.D) == 3:
-        put_motion(stream.sea, motion, seen.t[when], stream.x)
-    else:
-        put_motion(stream.sea, stream.room, seen.t[when], stream.x)
-        put_in_plane(stream.room, stream.basis, motion)
-    seen.found[when] = seen.t[when]
-    if when == END:
+    if found[END] != t or not _same(stream.x, stream.place):
+        _find(stream, stream.seen.end, t)
+        found[END] = t
         stream.place[:] = stream.x
 
 
-@njit
-def _at_time(motion: WaterMotion, when: int) -> WaterMotion:
-    return WaterMotion(
-        motion.velocity[when],
-        motion.acceleration[when],
-        motion.velocity_gradient[when],
-        motion.acceleration_gradient[when],
-        motion.immersion[when],
-        motion.immersion_gradient[when],
-    )
+@partial(njit, apart=True)
+def _find(stream: Stream, motion: WaterMotion, t: float) -> None:
+    """Write the motion at the places x."""
+    if len(stream.D) == 3:
+        put_motion(stream.sea, motion, t, stream.x)
+    else:
+        put_motion(stream.sea, stream.room, t, stream.x)
+        put_in_plane(stream.room, stream.basis, motion)
 
 
 @njit
