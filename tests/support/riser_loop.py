@@ -84,19 +84,11 @@ class Compiled:
 
 PIPE = "line_types.flexible."
 IN_SPACE = ("dimension=3", "riser.segments.0.elements=12", PIPE + "GJ=2.0e4", "solver.tolerance=1e-9")
-STORM = (
-    "water.surface_level=96.0",
-    "water.current={profile: [[0.0, -0.2, 0.1], [96.0, -0.8, -0.2]]}",
-    "water.waves={jonswap: {Hs: 6.0, Tp: 10.0, gamma: 2.0, seed: 1, components: 200, direction_deg: 195.0}, ramp: 2.0}",
-    "riser.attachments=[{at: [100.0, 144.0], mass: 100.0, volume: 0.2, drag_area: 0.7, added_mass: 0.5}]",
-    "line_types.flexible.GJ=5.0e4",
-    "solver.tolerance=1e-9",
-)
 CASES = {
     "surge in a plane": ("catenary", ("dimension=2", "riser.segments.0.elements=15")),
     "surge in space, damped": ("catenary", (*IN_SPACE, PIPE + "damping={ratio: 0.02, frequency: 1.0}")),
     "hose on a floor": ("tank", ("riser.segments.0.elements=40",)),
-    "storm over clay": ("hysteretic", STORM),
+    "storm over clay": ("storm", ()),
 }
 
 

@@ -5,9 +5,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 from scipy.linalg import solve_banded
@@ -17,16 +14,16 @@ from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
 from riser_soil.solve import banded
 from riser_soil.solve.newton import Newton
+from tests.support import sample_water
 from tests.support.riser_loop import (
     CASES,
-    IN_WATER,
     SCENES,
     require_kernels,
     require_kernels_of_parts,
     require_steps_of_snes,
     walked,
 )
-from tests.support.sample_line import Sample, sample
+from tests.support.sample_line import sample
 
 
 def test_kernels_in_a_plane_are_those_of_the_parts() -> None:
@@ -37,10 +34,9 @@ def test_steps_in_a_plane_are_those_of_snes() -> None:
     require_steps_of_snes("surge in a plane")
 
 
-@pytest.mark.parametrize("make", IN_WATER[:2], ids=["current", "half out in waves"])
-def test_kernels_in_water_are_those_of_the_parts(make: Callable[[Sample], Any]) -> None:
+def test_kernels_in_waves_are_those_of_the_parts() -> None:
     at = sample(2)
-    require_kernels(at, [make(at)])
+    require_kernels(at, [sample_water.half_out_in_waves(at), sample_water.floating_in_waves(at)])
 
 
 @pytest.mark.parametrize(("n", "b"), [(3, 2), (9, 2), (40, 5), (66, 11)])
