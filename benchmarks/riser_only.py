@@ -18,7 +18,7 @@ from riser_soil.core.system import Timer
 from riser_soil.results.observer import Observer
 
 SCENES = Path(__file__).parent.parent / "tests" / "scenes"
-CATENARY, TANK = SCENES / "catenary.yaml", SCENES / "tank.yaml"
+CATENARY, TANK, STORM = (SCENES / f"{name}.yaml" for name in ("catenary", "tank", "storm"))
 ELEMENTS = "riser.segments.0.elements={}"
 CASES: dict[str, tuple[Path, tuple[str, ...]]] = {
     "2D, 35 elements": (CATENARY, ("dimension=2", ELEMENTS.format(35))),
@@ -26,6 +26,7 @@ CASES: dict[str, tuple[Path, tuple[str, ...]]] = {
     "3D, 100 elements": (CATENARY, ("dimension=3", ELEMENTS.format(100), "line_types.flexible.GJ=2.0e4")),
     "3D, 400 elements": (CATENARY, ("dimension=3", ELEMENTS.format(400), "line_types.flexible.GJ=2.0e4")),
     "hose in a tank, 200 elements": (TANK, ()),
+    "storm over clay, 3D, 78 elements, 200 wave components": (STORM, ()),
 }
 RAMP, STEPS = 150, 140  # steps until the surge has grown; steps of one period
 

@@ -21,7 +21,7 @@ from riser_soil.scene.stages import Stage
 from riser_soil.solve.solution import NewtonSettings
 from riser_soil.solve.step_solver import solver_of
 from riser_soil.solve.time_stepper import TimeStepper
-from riser_soil.stages import steps_of
+from riser_soil.stages import LayingCounter, lay, run_stage, steps_of
 
 
 class TimedStage:
@@ -62,11 +62,9 @@ def last_stage(scene_file: Path, overrides: tuple[str, ...], clock: Timer) -> Ti
     """The last stage of a scene, all before it computed."""
     scene = read_scene(scene_file, overrides)
     assembly = build(scene, MPI.COMM_SELF)
-    before = State.at_rest(0.0, assembly.size)
+    before, _ = lay(assembly, Timer.new())
     for stage in scene.stages[:-1]:
-        timed = TimedStage(assembly, stage, before, Timer.new())
-        before = timed.walk()
-        timed.destroy()
+        before = run_stage(assembly, stage, before, LayingCounter(), Timer.new())
     return TimedStage(assembly, scene.stages[-1], before, clock)
 
 

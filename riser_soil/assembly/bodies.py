@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.sea.buoyancy import LostBuoyancy
     from riser_soil.sea.pipe import Pipe
-    from riser_soil.sea.still_water import Resistance
+    from riser_soil.sea.still_water import StillWater
     from riser_soil.sea.wetting import WaterSurface, Wetting
 
 
@@ -48,7 +48,7 @@ class Body(ABC):
 
     @property
     @abstractmethod
-    def still(self) -> Resistance:
+    def still(self) -> StillWater:
         """Its loads in still water."""
 
     @property
@@ -91,7 +91,7 @@ class PipeInWater(Body):
         return bool(self.elements.added_mass.any())
 
     @property
-    def still(self) -> Resistance:
+    def still(self) -> StillWater:
         from riser_soil.sea.morison_law import drag_coefficients
         from riser_soil.sea.still_water import StillWater
 
@@ -140,14 +140,17 @@ class ModulesInWater(Body):
         return any(module.added_mass for module in self.modules)
 
     @property
-    def still(self) -> Resistance:
-        from riser_soil.sea.modules import StillWaterOnModules
+    def still(self) -> StillWater:
+        from riser_soil.sea.modules import alike
+        from riser_soil.sea.still_water import StillWater
 
-        return StillWaterOnModules(self.pipe, 0.5 * self.rho * self._of("drag_area"), self.mass[:, 0])
+        return StillWater(self.pipe, alike(0.5 * self.rho * self._of("drag_area")), self.mass)
 
     @cached_property
     def mass(self) -> Array:
-        return (self._of("added_mass") * self.displaced)[:, None] * np.ones(2)
+        from riser_soil.sea.modules import alike
+
+        return alike(self._of("added_mass") * self.displaced)
 
     @property
     def displaced(self) -> Array:

@@ -86,7 +86,7 @@ def _current(scene: Scene, given: Current, stage: Stage) -> SteadyCurrent:
 
     profile = np.array(given.profile)
     grows = isinstance(stage, StaticStage) and stage.name == scene.stages[0].name
-    return SteadyCurrent(profile[:, 0], profile[:, 1:], (lambda t: t) if grows else (lambda t: 1.0))
+    return SteadyCurrent(profile[:, 0].copy(), profile[:, 1:].copy(), grows)
 
 
 def _waves(scene: Scene, stage: Stage) -> WaveField:

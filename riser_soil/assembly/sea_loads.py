@@ -80,11 +80,11 @@ class _BodyLoads:
         """Where the water has one; it is level without waves."""
         if self.water.surface_level is None:
             return None
-        from riser_soil.sea.wetting import flat_surface
+        from riser_soil.sea.wetting import CalmSurface
 
         if self.waves and self.stream is not None:
-            return self.stream.immersion
-        return flat_surface(self.body.pipe, self.water.surface_level)
+            return self.stream
+        return CalmSurface(self.body.pipe, self.water.surface_level)
 
     @property
     def morison(self) -> Morison:

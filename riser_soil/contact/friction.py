@@ -112,8 +112,8 @@ class CoulombFriction(LinePart):
         )
         return self._in_loop
 
-    def renew_numbers(self, t: float) -> None:
-        begun, numbers = self._friction_state_from(t), self._in_loop
+    def renew_numbers(self, start: float, end: float) -> None:
+        begun, numbers = self._friction_state_from(end), self._in_loop
         numbers.position[:], numbers.along[:], numbers.traction[:] = begun
 
     def energy(self, state: State) -> Energy:

@@ -149,7 +149,7 @@ class SeabedContact(LineContact):
         self.in_loop = seabed_numbers(self.line, *stations, ground, law)
         return self.in_loop
 
-    def renew_numbers(self, t: float) -> None:
+    def renew_numbers(self, start: float, end: float) -> None:
         self.in_loop.memory[:] = self.memory
 
     def energy(self, state: State) -> Energy:

@@ -6,6 +6,7 @@ parts; and each kernel once, whatever others there are. A call takes some 10 ns,
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,24 +21,27 @@ from riser_soil.core.compiled import OPTIONS, caching, njit
 from riser_soil.core.kernel_cache import EntryCache, mark
 from riser_soil.core.packed import Packed
 
-_entries: dict[tuple[Any, ...], CFunc] = {}
+_entries: dict[tuple[Any, ...], Any] = {}
 
 
 class Bound:
     """A kernel and its arguments, which are kept; what it returns is lost. Called without arguments."""
 
     def __init__(self, kernel: Any, *arguments: Packed) -> None:
-        self._entry = _entry(kernel, *(each.kind for each in arguments))
+        entry = _entry(kernel, *(each.kind for each in arguments))
         self._addresses = np.array([each.address for each in arguments], dtype=np.int64)
-        self._kept, self._call = arguments, self._entry.ctypes
-        self.function, self.row = self._entry.address, int(self._addresses.ctypes.data)
+        self._kept, self._call = arguments, entry.ctypes
+        self.function, self.row = int(entry.address), int(self._addresses.ctypes.data)
 
     def __call__(self) -> None:
         self._call(self.row)
 
 
 class Calls(NamedTuple):
-    """Bound kernels for compiled code: addresses of functions and of where those of their arguments lie (n,)."""
+    """Bound kernels for compiled code: addresses of functions and of where those of their arguments lie (n,).
+
+    The kernels are kept with the arrays.
+    """
 
     functions: IntArray
     rows: IntArray
@@ -50,20 +54,21 @@ def call_each(given: Calls) -> None:
         _call(given.functions[n], given.rows[n])
 
 
-class InTurn:
-    """Kernels that are called one after the other; calls: the same for compiled code, as long as this lives."""
+class _Addresses:
+    """Addresses (n,) that keep what they point to, as the base of the arrays that are made of them."""
 
-    def __init__(self, *bound: Bound) -> None:
-        columns = [each.function for each in bound], [each.row for each in bound]
-        self.kernels = bound
-        self.calls = Packed(Calls(*(np.array(column, dtype=np.int64) for column in columns)))
-
-    def __call__(self) -> None:
-        for each in self.kernels:
-            each()
+    def __init__(self, values: Sequence[int], kept: Sequence[Bound]) -> None:
+        self._values, self._kept = np.array(values, dtype=np.int64), kept
+        self.__array_interface__ = self._values.__array_interface__
 
 
-def _entry(kernel: Any, *kinds: Any) -> CFunc:
+def calls(*bound: Bound) -> Calls:
+    """Bound kernels to be called one after the other."""
+    columns = [each.function for each in bound], [each.row for each in bound]
+    return Calls(*(np.asarray(_Addresses(column, bound)) for column in columns))
+
+
+def _entry(kernel: Any, *kinds: Any) -> Any:
     """The function of one address that calls a kernel with arguments of these types, which it finds there."""
     key = kernel, *kinds
     if key not in _entries:
@@ -71,7 +76,7 @@ def _entry(kernel: Any, *kinds: Any) -> CFunc:
     return _entries[key]
 
 
-def _compiled(kernel: Any, kinds: Any) -> CFunc:
+def _compiled(kernel: Any, kinds: Any) -> Any:
     """Its name tells it apart from all others, on disk and in the machine code."""
 
     def calling(row: int) -> None:

@@ -70,8 +70,8 @@ class Beam(LinePart):
         self._load_now = self._load.copy()
         return kind(elastic.reference, elastic.section, self.line.length, self._load_now)
 
-    def renew_numbers(self, t: float) -> None:
-        np.multiply(self.factor(t), self._load, out=self._load_now)
+    def renew_numbers(self, start: float, end: float) -> None:
+        np.multiply(self.factor(end), self._load, out=self._load_now)
 
     def energy(self, state: State) -> Energy:
         """Strain energy, and the potential of weight and load, zero at the origin of the axes."""

@@ -31,8 +31,10 @@ class LinePart:
         """
         return None
 
-    def renew_numbers(self, t: float) -> None:
-        """Write what depends on the time alone into the numbers that were asked for last."""
+    def renew_numbers(self, start: float, end: float) -> None:
+        """Write what depends on the time alone into the numbers that were asked for last, for a step between two times
+        [s].
+        """
 
     def energy(self, state: State) -> Energy:
         return Energy()

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.riser import rotations
 from riser_soil.riser.configuration import Configuration, Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
@@ -23,6 +23,14 @@ class GivenForces(NamedTuple):
     F: Array
     moment: Array
     potential: bool
+
+
+class SpatialMoments(NamedTuple):
+    """Residual conjugate to q (ne, 4, d), and moments (k, 3) of fixed axes at nodes (k,), of group F."""
+
+    F: Array
+    node: IntArray
+    moment: Array
 
 
 class PlanarSpring(NamedTuple):
@@ -51,6 +59,29 @@ def _given_forces(part: GivenForces, at: Configuration, out: LineForces) -> None
 @add_tangent.of(GivenForces)
 def _given_tangent(part: GivenForces, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
     """The loads do not change."""
+
+
+@add_forces.of(SpatialMoments)
+def _moment_forces(part: SpatialMoments, at: SpatialConfiguration, out: LineForces) -> None:
+    out.force_q[:] += part.F
+    for k in range(part.node.size):
+        n = part.node[k]
+        conjugate = matvec(transpose(matrix(at.H[n])), vector(part.moment[k]))
+        for i in range(3):
+            out.force[n, 3 + i] -= conjugate[i]
+
+
+@add_tangent.of(SpatialMoments)
+def _moment_tangent(
+    part: SpatialMoments, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array
+) -> None:
+    for k in range(part.node.size):
+        n = part.node[k]
+        e, first = (n, 3) if n < K.shape[0] else (n - 1, 9)
+        change = moment_stiffness(matrix(at.Rn[n]), vector(at.Theta[n]), vector(part.moment[k]))
+        for i in range(3):
+            for j in range(3):
+                K[e, first + i, first + j] -= weights.force * change[i][j]
 
 
 @add_forces.of(PlanarSpring)
@@ -90,6 +121,11 @@ def _spatial_tangent(part: SpatialSpring, at: SpatialConfiguration, maps: Maps, 
 def _given_energy(part: GivenForces, at: Configuration, energy: Array) -> None:
     if part.potential:
         energy[2] += np.sum(part.F * at.q)
+
+
+@add_energy.of(SpatialMoments)
+def _moment_energy(part: SpatialMoments, at: SpatialConfiguration, energy: Array) -> None:
+    """They have no potential."""
 
 
 @add_energy.of(PlanarSpring)

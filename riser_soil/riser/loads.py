@@ -13,7 +13,7 @@ from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
-from riser_soil.riser.load_kernels import GivenForces
+from riser_soil.riser.load_kernels import GivenForces, SpatialMoments
 from riser_soil.riser.spatial_directors import SpatialOrientation, moment_stiffness
 from riser_soil.riser.trial import Trial
 
@@ -134,19 +134,24 @@ class PointLoads(LinePart):
             moment_stiffness(turn.Rn[node], turn.Theta[node], moment)
         )
 
-    def numbers(self) -> GivenForces | None:
-        """None with moments in space."""
-        if self._moments and self.line.dimension == 3:
-            return None
+    def numbers(self) -> GivenForces | SpatialMoments:
         F = np.zeros((self.line.length.size, 4, self.line.dimension))
-        self._numbers = GivenForces(F, np.zeros(self.line.nodes if self._moments else 0), potential=False)
+        self._numbers: GivenForces | SpatialMoments
+        if self._moments and self.line.dimension == 3:
+            nodes = np.array([node for _, node in self._moments], dtype=np.int64)
+            self._numbers = SpatialMoments(F, nodes, np.zeros((nodes.size, 3)))
+        else:
+            self._numbers = GivenForces(F, np.zeros(self.line.nodes if self._moments else 0), potential=False)
         return self._numbers
 
-    def renew_numbers(self, t: float) -> None:
-        self._numbers.F[:] = self._F(t, self._loads)
+    def renew_numbers(self, start: float, end: float) -> None:
+        self._numbers.F[:] = self._F(end, self._loads)
         self._numbers.moment[:] = 0.0
-        for load, node in self._moments:
-            self._numbers.moment[node] -= self._moment(load, t) @ self.line.normal
+        for k, (load, node) in enumerate(self._moments):
+            if isinstance(self._numbers, SpatialMoments):
+                self._numbers.moment[k] = self._moment(load, end)
+            else:
+                self._numbers.moment[node] -= self._moment(load, end) @ self.line.normal
 
     def work(self, before: State, after: State) -> Work:
         """Work of the mean loads over the step."""

@@ -64,8 +64,8 @@ class EndSpring(LinePart):
         self._support = self.line.support(self.node, 0.0).copy()
         return kind(self.node, self.stiffness, self._support)
 
-    def renew_numbers(self, t: float) -> None:
-        self._support[:] = self.line.support(self.node, t)
+    def renew_numbers(self, start: float, end: float) -> None:
+        self._support[:] = self.line.support(self.node, end)
 
     def energy(self, state: State) -> Energy:
         phi = self._rotation(state)

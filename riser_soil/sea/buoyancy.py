@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import fixed
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser.line_part import LinePart
-from riser_soil.riser.stations import Derivatives
+from riser_soil.riser.stations import Derivatives, element_room
 from riser_soil.riser.trial import Trial
+from riser_soil.sea.buoyancy_kernels import DryPipeNumbers, DryStationNumbers
 from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.stream_kernels import bring
 from riser_soil.sea.wetting import Wetting
 
 
@@ -28,6 +31,10 @@ class LostBuoyancy(Protocol):
 
     def potential(self, trial: Trial) -> float:
         """Potential [J] under a level surface, zero when all is submerged."""
+        ...
+
+    def numbers(self, flat: bool) -> DryPipeNumbers | DryStationNumbers:
+        """Those of a `Buoyancy` in the compiled loop over a riser alone."""
         ...
 
 
@@ -53,6 +60,22 @@ class DryStations:
 
     def potential(self, trial: Trial) -> float:
         return float(np.sum(self._pipe.share * self._displaced * self._wetting.dry_height(trial)))
+
+    def numbers(self, flat: bool) -> DryStationNumbers:
+        pipe, water, d = self._pipe, self._wetting.surface.in_loop, self._pipe.line.dimension
+        return DryStationNumbers(
+            stream=water.stream,
+            seen=water.seen,
+            element=pipe.element,
+            at=pipe.at,
+            share=pipe.share,
+            span=self._wetting.span,
+            displaced=self._displaced[:, 0].copy(),
+            flat=flat,
+            f=np.zeros(d),
+            by_x=np.zeros((d, d)),
+            change=element_room(pipe.at.N.shape[1], 2 * pipe.line.ndof, fixed(d)),
+        )
 
 
 class Buoyancy(LinePart):
@@ -88,6 +111,13 @@ class Buoyancy(LinePart):
         trial, K = self.line.trial(state), values[self.line.name]
         self._dry.add_tangent(K, trial, weights)
         trial.add_turning(K, weights.force, self._F(trial))
+
+    def numbers(self) -> tuple[Any, ...]:
+        self._in_loop = self._dry.numbers(self._flat)
+        return self._in_loop
+
+    def renew_numbers(self, start: float, end: float) -> None:
+        bring(self._in_loop.seen, start, end)
 
     def energy(self, state: State) -> Energy:
         """Potential under a flat surface."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
+from riser_soil.sea.flows import add_flow
 from riser_soil.sea.water import WaterMotion
 
 
@@ -30,25 +31,44 @@ def at_heights(z: Array, level: Array, velocity: Array) -> tuple[Array, Array]:
     return values, slopes
 
 
+class CurrentNumbers(NamedTuple):
+    """A `SteadyCurrent`."""
+
+    level: Array
+    velocity: Array
+    grows: bool
+
+
 @dataclass(frozen=True, eq=False)
 class SteadyCurrent:
-    """A current by height, times a factor of the stage's time; the factor's own rate accelerates nothing.
+    """A current by height.
 
-    level (m,) [m], increasing; velocity (m, 2) [m/s] towards x and y.
+    level (m,) [m], increasing; velocity (m, 2) [m/s] towards x and y. grows: with the stage's time, the load factor of
+    statics, by which it is multiplied then; that accelerates nothing.
     """
 
     level: Array
     velocity: Array
-    factor: Callable[[float], float]
+    grows: bool = False
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        _add_to(motion, x[:, 2], self.level, self.velocity, self.factor(t))
+        _add_to(motion, self.numbers, t, x)
+
+    @property
+    def numbers(self) -> CurrentNumbers:
+        return CurrentNumbers(self.level, self.velocity, self.grows)
 
 
 @njit
-def _add_to(motion: WaterMotion, z: Array, level: Array, velocity: Array, factor: float) -> None:
-    values, slopes = at_heights(z, level, velocity)
-    for p in range(z.size):
+def _add_to(motion: WaterMotion, current: CurrentNumbers, t: float, x: Array) -> None:
+    values, slopes = at_heights(x[:, 2], current.level, current.velocity)
+    factor = t if current.grows else 1.0
+    for p in range(x.shape[0]):
         for i in range(2):
             motion.velocity[p, i] += factor * values[p, i]
             motion.velocity_gradient[p, i, 2] += factor * slopes[p, i]
+
+
+@add_flow.of(CurrentNumbers)
+def _add_current(flow: CurrentNumbers, motion: WaterMotion, t: Array, x: Array) -> None:
+    _add_to(motion, flow, t[0], x)

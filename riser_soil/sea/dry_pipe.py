@@ -3,33 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import fixed
 from riser_soil.core.part import Weights
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import waterline
+from riser_soil.sea.buoyancy_kernels import DryPipeNumbers
 from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.waterline import WetElements
 from riser_soil.sea.wetting import WaterSurface
 
 # Fine points that a section's width holds at least, so that an upright pipe gets wet evenly; an element has no more
 # than MOST of them, and the width of its sections follows where its diameter is too small for that.
 WITHIN_WIDTH, MOST = 6, 200
-
-
-class _Sections(NamedTuple):
-    """Arguments of `waterline`'s functions."""
-
-    xi: Array
-    w: Array
-    lag: Array
-    z: Array
-    h: Array
-    stations: Array
-    L: Array
-    b: Array
 
 
 class DryPipe:
@@ -49,28 +38,35 @@ class DryPipe:
 
     def residual(self, trial: Trial) -> Array:
         F = np.zeros_like(trial.q)
-        F[..., -1] = self._displaced[:, None] * waterline.dry_lengths(*self._sections(trial))
+        F[..., -1] = self._displaced[:, None] * waterline.dry_lengths(tuple(self._points), tuple(self._wet(trial)))
         return F
 
     def add_tangent(self, K: Array, trial: Trial, weights: Weights) -> None:
-        by_q = weights.force * self._displaced[:, None, None, None] * self._derivatives(trial)
-        waterline.add_tangent(K, by_q, trial.turn.P)
+        gradient, weight = self._surface.immersion(trial)[1], weights.force * self._displaced
+        waterline.add_tangent(K, self._points, self._wet(trial), self._pipe.at.N, gradient, weight, trial.turn.P)
 
     def potential(self, trial: Trial) -> float:
-        return float(self._displaced @ waterline.dry_potentials(*self._sections(trial)))
+        return float(self._displaced @ waterline.dry_potentials(tuple(self._points), tuple(self._wet(trial))))
 
-    def _sections(self, trial: Trial) -> _Sections:
-        h, _ = self._surface(trial)
+    def numbers(self, flat: bool) -> DryPipeNumbers:
+        pipe, water, ng = self._pipe, self._surface.in_loop, self._pipe.share.shape[1]
+        return DryPipeNumbers(
+            stream=water.stream,
+            seen=water.seen,
+            points=self._points,
+            at=pipe.at,
+            length=self._length,
+            width=self._width,
+            displaced=self._displaced,
+            flat=flat,
+            room=waterline.tangent_room(ng, 2 * pipe.line.ndof, fixed(pipe.line.dimension)),
+            z=np.zeros(4),
+            heights=np.zeros(ng),
+            dry=np.zeros(4),
+            before=np.zeros(4),
+        )
+
+    def _wet(self, trial: Trial) -> WetElements:
+        h, _ = self._surface.immersion(trial)
         z, stations = (np.ascontiguousarray(x[..., -1]) for x in (trial.q, self._pipe.position(trial)))
-        return _Sections(*self._points, z, h, stations, self._length, self._width)
-
-    def _derivatives(self, trial: Trial) -> Array:
-        """Derivatives of the dry lengths by q (ne, 4, 4, d): as the pipe moves, and as the surface above it changes."""
-        by_height, by_surface = waterline.slopes(*self._sections(trial))
-        by_q = np.zeros((*by_height.shape, self._pipe.line.dimension))
-        by_q[..., -1] = by_height
-        at = np.flatnonzero(by_surface.any(axis=(1, 2)))  # where the pipe comes out
-        slope = self._surface(trial)[1][at]
-        slope[..., -1] += 1.0
-        by_q[at] += np.einsum("eag,egc,egj->eacj", by_surface[at], self._pipe.at.N[at], slope)
-        return by_q
+        return WetElements(z, h, stations, self._length, self._width)

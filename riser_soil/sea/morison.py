@@ -8,8 +8,10 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
 from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.trial import Trial
+from riser_soil.sea.moving_water_kernels import MovingWaterNumbers
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.still_water import StationLoads
+from riser_soil.sea.stream_kernels import bring
 
 
 class Morison(LinePart):
@@ -39,8 +41,13 @@ class Morison(LinePart):
         inertia, force = self._q_forces(trial)
         trial.add_turning(K, 1.0, weights.inertia * inertia + weights.force * force)
 
-    def numbers(self) -> tuple[Any, ...] | None:
-        return self._loads.numbers()
+    def numbers(self) -> tuple[Any, ...]:
+        self._in_loop = self._loads.numbers()
+        return self._in_loop
+
+    def renew_numbers(self, start: float, end: float) -> None:
+        if isinstance(self._in_loop, MovingWaterNumbers):
+            bring(self._in_loop.seen, start, end)
 
     def energy(self, state: State) -> Energy:
         """Kinetic energy of the added mass at the pipe's own velocity."""

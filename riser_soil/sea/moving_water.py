@@ -16,6 +16,7 @@ Source: Morison et al., Petroleum Transactions 189 (1950), in its relative form.
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -26,8 +27,12 @@ from riser_soil.riser import stations
 from riser_soil.riser.stations import Derivatives
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import morison_law as law
+from riser_soil.sea.flows import motion_room, put_in_plane
+from riser_soil.sea.moving_water_kernels import MovingWaterNumbers
 from riser_soil.sea.pipe import Pipe, StationFlow
-from riser_soil.sea.still_water import Resistance, StationLoads
+from riser_soil.sea.sea import Sea
+from riser_soil.sea.still_water import StationLoads, StillWater
+from riser_soil.sea.stream_kernels import WaterInLoop, water_in_loop
 from riser_soil.sea.water import Water, WaterMotion
 
 
@@ -49,7 +54,6 @@ class FlowAtStations:
 
     def __init__(self, pipe: Pipe, water: Water) -> None:
         self.pipe, self._water = pipe, water
-        self._both = np.kron(pipe.line.basis, pipe.line.basis)  # basis^T G basis for all points in one product
         self._latest: _Seen | None = None
         self._before: _Seen | None = None
 
@@ -57,6 +61,12 @@ class FlowAtStations:
         """The water's motion at the stations: arrays (ne, ng, ...) in the line's axes."""
         motion: WaterMotion = trial.once((self, "motion"), self._find)
         return motion
+
+    @cached_property
+    def in_loop(self) -> WaterInLoop:
+        """The same in the compiled loop over a riser alone; for a `Sea`."""
+        assert isinstance(self._water, Sea)
+        return water_in_loop(self.pipe, self._water.numbers)
 
     def immersion(self, trial: Trial) -> tuple[Array, Array]:
         """Height of the surface above the stations (ne, ng) [m] and its gradient (ne, ng, d)."""
@@ -80,15 +90,9 @@ class FlowAtStations:
         return WaterMotion(*(part.reshape(*at, *part.shape[1:]) for part in seen))
 
     def _in_plane(self, found: WaterMotion) -> WaterMotion:
-        basis = self.pipe.line.basis
-        return WaterMotion(
-            velocity=found.velocity @ basis,
-            acceleration=found.acceleration @ basis,
-            velocity_gradient=(found.velocity_gradient.reshape(-1, 9) @ self._both).reshape(-1, 2, 2),
-            acceleration_gradient=(found.acceleration_gradient.reshape(-1, 9) @ self._both).reshape(-1, 2, 2),
-            immersion=found.immersion,
-            immersion_gradient=found.immersion_gradient @ basis,
-        )
+        seen = motion_room(found.immersion.size, 2)
+        put_in_plane(found, np.ascontiguousarray(self.pipe.line.basis), seen)
+        return seen
 
 
 class RelativeDrag:
@@ -96,7 +100,7 @@ class RelativeDrag:
 
     dissipative = False
 
-    def __init__(self, still: Resistance, stream: FlowAtStations) -> None:
+    def __init__(self, still: StillWater, stream: FlowAtStations) -> None:
         self._still, self._stream = still, stream
 
     def forces(self, trial: Trial) -> tuple[Array, Array]:
@@ -106,8 +110,11 @@ class RelativeDrag:
         by = self._still.linearise(self._through(trial), weights)
         return by._replace(position=-by.rate @ self._stream.at(trial).velocity_gradient)
 
-    def numbers(self) -> None:
-        return None
+    def numbers(self) -> MovingWaterNumbers:
+        return self.seen_in(self._stream.in_loop)
+
+    def seen_in(self, water: WaterInLoop) -> MovingWaterNumbers:
+        return self._still.seen_in(water)._replace(dissipative=False)
 
     def momentum(self, trial: Trial, v: Array) -> Array:
         return self._still.momentum(trial, v)
@@ -146,8 +153,11 @@ class AcceleratedWater:
             slope=by.slope + stations.follow_slope(by_tau, flow.tau, flow.stretch),
         )
 
-    def numbers(self) -> None:
-        return None
+    def numbers(self) -> MovingWaterNumbers:
+        return self.seen_in(self._stream.in_loop)
+
+    def seen_in(self, water: WaterInLoop) -> MovingWaterNumbers:
+        return self._loads.seen_in(water)._replace(dissipative=False, pushed=self._mass)
 
     def momentum(self, trial: Trial, v: Array) -> Array:
         return self._loads.momentum(trial, v)

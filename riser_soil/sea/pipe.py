@@ -35,7 +35,7 @@ class Pipe:
     """Gauss stations of a line, and the pipe's motion at them; in the line's axes.
 
     points: seen at these m points instead, each as if it were an element with one station; forces per length are then
-    forces, and the arc length that a point stands for is 1.
+    forces, and the arc length that a point stands for is 1. What sits there is alike in all directions: tau is zero.
     """
 
     def __init__(self, line: Line, points: PointsOnLine | None = None) -> None:
@@ -46,6 +46,11 @@ class Pipe:
     def points_alone(self) -> bool:
         """Whether it is seen at single points, not all along."""
         return self._points is not None
+
+    @property
+    def element(self) -> IntArray:
+        """The line's element that each of its own is, or lies in (ne,)."""
+        return np.arange(self.line.length.size) if self._points is None else self._points.element
 
     @cached_property
     def share(self) -> Array:
@@ -78,7 +83,8 @@ class Pipe:
 
     def _evaluate(self, trial: Trial) -> StationFlow:
         seen = (trial.q_rate, trial.q_acceleration, trial.chord, trial.turn.tangent)
-        return StationFlow(*stations.motion(self.at, *(self._own(values) for values in seen)))
+        flow = StationFlow(*stations.motion(self.at, *(self._own(values) for values in seen)))
+        return flow if self._points is None else flow._replace(tau=np.zeros_like(flow.tau))
 
     def integrate(self, density: Array) -> Array:
         """Residual conjugate to q (ne, 4, d) of a force per length (ne, ng, d)."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from typing import Protocol
-
-import numpy as np
+from typing import Any, Protocol
 
 from riser_soil.core.arrays import Array
+from riser_soil.sea.flows import SeaNumbers, motion_room, put_at_rest
 from riser_soil.sea.water import WaterMotion
 
 
@@ -18,6 +18,11 @@ class FlowComponent(Protocol):
         """Add the flow at time t to the motion of points x (n, 3), whose immersion so far is that under calm water."""
         ...
 
+    @property
+    def numbers(self) -> tuple[Any, ...]:
+        """The flow in numbers, whose type has a kernel of `flows.add_flow`."""
+        ...
+
 
 class Sea:
     """A `Water`: the sum of its flows under a surface whose mean level is z = surface_level [m]; None: no surface.
@@ -26,22 +31,16 @@ class Sea:
     """
 
     def __init__(self, surface_level: float | None, flows: Sequence[FlowComponent] = ()) -> None:
-        self._level, self._flows = surface_level, tuple(flows)
+        self._level, self._flows = math.inf if surface_level is None else surface_level, tuple(flows)
 
     def __call__(self, t: float, x: Array) -> WaterMotion:
-        motion = at_rest(x, self._level)
+        motion = motion_room(len(x), 3)
+        put_at_rest(motion, self._level, x)
         for flow in self._flows:
             flow.add(t, x, motion)
         return motion
 
-
-def at_rest(x: Array, surface_level: float | None) -> WaterMotion:
-    """Still water at points x (n, 3)."""
-    n = len(x)
-    motion = WaterMotion(*(np.zeros((n, *shape)) for shape in ((3,), (3,), (3, 3), (3, 3), (), (3,))))
-    if surface_level is None:
-        motion.immersion[:] = np.inf
-    else:
-        motion.immersion[:] = surface_level - x[:, 2]
-        motion.immersion_gradient[:, 2] = -1.0
-    return motion
+    @property
+    def numbers(self) -> SeaNumbers:
+        """The same for compiled code."""
+        return SeaNumbers(self._level, tuple(flow.numbers for flow in self._flows))

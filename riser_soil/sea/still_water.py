@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from typing import Any, Protocol
 
 import numpy as np
@@ -15,7 +14,10 @@ from riser_soil.riser.stations import Derivatives, element_room
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import morison_law as law
 from riser_soil.sea.morison_kernels import StillWaterNumbers, station_room
+from riser_soil.sea.moving_water_kernels import MovingWaterNumbers, moving_water
 from riser_soil.sea.pipe import Pipe, StationFlow
+from riser_soil.sea.sea import Sea
+from riser_soil.sea.stream_kernels import WaterInLoop, water_in_loop
 
 
 class StationLoads(Protocol):
@@ -34,8 +36,12 @@ class StationLoads(Protocol):
         """Derivatives of both groups, weighted and summed."""
         ...
 
-    def numbers(self) -> tuple[Any, ...] | None:
+    def numbers(self) -> tuple[Any, ...]:
         """The loads in numbers, see `LinePart.numbers`."""
+        ...
+
+    def seen_in(self, water: WaterInLoop) -> MovingWaterNumbers:
+        """The loads in numbers, in water that need not stand still nor cover all."""
         ...
 
     def momentum(self, trial: Trial, v: Array) -> Array:
@@ -43,13 +49,17 @@ class StationLoads(Protocol):
         ...
 
 
-class Resistance(ABC):
-    """Loads of still water, by which any motion through the water is resisted. A `StationLoads`."""
+class StillWater:
+    """Drag (group F) and added mass (group I), by which any motion through the water is resisted. A `StationLoads`.
+
+    drag, mass: coefficients (ne, 2), normal and tangential, of `morison_law.drag_coefficients` [kg/m2] and
+    `morison_law.added_masses` [kg/m].
+    """
 
     dissipative = True
 
-    def __init__(self, pipe: Pipe) -> None:
-        self.pipe = pipe
+    def __init__(self, pipe: Pipe, drag: Array, mass: Array) -> None:
+        self.pipe, self._drag, self.mass = pipe, drag, mass
 
     def forces(self, trial: Trial) -> tuple[Array, Array]:
         return self.resist(self.pipe.flow(trial))
@@ -57,48 +67,26 @@ class Resistance(ABC):
     def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
         return self.linearise(self.pipe.flow(trial), weights)
 
-    def numbers(self) -> tuple[Any, ...] | None:
-        return None
-
-    @abstractmethod
-    def momentum(self, trial: Trial, v: Array) -> Array:
-        """As of all `StationLoads`."""
-
-    @abstractmethod
-    def resist(self, flow: StationFlow) -> tuple[Array, Array]:
-        """Groups I and F, each (ne, ng, d), of a motion through the water."""
-
-    @abstractmethod
-    def linearise(self, flow: StationFlow, weights: Weights) -> Derivatives:
-        """Derivatives of `resist` by that motion, weighed and summed."""
-
-
-class StillWater(Resistance):
-    """Drag (group F) and added mass (group I).
-
-    drag, mass: coefficients (ne, 2), normal and tangential, of `morison_law.drag_coefficients` [kg/m2] and
-    `morison_law.added_masses` [kg/m].
-    """
-
-    def __init__(self, pipe: Pipe, drag: Array, mass: Array) -> None:
-        super().__init__(pipe)
-        self._drag, self.mass = drag, mass
-
-    def numbers(self) -> StillWaterNumbers | None:
-        """None where the pipe is seen at single points."""
+    def numbers(self) -> StillWaterNumbers | MovingWaterNumbers:
+        """Those of a pipe where it is one all along."""
         if self.pipe.points_alone:
-            return None
+            return self.seen_in(water_in_loop(self.pipe, Sea(None).numbers))
         d, n, at = self.pipe.line.dimension, 2 * self.pipe.line.ndof, self.pipe.at
         room = element_room(at.N.shape[1], n, fixed(d))
         return StillWaterNumbers(at, self.pipe.share, self._drag, self.mass, station_room(d), room)
+
+    def seen_in(self, water: WaterInLoop) -> MovingWaterNumbers:
+        return moving_water(water, self.pipe, self._drag, self.mass)
 
     def momentum(self, trial: Trial, v: Array) -> Array:
         return law.added(v, self.pipe.flow(trial).tau, self.mass)
 
     def resist(self, flow: StationFlow) -> tuple[Array, Array]:
+        """Groups I and F, each (ne, ng, d), of a motion through the water."""
         return law.resistance(flow.v, flow.a, flow.tau, self._drag, self.mass)
 
     def linearise(self, flow: StationFlow, weights: Weights) -> Derivatives:
+        """Derivatives of `resist` by that motion, weighed and summed."""
         drag, mass = weights.force * self._drag, weights.inertia * self.mass
         by_v, by_a, by_tau = law.resistance_derivatives(flow.v, flow.a, flow.tau, drag, mass)
         by_slope = stations.follow_slope(by_tau, flow.tau, flow.stretch)

@@ -1,8 +1,7 @@
 """Quadrature at the waterline: lost buoyancy of partly submerged elements, with its tangent.
 
-Per element: z its heights (ne, 4), those of `hermite`'s q; h (ne, ng) the immersion at its Gauss stations; L length, b
-width of the wet section (ne,). At a fine point xi, of quadrature weight w, the height of the surface is interpolated
-quadratically from the stations' surface h + z, with the weights `lag` (n, ng).
+At a fine point xi of an element, of quadrature weight w, the height of the surface is interpolated quadratically from
+that above the element's stations, with the weights `lag` (n, ng).
 """
 
 from __future__ import annotations
@@ -26,6 +25,44 @@ class FinePoints(NamedTuple):
     lag: Array
 
 
+class WetElements(NamedTuple):
+    """Elements: z their heights (ne, 4), those of `hermite`'s q; h (ne, ng) the immersion at their stations, whose own
+    heights are stations (ne, ng); L length, b width of the wet section (ne,).
+    """
+
+    z: Array
+    h: Array
+    stations: Array
+    L: Array
+    b: Array
+
+
+class WetElement(NamedTuple):
+    """One of `WetElements`."""
+
+    z: Array
+    h: Array
+    stations: Array
+    L: float
+    b: float
+
+
+class TangentRoom(NamedTuple):
+    """Room for the tangent of one element: see `put_slopes`, `put_by_q` and `put_by_dofs`; S but for its last rows is
+    zero.
+    """
+
+    by_height: Array
+    by_surface: Array
+    by_q: Array
+    S: Array
+
+
+@njit
+def element(on: WetElements, e: int) -> WetElement:
+    return WetElement(on.z[e], on.h[e], on.stations[e], on.L[e], on.b[e])
+
+
 def fine_points(n: int) -> FinePoints:
     """n of them; the interpolation runs through the three Gauss stations."""
     x, w = np.polynomial.legendre.leggauss(n)
@@ -35,92 +72,165 @@ def fine_points(n: int) -> FinePoints:
 
 
 @njit
-def _immersion(xi: float, lag: Array, z: Array, h: Array, at_stations: Array, L: float) -> float:
-    """Immersion of one point; at_stations: heights of the element's stations (ng,)."""
-    N = shape(xi, L)
+def _immersion(xi: float, lag: Array, at: WetElement) -> float:
+    """Immersion of one point."""
+    N = shape(xi, at.L)
     found = 0.0
     for g in range(lag.size):
-        found += lag[g] * (h[g] + at_stations[g])
+        found += lag[g] * (at.h[g] + at.stations[g])
     for a in range(4):
-        found -= N[a] * z[a]
+        found -= N[a] * at.z[a]
     return found
 
 
 @njit
-def _submerged(h: Array, L: float, b: float) -> bool:
+def submerged(at: WetElement) -> bool:
     """Whether an element lies too deep to reach the surface, by the length that it has."""
-    return h.min() > L + 0.5 * b
+    deep: bool = at.h.min() > at.L + 0.5 * at.b
+    return deep
 
 
 @njit
-def dry_lengths(xi: Array, w: Array, lag: Array, z: Array, h: Array, stations: Array, L: Array, b: Array) -> Array:
-    """Integrals of (1 - S) N_a over the elements (ne, 4)."""
-    out = np.zeros((L.size, 4))
-    for e in range(L.size):
-        if _submerged(h[e], L[e], b[e]):
-            continue
-        for i in range(xi.size):
-            dry = 1.0 - wet_share(_immersion(xi[i], lag[i], z[e], h[e], stations[e], L[e]), b[e])
-            N = shape(xi[i], L[e])
-            for a in range(4):
-                out[e, a] += w[i] * L[e] * dry * N[a]
-    return out
-
-
-@njit
-def dry_potentials(xi: Array, w: Array, lag: Array, z: Array, h: Array, stations: Array, L: Array, b: Array) -> Array:
-    """Integrals of `dry_height` over the elements (ne,) [m2]."""
-    out = np.zeros(L.size)
-    for e in range(L.size):
-        if _submerged(h[e], L[e], b[e]):
-            continue
-        for i in range(xi.size):
-            immersion = _immersion(xi[i], lag[i], z[e], h[e], stations[e], L[e])
-            out[e] += w[i] * L[e] * dry_height(immersion, b[e])
-    return out
-
-
-@njit
-def slopes(
-    xi: Array, w: Array, lag: Array, z: Array, h: Array, stations: Array, L: Array, b: Array
-) -> tuple[Array, Array]:
-    """Derivatives of `dry_lengths` by the elements' heights (ne, 4, 4), and by the surface's at the stations (ne, 4,
-    ng).
-    """
-    by_height, by_surface = np.zeros((L.size, 4, 4)), np.zeros((L.size, 4, h.shape[1]))
-    for e in range(L.size):
-        if _submerged(h[e], L[e], b[e]):
-            continue
-        for i in range(xi.size):
-            slope = w[i] * L[e] * wet_slope(_immersion(xi[i], lag[i], z[e], h[e], stations[e], L[e]), b[e])
-            if slope == 0.0:
-                continue
-            N = shape(xi[i], L[e])
-            for a in range(4):
-                for c in range(4):
-                    by_height[e, a, c] += slope * N[a] * N[c]
-                for g in range(lag.shape[1]):
-                    by_surface[e, a, g] -= slope * N[a] * lag[i, g]
-    return by_height, by_surface
-
-
-def add_tangent(out: Array, by_q: Array, P: Array) -> None:
-    """Add to out (ne, n, n) the derivative by the dofs of loads along z with derivatives by_q (ne, 4, 4, d)."""
-    _add_tangent(out, by_q, P, fixed(P.shape[2]), fixed(P.shape[3]))
-
-
-@njit
-def _add_tangent(out: Array, by_q: Array, P: Array, D: Size, R: Size) -> None:
-    d, half = len(D), len(D) + len(R)
-    S = np.zeros((4, d, 2 * half))
-    for e in range(P.shape[0]):
+def put_dry_lengths(points: FinePoints, at: WetElement, out: Array) -> None:
+    """Write the integrals of (1 - S) N_a over an element to out (4,)."""
+    out[:] = 0.0
+    if submerged(at):
+        return
+    for i in range(points.xi.size):
+        dry = 1.0 - wet_share(_immersion(points.xi[i], points.lag[i], at), at.b)
+        N = shape(points.xi[i], at.L)
         for a in range(4):
-            for side in range(2):
+            out[a] += points.w[i] * at.L * dry * N[a]
+
+
+@njit
+def dry_potential(points: FinePoints, at: WetElement) -> float:
+    """Integral of `dry_height` over an element [m2]."""
+    total = 0.0
+    if submerged(at):
+        return total
+    for i in range(points.xi.size):
+        total += points.w[i] * at.L * dry_height(_immersion(points.xi[i], points.lag[i], at), at.b)
+    return total
+
+
+@njit
+def put_slopes(points: FinePoints, at: WetElement, by_height: Array, by_surface: Array) -> None:
+    """Write the derivatives of `put_dry_lengths` by the element's heights (4, 4), and by the surface's at its stations
+    (4, ng).
+    """
+    by_height[:] = 0.0
+    by_surface[:] = 0.0
+    if submerged(at):
+        return
+    for i in range(points.xi.size):
+        slope = points.w[i] * at.L * wet_slope(_immersion(points.xi[i], points.lag[i], at), at.b)
+        if slope == 0.0:
+            continue
+        N = shape(points.xi[i], at.L)
+        for a in range(4):
+            for c in range(4):
+                by_height[a, c] += slope * N[a] * N[c]
+            for g in range(points.lag.shape[1]):
+                by_surface[a, g] -= slope * N[a] * points.lag[i, g]
+
+
+@njit
+def put_by_q(by_height: Array, by_surface: Array, N: Array, gradient: Array, by_q: Array, D: Size) -> None:
+    """Write the derivatives of an element's dry lengths by its q (4, 4, d): as the pipe moves, and as the surface above
+    it changes. N (ng, 4) of its stations; gradient (ng, d) of their immersion.
+    """
+    up = len(D) - 1
+    for a in range(4):
+        for c in range(4):
+            for j in range(len(D)):
+                total = by_height[a, c] if j == up else 0.0
+                for g in range(N.shape[0]):
+                    total += by_surface[a, g] * N[g, c] * (gradient[g, j] + (1.0 if j == up else 0.0))
+                by_q[a, c, j] = total
+
+
+@njit
+def put_by_dofs(by_q: Array, P: Array, scale: float, S: Array, D: Size, R: Size) -> None:
+    """Write how loads along z on an element, with scaled derivatives by_q (4, 4, d), follow the dofs to the last rows
+    of S (4, d, n).
+    """
+    d, half = len(D), len(D) + len(R)
+    for a in range(4):
+        for side in range(2):
+            for j in range(d):
+                S[a, d - 1, side * half + j] = scale * by_q[a, 2 * side, j]
+            for k in range(len(R)):
+                total = 0.0
                 for j in range(d):
-                    S[a, d - 1, side * half + j] = by_q[e, a, 2 * side, j]
-                for k in range(len(R)):
-                    total = 0.0
-                    for j in range(d):
-                        total += by_q[e, a, 2 * side + 1, j] * P[e, side, j, k]
-                    S[a, d - 1, side * half + d + k] = total
-        add_rows(out[e], P[e], S, D, R)
+                    total += by_q[a, 2 * side + 1, j] * P[side, j, k]
+                S[a, d - 1, side * half + d + k] = scale * total
+
+
+@njit
+def dry_lengths(points: tuple, on: tuple) -> Array:
+    """Those of `put_dry_lengths` of all elements (ne, 4)."""
+    points, on = FinePoints(*points), WetElements(*on)
+    out = np.zeros((on.L.size, 4))
+    for e in range(on.L.size):
+        put_dry_lengths(points, element(on, e), out[e])
+    return out
+
+
+@njit
+def dry_potentials(points: tuple, on: tuple) -> Array:
+    """`dry_potential` of all elements (ne,)."""
+    points, on = FinePoints(*points), WetElements(*on)
+    out = np.zeros(on.L.size)
+    for e in range(on.L.size):
+        out[e] = dry_potential(points, element(on, e))
+    return out
+
+
+def add_tangent(
+    out: Array, points: FinePoints, on: WetElements, N: Array, gradient: Array, weight: Array, P: Array
+) -> None:
+    """Add to out (ne, n, n) the derivative by the dofs of loads weight (ne,) times the dry lengths along z; N
+    (ne, ng, 4) of the stations, gradient (ne, ng, d) of their immersion, P = dt/dTheta (ne, 2, d, r) held.
+    """
+    D, R = fixed(P.shape[2]), fixed(P.shape[3])
+    _add_tangent(out, tuple(points), tuple(on), N, gradient, weight, P, D, R)
+
+
+@njit
+def _add_tangent(
+    out: Array, points: tuple, on: tuple, N: Array, gradient: Array, weight: Array, P: Array, D: Size, R: Size
+) -> None:
+    points, on = FinePoints(*points), WetElements(*on)
+    room = tangent_room(N.shape[1], out.shape[1], D)
+    for e in range(on.L.size):
+        add_element_tangent(out[e], points, element(on, e), N[e], gradient[e], weight[e], P[e], room, D, R)
+
+
+@njit
+def tangent_room(ng: int, n: int, D: Size) -> TangentRoom:
+    """Room for an element of n dofs with ng stations."""
+    d = len(D)
+    return TangentRoom(np.zeros((4, 4)), np.zeros((4, ng)), np.zeros((4, 4, d)), np.zeros((4, d, n)))
+
+
+@njit
+def add_element_tangent(
+    out: Array,
+    points: FinePoints,
+    at: WetElement,
+    N: Array,
+    gradient: Array,
+    weight: float,
+    P: Array,
+    room: TangentRoom,
+    D: Size,
+    R: Size,
+) -> None:
+    """What `add_tangent` does for one element, where it reaches the surface."""
+    if submerged(at):
+        return
+    put_slopes(points, at, room.by_height, room.by_surface)
+    put_by_q(room.by_height, room.by_surface, N, gradient, room.by_q, D)
+    put_by_dofs(room.by_q, P, weight, room.S, D, R)
+    add_rows(out, P, room.S, D, R)

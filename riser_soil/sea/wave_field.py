@@ -20,7 +20,7 @@ class WaveField:
     The acceleration is the rate of the ramped velocity, the ramp's own share included. depth [m] may be inf.
     surface_level: z of the mean surface [m]. clock: what the waves' clock, which their phases are counted on, shows
     when the stage begins [s]. ramp [s] is counted from the waves' beginning; since: how long they have acted when the
-    stage begins [s], by default what the clock shows. waves: the same for compiled code.
+    stage begins [s], by default what the clock shows. numbers: the same for compiled code.
     """
 
     def __init__(
@@ -34,7 +34,7 @@ class WaveField:
         since: float | None = None,
     ) -> None:
         times = ramp, clock, clock if since is None else since
-        self.waves = waves.waves(components, depth, surface_level, stretching == "wheeler", *times)
+        self.numbers = waves.waves(components, depth, surface_level, stretching == "wheeler", *times)
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
-        waves.add_to(motion, self.waves, t, np.ascontiguousarray(x))
+        waves.add_to(motion, self.numbers, t, np.ascontiguousarray(x))

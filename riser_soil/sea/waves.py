@@ -23,6 +23,7 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.smooth_step import smooth_step
 from riser_soil.sea import wave_series as series
 from riser_soil.sea.components import Components
+from riser_soil.sea.flows import add_flow
 from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wave_series import PlaneFlow, WaveSeries
 from riser_soil.sea.wave_train import WaveTrain, train, turn
@@ -163,3 +164,8 @@ def _add(v: Array, dv: Array, p: int, factor: float, flow: PlaneFlow, cx: float,
         dv[p, i, 0] += rows[i][0] + rows[i][2] * gradient[p, 0]
         dv[p, i, 1] += rows[i][1] + rows[i][2] * gradient[p, 1]
         dv[p, i, 2] += rows[i][2] * gradient[p, 2]
+
+
+@add_flow.of(WaveNumbers)
+def _add_waves(flow: WaveNumbers, motion: WaterMotion, t: Array, x: Array) -> None:
+    add_to(motion, flow, t[0], x)

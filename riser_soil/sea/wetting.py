@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple
+from functools import cached_property
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -12,23 +12,41 @@ from riser_soil.core.part import Weights
 from riser_soil.riser.stations import Derivatives
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import wet_section
+from riser_soil.sea.moving_water_kernels import MovingWaterNumbers
 from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.sea import Sea
 from riser_soil.sea.still_water import StationLoads
-
-WaterSurface = Callable[[Trial], tuple[Array, Array]]
-"""The line's trial -> height of the water's surface above its stations (ne, ng) [m], and its gradient (ne, ng, d)."""
+from riser_soil.sea.stream_kernels import WaterInLoop, water_in_loop
 
 
-def flat_surface(pipe: Pipe, level: float) -> WaterSurface:
-    """Calm water at the height `level` [m]."""
+class WaterSurface(Protocol):
+    """The water's surface above the stations of a pipe."""
 
-    def immersion(trial: Trial) -> tuple[Array, Array]:
-        x = pipe.position(trial)
+    @property
+    def in_loop(self) -> WaterInLoop:
+        """The same in the compiled loop over a riser alone."""
+        ...
+
+    def immersion(self, trial: Trial) -> tuple[Array, Array]:
+        """Height of the surface above the stations (ne, ng) [m] and its gradient (ne, ng, d)."""
+        ...
+
+
+class CalmSurface:
+    """Calm water at the height `level` [m]. A `WaterSurface`."""
+
+    def __init__(self, pipe: Pipe, level: float) -> None:
+        self._pipe, self._level = pipe, level
+
+    @cached_property
+    def in_loop(self) -> WaterInLoop:
+        return water_in_loop(self._pipe, Sea(self._level).numbers)
+
+    def immersion(self, trial: Trial) -> tuple[Array, Array]:
+        x = self._pipe.position(trial)
         gradient = np.zeros_like(x)
         gradient[..., -1] = -1.0
-        return level - x[..., -1], gradient
-
-    return immersion
+        return self._level - x[..., -1], gradient
 
 
 class WetShare(NamedTuple):
@@ -46,22 +64,22 @@ class Wetting:
     """
 
     def __init__(self, pipe: Pipe, surface: WaterSurface, span: Array | None = None) -> None:
-        self._surface = surface
+        self.surface = surface
         given = np.maximum(pipe.line.outer_diameter[:, None], pipe.share) if span is None else span
-        self._span = np.ascontiguousarray(np.broadcast_to(given, pipe.share.shape))
+        self.span = np.ascontiguousarray(np.broadcast_to(given, pipe.share.shape))
 
     def at(self, trial: Trial) -> WetShare:
         wet: WetShare = trial.once((self, "wet"), self._evaluate)
         return wet
 
     def _evaluate(self, trial: Trial) -> WetShare:
-        h, gradient = self._surface(trial)
-        share, slope = wet_section.wet_shares(h, self._span)
+        h, gradient = self.surface.immersion(trial)
+        share, slope = wet_section.wet_shares(h, self.span)
         return WetShare(share, slope[..., None] * gradient)
 
     def dry_height(self, trial: Trial) -> Array:
         """`wet_section.dry_height` of the stations (ne, ng) [m]."""
-        heights: Array = wet_section.dry_heights(self._surface(trial)[0], self._span)
+        heights: Array = wet_section.dry_heights(self.surface.immersion(trial)[0], self.span)
         return heights
 
 
@@ -92,8 +110,11 @@ class PartlyWet:
         wetted = Derivatives(*(wet.share[..., None, None] * d for d in by))
         return wetted._replace(position=wetted.position + whole[..., :, None] * wet.gradient[..., None, :])
 
-    def numbers(self) -> None:
-        return None
+    def numbers(self) -> MovingWaterNumbers:
+        return self.seen_in(self._wetting.surface.in_loop)
+
+    def seen_in(self, water: WaterInLoop) -> MovingWaterNumbers:
+        return self._loads.seen_in(water)._replace(partly=True, span=self._wetting.span)
 
     def momentum(self, trial: Trial, v: Array) -> Array:
         return self._wetting.at(trial).share[..., None] * self._loads.momentum(trial, v)

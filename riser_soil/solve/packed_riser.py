@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.core.bound import Bound, InTurn
+from riser_soil.core.bound import Bound, call_each, calls
 from riser_soil.core.packed import Packed
 from riser_soil.core.part import State, Weights
 from riser_soil.riser.configuration import Maps, base_of, place, put_maps, put_turning, room_for
@@ -46,7 +46,7 @@ class PackedRiser:
         motion = [Packed(values) for values in (self.step.u, self.step.v, self.step.a)]
         start = [Packed(values) for values in (np.zeros(shape), *self._begun)]
         joules, rows = Packed(self._energy), [Packed(row) for row in self._work]
-        self.evaluate = InTurn(
+        evaluate = (
             Bound(loop.follow, step, maps, dofs),
             _bound(place, at, self._base, *motion),
             Bound(loop.clear, forces),
@@ -55,7 +55,7 @@ class PackedRiser:
             Bound(loop.combine, forces, step, weights, dofs),
             Bound(loop.judge, forces, step, dofs, limits, progress),
         )
-        self.tangent = InTurn(
+        tangent = (
             _bound(put_maps, at, maps),
             Bound(loop.clear_tangent, room),
             *(_bound(add_tangent, each, now, maps, weights, K) for each in numbers),
@@ -63,11 +63,11 @@ class PackedRiser:
             _bound(put_turning, at, Packed(self.room.conjugate), Packed(self.room.turning)),
             Bound(loop.fill, room, dofs),
         )
-        renew = InTurn(*self.tangent.kernels, Bound(loop.factorise, room, progress))
-        improve = InTurn(Bound(loop.improve, room, step, dofs))
-        self._loop = self.evaluate, renew, improve
-        self._solve = Bound(loop.solve_step, *(each.calls for each in self._loop), Packed(self._reuse), progress)
-        self._account = InTurn(
+        renew = calls(*tangent, Bound(loop.factorise, room, progress))
+        improve = calls(Bound(loop.improve, room, step, dofs))
+        self._solve = Bound(loop.solve_step, *map(Packed, (calls(*evaluate), renew, improve, self._reuse)), progress)
+        self.evaluate, self.put_tangent = _in_turn(*evaluate), _in_turn(*tangent)
+        self._account = _in_turn(
             _bound(place, begun, self._base, *start),
             Bound(loop.clear_account, joules, Packed(self._work)),
             *(_bound(add_energy, each, now, joules) for each in numbers),
@@ -110,6 +110,10 @@ class PackedRiser:
 
 def _bound(stub: Any, numbers: Numbers, *arguments: Packed) -> Bound:
     return Bound(stub.kernels[type(numbers)], Packed(numbers), *arguments)
+
+
+def _in_turn(*bound: Bound) -> Bound:
+    return Bound(call_each, Packed(calls(*bound)))
 
 
 def _zeros(n: int, shape: tuple[int, int]) -> list[Array]:

@@ -60,7 +60,7 @@ class RiserNewton:
         """Solve a step or raise NotConvergedError."""
         since = time.perf_counter()
         for part in self._renewed:
-            part.renew_numbers(step.t)
+            part.renew_numbers(step.before.t, step.t)
         scheme = step.scheme
         self._riser.begin(self._guess(step), scheme.past(step.start), scheme.weights(step.dt), self._limits(step))
         outcome, taken = self._riser.solve()

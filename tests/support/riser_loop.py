@@ -17,33 +17,44 @@ from riser_soil.solve.newton import Newton
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.riser_loop import StopLimits
 from riser_soil.solve.riser_newton import RiserNewton
+from tests.support import sample_water
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
 from tests.support.sample_line import Sample, sample
 
+TURNING = "morison", "buoyancy"  # parts whose kernels say what they turn over
+IN_WATER = (
+    sample_water.current,
+    sample_water.half_out_in_waves,
+    sample_water.modules,
+    sample_water.modules_half_out_in_waves,
+    sample_water.modules_floating,
+    sample_water.floating,
+    sample_water.floating_in_waves,
+)
 SCENES = Path(__file__).parent.parent / "scenes"
 
 
 def all_parts(at: Sample) -> list[Any]:
     """One of each kind that has kernels."""
     makers: list[Callable[[Sample], Any]] = [Sample.beam, Sample.inertia, Sample.rotary, Sample.damping]
-    makers += [Sample.morison, Sample.turned_spring, Sample.attachments, Sample.forces]
-    return [make(at) for make in makers] + ([at.moments()] if at.line.dimension == 2 else [])
+    makers += [Sample.morison, Sample.turned_spring, Sample.attachments, Sample.forces, Sample.moments]
+    return [make(at) for make in makers]
 
 
 class Compiled:
     """Parts of a line in the loop, evaluated at a state."""
 
-    def __init__(self, at: Sample, parts: list[Any], state: State) -> None:
+    def __init__(self, at: Sample, parts: list[Any], before: State, state: State) -> None:
         line = at.line
         numbers, free = [part.numbers() for part in parts], np.zeros(line.size, dtype=bool)
         self.riser = PackedRiser(line, numbers, free, np.ones(line.size), most=1)
         for part in parts:
-            part.renew_numbers(state.t)
+            part.renew_numbers(before.t, state.t)
         v, a = state.v - WEIGHTS.shift_v * state.u, state.a - WEIGHTS.shift_a * state.u
         self.riser.begin(State(state.t, state.u, v, a), None, WEIGHTS, StopLimits(0.0, 0.0, 0.0, 1, 0, 0, 0.0))
         self.riser.evaluate()
-        self.riser.tangent()
+        self.riser.put_tangent()
 
     def dense(self) -> Array:
         """The matrix (n, n) that was written to the band."""
@@ -62,6 +73,7 @@ CASES = {
     "surge in a plane": ("catenary", ("dimension=2", "riser.segments.0.elements=15")),
     "surge in space, damped": ("catenary", (*IN_SPACE, PIPE + "damping={ratio: 0.02, frequency: 1.0}")),
     "hose on a floor": ("tank", ("riser.segments.0.elements=40",)),
+    "storm over clay": ("storm", ()),
 }
 
 
@@ -73,10 +85,15 @@ def walked(case: str, newton: str, steps: int, *more: str) -> TimedStage:
 
 
 def require_kernels_of_parts(dimension: int) -> None:
-    """Forces, tangent, energy and work of the loop are those of the parts' methods."""
+    """Forces, tangent, energy and work of the loop are those of the methods of one part of each kind."""
     at = sample(dimension)
-    parts, before, state = all_parts(at), at.state(2), at.state(1)
-    compiled, expected = Compiled(at, parts, state), Forces.zeros(state.u.size)
+    require_kernels(at, all_parts(at))
+
+
+def require_kernels(at: Sample, parts: list[Any]) -> None:
+    """Forces, tangent, energy and work of the loop are those of the parts' methods."""
+    before, state = at.state(2, t=0.4), at.state(1)
+    compiled, expected = Compiled(at, parts, before, state), Forces.zeros(state.u.size)
     for part in parts:
         part.residual(state, expected)
     for group in ("inertia", "force", "end"):
@@ -85,13 +102,14 @@ def require_kernels_of_parts(dimension: int) -> None:
         assert np.abs(found - values).max() <= 1e-12 * np.abs(expected.force).max()
     assert error(compiled.dense(), tangent(parts, state, WEIGHTS)) < 1e-12
     begun = State(before.t, 0.0 * before.u, before.v, before.a)
-    joules, (morison,) = compiled.riser.account(begun)
+    joules, rows = compiled.riser.account(begun)
     energy = Energy(*joules)
     stored: Energy = sum((part.energy(state) for part in parts), Energy())
     for name, expected_energy in vars(stored).items():
         assert getattr(energy, name) == pytest.approx(expected_energy, rel=1e-12)
-    turned = next(part for part in parts if part.name == "morison").work(begun, state)
-    np.testing.assert_allclose(morison, [turned.dissipated, turned.external, turned.inertial, 0.0], rtol=1e-10)
+    for part, row in zip((part for part in parts if part.name in TURNING), rows, strict=True):
+        turned = part.work(begun, state)
+        np.testing.assert_allclose(row, [turned.dissipated, turned.external, turned.inertial, 0.0], rtol=1e-10)
 
 
 def require_steps_of_snes(case: str) -> None:

@@ -2,30 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 from riser_soil.riser.attachments import PointAttachment
 from riser_soil.sea.buoyancy import Buoyancy, DryStations
 from riser_soil.sea.dry_pipe import DryPipe
-from riser_soil.sea.modules import StillWaterOnModules, diameters, pipe_at
+from riser_soil.sea.flows import add_flow
+from riser_soil.sea.modules import alike, diameters, pipe_at
 from riser_soil.sea.morison import Morison
 from riser_soil.sea.morison_law import added_masses, drag_coefficients
 from riser_soil.sea.moving_water import AcceleratedWater, FlowAtStations, RelativeDrag
 from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.sea import Sea
 from riser_soil.sea.still_water import StationLoads, StillWater
 from riser_soil.sea.water import WaterMotion
-from riser_soil.sea.wetting import PartlyWet, Wetting, flat_surface
+from riser_soil.sea.wetting import CalmSurface, PartlyWet, Wetting
 from tests.support.sample_line import DIRECTION, RHO, UP, Sample
 
 LEVEL = 5.2
 SECTION = np.stack([DIRECTION, UP])
 
 
-@dataclass(frozen=True, eq=False)
-class Uneven:
+class Uneven(NamedTuple):
     """Vectors within the plane of the sample, varying in all directions: rows of amplitude (2,) m/s, m/s2 with wave
     numbers (2, 3) and frequencies (2,).
     """
@@ -34,25 +37,57 @@ class Uneven:
     wave_number: Array
     frequency: Array
 
-    def __call__(self, t: float, x: Array) -> tuple[Array, Array]:
-        """Values (n, 3) and gradients (n, 3, 3)."""
-        phase = x @ self.wave_number.T + self.frequency * t
-        values = (self.amplitude * np.sin(phase)) @ SECTION
-        slopes = self.amplitude * np.cos(phase)
-        return values, np.einsum("na,ai,aj->nij", slopes, SECTION, self.wave_number)
-
 
 VELOCITY = Uneven(np.array([2.0, 1.1]), np.array([[0.3, -0.2, 0.5], [0.1, 0.4, -0.3]]), np.array([0.9, 1.3]))
 ACCELERATION = Uneven(np.array([1.7, -2.3]), np.array([[-0.2, 0.3, 0.4], [0.5, 0.1, 0.2]]), np.array([0.7, -0.4]))
 SURFACE = np.array([0.35, -0.25])  # wave numbers along x and y
 
 
-def water(t: float, x: Array) -> WaterMotion:
-    """Its fields have nothing to do with each other, so that each counts by itself."""
-    (velocity, by_x), (acceleration, a_by_x) = VELOCITY(t, x), ACCELERATION(t, x)
-    phase = x[:, :2] @ SURFACE - 0.8 * t
-    gradient = np.concatenate([-0.4 * np.sin(phase)[:, None] * SURFACE, -np.ones((len(x), 1))], axis=1)
-    return WaterMotion(velocity, acceleration, by_x, a_by_x, LEVEL - x[:, 2] + 0.4 * np.cos(phase), gradient)
+class GeneralNumbers(NamedTuple):
+    """A `General` flow."""
+
+    velocity: Uneven
+    acceleration: Uneven
+
+
+class General:
+    """A `FlowComponent` whose fields have nothing to do with each other, so that each counts by itself."""
+
+    numbers = GeneralNumbers(VELOCITY, ACCELERATION)
+
+    def add(self, t: float, x: Array, motion: WaterMotion) -> None:
+        _add_to(motion, self.numbers, t, np.ascontiguousarray(x))
+
+
+@njit
+def _add_to(motion: WaterMotion, flow: GeneralNumbers, t: float, x: Array) -> None:
+    for p in range(x.shape[0]):
+        _add_uneven(flow.velocity, t, x[p], motion.velocity[p], motion.velocity_gradient[p])
+        _add_uneven(flow.acceleration, t, x[p], motion.acceleration[p], motion.acceleration_gradient[p])
+        phase = x[p, 0] * SURFACE[0] + x[p, 1] * SURFACE[1] - 0.8 * t
+        motion.immersion[p] += 0.4 * math.cos(phase)
+        for i in range(2):
+            motion.immersion_gradient[p, i] -= 0.4 * math.sin(phase) * SURFACE[i]
+
+
+@njit
+def _add_uneven(field: Uneven, t: float, x: Array, value: Array, gradient: Array) -> None:
+    for n in range(2):
+        phase = field.frequency[n] * t
+        for j in range(3):
+            phase += field.wave_number[n, j] * x[j]
+        for i in range(3):
+            value[i] += field.amplitude[n] * math.sin(phase) * SECTION[n, i]
+            for j in range(3):
+                gradient[i, j] += field.amplitude[n] * math.cos(phase) * SECTION[n, i] * field.wave_number[n, j]
+
+
+@add_flow.of(GeneralNumbers)
+def _add_general(flow: GeneralNumbers, motion: WaterMotion, t: Array, x: Array) -> None:
+    _add_to(motion, flow, t[0], x)
+
+
+water = Sea(LEVEL, [General()])
 
 
 def still(at: Sample) -> StillWater:
@@ -81,13 +116,13 @@ def waves(at: Sample) -> Morison:
 def half_out(at: Sample) -> Morison:
     """The riser crosses the level of still water."""
     loads = still(at)
-    return Morison(loads.pipe, PartlyWet(loads, Wetting(loads.pipe, flat_surface(loads.pipe, LEVEL))))
+    return Morison(loads.pipe, PartlyWet(loads, Wetting(loads.pipe, CalmSurface(loads.pipe, LEVEL))))
 
 
 def half_out_in_waves(at: Sample) -> Morison:
     loads = still(at)
     stream = FlowAtStations(loads.pipe, water)
-    return Morison(loads.pipe, PartlyWet(driven(loads, stream, at), Wetting(loads.pipe, stream.immersion)))
+    return Morison(loads.pipe, PartlyWet(driven(loads, stream, at), Wetting(loads.pipe, stream)))
 
 
 MODULES = [
@@ -97,10 +132,10 @@ MODULES = [
 ]
 
 
-def on_modules(at: Sample) -> tuple[StillWaterOnModules, Array]:
+def on_modules(at: Sample) -> tuple[StillWater, Array]:
     """Three modules, two of them in one element; what they displace."""
     volume, drag_area, Ca = np.array([[m.volume, m.drag_area, m.added_mass] for m in MODULES]).T
-    loads = StillWaterOnModules(pipe_at(at.line, MODULES), 0.5 * RHO * drag_area, Ca * RHO * volume)
+    loads = StillWater(pipe_at(at.line, MODULES), alike(0.5 * RHO * drag_area), alike(Ca * RHO * volume))
     return loads, RHO * volume
 
 
@@ -111,15 +146,14 @@ def modules(at: Sample) -> Morison:
 
 def modules_half_out_in_waves(at: Sample) -> Morison:
     loads, displaced = on_modules(at)
-    stream, added = FlowAtStations(loads.pipe, water), np.array([m.added_mass for m in MODULES])
-    mass = (added * displaced)[:, None] * np.ones(2)
-    driven = AcceleratedWater(RelativeDrag(loads, stream), stream, mass, displaced)
-    return Morison(loads.pipe, PartlyWet(driven, Wetting(loads.pipe, stream.immersion, diameters(MODULES)[:, None])))
+    stream = FlowAtStations(loads.pipe, water)
+    driven = AcceleratedWater(RelativeDrag(loads, stream), stream, loads.mass, displaced)
+    return Morison(loads.pipe, PartlyWet(driven, Wetting(loads.pipe, stream, diameters(MODULES)[:, None])))
 
 
 def modules_floating(at: Sample) -> Buoyancy:
     pipe = pipe_at(at.line, MODULES)
-    surface = flat_surface(pipe, at.line.x[2, -1])
+    surface = CalmSurface(pipe, at.line.x[2, -1])
     displaced = 9.81 * RHO * np.array([m.volume for m in MODULES])
     wetting = Wetting(pipe, surface, diameters(MODULES)[:, None])
     return Buoyancy(pipe, DryStations(pipe, wetting, displaced), flat=True)
@@ -127,9 +161,9 @@ def modules_floating(at: Sample) -> Buoyancy:
 
 def floating(at: Sample) -> Buoyancy:
     pipe = Pipe(at.line)
-    return Buoyancy(pipe, DryPipe(pipe, flat_surface(pipe, LEVEL), 9.81 * displaced(at)), flat=True)
+    return Buoyancy(pipe, DryPipe(pipe, CalmSurface(pipe, LEVEL), 9.81 * displaced(at)), flat=True)
 
 
 def floating_in_waves(at: Sample) -> Buoyancy:
     pipe = Pipe(at.line)
-    return Buoyancy(pipe, DryPipe(pipe, FlowAtStations(pipe, water).immersion, 9.81 * displaced(at)), flat=False)
+    return Buoyancy(pipe, DryPipe(pipe, FlowAtStations(pipe, water), 9.81 * displaced(at)), flat=False)

@@ -4,6 +4,8 @@ for, and what they are timed against.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from riser_soil.core.arrays import Array
@@ -35,6 +37,10 @@ class SummedWaves:
         self._waves = Components(*(part[np.argsort(components.wave_number)] for part in components))
         self._depth, self._level = depth, level
         self._stretching, self._ramp, self._clock, self._since = stretching, ramp, clock, since
+
+    @property
+    def numbers(self) -> tuple[Any, ...]:
+        raise NotImplementedError("plain sums are not compiled")
 
     def add(self, t: float, x: Array, motion: WaterMotion) -> None:
         (r, rate, _), t = smooth_step(self._since + t, self._ramp), self._clock + t

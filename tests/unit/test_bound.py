@@ -8,7 +8,7 @@ import numba
 import numpy as np
 import pytest
 
-from riser_soil.core.bound import Bound, InTurn
+from riser_soil.core.bound import Bound, call_each, calls
 from riser_soil.core.packed import Packed
 
 
@@ -54,8 +54,8 @@ def test_a_kernel_finds_what_was_packed(values: np.ndarray) -> None:
 
 def test_kernels_are_called_in_turn() -> None:
     out = np.zeros(2)
-    once, twice = (Bound(add, Packed(given(np.full((2, 4), k))), Packed(out)) for k in (1.0, 2.0))
-    InTurn(once, twice)()
+    both = Packed(calls(*(Bound(add, Packed(given(np.full((2, 4), k))), Packed(out)) for k in (1.0, 2.0))))
+    Bound(call_each, both)()
     np.testing.assert_allclose(out, 3 * 2.0 * (3 + 7 + 11))
 
 

@@ -5,19 +5,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.linalg import solve_banded
 
 from benchmarks.stage import last_stage
-from riser_soil.core.part import Part
 from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
-from riser_soil.riser.line_part import LinePart
 from riser_soil.solve import banded
 from riser_soil.solve.newton import Newton
 from tests.support import sample_water
-from tests.support.riser_loop import CASES, SCENES, require_kernels_of_parts, require_steps_of_snes, walked
+from tests.support.riser_loop import (
+    CASES,
+    SCENES,
+    require_kernels,
+    require_kernels_of_parts,
+    require_steps_of_snes,
+    walked,
+)
 from tests.support.sample_line import sample
 
 
@@ -29,15 +36,9 @@ def test_steps_in_a_plane_are_those_of_snes() -> None:
     require_steps_of_snes("surge in a plane")
 
 
-@pytest.mark.parametrize("name", ["current", "waves", "half_out", "modules", "floating"])
-def test_parts_without_kernels_say_so(name: str) -> None:
-    part: Part = getattr(sample_water, name)(sample(2))
-    assert isinstance(part, LinePart)
-    assert part.numbers() is None
-
-
-def test_moments_in_space_have_no_kernels() -> None:
-    assert sample(3).moments().numbers() is None
+def test_kernels_in_waves_are_those_of_the_parts() -> None:
+    at = sample(2)
+    require_kernels(at, [sample_water.half_out_in_waves(at), sample_water.floating_in_waves(at)])
 
 
 @pytest.mark.parametrize(("n", "b"), [(3, 2), (9, 2), (40, 5), (66, 11)])
@@ -63,23 +64,18 @@ def test_a_singular_matrix_is_told(wrong: float) -> None:
     assert not banded.factorise(ab, np.zeros(3, dtype=np.int64), band)
 
 
-@pytest.mark.parametrize(
-    "override",
-    [
-        "stages.1.scheme={midpoint: {}}",
-        "water.current={profile: [[-100.0, 0.5, 0.0], [0.0, 0.5, 0.0]]}",
-    ],
-)
-def test_other_scenes_are_left_to_snes(override: str) -> None:
+def test_the_midpoint_rule_is_left_to_snes() -> None:
     scene, overrides = CASES["surge in a plane"]
-    asked = *overrides, override, "solver.newton=compiled"
+    asked = *overrides, "stages.1.scheme={midpoint: {}}", "solver.newton=compiled"
     assert isinstance(last_stage(SCENES / f"{scene}.yaml", asked, Timer.new()).newton, Newton)
 
 
 def test_a_step_that_fails_says_why_as_snes_does() -> None:
     told = []
     for newton in ("compiled", "snes"):
+        stage = walked("surge in a plane", newton, 1)
+        stage.newton.settings = replace(stage.newton.settings, tolerance=1e-12, max_iterations=1)
         with pytest.raises(SolveError, match="no convergence") as failure:
-            walked("surge in a plane", newton, 200, "solver.max_iterations=1", "solver.tolerance=1e-12")
+            stage.walk(200)
         told.append(str(failure.value))
     assert told[0] == told[1]

@@ -45,7 +45,7 @@ def points(h: float) -> Array:
 
 def sheared() -> SteadyCurrent:
     level = np.array([-30.0, -2.0, 20.0])
-    return SteadyCurrent(level, np.array([[0.1, 0.0], [0.5, -0.2], [1.2, 0.4]]), lambda t: 0.5 + 0.1 * t)
+    return SteadyCurrent(level, np.array([[0.1, 0.0], [0.5, -0.2], [1.2, 0.4]]), grows=True)
 
 
 @pytest.mark.parametrize("h", [1e-3, 0.5, 8.0, 100.0, 3000.0])
@@ -80,7 +80,7 @@ def test_current_of_one_level_is_uniform() -> None:
 
 
 def test_current_grows_by_its_factor() -> None:
-    motion = Sea(None, [SteadyCurrent(np.array([0.0]), np.array([[0.4, 0.2]]), lambda t: t)])(0.25, np.zeros((1, 3)))
+    motion = Sea(None, [SteadyCurrent(np.array([0.0]), np.array([[0.4, 0.2]]), grows=True)])(0.25, np.zeros((1, 3)))
     assert motion.velocity[0] == pytest.approx([0.1, 0.05, 0.0])
     assert not motion.acceleration.any()
     assert np.isposinf(motion.immersion).all()

@@ -116,7 +116,7 @@ def test_places_that_find_no_room_are_computed_again(monkeypatch: pytest.MonkeyP
     roomy = Sea(LEVEL, [WaveField(waves, 120.0, LEVEL)])(4.0, x)
     monkeypatch.setattr(wave_series, "MOST", 3)
     field = WaveField(waves, 120.0, LEVEL)
-    assert field.waves.series.cells.places.key.size == 3
+    assert field.numbers.series.cells.places.key.size == 3
     for _ in range(2):
         for found, expected in zip(Sea(LEVEL, [field])(4.0, x), roomy, strict=True):
             assert np.array_equal(found, expected)
@@ -128,7 +128,7 @@ def test_stations_of_a_riser_share_few_places() -> None:
     x = np.stack([150.0 * along, 0.0 * along, 120.0 * along**2], axis=-1)
     field = WaveField(sea(120.0, 13.0, 200, 1), 120.0, 120.0)
     Sea(120.0, [field])(3.0, x)
-    taken = [int(at.places.taken[0]) for at in (field.waves.series.columns, field.waves.series.cells)]
+    taken = [int(at.places.taken[0]) for at in (field.numbers.series.columns, field.numbers.series.cells)]
     assert min(taken) > 10
     assert sum(taken) < 120
 

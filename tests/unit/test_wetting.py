@@ -16,7 +16,7 @@ from riser_soil.sea.moving_water import FlowAtStations
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.water import WaterMotion
 from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope
-from riser_soil.sea.wetting import flat_surface
+from riser_soil.sea.wetting import CalmSurface
 from tests.support.dense_chain import residual
 
 D, L, LEVEL, WEIGHT = 0.6, 6.0, 2.0, 2000.0
@@ -51,7 +51,7 @@ def pipe(start: Array, tangent: Array, elements: int, dimension: int) -> Pipe:
 
 def lost(at: Pipe) -> tuple[float, float]:
     """Weight [N] and potential [J] of what is dry."""
-    dry = DryPipe(at, flat_surface(at, LEVEL), np.full(at.line.length.size, WEIGHT))
+    dry = DryPipe(at, CalmSurface(at, LEVEL), np.full(at.line.length.size, WEIGHT))
     part = Buoyancy(at, dry, flat=True)
     state = State.at_rest(0.0, at.line.size)
     return float(at.line.nodal(residual([part], state))[:, at.line.dimension - 1].sum()), part.energy(state).potential
@@ -87,7 +87,7 @@ def rippled(t: float, x: Array) -> WaterMotion:
 
 def test_a_wavy_surface_is_followed_between_the_stations() -> None:
     at = pipe(np.array([0.0, 0.0, LEVEL + 0.1]), np.array([1.0, 0.0, 0.0]), 5, 2)
-    dry = DryPipe(at, FlowAtStations(at, rippled).immersion, np.ones(5))
+    dry = DryPipe(at, FlowAtStations(at, rippled), np.ones(5))
     found = dry.residual(at.line.trial(State.at_rest(0.0, at.line.size)))[:, [0, 2], 1].sum()
     k = 2.0 * np.pi / 12.0
     expected = quad(lambda x: 1.0 - wet_share(0.2 * np.cos(k * x) - 0.1, D), 0.0, L, epsabs=1e-10, limit=200)[0]

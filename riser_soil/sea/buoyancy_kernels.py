@@ -1,0 +1,165 @@
+"""Kernels of the buoyancy that is lost out of the water, see `part_kernels`."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
+from riser_soil.riser import stations
+from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
+from riser_soil.sea import waterline
+from riser_soil.sea.stream_kernels import SeenWater, Stream, see_end, see_start
+from riser_soil.sea.water import WaterMotion
+from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope
+
+
+class DryStationNumbers(NamedTuple):
+    """A `DryStations`; element (ne,): of the line, in which its own lie. flat: see `Buoyancy`. Room for one station and
+    one element.
+    """
+
+    stream: Stream
+    seen: SeenWater
+    element: IntArray
+    at: stations.Stations
+    share: Array
+    span: Array
+    displaced: Array
+    flat: bool
+    f: Array
+    by_x: Array
+    change: stations.ElementRoom
+
+
+class DryPipeNumbers(NamedTuple):
+    """A `DryPipe`. flat: see `Buoyancy`. Room for one element: its tangent, heights of its q (4,) and of its stations
+    (ng,), dry lengths and those before the step (4,).
+    """
+
+    stream: Stream
+    seen: SeenWater
+    points: waterline.FinePoints
+    at: stations.Stations
+    length: Array
+    width: Array
+    displaced: Array
+    flat: bool
+    room: waterline.TangentRoom
+    z: Array
+    heights: Array
+    dry: Array
+    before: Array
+
+
+@njit
+def _lost(part: DryStationNumbers, water: WaterMotion, m: int, g: int) -> float:
+    """Force per length on a station, downwards."""
+    h = water.immersion[m * part.share.shape[1] + g]
+    lost: float = part.displaced[m] * (1.0 - wet_share(h, part.span[m, g]))
+    return lost
+
+
+@add_forces.of(DryStationNumbers)
+def _station_forces(part: DryStationNumbers, at: Configuration, out: LineForces) -> None:
+    see_end(part.stream, at.q)
+    for m in range(part.element.size):
+        for g in range(part.share.shape[1]):
+            part.f[len(at.D) - 1] = _lost(part, part.seen.end, m, g)
+            stations.add_integrand(part.at.weighted[m, g], part.f, out.force_q[part.element[m]], at.D)
+
+
+@add_tangent.of(DryStationNumbers)
+def _station_tangent(part: DryStationNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    water, up = part.seen.end, len(at.D) - 1
+    for m in range(part.element.size):
+        e = part.element[m]
+        for g in range(part.share.shape[1]):
+            p = m * part.share.shape[1] + g
+            slope = -weights.force * part.displaced[m] * wet_slope(water.immersion[p], part.span[m, g])
+            for j in range(len(at.D)):
+                part.by_x[up, j] = slope * water.immersion_gradient[p, j]
+            part.change.change[g] = 0.0
+            stations.add_position(part.change.change[g], part.at.N[m, g], part.by_x, 1.0, at.P[e], at.D, at.R)
+        stations.add_element(K[e], part.change, part.at.weighted[m], at.P[e], at.D, at.R)
+
+
+@add_energy.of(DryStationNumbers)
+def _station_energy(part: DryStationNumbers, at: Configuration, energy: Array) -> None:
+    if not part.flat:
+        return
+    for m in range(part.element.size):
+        for g in range(part.share.shape[1]):
+            h = part.seen.end.immersion[m * part.share.shape[1] + g]
+            energy[2] += part.share[m, g] * part.displaced[m] * dry_height(h, part.span[m, g])
+
+
+@add_work.of(DryStationNumbers)
+def _station_work(part: DryStationNumbers, first: Configuration, last: Configuration, work: Array) -> None:
+    if part.flat:
+        return
+    see_start(part.stream, first.q)
+    up = len(last.D) - 1
+    for m in range(part.element.size):
+        e = part.element[m]
+        for g in range(part.share.shape[1]):
+            risen, lost = 0.0, _lost(part, part.seen.start, m, g) + _lost(part, part.seen.end, m, g)
+            for a in range(4):
+                risen += part.at.N[m, g, a] * (last.q[e, a, up] - first.q[e, a, up])
+            work[1] -= 0.5 * part.share[m, g] * lost * risen
+
+
+@njit
+def _element(part: DryPipeNumbers, at: Configuration, water: WaterMotion, e: int) -> waterline.WetElement:
+    """An element, its heights in the room."""
+    up, ng = len(at.D) - 1, part.heights.size
+    for a in range(4):
+        part.z[a] = at.q[e, a, up]
+    for g in range(ng):
+        part.heights[g] = 0.0
+        for a in range(4):
+            part.heights[g] += part.at.N[e, g, a] * part.z[a]
+    h = water.immersion[e * ng : (e + 1) * ng]
+    return waterline.WetElement(part.z, h, part.heights, part.length[e], part.width[e])
+
+
+@add_forces.of(DryPipeNumbers)
+def _pipe_forces(part: DryPipeNumbers, at: Configuration, out: LineForces) -> None:
+    see_end(part.stream, at.q)
+    up = len(at.D) - 1
+    for e in range(part.length.size):
+        waterline.put_dry_lengths(part.points, _element(part, at, part.seen.end, e), part.dry)
+        for a in range(4):
+            out.force_q[e, a, up] += part.displaced[e] * part.dry[a]
+
+
+@add_tangent.of(DryPipeNumbers)
+def _pipe_tangent(part: DryPipeNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    ng = part.heights.size
+    for e in range(part.length.size):
+        weight, N = weights.force * part.displaced[e], part.at.N[e]
+        gradient = part.seen.end.immersion_gradient[e * ng : (e + 1) * ng]
+        wet = _element(part, at, part.seen.end, e)
+        waterline.add_element_tangent(K[e], part.points, wet, N, gradient, weight, at.P[e], part.room, at.D, at.R)
+
+
+@add_energy.of(DryPipeNumbers)
+def _pipe_energy(part: DryPipeNumbers, at: Configuration, energy: Array) -> None:
+    if part.flat:
+        for e in range(part.length.size):
+            energy[2] += part.displaced[e] * waterline.dry_potential(part.points, _element(part, at, part.seen.end, e))
+
+
+@add_work.of(DryPipeNumbers)
+def _pipe_work(part: DryPipeNumbers, first: Configuration, last: Configuration, work: Array) -> None:
+    if part.flat:
+        return
+    see_start(part.stream, first.q)
+    up = len(last.D) - 1
+    for e in range(part.length.size):
+        waterline.put_dry_lengths(part.points, _element(part, first, part.seen.start, e), part.before)
+        waterline.put_dry_lengths(part.points, _element(part, last, part.seen.end, e), part.dry)
+        for a in range(4):
+            risen = last.q[e, a, up] - first.q[e, a, up]
+            work[1] -= 0.5 * part.displaced[e] * (part.before[a] + part.dry[a]) * risen

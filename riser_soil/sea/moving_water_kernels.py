@@ -1,0 +1,254 @@
+"""Kernels of Morison's loads in moving or partly covering water, and of those on modules, see `part_kernels`."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import fixed, njit
+from riser_soil.riser import stations
+from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.hermite import Size
+from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
+from riser_soil.sea import morison_law as law
+from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.stream_kernels import SeenWater, Stream, WaterInLoop, see_end, see_start
+from riser_soil.sea.water import WaterMotion
+from riser_soil.sea.wet_section import wet_share, wet_slope
+
+
+class FlowRoom(NamedTuple):
+    """What is found at one station, vectors (d,): the pipe's own velocity v, that through the water, and acceleration;
+    tangent; resistance of both groups, wet share counted in, and of one term.
+    """
+
+    v: Array
+    through: Array
+    a: Array
+    tau: Array
+    inertia: Array
+    force: Array
+    f: Array
+
+
+class FlowDerivatives(NamedTuple):
+    """Derivatives (d, d) of the force at one station, and of its terms by the tangent."""
+
+    by_x: Array
+    by_v: Array
+    by_a: Array
+    by_u: Array
+    by_tau: Array
+    more: Array
+    yet_more: Array
+
+
+class MovingWaterNumbers(NamedTuple):
+    """Loads of the water on what moves in it, as in `StillWater`, `RelativeDrag`, `AcceleratedWater` and `PartlyWet`.
+
+    element (ne,): of the line, in which those of the pipe lie. pushed (ne, 2): mass on which the water's acceleration
+    acts. partly: whether it acts on the wet share alone, of sections of width span (ne, ng). alike: whether what moves
+    is alike in all directions.
+    """
+
+    stream: Stream
+    seen: SeenWater
+    element: IntArray
+    at: stations.Stations
+    share: Array
+    drag: Array
+    mass: Array
+    pushed: Array
+    span: Array
+    partly: bool
+    alike: bool
+    dissipative: bool
+    room: FlowRoom
+    first: FlowRoom
+    by: FlowDerivatives
+    change: stations.ElementRoom
+
+
+def moving_water(water: WaterInLoop, pipe: Pipe, drag: Array, mass: Array) -> MovingWaterNumbers:
+    """Drag and added mass in water that stands still, or on the motion through it."""
+    d, n = pipe.line.dimension, 2 * pipe.line.ndof
+    room, first = (FlowRoom(*(np.zeros(d) for _ in FlowRoom._fields)) for _ in range(2))
+    return MovingWaterNumbers(
+        stream=water.stream,
+        seen=water.seen,
+        element=pipe.element,
+        at=pipe.at,
+        share=pipe.share,
+        drag=drag,
+        mass=mass,
+        pushed=np.zeros_like(mass),
+        span=np.ones_like(pipe.share),
+        partly=False,
+        alike=pipe.points_alone,
+        dissipative=True,
+        room=room,
+        first=first,
+        by=FlowDerivatives(*(np.zeros((d, d)) for _ in FlowDerivatives._fields)),
+        change=stations.element_room(pipe.at.N.shape[1], n, fixed(d)),
+    )
+
+
+@njit
+def _move(part: MovingWaterNumbers, at: Configuration, m: int, g: int, room: FlowRoom) -> float:
+    """Motion and tangent of the pipe at a station; the stretch |x'|."""
+    e = part.element[m]
+    stations.put_value(part.at.N[m, g], at.rate[e], room.v, at.D)
+    stations.put_value(part.at.N[m, g], at.acceleration[e], room.a, at.D)
+    stretch: float = stations.put_unit_tangent(part.at.dN[m, g], at.chord[e], at.tangent[e], room.tau, at.D)
+    if part.alike:
+        room.tau[:] = 0.0
+    return stretch
+
+
+@njit
+def _resist(part: MovingWaterNumbers, water: WaterMotion, m: int, g: int, room: FlowRoom, D: Size) -> None:
+    """Resistance at a station in motion, as if it were wet."""
+    p = m * part.share.shape[1] + g
+    for i in range(len(D)):
+        room.through[i] = room.v[i] - water.velocity[p, i]
+    law.put_added(room.a, room.tau, part.mass[m], room.inertia, D)
+    law.put_drag(room.through, room.tau, part.drag[m], room.force, D)
+    law.put_added(water.acceleration[p], room.tau, part.pushed[m], room.f, D)
+    for i in range(len(D)):
+        room.force[i] -= room.f[i]
+
+
+@njit
+def _wet(part: MovingWaterNumbers, water: WaterMotion, m: int, g: int) -> float:
+    """The wet share of a station."""
+    if not part.partly:
+        return 1.0
+    share: float = wet_share(water.immersion[m * part.share.shape[1] + g], part.span[m, g])
+    return share
+
+
+@add_forces.of(MovingWaterNumbers)
+def _forces(part: MovingWaterNumbers, at: Configuration, out: LineForces) -> None:
+    see_end(part.stream, at.q)
+    room, water = part.room, part.seen.end
+    for m in range(part.element.size):
+        e = part.element[m]
+        for g in range(part.share.shape[1]):
+            _move(part, at, m, g, room)
+            _resist(part, water, m, g, room, at.D)
+            share = _wet(part, water, m, g)
+            for i in range(len(at.D)):
+                room.inertia[i] *= share
+                room.force[i] *= share
+            stations.add_integrand(part.at.weighted[m, g], room.inertia, out.inertia_q[e], at.D)
+            stations.add_integrand(part.at.weighted[m, g], room.force, out.force_q[e], at.D)
+
+
+@add_tangent.of(MovingWaterNumbers)
+def _tangent(part: MovingWaterNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
+    by = part.by
+    for m in range(part.element.size):
+        e = part.element[m]
+        for g in range(part.share.shape[1]):
+            stretch = _move(part, at, m, g, part.room)
+            _resist(part, part.seen.end, m, g, part.room, at.D)
+            _differentiate(part, part.seen.end, m, g, weights, at.D)
+            stations.to_slope(by.by_tau, part.room.tau, stretch, at.D)
+            change, N = part.change.change[g], part.at.N[m, g]
+            stations.put_slope(change, part.at.dN[m, g], by.by_tau, at.P[e], at.D, at.R)
+            stations.add_position(change, N, by.by_x, 1.0, at.P[e], at.D, at.R)
+            stations.add_position(change, N, by.by_v, maps.shift_v, maps.rate[e], at.D, at.R)
+            stations.add_position(change, N, by.by_a, maps.shift_a, maps.acceleration[e], at.D, at.R)
+        stations.add_element(K[e], part.change, part.at.weighted[m], at.P[e], at.D, at.R)
+
+
+@njit
+def _differentiate(
+    part: MovingWaterNumbers, water: WaterMotion, m: int, g: int, weights: LineWeights, D: Size
+) -> None:
+    """Write the weighted derivatives of the force at a station whose resistance is known."""
+    room, by, p = part.room, part.by, m * part.share.shape[1] + g
+    law.put_drag_derivatives(room.through, room.tau, part.drag[m], by.by_v, by.by_tau, D)
+    law.put_added_derivatives(room.a, room.tau, part.mass[m], by.by_a, by.more, D)
+    law.put_added_derivatives(water.acceleration[p], room.tau, part.pushed[m], by.by_u, by.yet_more, D)
+    share, steep = _wet(part, water, m, g), 0.0
+    if part.partly:
+        steep = wet_slope(water.immersion[p], part.span[m, g])
+    inertia, force = share * weights.inertia, share * weights.force
+    for i in range(len(D)):
+        whole = weights.inertia * room.inertia[i] + weights.force * room.force[i]
+        for j in range(len(D)):
+            followed = 0.0
+            for k in range(len(D)):
+                followed += by.by_v[i, k] * water.velocity_gradient[p, k, j]
+                followed += by.by_u[i, k] * water.acceleration_gradient[p, k, j]
+            by.by_x[i, j] = steep * whole * water.immersion_gradient[p, j] - force * followed
+            by.by_tau[i, j] = force * (by.by_tau[i, j] - by.yet_more[i, j]) + inertia * by.more[i, j]
+    for i in range(len(D)):
+        for j in range(len(D)):
+            by.by_v[i, j] *= force
+            by.by_a[i, j] *= inertia
+
+
+@add_energy.of(MovingWaterNumbers)
+def _energy(part: MovingWaterNumbers, at: Configuration, energy: Array) -> None:
+    """With the water as the forces have found it last."""
+    room = part.room
+    for m in range(part.element.size):
+        for g in range(part.share.shape[1]):
+            _move(part, at, m, g, room)
+            law.put_added(room.v, room.tau, part.mass[m], room.f, at.D)
+            share = part.share[m, g] * _wet(part, part.seen.end, m, g)
+            for i in range(len(at.D)):
+                energy[0] += 0.5 * share * room.v[i] * room.f[i]
+
+
+@add_work.of(MovingWaterNumbers)
+def _work(part: MovingWaterNumbers, first: Configuration, last: Configuration, work: Array) -> None:
+    """See `Morison.work`."""
+    see_start(part.stream, first.q)
+    resisted, changed, seen = 0.0, 0.0, part.seen
+    for m in range(part.element.size):
+        for g in range(part.share.shape[1]):
+            _move(part, first, m, g, part.first)
+            _resist(part, seen.start, m, g, part.first, last.D)
+            _move(part, last, m, g, part.room)
+            _resist(part, seen.end, m, g, part.room, last.D)
+            before, after = _wet(part, seen.start, m, g), _wet(part, seen.end, m, g)
+            resisted += part.share[m, g] * _resisted(part, first, last, m, g, before, after)
+            changed += part.share[m, g] * _changed(part, m, before, after, last.D)
+    if part.dissipative:
+        work[0] += resisted
+    else:
+        work[1] -= resisted
+    work[1] += changed
+    work[2] += changed
+
+
+@njit
+def _resisted(
+    part: MovingWaterNumbers, first: Configuration, last: Configuration, m: int, g: int, before: float, after: float
+) -> float:
+    """Work per length against the mean force of a step, at a station."""
+    e, N, total = part.element[m], part.at.N[m, g], 0.0
+    for i in range(len(last.D)):
+        moved = 0.0
+        for a in range(4):
+            moved += N[a] * (last.q[e, a, i] - first.q[e, a, i])
+        total += 0.5 * (before * part.first.force[i] + after * part.room.force[i]) * moved
+    return total
+
+
+@njit
+def _changed(part: MovingWaterNumbers, m: int, before: float, after: float, D: Size) -> float:
+    """What the change of the added mass at a station does per length to the kinetic energy, see `Morison`."""
+    first, room, total = part.first, part.room, 0.0
+    for i in range(len(D)):
+        room.through[i] = 0.5 * (first.v[i] + room.v[i])
+    law.put_added(room.through, first.tau, part.mass[m], first.f, D)
+    law.put_added(room.through, room.tau, part.mass[m], room.f, D)
+    for i in range(len(D)):
+        total += 0.5 * room.through[i] * (after * room.f[i] - before * first.f[i])
+    return total

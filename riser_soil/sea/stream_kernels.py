@@ -1,0 +1,132 @@
+"""The water around a pipe in the compiled loop over a riser alone: its motion at the stations, found once a trial."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.bound import Bound, Calls, call_each, calls
+from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.packed import Packed
+from riser_soil.riser import stations
+from riser_soil.riser.hermite import Size
+from riser_soil.sea.flows import SeaNumbers, motion_of, motion_room, put_in_plane
+from riser_soil.sea.pipe import Pipe
+from riser_soil.sea.water import WaterMotion
+
+START, END = 0, 1
+
+
+class SeenWater(NamedTuple):
+    """The water at the n = ne ng stations of a pipe where a step starts and where it ends.
+
+    t, found (2,): times of the step's START and END, and those at which the motion was found, nan at first; start and
+    end: that motion in the line's axes.
+    """
+
+    t: Array
+    found: Array
+    start: WaterMotion
+    end: WaterMotion
+
+
+class Stream(NamedTuple):
+    """The sea that a pipe is in. find_start, find_end: its motion where a step starts and ends, at the stations x.
+
+    element (ne,) and N (ne, ng, 4): those of the line that the stations lie in; origin (3,) and basis (3, d) of the
+    line; x, place (n, 3): stations of a trial, and those of the motion found last.
+    """
+
+    find_start: Calls
+    find_end: Calls
+    seen: SeenWater
+    element: IntArray
+    N: Array
+    origin: Array
+    basis: Array
+    x: Array
+    place: Array
+    D: Size
+
+
+class WaterInLoop(NamedTuple):
+    """A `Stream`, and what it sees. All parts that act at the same stations share them."""
+
+    stream: Stream
+    seen: SeenWater
+
+
+def water_in_loop(pipe: Pipe, sea: SeaNumbers) -> WaterInLoop:
+    """The sea around a pipe, its motion found nowhere yet."""
+    line, n = pipe.line, pipe.share.size
+    seen = SeenWater(np.full(2, np.nan), np.full(2, np.nan), *(motion_room(n, line.dimension) for _ in range(2)))
+    basis, x = np.ascontiguousarray(line.basis), np.zeros((n, 3))
+    find_start = calls(*_finding(sea, seen.start, seen.t[:1], x, basis))
+    find_end = calls(*_finding(sea, seen.end, seen.t[1:], x, basis))
+    at = pipe.element, pipe.at.N, line.origin, basis, x, np.zeros((n, 3))
+    return WaterInLoop(Stream(find_start, find_end, seen, *at, fixed(line.dimension)), seen)
+
+
+def _finding(sea: SeaNumbers, motion: WaterMotion, t: Array, x: Array, basis: Array) -> list[Bound]:
+    """Kernels that write the motion (n, d) in the line's axes, basis (3, d), at time t (1,) and places x (n, 3)."""
+    if basis.shape[1] == 3:
+        return motion_of(sea, motion, t, x)
+    found = motion_room(len(x), 3)
+    return [*motion_of(sea, found, t, x), Bound(put_in_plane, *map(Packed, (found, basis, motion)))]
+
+
+def bring(seen: SeenWater, start: float, end: float) -> None:
+    """Bring the water to the times of a step, which starts where the last one ended, or that which is tried anew."""
+    if seen.found[END] == start and seen.found[START] != start:
+        for at_start, at_end in zip(seen.start, seen.end, strict=True):
+            at_start[:] = at_end
+        seen.found[START] = start
+    seen.t[:] = start, end
+
+
+@partial(njit, apart=True)
+def see_start(stream: Stream, q: Array) -> None:
+    """Find the motion at the start of a step, q (ne, 4, d), unless it is known there."""
+    t, found = stream.seen.t[START], stream.seen.found
+    if found[START] != t:
+        _place(stream, q)
+        call_each(stream.find_start)
+        found[START] = t
+
+
+@partial(njit, apart=True)
+def see_end(stream: Stream, q: Array) -> None:
+    """Find the motion of a trial, q (ne, 4, d), unless it is known there: parts at the same stations ask in turn."""
+    t, found = stream.seen.t[END], stream.seen.found
+    _place(stream, q)
+    if found[END] != t or not _same(stream.x, stream.place):
+        call_each(stream.find_end)
+        found[END] = t
+        stream.place[:] = stream.x
+
+
+@njit
+def _place(stream: Stream, q: Array) -> None:
+    """Write the stations' places in global axes."""
+    inside = np.empty(len(stream.D))
+    for m in range(stream.N.shape[0]):
+        for g in range(stream.N.shape[1]):
+            stations.put_value(stream.N[m, g], q[stream.element[m]], inside, stream.D)
+            p = m * stream.N.shape[1] + g
+            for i in range(3):
+                x = stream.origin[i]
+                for a in range(len(stream.D)):
+                    x += stream.basis[i, a] * inside[a]
+                stream.x[p, i] = x
+
+
+@njit
+def _same(x: Array, y: Array) -> bool:
+    for p in range(x.shape[0]):
+        for i in range(3):
+            if x[p, i] != y[p, i]:
+                return False
+    return True
