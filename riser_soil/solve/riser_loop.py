@@ -12,7 +12,15 @@ from typing import NamedTuple
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import inlined, njit
 from riser_soil.core.held import Held
-from riser_soil.riser.configuration import Base, Configuration, Maps, place, put_maps, put_turning
+from riser_soil.riser.configuration import (
+    Base,
+    Configuration,
+    Maps,
+    place,
+    put_magnitudes,
+    put_maps,
+    put_turning,
+)
 from riser_soil.riser.hermite import Size, add_geometric, collect_nodal
 from riser_soil.riser.part_kernels import (
     LineForces,
@@ -23,7 +31,7 @@ from riser_soil.riser.part_kernels import (
     add_work_of_each,
 )
 from riser_soil.solve import banded
-from riser_soil.solve.round_off import EPS, STALLED, STILL
+from riser_soil.solve.round_off import ROUND_OFF, STALLED
 
 CONVERGED, NOT_FINITE, SINGULAR, DIVERGED, TOO_MANY = range(5)
 DIVERGES = 1e6  # times the first norm
@@ -49,7 +57,7 @@ class HeldRiser(NamedTuple):
     states and for the tangent.
 
     at: configuration evaluated last; first: where a step begins. Arrays (nn, ndof): fixed and free dofs; levers;
-    residual [N] of the last trial; increments of the last iteration, for `RoundOff`.
+    residual [N] of the last trial; sizes of the coordinates, and of the terms [N] that the residual is made of.
     """
 
     parts: tuple
@@ -62,7 +70,8 @@ class HeldRiser(NamedTuple):
     free: BoolArray
     levers: Array
     residual: Array
-    last: Array
+    sizes: Array
+    terms: Array
 
 
 class StepNumbers(NamedTuple):
@@ -83,7 +92,7 @@ class StepNumbers(NamedTuple):
 
 
 class StopLimits(NamedTuple):
-    """When to stop, see `NewtonSettings` and `Newton`; size [m]: of `RoundOff`."""
+    """When to stop, see `NewtonSettings` and `Newton`."""
 
     tolerance: float
     floor: float
@@ -91,7 +100,6 @@ class StopLimits(NamedTuple):
     most: int
     least: int
     answers_load: bool
-    size: float
 
 
 @inlined
@@ -213,21 +221,42 @@ def _scale(inertia: Array, force: Array, end: Array, fixed: BoolArray, levers: A
 
 
 @njit
-def _at_round_off(
-    u: Array, last: Array, fixed: BoolArray, levers: Array, size: float, norms: Array, taken: int
-) -> bool:
-    """See `RoundOff`; last (nn, ndof): the increments of the last iteration, written anew."""
-    moved, whole = 0.0, 0.0
-    for n in range(fixed.shape[0]):
-        for i in range(fixed.shape[1]):
-            if not fixed[n, i]:
-                x = u[n, i] * levers[n, i]
-                moved += (x - last[n, i]) ** 2
-                whole += x * x
-                last[n, i] = x
-    if taken < 2 or not min(norms[taken] / norms[taken - 1], norms[taken - 1] / norms[taken - 2]) > STALLED:
-        return False
-    return moved <= max(STILL**2 * whole, (EPS * size) ** 2)
+def _stays(norms: Array, taken: int) -> bool:
+    """See `round_off.stays`."""
+    return taken > 1 and min(norms[taken] / norms[taken - 1], norms[taken - 1] / norms[taken - 2]) > STALLED
+
+
+@inlined
+def _at_round_off(riser: HeldRiser, step: StepNumbers) -> bool:
+    """Whether nothing in the residual can be told from its round-off, see `round_off`. Leaves another matrix behind."""
+    held_rates = StepNumbers(
+        step.inertia, step.force, 0.0, 0.0, step.u, step.v0, step.a0, step.v, step.a, step.past
+    )
+    put_tangent(riser, held_rates)
+    put_magnitudes(riser.at, riser.sizes)
+    _sum_terms(riser.room.K, riser.sizes, riser.terms)
+    return not _exceeds(riser.residual, riser.terms, riser.free)
+
+
+@njit
+def _sum_terms(K: Array, sizes: Array, terms: Array) -> None:
+    """Write the sums of |K| times sizes of the coordinates, both (nn, ndof), over the elements."""
+    ndof = sizes.shape[1]
+    terms[:] = 0.0
+    for e in range(K.shape[0]):
+        for i in range(2 * ndof):
+            for j in range(2 * ndof):
+                terms[e + i // ndof, i % ndof] += abs(K[e, i, j]) * sizes[e + j // ndof, j % ndof]
+
+
+@njit
+def _exceeds(residual: Array, terms: Array, free: BoolArray) -> bool:
+    """Whether the residual of any free dof is more than the round-off of its terms."""
+    for n in range(free.shape[0]):
+        for i in range(free.shape[1]):
+            if free[n, i] and abs(residual[n, i]) > ROUND_OFF * terms[n, i]:
+                return True
+    return False
 
 
 @njit
@@ -250,7 +279,7 @@ def solve_step(held: Held, base: Base, step: StepNumbers, limits: StopLimits, no
                 return CONVERGED, taken
             if norm <= limits.floor and (taken > 0 or limits.answers_load):
                 return CONVERGED, taken
-            if _at_round_off(step.u, riser.last, riser.fixed, riser.levers, limits.size, norms, taken):
+            if _stays(norms, taken) and _at_round_off(riser, step):
                 return CONVERGED, taken
             if taken >= 4 and norm > DIVERGES * first:
                 return DIVERGED, taken

@@ -114,7 +114,6 @@ class RiserNewton:
             settings.max_iterations,
             max(settings.least_iterations, int(smooth)),
             self.rests or bool(np.any(step.guess[~system.prescribed])),
-            system.lever * (system.prescribed.size - system.prescribed_dofs.size),
         )
 
     def _found(self) -> Forces:
@@ -157,8 +156,7 @@ def riser_of(line: Line, parts: Sequence[LinePart], prescribed: BoolArray, lever
         prescribed.reshape(shape),
         ~prescribed.reshape(shape),
         levers.reshape(shape),
-        np.zeros(shape),
-        np.zeros(shape),
+        *(np.zeros(shape) for _ in range(3)),
     )
 
 
