@@ -15,7 +15,7 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.held import Held, hold
 from riser_soil.core.part import Energy, Forces, State
 from riser_soil.core.system import Timer
-from riser_soil.riser.configuration import Base, base_of
+from riser_soil.riser.configuration import Base, base_of, put_magnitudes
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.riser_loop import HeldRiser, StepNumbers, account, put_forces, put_tangent
 from riser_soil.solve.riser_newton import RiserNewton, riser_of
@@ -35,10 +35,11 @@ def all_parts(at: Sample) -> list[Any]:
 
 @njit
 def put_all(held: Held, base: Base, step: StepNumbers) -> None:
-    """Forces and tangent of the parts at the increments of a step, its rates taken as they are."""
+    """Forces, tangent and sizes of coordinates at the increments of a step, its rates taken as they are."""
     riser: HeldRiser = held.value
     put_forces(riser, base, step.u, step.v, step.a)
     put_tangent(riser, step)
+    put_magnitudes(riser.at, riser.sizes)
 
 
 class Compiled:
@@ -99,6 +100,7 @@ def require_kernels_of_parts(dimension: int) -> None:
         found = getattr(compiled.riser.forces, group).ravel()
         assert np.abs(found - values).max() <= 1e-12 * np.abs(expected.force).max()
     assert error(compiled.dense(), tangent(parts, state, WEIGHTS)) < 1e-12
+    np.testing.assert_allclose(compiled.riser.sizes.ravel(), at.line.magnitudes(state), rtol=1e-15)
     begun = State(before.t, 0.0 * before.u, before.v, before.a)
     energy, (morison,) = compiled.account(begun)
     stored: Energy = sum((part.energy(state) for part in parts), Energy())
