@@ -139,6 +139,7 @@ def snapping(time_step: float) -> Callable[[], Trial]:
 for dt in (2e-4, 1e-3, 1e-2):
     stress_case(name=f"slack_to_snap_in_steps_of_{1e3 * dt:g}_ms")(snapping(dt))
 
+
 @stress_case()
 def heave_of_10_m_in_4_s() -> Trial:
     """The first scene, its end 10 m up and down in 4 s each: top tension in steps of 0.1 s beside steps of 0.02 s; or
