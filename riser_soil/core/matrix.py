@@ -23,6 +23,7 @@ class Matrix:
 
     def __init__(self, numbering: Numbering, blocks: Mapping[str, MatrixBlock], symmetric: bool) -> None:
         self.values = {key: block.zeros() for key, block in blocks.items()}
+        self._blocks, self._size = blocks, numbering.size
         self._rows = {key: _in_system(numbering, block.rows) for key, block in blocks.items()}
         self._cols = {key: _in_system(numbering, block.cols) for key, block in blocks.items()}
         keys = _merge(_keys(self._rows[k], self._cols[k], numbering.free) for k in blocks)
@@ -70,6 +71,13 @@ class Matrix:
             for key, values in self.values.items():
                 self.mat.setValuesRCV(self._rows[key], self._cols[key], values, addv=True)
         self.mat.assemble()
+
+    def magnitudes(self, sizes: Array) -> Array:
+        """Sums (size,) over this rank's blocks of the entries' absolute values times sizes (size,) of their columns."""
+        found, known = np.zeros(self._size + 1), np.append(sizes, 0.0)
+        for key, block in self._blocks.items():
+            np.add.at(found, block.rows, (np.abs(self.values[key]) @ known[block.cols][..., None])[..., 0])
+        return found[:-1]
 
     def destroy(self) -> None:
         self.mat.destroy()

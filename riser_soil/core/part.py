@@ -196,6 +196,12 @@ class Field(Protocol):
         """Write increment, rate and acceleration of the prescribed entries into these views of the field's slice."""
         ...
 
+    def magnitudes(self, state: State) -> Array:
+        """Sizes (size,) of the coordinates [m] and angles [rad] at a state, whose round-off the residual has; the
+        direction of what has not turned is one of a radian.
+        """
+        ...
+
     def commit(self, state: State) -> None:
         """Accept the increments of the field's slice."""
         ...

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from mpi4py import MPI
@@ -115,6 +115,13 @@ class System:
         since = time.perf_counter()
         self.matrix.assemble()
         self.clock.add("matrix", since)
+
+    def magnitudes(self, state: State, weights: Weights) -> Array:
+        """Sizes (size,) of the terms that this rank's residual is made of, to be summed by the numbering [N]: those of
+        the tangent at held rates, which takes the matrix' place, times those of the coordinates. See `round_off`.
+        """
+        self.assemble(state, replace(weights, shift_v=0.0, shift_a=0.0))
+        return self.matrix.magnitudes(np.concatenate([f.magnitudes(state) for f in self.model.fields]))
 
     def energy(self, state: State) -> Energy:
         mine = sum((p.energy(state) for p in self._active), Energy())

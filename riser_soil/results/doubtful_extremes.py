@@ -29,8 +29,10 @@ START, END, LEAST, MOMENT, _ = range(len(JUDGED))
 AT = np.array([places_of(name).start for name in JUDGED])
 # Share of the largest tension, or moment, from which an estimated error is a warning, and the share of it to aim at.
 LARGE_ERROR, FINE = 0.03, 1.0 / 3.0
-# The least effective tension is told from this share of its own size, within NEAR_SLACK and LARGE_ERROR of the largest.
-LEAST_ERROR, NEAR_SLACK = 0.1, 0.01
+# The least effective tension is told from this share of its own size, or where the riser is compressed from half of it,
+# as the force with which it gets taut again errs by several times as much; within NEAR_SLACK and LARGE_ERROR of the
+# largest.
+LEAST_ERROR, COMPRESSED_ERROR, NEAR_SLACK = 0.1, 0.05, 0.01
 NEGLIGIBLE = 1e-2  # of the riser's weight: a tension too small to judge; times a diameter, a moment
 _TAUT_AGAIN = "; where the riser is compressed, the force with which it gets taut again may be off by more"
 
@@ -103,7 +105,7 @@ class JudgedExtremes:
     def _of_least(self, scale: float) -> DoubtfulExtreme:
         found = self.resolution
         least, error, dt = (float(each[LEAST]) for each in (found.least, found.of_least, found.steps[0]))
-        size = LEAST_ERROR * abs(least) / scale if scale > 0.0 else LARGE_ERROR
+        own, then = (COMPRESSED_ERROR, _TAUT_AGAIN) if least < 0.0 else (LEAST_ERROR, "")
+        size = own * abs(least) / scale if scale > 0.0 else LARGE_ERROR
         allowed = min(max(size, NEAR_SLACK), LARGE_ERROR)
-        then = _TAUT_AGAIN if least < 0.0 else ""
         return DoubtfulExtreme("least effective tension", "N", error, scale, dt, allowed, then)

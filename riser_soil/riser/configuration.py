@@ -131,6 +131,11 @@ def place(at: Configuration, base: Base, u: Array, v: Array, a: Array) -> None:
 
 
 @by_type
+def put_magnitudes(at: Configuration, out: Array) -> None:
+    """Write the sizes (nn, ndof) of a configuration's coordinates, see `Field.magnitudes`."""
+
+
+@by_type
 def put_maps(at: Configuration, maps: Maps) -> None:
     """Write the maps of a configuration with their shifts."""
 
@@ -173,6 +178,18 @@ def _move(at: Configuration, base: Base, u: Array, v: Array, a: Array) -> None:
     for e in range(nn - 1):
         for i in range(d):
             at.chord[e, i] = base.chord[e, i] + (u[e + 1, i] - u[e, i])
+
+
+@put_magnitudes.of(PlanarConfiguration)
+def _put_magnitudes_in_plane(at: PlanarConfiguration, out: Array) -> None:
+    out[:, :2] = np.abs(at.x)
+    out[:, 2] = np.maximum(np.abs(at.angle), 1.0)
+
+
+@put_magnitudes.of(SpatialConfiguration)
+def _put_magnitudes_in_space(at: SpatialConfiguration, out: Array) -> None:
+    out[:, :3] = np.abs(at.x)
+    out[:, 3:] = 1.0
 
 
 @put_maps.of(PlanarConfiguration)

@@ -221,6 +221,10 @@ class Line:
         out[:, self.dimension :] = self.frames.in_new_axes(out[:, self.dimension :], turned)
         return out.ravel()
 
+    def magnitudes(self, state: State) -> Array:
+        trial = self.trial(state)
+        return np.hstack([np.abs(trial.x), trial.turn.magnitudes]).ravel()
+
     def commit(self, state: State) -> None:
         """Accept the increments of a state; chords sum theirs, so their round-off is not that of far
         positions.

@@ -28,6 +28,11 @@ class PlanarOrientation:
         return self.normal[..., None]
 
     @property
+    def magnitudes(self) -> Array:
+        """Sizes (nn, 1) of the angles, at least a radian: cosines and sines of less are no more exact."""
+        return np.maximum(np.abs(self.angle), 1.0)[:, None]
+
+    @property
     def wound(self) -> BoolArray:
         """Elements (ne,) whose ends differ by more than half a turn."""
         return np.asarray(np.abs(self.end_angle[:, 1] - self.end_angle[:, 0]) > np.pi)

@@ -48,6 +48,11 @@ class SpatialOrientation:
         return self.R[node]
 
     @property
+    def magnitudes(self) -> Array:
+        """Sizes (nn, 3) of the angles, all a radian: frames are as exact after any number of turns."""
+        return np.ones(self.Theta.shape)
+
+    @property
     def wound(self) -> BoolArray:
         """Elements (ne,) whose ends turn by increments that differ by more than half a turn."""
         return _wound(self.Theta)

@@ -38,6 +38,9 @@ class SoilField:
         for values in (u, v, a):
             values[self.prescribed] = 0.0
 
+    def magnitudes(self, state: State) -> Array:
+        return np.abs(self.total + self.own(state.u))
+
     def commit(self, state: State) -> None:
         self.total += self.own(state.u)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.core.part import State
+from riser_soil.core.part import State, local
 from riser_soil.core.saved_state import Saved
 
 
@@ -31,8 +31,11 @@ class SoilTop:
         for values in (u, v, a):
             values[self.prescribed] = 0.0
 
+    def magnitudes(self, state: State) -> Array:
+        return np.abs(self.committed.ravel() + state.u[local(self)])
+
     def commit(self, state: State) -> None:
-        self.committed += state.u[self.offset : self.offset + self.size].reshape(-1, 3)
+        self.committed += state.u[local(self)].reshape(-1, 3)
 
     def state(self) -> Saved:
         return {"committed": self.committed.copy()}

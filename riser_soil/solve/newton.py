@@ -17,7 +17,7 @@ from riser_soil.core.system import System
 from riser_soil.solve.failed_step import place_of_largest, reason_name
 from riser_soil.solve.line_search import step_length
 from riser_soil.solve.linear_solver import PREFIX, complaint, defaults, factorise_directly
-from riser_soil.solve.round_off import RoundOff
+from riser_soil.solve.round_off import ROUND_OFF, stays
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError, told
 from riser_soil.solve.stability import prescribe_free_turns, unstable_modes
 from riser_soil.solve.time_scheme import Static
@@ -46,7 +46,6 @@ class Newton:
         self._levers = system.numbering.vector.duplicate()
         system.numbering.to_global(system.levers, self._levers)
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
-        self._round_off = RoundOff(system.sum, system.lever * self._x.getSize())
         self._snes = self._create()
 
     def _create(self) -> PETSc.SNES:
@@ -56,7 +55,8 @@ class Newton:
         snes.setJacobian(self._jacobian, self.system.matrix.mat)
         snes.setConvergenceTest(self._test)
         snes.setTolerances(max_it=self.settings.max_iterations)
-        snes.setLineSearchPreCheck(self._precheck)
+        if self.settings.line_search:
+            snes.setLineSearchPreCheck(self._shorten)
         snes.getKSP().setType(PETSc.KSP.Type.PREONLY)
         factorise_directly(snes.getKSP().getPC(), self.system)
         snes.setOptionsPrefix(PREFIX)
@@ -213,7 +213,6 @@ class Newton:
 
     def _begin(self, step: Step) -> None:
         self._step, self._norms, self._first = step, list[float](), 0
-        self._round_off.begin()
         self._weights, self._past = step.scheme.weights(step.dt), step.scheme.past(step.start)
         self._still = step.scheme.trial(step.before, step.t, step.dt, np.zeros_like(step.guess))
         prescribed = State(step.t, *(x.copy() for x in (step.guess, self._still.v, self._still.a)))
@@ -246,11 +245,6 @@ class Newton:
         self._forces = self.system.forces(self._balanced)
         residual = self._step.scheme.combine(self._forces, self._past)
         self.system.numbering.add_to_global(residual, f)
-
-    def _precheck(self, x: PETSc.Vec, y: PETSc.Vec) -> bool:
-        """Before a step -y from x is taken; whether it was changed."""
-        self._round_off.follow(y.array_r * self._levers.array_r)
-        return self.settings.line_search and self._shorten(x, y)
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> bool:
         """Scale the step -y from x to the length that the line search finds; whether that changed it."""
@@ -309,11 +303,20 @@ class Newton:
             return CONVERGED
         if norm <= self.settings.floor and (self._taken > 0 or self._answers_load):
             return CONVERGED
-        if self._round_off.reached(self._x.array_r * self._levers.array_r, self._norms):
+        if stays(self._norms) and self._at_round_off():
             return CONVERGED
         if self._taken >= 4 and norm > 1e6 * self._norms[self._first]:
             return DIVERGED
         return self._next_tangent()
+
+    def _at_round_off(self) -> bool:
+        """Whether nothing in the residual can be told from its round-off; collective. Leaves another matrix behind."""
+        self._trial(self._x)
+        sizes = self._f.duplicate()
+        self.system.numbering.add_to_global(self.system.magnitudes(self._balanced, self._weights), sizes)
+        above = bool((np.abs(self._f.array_r) > ROUND_OFF * sizes.array_r).any())
+        sizes.destroy()
+        return not self.system.comm.allreduce(above, MPI.LOR)
 
     def _next_tangent(self) -> int:
         """Assemble that of the next iteration, if there is one with a tangent of its own; whether it has a place."""

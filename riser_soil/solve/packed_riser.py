@@ -11,7 +11,7 @@ from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.bound import Bound, call_each, calls
 from riser_soil.core.packed import Packed
 from riser_soil.core.part import State, Weights
-from riser_soil.riser.configuration import Maps, base_of, place, put_maps, put_turning, room_for
+from riser_soil.riser.configuration import Maps, base_of, place, put_magnitudes, put_maps, put_turning, room_for
 from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import LineWeights, add_energy, add_forces, add_tangent, add_work, forces_of
 from riser_soil.solve import banded
@@ -34,15 +34,16 @@ class PackedRiser:
         turning = [each for each in numbers if type(each) in add_work.kernels]
         self.step, self._begun = StepNumbers(*_zeros(6, shape)), _zeros(2, shape)
         self.forces, self.room = forces_of(line), _tangent_room(line)
-        self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(2, shape))
+        self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
         self.progress = Progress(np.zeros(most + 1), np.zeros(2, dtype=np.int64))
-        self._energy, self._work, self._reuse = np.zeros(3), np.zeros((len(turning), 4)), np.zeros(1)
+        self._energy, self._work = np.zeros(3), np.zeros((len(turning), 4))
         self._maps, self._weights = Packed(_maps_of(line)), Packed(LineWeights(0.0, 0.0))
-        self._limits = Packed(StopLimits(0.0, 0.0, 0.0, most, 0, 0, 0.0))
+        self._limits = Packed(StopLimits(0.0, 0.0, 0.0, most, 0, False))
         base, at, begun = base_of(line), room_for(line), room_for(line)
         self._base, now, then = Packed(type(base)(*map(np.copy, base))), Packed(at), Packed(begun)
         step, forces, room, dofs, progress = map(Packed, (self.step, self.forces, self.room, self.dofs, self.progress))
         maps, weights, limits, K = self._maps, self._weights, self._limits, Packed(self.room.K)
+        held_rates = Packed(maps.value)  # no shifts
         motion = [Packed(values) for values in (self.step.u, self.step.v, self.step.a)]
         start = [Packed(values) for values in (np.zeros(shape), *self._begun)]
         joules, rows = Packed(self._energy), [Packed(row) for row in self._work]
@@ -53,20 +54,26 @@ class PackedRiser:
             *(_bound(add_forces, each, now, forces) for each in numbers),
             Bound(loop.collect, now, forces),
             Bound(loop.combine, forces, step, weights, dofs),
-            Bound(loop.judge, forces, step, dofs, limits, progress),
+            Bound(loop.judge, forces, dofs, limits, progress),
         )
-        tangent = (
-            _bound(put_maps, at, maps),
-            Bound(loop.clear_tangent, room),
-            *(_bound(add_tangent, each, now, maps, weights, K) for each in numbers),
-            Bound(loop.weigh, forces, weights, room),
-            _bound(put_turning, at, Packed(self.room.conjugate), Packed(self.room.turning)),
-            Bound(loop.fill, room, dofs),
-        )
-        renew = calls(*tangent, Bound(loop.factorise, room, progress))
+
+        def tangent(maps: Packed) -> list[Bound]:
+            return [
+                _bound(put_maps, at, maps),
+                Bound(loop.clear_tangent, room),
+                *(_bound(add_tangent, each, now, maps, weights, K) for each in numbers),
+                Bound(loop.weigh, forces, weights, room),
+                _bound(put_turning, at, Packed(self.room.conjugate), Packed(self.room.turning)),
+                Bound(loop.turn, room),
+            ]
+
+        put_sizes = _bound(put_magnitudes, at, Packed(self.dofs.sizes))
+        probe = calls(*tangent(held_rates), put_sizes, Bound(loop.judge_round_off, room, dofs, progress))
+        put_tangent = [*tangent(maps), Bound(loop.fill, room, dofs)]
+        renew = calls(*put_tangent, Bound(loop.factorise, room, progress))
         improve = calls(Bound(loop.improve, room, step, dofs))
-        self._solve = Bound(loop.solve_step, *map(Packed, (calls(*evaluate), renew, improve, self._reuse)), progress)
-        self.evaluate, self.put_tangent = _in_turn(*evaluate), _in_turn(*tangent)
+        self._solve = Bound(loop.solve_step, *map(Packed, (calls(*evaluate), probe, renew, improve)), limits, progress)
+        self.evaluate, self.put_tangent = _in_turn(*evaluate), _in_turn(*put_tangent, put_sizes)
         self._account = _in_turn(
             _bound(place, begun, self._base, *start),
             Bound(loop.clear_account, joules, Packed(self._work)),
@@ -88,7 +95,6 @@ class PackedRiser:
         maps.renew(Maps(maps.value.rate, maps.value.acceleration, weights.shift_v, weights.shift_a))
         self._weights.renew(LineWeights(weights.inertia, weights.force))
         self._limits.renew(limits)
-        self._reuse[0] = limits.reuse
 
     def solve(self) -> tuple[int, int]:
         """Solve the step: the outcome, see `riser_loop`, and the number of iterations."""

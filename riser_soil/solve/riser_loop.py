@@ -17,7 +17,7 @@ from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size, add_geometric, collect_nodal
 from riser_soil.riser.part_kernels import LineForces, LineWeights
 from riser_soil.solve import banded
-from riser_soil.solve.round_off import EPS, STALLED, STILL
+from riser_soil.solve.round_off import ROUND_OFF, STALLED
 
 GOING_ON, CONVERGED, NOT_FINITE, SINGULAR, DIVERGED, TOO_MANY = range(6)
 DIVERGES = 1e6  # times the first norm
@@ -38,13 +38,14 @@ class StepNumbers(NamedTuple):
 
 class Dofs(NamedTuple):
     """What is known of the dofs, (nn, ndof): whether they are fixed; levers [m] of moments; residual [N] of the last
-    trial; increments of the last iteration [m], for `RoundOff`.
+    trial; sizes of the coordinates, and of the terms [N] that the residual is made of.
     """
 
     fixed: BoolArray
     levers: Array
     residual: Array
-    last: Array
+    sizes: Array
+    terms: Array
 
 
 class TangentRoom(NamedTuple):
@@ -61,15 +62,14 @@ class TangentRoom(NamedTuple):
 
 
 class StopLimits(NamedTuple):
-    """When to stop, see `NewtonSettings` and `Newton`; size [m]: of `RoundOff`."""
+    """When to stop, see `NewtonSettings` and `Newton`."""
 
     tolerance: float
     floor: float
     reuse: float
     most: int
     least: int
-    answers_load: int
-    size: float
+    answers_load: bool
 
 
 class Progress(NamedTuple):
@@ -80,21 +80,41 @@ class Progress(NamedTuple):
 
 
 @njit
-def solve_step(evaluate: Calls, renew: Calls, improve: Calls, reuse: Array, progress: Progress) -> None:
-    """Solve a step. Kernels to call at each trial, for a new tangent, and for its answer to the residual; reuse (1,):
-    a tangent serves again after an iteration that leaves less than this share of the residual.
+def solve_step(
+    evaluate: Calls, probe: Calls, renew: Calls, improve: Calls, limits: StopLimits, progress: Progress
+) -> None:
+    """Solve a step. Kernels to call at each trial, where the residual's norm stays as it is, for a new tangent, and for
+    its answer to the residual.
     """
     norms, ending = progress
     ending[0], ending[1] = GOING_ON, 0
     while True:
         call_each(evaluate)
         taken = ending[1]
-        if ending[0] == GOING_ON and (taken == 0 or not norms[taken] < reuse[0] * norms[taken - 1]):
+        if ending[0] == GOING_ON and taken >= limits.least and _stays(norms, taken):
+            call_each(probe)
+        if ending[0] == GOING_ON:
+            ending[0] = _given_up(norms, taken, limits)
+        if ending[0] == GOING_ON and (taken == 0 or not norms[taken] < limits.reuse * norms[taken - 1]):
             call_each(renew)
         if ending[0] != GOING_ON:
             return
         call_each(improve)
         ending[1] += 1
+
+
+@njit
+def _stays(norms: Array, taken: int) -> bool:
+    """See `round_off.stays`."""
+    return taken > 1 and min(norms[taken] / norms[taken - 1], norms[taken - 1] / norms[taken - 2]) > STALLED
+
+
+@njit
+def _given_up(norms: Array, taken: int, limits: StopLimits) -> int:
+    """Whether a step that goes on does so in vain."""
+    if taken >= max(4, limits.least) and norms[taken] > DIVERGES * norms[0]:
+        return DIVERGED
+    return TOO_MANY if taken >= limits.most else GOING_ON
 
 
 @njit
@@ -134,26 +154,17 @@ def combine(forces: LineForces, step: StepNumbers, weights: LineWeights, dofs: D
 
 
 @njit
-def judge(forces: LineForces, step: StepNumbers, dofs: Dofs, limits: StopLimits, progress: Progress) -> None:
-    """Write the norm of the residual and what follows from it."""
+def judge(forces: LineForces, dofs: Dofs, limits: StopLimits, progress: Progress) -> None:
+    """Write the norm of the residual, and whether it is small enough or none."""
     norms, ending = progress
-    taken = ending[1]
-    norm = _norm(dofs)
+    taken, norm = ending[1], _norm(dofs)
     norms[taken] = norm
     if not math.isfinite(norm):
         ending[0] = NOT_FINITE
-        return
-    if taken >= limits.least:
-        small = norm <= limits.floor and (taken > 0 or limits.answers_load > 0)
-        small = small or norm <= limits.tolerance * _scale(forces, dofs)
-        if small or _at_round_off(step.u, dofs, limits, norms, taken):
+    elif taken >= limits.least:
+        small = norm <= limits.floor and (taken > 0 or limits.answers_load)
+        if small or norm <= limits.tolerance * _scale(forces, dofs):
             ending[0] = CONVERGED
-            return
-        if taken >= 4 and norm > DIVERGES * norms[0]:
-            ending[0] = DIVERGED
-            return
-    if taken >= limits.most:
-        ending[0] = TOO_MANY
 
 
 @njit
@@ -182,22 +193,6 @@ def _scale(forces: LineForces, dofs: Dofs) -> float:
 
 
 @njit
-def _at_round_off(u: Array, dofs: Dofs, limits: StopLimits, norms: Array, taken: int) -> bool:
-    """See `RoundOff`."""
-    moved, whole = 0.0, 0.0
-    for n in range(u.shape[0]):
-        for i in range(u.shape[1]):
-            if not dofs.fixed[n, i]:
-                x = u[n, i] * dofs.levers[n, i]
-                moved += (x - dofs.last[n, i]) ** 2
-                whole += x * x
-                dofs.last[n, i] = x
-    if taken < 2 or not min(norms[taken] / norms[taken - 1], norms[taken - 1] / norms[taken - 2]) > STALLED:
-        return False
-    return moved <= max(STILL**2 * whole, (EPS * limits.size) ** 2)
-
-
-@njit
 def clear_tangent(room: TangentRoom) -> None:
     """Write zero."""
     room.K[:] = 0.0
@@ -215,10 +210,32 @@ def weigh(forces: LineForces, weights: LineWeights, room: TangentRoom) -> None:
 
 
 @njit
+def turn(room: TangentRoom) -> None:
+    """Add what the turning of the tangents gives to the element matrices."""
+    add_geometric(room.K, 1.0, room.turning, room.conjugate.shape[2])
+
+
+@njit
+def judge_round_off(room: TangentRoom, dofs: Dofs, progress: Progress) -> None:
+    """Whether nothing in the residual can be told from its round-off, see `round_off`; K: at held rates."""
+    K, sizes, terms = room.K, dofs.sizes, dofs.terms
+    ndof = sizes.shape[1]
+    terms[:] = 0.0
+    for e in range(K.shape[0]):
+        for i in range(2 * ndof):
+            for j in range(2 * ndof):
+                terms[e + i // ndof, i % ndof] += abs(K[e, i, j]) * sizes[e + j // ndof, j % ndof]
+    for n in range(terms.shape[0]):
+        for i in range(ndof):
+            if not dofs.fixed[n, i] and abs(dofs.residual[n, i]) > ROUND_OFF * terms[n, i]:
+                return
+    progress.ending[0] = CONVERGED
+
+
+@njit
 def fill(room: TangentRoom, dofs: Dofs) -> None:
     """Sum element matrices into the banded one, with ones on the diagonal for what is fixed."""
     K, ab, fixed = room.K, room.ab, dofs.fixed
-    add_geometric(K, 1.0, room.turning, room.conjugate.shape[2])
     ndof = fixed.shape[1]
     b = 2 * ndof - 1
     ab[:] = 0.0

@@ -102,8 +102,7 @@ class RiserNewton:
             settings.reuse if smooth else 0.0,
             settings.max_iterations,
             max(settings.least_iterations, int(smooth)),
-            int(self.rests or bool(np.any(step.guess[~system.prescribed]))),
-            system.lever * (system.prescribed.size - system.prescribed_dofs.size),
+            self.rests or bool(np.any(step.guess[~system.prescribed])),
         )
 
     def _found(self) -> Forces:

@@ -28,31 +28,27 @@ class Trial:
 
 @dataclass(frozen=True)
 class StressCase:
-    """about: what is extreme and what is known of it, the docstring. quick: among those of the normal suite. cpu: s.
-
-    not_yet: why it does not end as it is to, so far; "" where it does.
-    """
+    """about: what is extreme and what is known of it, the docstring. quick: among those of the normal suite. cpu: s."""
 
     name: str
     about: str
     make: Callable[[], Trial]
     quick: bool
     cpu: int
-    not_yet: str
 
 
 CASES: dict[str, StressCase] = {}
 
 
 def stress_case(
-    *, name: str = "", quick: bool = False, cpu: int = 60, not_yet: str = ""
+    *, name: str = "", quick: bool = False, cpu: int = 60
 ) -> Callable[[Callable[[], Trial]], Callable[[], Trial]]:
     """Register a function that makes a trial; its docstring tells what is extreme and derives the answer."""
 
     def registered(make: Callable[[], Trial]) -> Callable[[], Trial]:
         title = (name or make.__name__).replace("_", " ")
         assert title not in CASES, f"two cases {title}"
-        CASES[title] = StressCase(title, inspect.getdoc(make) or "", make, quick, cpu, not_yet)
+        CASES[title] = StressCase(title, inspect.getdoc(make) or "", make, quick, cpu)
         return make
 
     return registered

@@ -17,6 +17,7 @@ from tests.stress.case import Runs, Trial, one, stress_case
 from tests.support.coupled_scenes import Mapping
 from tests.support.end_around_circle import LARGEST, end_led_around, way_around
 from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, static
+from tests.support.turned_bar import turned_bar
 
 FIRST_SCENE = Path(__file__).parents[2] / "demos" / "first_scene.yaml"
 TOO_LONG = r"time steps? of .*(tenth|long)|longer than a tenth|time_step"
@@ -138,6 +139,7 @@ def snapping(time_step: float) -> Callable[[], Trial]:
 for dt in (2e-4, 1e-3, 1e-2):
     stress_case(name=f"slack_to_snap_in_steps_of_{1e3 * dt:g}_ms")(snapping(dt))
 
+
 @stress_case()
 def heave_of_10_m_in_4_s() -> Trial:
     """The first scene, its end 10 m up and down in 4 s each: top tension in steps of 0.1 s beside steps of 0.02 s; or
@@ -229,19 +231,8 @@ def midpoint_rule_in_steps_of_a_quarter_period() -> Trial:
     return Trial(scenes, answers, TOO_LONG)
 
 
-def turned(turns: int, dt: float = 0.005) -> Callable[[], Trial]:
-    turn = {"axis": [0.0, 1.0, 0.0], "amplitude_deg": 360.0 * turns, "period": 80.0, "ramp": 20.0}
-    scene = riser_scene(
-        dynamic(20.0, dt, "turn", motion={"start": {"rotation": turn}}, scheme=AVERAGE),
-        dynamic(10.0, 0.01, "rest"),
-        pipe={"EA": 1e6, "EI": 1e3, "mass": 1.0, "damping": {"ratio": 0.05, "frequency": 5.0}},
-        length=1.0,
-        elements=10,
-        start=prescribed(0.0, 0.0, 0.0, rotation="fixed"),
-        end="free",
-        riser={"unstressed": {"points": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]}},
-        output={"interval": 0.1},
-    )
+def turned(turns: int, dt: float = 0.005, **more: Any) -> Callable[[], Trial]:
+    scene = turned_bar(turns, dt, 10.0, **more)
 
     def answers(run: Run) -> Iterator[Answer]:
         apart = np.linalg.norm(run["position"][-1, -1] - [1.0, 0.0, 0.0])
@@ -260,13 +251,11 @@ def turned(turns: int, dt: float = 0.005) -> Callable[[], Trial]:
     return make
 
 
-stress_case(name="ten_turns_one_way")(turned(10))
-stress_case(name="ten_turns_the_other_way")(turned(-10))
-CUT = (
-    "steps are cut by the thousand: at 50 rad/s Newton's iterations stall at the round-off of the residual, while they "
-    "still move the unknowns by 1 to 2 of 1e10 parts of their increments, where 1 counts as none"
-)
-stress_case(name="hundred_turns", cpu=100, not_yet=CUT)(turned(100, 2e-3))
+stress_case(name="ten_turns_one_way")(turned(10, scheme=AVERAGE))
+stress_case(name="ten_turns_the_other_way")(turned(-10, scheme=AVERAGE))
+# At 50 rad/s structural damping takes as much energy out of the turning as the fourth power of the step: 2.4 % of what
+# is turned over in steps of 1 ms. In half of these the average acceleration, which damps nothing, lets the tip ring.
+stress_case(name="hundred_turns", cpu=100)(turned(100, 6.25e-4))
 
 
 @stress_case(cpu=240)

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from riser_soil.stress.outcome import PASSED, StressOutcome
 from riser_soil.stress.table import as_json, circumstances, markdown
-from tests.stress.case import CASES
 
 DOCS = Path(__file__).parents[2] / "docs"
 COMMAND = "make stress"
@@ -45,12 +44,7 @@ def page(rows: Sequence[StressOutcome]) -> str:
 
 def _messages(rows: Sequence[StressOutcome]) -> list[str]:
     told = [f"- **{row.name}**: {row.message}" for row in rows if row.verdict != PASSED and row.message]
-    why = [f"- **{row.name}**: {CASES[row.name].not_yet}" for row in rows if not row.as_hoped and _known(row)]
-    return ["## What was told", "", *told, "", *(["## Not there yet", "", *why, ""] if why else [])]
-
-
-def _known(row: StressOutcome) -> bool:
-    return bool(CASES[row.name].not_yet)
+    return ["## What was told", "", *told, ""]
 
 
 def _derivations(rows: Sequence[StressOutcome]) -> list[str]:

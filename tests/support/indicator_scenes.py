@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -138,8 +139,16 @@ class Compressed:
 
 COMPRESSED = {
     "heave 5 m, 8 s": Compressed(heaved(5.0, 8.0, 16.0, 8.0), (0.1, 0.05), 230.96e3),
-    "heave 4 m, 7 s": Compressed(heaved(4.0, 7.0, 14.0, 7.0), (0.1, 0.05), 194.83e3),
+    "heave 4 m, 7 s": Compressed(heaved(4.0, 7.0, 14.0, 7.0), (0.1, 0.05, 0.02), 194.83e3),
 }
+
+# Two periods of heaves of the first scene, amplitude [m] and period [s], the first one its ramp; in steps [s].
+HEAVES = tuple(product((2.0, 4.0, 5.0, 6.0), (5.0, 7.0, 8.0, 9.0)))
+HEAVE_STEPS, FINE_HEAVE_STEP = (0.2, 0.1, 0.05, 0.02), 0.01
+
+
+def two_periods(amplitude: float, period: float) -> Callable[[float], Scene]:
+    return heaved(amplitude, period, 2.0 * period, period)
 
 
 def falling(dt: float, stiffness: float, drop: float = 0.1) -> Scene:

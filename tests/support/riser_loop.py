@@ -52,7 +52,7 @@ class Compiled:
         for part in parts:
             part.renew_numbers(before.t, state.t)
         v, a = state.v - WEIGHTS.shift_v * state.u, state.a - WEIGHTS.shift_a * state.u
-        self.riser.begin(State(state.t, state.u, v, a), None, WEIGHTS, StopLimits(0.0, 0.0, 0.0, 1, 0, 0, 0.0))
+        self.riser.begin(State(state.t, state.u, v, a), None, WEIGHTS, StopLimits(0.0, 0.0, 0.0, 1, 0, False))
         self.riser.evaluate()
         self.riser.put_tangent()
 
@@ -101,6 +101,7 @@ def require_kernels(at: Sample, parts: list[Any]) -> None:
         found = getattr(compiled.riser.forces, group).ravel()
         assert np.abs(found - values).max() <= 1e-12 * np.abs(expected.force).max()
     assert error(compiled.dense(), tangent(parts, state, WEIGHTS)) < 1e-12
+    np.testing.assert_allclose(compiled.riser.dofs.sizes.ravel(), at.line.magnitudes(state), rtol=1e-15)
     begun = State(before.t, 0.0 * before.u, before.v, before.a)
     joules, rows = compiled.riser.account(begun)
     energy = Energy(*joules)

@@ -49,6 +49,9 @@ class Chain:
     def heights(self, state: State) -> Array:
         return self.z + state.u[self.offset : self.offset + self.size]
 
+    def magnitudes(self, state: State) -> Array:
+        return np.abs(self.heights(state))
+
     def commit(self, state: State) -> None:
         self.z = self.heights(state)
 

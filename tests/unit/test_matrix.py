@@ -40,6 +40,20 @@ def test_blocks_add_up_and_absent_dofs_drop_out() -> None:
     numbering.destroy()
 
 
+def test_magnitudes_are_sums_of_absolute_values_over_the_blocks() -> None:
+    """Where the blocks' own entries cancel one another, too; of absent dofs nothing, of prescribed ones their size."""
+    chain = Chain(np.arange(4.0), prescribed=True)
+    numbering = Numbering(MPI.COMM_SELF, [chain])
+    extra = MatrixBlock(np.array([[3, -1]]), np.array([[3, -1]]))
+    matrix = Matrix(numbering, {"riser": chain.pairs(), "extra": extra}, symmetric=True)
+    matrix.values["riser"][...] = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    matrix.values["extra"][...] = -2.0
+    found = matrix.magnitudes(np.array([1.0, 10.0, 100.0, 1000.0]))
+    assert found == pytest.approx(np.array([11.0, 121.0, 1210.0, 1100.0 + 2000.0]))
+    matrix.destroy()
+    numbering.destroy()
+
+
 ON_RANKS = '''
 import numpy as np
 from mpi4py import MPI

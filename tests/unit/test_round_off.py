@@ -4,60 +4,80 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
 from benchmarks.error_bars.scenes import CLAY, pressed
-from riser_soil.solve.round_off import RoundOff
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Model, State, Weights
+from riser_soil.core.system import System, Timer
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.round_off import stays
+from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step
+from riser_soil.solve.time_scheme import Static
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.driven_stage import built, take
-
-X = np.array([1e-3, 2e-3])  # m
-
-
-def reached(moves: list[float], norms: list[float], size: float = 1.0) -> list[bool]:
-    """Before and after each iteration, whose step of the first unknown is so long [m], of a line of this size [m]."""
-    followed = RoundOff(list, size)
-    told = [followed.reached(X, norms[:1])]
-    for n, move in enumerate(moves, start=2):
-        followed.follow(np.array([move, 0.0]))
-        told.append(followed.reached(X, norms[:n]))
-    return told
-
-
-def test_a_residual_that_stays_while_nothing_moves_is_round_off() -> None:
-    assert reached([1e-4, 1e-15, 1e-15], [1.0, 1e-8, 1.1e-8, 0.9e-8]) == [False, False, False, True]
+from tests.support.toy_chain import Chain, Springs
+from tests.support.turned_bar import turned_bar
 
 
 @pytest.mark.parametrize(
-    ("moves", "norms"),
+    ("norms", "expected"),
     [
-        ([1e-4, 1e-12, 1e-12], [1.0, 1e-8, 1.1e-8, 0.9e-8]),  # it still moves by 1e-9 of the step's increments
-        ([1e-4, -1e-4, 1e-4], [1.0, 0.9, 1.0, 0.9]),  # to and fro between two places
-        ([1e-4, 1e-15, 1e-15], [1.0, 1e-2, 1e-3, 1e-6]),  # the residual falls
-        ([1e-4, 1e-15], [1.0, 1e-8, 1.1e-8]),  # it stays once: it may have been at its last iteration before
+        ([1.0, 1e-8, 1.1e-8, 0.9e-8], True),
+        ([1.0, 1e-2, 1e-3, 1e-6], False),  # it falls
+        ([1.0, 1e-8, 1.1e-8], False),  # it stays once: it may have been at its last iteration before
+        ([0.0, 1.0, 1.0], True),
     ],
 )
-def test_what_is_not_at_its_round_off_goes_on(moves: list[float], norms: list[float]) -> None:
-    assert not any(reached(moves, norms))
+def test_norms_that_stay_in_two_iterations(norms: list[float], expected: bool) -> None:
+    assert stays(norms) == expected
 
 
-def test_a_line_at_rest_moves_by_the_round_off_of_its_places() -> None:
-    """Beside increments of 1e-3 m in a step; in one of none at all that is all there is."""
-    still, norms = [1e-12, 1e-12, 1e-12], [1e-3, 1e-3, 1e-3, 1e-3]
-    assert not any(reached(still, norms, size=10.0))
-    assert reached(still, norms, size=1e4) == [False, False, True, True]
+K, HIGH = 1e6, 1e6  # N/m, m: an eps of the height is 1e-4 N in a spring, where 4e-8 N are allowed
 
 
-def test_a_residual_that_begins_at_nothing_goes_on() -> None:
-    """As that of a linear start where all is prescribed and nothing touches yet."""
-    assert not any(reached([1e-4, 1e-4], [0.0, 1.0, 1.0]))
+class WrongSprings(Springs):
+    """Their tangent is ten times as stiff as their forces: Newton's method creeps, by a tenth in each iteration."""
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        super().tangent(state, weights, values)
+        values["chain"] *= 10.0
 
 
-def test_a_new_step_begins_anew() -> None:
-    followed, still = RoundOff(list, 1.0), [1.0, 1.0, 1.0]
-    followed.follow(np.zeros(2))
-    assert followed.reached(X, still)
-    followed.begin()
-    assert not followed.reached(X, still)
+def hung(springs: type[Springs]) -> Solution:
+    """A chain of masses of 1 N that hangs from its first one, far above zero."""
+    chain = Chain(HIGH + np.arange(4.0), prescribed=True)
+    system = System(MPI.COMM_SELF, Model([chain], [springs(chain, 1.0, K, weight=1.0)]), Timer.new())
+    newton, z = Newton(system, NewtonSettings(1e-8, 25, 1e-12)), np.zeros(chain.size)
+    try:
+        return newton.solve(Step(Static(), State(0.0, z, z.copy(), z.copy()), 1.0, 1.0, None, z.copy()))
+    finally:
+        newton.destroy()
+        system.destroy()
+
+
+def test_a_step_ends_where_heights_are_known_no_better() -> None:
+    solution = hung(Springs)
+    assert solution.iterations <= 4
+    assert 1e-6 < solution.norms[-1] < 1e-3
+    assert solution.state.u == pytest.approx(-np.array([0.0, 3.0, 5.0, 6.0]) / K, abs=1e-9)
+
+
+def test_a_residual_that_stays_for_a_wrong_tangent_is_no_round_off() -> None:
+    with pytest.raises(NotConvergedError, match="diverged_max_it"):
+        hung(WrongSprings)
+
+
+def test_a_bar_that_has_turned_many_times_comes_to_rest_without_a_cut_step() -> None:
+    """Its angle of 126 rad is known to 1.4e-14 rad, and 6 EI/h^2 of that is 1e-8 N at either end of each element:
+    more than counts as none when nothing moves any more.
+    """
+    assembly, watched = built(turned_bar(20)), list[AcceptedStep]()
+    turn, rest = assembly.scene.stages
+    take(assembly, rest, take(assembly, turn), watch=lambda _, step: watched.append(step))
+    assert len(watched) == 100
+    assert assembly.line.x[-1] == pytest.approx([1.0, 0.0], abs=1e-9)
+    assert watched[-1].solution.norms[-1] > assembly.scales.force_floor
 
 
 def test_a_stiff_pipe_on_clay_ends_at_its_round_off_without_a_cut_step() -> None:

@@ -13,7 +13,17 @@ import pytest
 from riser_soil.results.doubtful_extremes import LARGE_ERROR
 from riser_soil.results.indicators import LARGE_LOSS
 from riser_soil.results.plausibility import SMOOTH_MISFIT
-from tests.support.indicator_scenes import COMPRESSED, STEPPED, falling, hung, last_stage
+from tests.support.indicator_scenes import (
+    COMPRESSED,
+    FINE_HEAVE_STEP,
+    HEAVE_STEPS,
+    HEAVES,
+    STEPPED,
+    falling,
+    hung,
+    last_stage,
+    two_periods,
+)
 
 # Of the largest tension: errors that must be told, and that should not be; those that are no round-off of a reference.
 WRONG, RIGHT, KNOWN = 0.05, 0.005, 0.003
@@ -164,6 +174,40 @@ def test_snap_after_compression_is_told_by_the_least_tension(name: str, dt: floa
     assert told(stage).max() < LARGE_ERROR * case.largest
     assert tells_of_tension(stage)
     assert any("where the riser is compressed" in text for text in stage["warnings"])
+
+
+@pytest.mark.verify
+def test_heaves_that_miss_the_tension_are_told() -> None:
+    """By how far the largest tension at either end is off, over the larger one. The riser has no damping of its own, so
+    that waves along it grow with finer steps: what no course of a figure shows is not told.
+    """
+    runs: dict[str, list[tuple[float, float, float, bool]]] = {"right": [], "off": [], "wrong": []}
+    for heave in HEAVES:
+        scene = two_periods(*heave)
+        exact = tensions(last_stage(scene(FINE_HEAVE_STEP)))
+        for dt in HEAVE_STEPS:
+            stage = last_stage(scene(dt))
+            error = float(abs(tensions(stage) - exact).max() / exact.max())
+            kind = "wrong" if error > WRONG else "off" if error > 0.02 else "right"
+            runs[kind].append((*heave, dt, tells_of_tension(stage)))
+    for kind, each in runs.items():
+        print(f"| {kind} | {len(each)} | {sum(told for *_, told in each)} |")
+        print([run for *run, told in each if told == (kind == "right")])
+    told = {kind: sum(told for *_, told in each) for kind, each in runs.items()}
+    assert len(runs["wrong"]) >= 20
+    assert told["wrong"] >= 0.9 * len(runs["wrong"])
+    assert len(runs["right"]) >= 10
+    assert told["right"] <= 0.2 * len(runs["right"])
+
+
+@pytest.mark.parametrize(("heave", "largest", "off"), [((2.0, 7.0), 123.6e3, False), ((4.0, 9.0), 143.4e3, True)])
+def test_of_two_heaves_the_one_that_misses_the_tension_is_told(
+    heave: tuple[float, float], largest: float, off: bool
+) -> None:
+    """Beside the largest tension in steps of 0.01 s [N]."""
+    stage = last_stage(two_periods(*heave)(HEAVE_STEPS[0]))
+    assert (abs(tensions(stage).max() / largest - 1.0) > 0.02) == off
+    assert tells_of_tension(stage) == off
 
 
 IMPACTS = [(1e5, 2e-2), (1e5, 3e-3), (1e6, 1e-2), (1e6, 3e-3), (1e6, 1e-3), (1e7, 3e-3), (1e7, 1e-3)]

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from riser_soil.solve.time_stepper import AcceptedStep
+from tests.support.driven_stage import built, take
 from tests.support.riser_loop import CASES, IN_WATER, require_kernels, require_kernels_of_parts, require_steps_of_snes
 from tests.support.sample_line import sample
+from tests.support.turned_bar import turned_bar
 
 pytestmark = pytest.mark.verify
 
@@ -23,3 +26,14 @@ def test_kernels_in_water_are_those_of_the_parts(dimension: int) -> None:
 @pytest.mark.parametrize("case", CASES)
 def test_steps_are_those_of_snes(case: str) -> None:
     require_steps_of_snes(case)
+
+
+def test_a_bar_that_has_turned_many_times_comes_to_rest_without_a_cut_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By SNES: `tests/unit/test_round_off.py`."""
+    assembly, watched = built(turned_bar(20) | {"solver": {"newton": "compiled"}}), list[AcceptedStep]()
+    turn, rest = assembly.scene.stages
+    monkeypatch.setattr("riser_soil.solve.step_solver.Newton", None)
+    take(assembly, rest, take(assembly, turn), watch=lambda _, step: watched.append(step))
+    assert len(watched) == 100
+    assert assembly.line.x[-1] == pytest.approx([1.0, 0.0], abs=1e-9)
+    assert watched[-1].solution.norms[-1] > assembly.scales.force_floor
