@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mpi4py import MPI
 
+from riser_soil.assembly.condensation import condensed_soil, condensed_top
 from riser_soil.assembly.motions import end_positions, set_motions, vessels_of
 from riser_soil.assembly.pressures import pressures_of
 from riser_soil.assembly.riser import attached_weight, attachments_of, elements_of, line_of, springs_of
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.riser.catenary import Catenary
     from riser_soil.riser.wall_tension import Pressures
+    from riser_soil.soil.condensed import CondensedSoil
     from riser_soil.soil.soil import Soil
 
 AUTO_TOLERANCE = 0.02  # of the diameter: local error of automatic steps
@@ -66,6 +68,7 @@ class Assembly:
     attachments: tuple[PointAttachment, ...] = ()
     pressures: Pressures | None = None
     soil: Soil | None = None
+    condensed: CondensedSoil | None = None
     soil_contact: SoilContact | None = None
     seabed: SeabedContact | None = None
     friction: CoulombFriction | None = None
@@ -77,7 +80,9 @@ class Assembly:
 
     @property
     def ground_fields(self) -> list[Field]:
-        return [self.soil.field, self.soil.surface] if self.soil is not None else []
+        if self.soil is None:
+            return []
+        return [self.soil.field, self.soil.surface] if self.condensed is None else [self.condensed.top]
 
     @property
     def fields(self) -> list[Field]:
@@ -93,6 +98,16 @@ class Assembly:
     def frictions(self) -> list[CoulombFriction | SoilFriction]:
         """Friction parts of the riser."""
         return [friction for friction in (self.friction, self.soil_friction) if friction is not None]
+
+    @property
+    def soil_parts(self) -> list[Part]:
+        """The soil as it is solved for: whole, condensed, or none."""
+        parts: tuple[Part | None, Part | None] = (self.condensed, self.soil if self.condensed is None else None)
+        return [part for part in parts if part is not None]
+
+    def recovered_soil(self) -> Soil | None:
+        """The whole soil as of the last accepted step, for results."""
+        return self.soil if self.condensed is None else self.condensed.recover()
 
     @property
     def on_soil(self) -> list[LoadsSoil]:
@@ -196,9 +211,9 @@ class Assembly:
         if isinstance(stage, DynamicStage):
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
-        soil = [self.soil] if self.soil is not None else []
         cushion = [self.cushion] if self.cushion is not None and self.is_laid_in(stage) else []
-        return Model([self.line], [*parts, *soil, *self.contacts, *self.frictions, *cushion], self.ground_fields)
+        parts += [*self.contacts, *self.frictions, *cushion, *self.soil_parts]
+        return Model([self.line], parts, self.ground_fields)
 
     def moved_in(self, stage: StaticStage) -> float:
         """How far a static stage moves the end that it moves farthest [m], from where it was as the stage began."""
@@ -256,8 +271,11 @@ def _add_ground(assembly: Assembly) -> None:
     line, elements, assembly.contact_stiffness = assembly.line, assembly.elements, stiffness
     if scene.soil is not None:
         assembly.soil = soil = ground.soil_of(scene, scene.soil, line, assembly.scales.diameter, assembly.comm)
-        contact = ground.soil_contact_of(scene, settings, line, elements, soil.surface, stiffness["soil"])
+        top = condensed_top(scene, soil)
+        surface = soil.surface if top is None else top
+        contact = ground.soil_contact_of(scene, settings, line, elements, surface, stiffness["soil"])
         assembly.soil_contact = contact
+        assembly.condensed = None if top is None else condensed_soil(soil, top, contact)
         assembly.soil_friction = ground.soil_friction_of(scene, settings, contact, elements)
         if assembly.laying is not None or scene.stages[0].kind == "static":
             top = soil.surface.points

@@ -39,3 +39,8 @@ class Solver(BaseModel):
         description="the code that solves the steps; snes: PETSc's; compiled: a compiled loop for the time steps of a "
         "riser alone, with the same results, and SNES for all else",
     )
+    soil: Literal["auto", "condensed", "whole"] = Field(
+        default="auto",
+        description="how linear elastic soil is solved, with the same results; condensed: once, to the part of its "
+        "surface that the riser reaches; whole: all of it in each iteration; auto: condensed where that is cheaper",
+    )

@@ -1,0 +1,200 @@
+"""Linear elastic soil condensed to the dofs of its top that the riser can reach: the part "soil" in the place of `Soil`.
+
+With no force on it but at the reached dofs A, such soil moves by u = C f: its stiffness there is the inverse of the
+compliance, K = inv(C_AA), and the rest of the top follows as C_TA K u_A. That is static condensation (Guyan's, exact
+without inertia; R. J. Guyan, AIAA Journal 3, 1965, p. 380), done from the compliance, whose columns are solved for once
+and kept while A grows and shrinks. A force on another dof has no place in it: it is noticed, and A is extended.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.identity_cache import IdentityCache
+from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
+from riser_soil.core.roles import Adaptive
+from riser_soil.core.saved_state import Saved, Stateful
+from riser_soil.soil.compliance import Compliance
+from riser_soil.soil.soil import Soil
+
+NO_FORCE = 1e-14  # of the largest force on a dof of the top: round-off where nothing presses
+
+
+@dataclass(frozen=True, eq=False)
+class Reached:
+    """Dofs of the top that forces may act on, and how the soil answers.
+
+    nodes: of the top. dofs (na,): free ones of these nodes. compliance (3 np, na) [m/N]: of all the top's dofs.
+    """
+
+    nodes: IntArray
+    dofs: IntArray
+    compliance: Array
+
+    @cached_property
+    def stiffness(self) -> Array:
+        """(na, na) [N/m], of the reached dofs while no other bears a force."""
+        own = self.compliance[self.dofs]
+        inverse = np.linalg.inv(0.5 * (own + own.T))
+        return np.asarray(0.5 * (inverse + inverse.T))
+
+
+class CondensedTop:
+    """Field "surface": the dofs of the soil's top, of which those that are not reached follow the others.
+
+    They are prescribed: their increments are zero, and mean nothing. points, facets, committed: as in `SoilTop`.
+    """
+
+    name = "surface"
+    space = "soil"
+
+    def __init__(self, soil: Soil) -> None:
+        top = soil.surface
+        self.points, self.facets, self.global_index = top.points, top.facets, top.global_index
+        self.committed: Array = np.zeros_like(top.points)
+        self.size, self.offset = top.size, 0
+        self.owned: BoolArray = np.ones(top.size, dtype=bool)
+        self._held, self._soil = top.prescribed, soil
+        self._seen = IdentityCache[State, Array]()
+        self.reach(np.empty(0, dtype=np.int64))
+
+    @cached_property
+    def compliance(self) -> Compliance:
+        return Compliance(self._soil)
+
+    def reach(self, nodes: IntArray) -> None:
+        """Let forces act on these nodes, and on no others."""
+        dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
+        free = ~self._held[dofs]
+        columns = self.compliance.columns(nodes).reshape(self.size, -1) if len(nodes) else np.zeros((self.size, 0))
+        self.reached = Reached(nodes, dofs[free], np.ascontiguousarray(columns[:, free]))
+        self.prescribed: BoolArray = np.ones(self.size, dtype=bool)
+        self.prescribed[self.reached.dofs] = False
+        self._seen.forget()
+
+    @property
+    def beside(self) -> IntArray:
+        """Dofs that would move, but are not reached."""
+        return np.flatnonzero(self.prescribed & ~self._held)
+
+    def own(self, values: Array) -> Array:
+        """The field's slice of a local array."""
+        return values[self.offset : self.offset + self.size]
+
+    def forces(self, state: State) -> Array:
+        """Forces on the reached dofs (na,) [N] that hold the top where it is at a state."""
+        at = self.reached.dofs
+        return np.asarray(self.reached.stiffness @ (self.committed.ravel()[at] + self.own(state.u)[at]))
+
+    def displacement(self, state: State) -> Array:
+        """Of the whole top (np, 3) since the geostatic start [m]; kept for the last state."""
+        return self._seen.made_of(state, self._displacement)
+
+    def _displacement(self, state: State) -> Array:
+        at = self.reached.dofs
+        out = self.reached.compliance @ self.forces(state)
+        out[at] = self.committed.ravel()[at] + self.own(state.u)[at]
+        return out.reshape(-1, 3)
+
+    def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
+        for values in (u, v, a):
+            values[self.prescribed] = 0.0
+
+    def commit(self, state: State) -> None:
+        self.committed = self.displacement(state)
+        self._seen.forget()
+
+    def state(self) -> Saved:
+        return {"committed": self.committed, "reached": self.reached.nodes}
+
+    def restore(self, saved: Saved) -> None:
+        self.committed = saved["committed"].copy()
+        self.reach(saved["reached"])
+
+    def describe(self, entry: int) -> str:
+        return self._soil.surface.describe(entry)
+
+
+class CondensedSoil:
+    """Part "soil" over a `CondensedTop`, see the module's text; in group E, as the whole soil is.
+
+    in_reach: facets that contact has in reach now. outgrown: a force has acted, or may act, on dofs that were not
+    reached. It stands behind all parts that load the soil, as it looks at what these have added to the residual.
+    """
+
+    name = "soil"
+    active = True
+    traits = Traits("E", symmetric=True, roles=(Adaptive, Stateful))
+
+    def __init__(self, soil: Soil, top: CondensedTop, in_reach: Callable[[], IntArray]) -> None:
+        self.whole, self.top, self._in_reach = soil, top, in_reach
+        self._loaded: Array = np.zeros(top.size)
+        self._met = np.empty(0, dtype=np.int64)
+        self._recovered = True
+
+    def blocks(self) -> dict[str, MatrixBlock]:
+        rows = (self.top.offset + self.top.reached.dofs)[None]
+        return {"soil": MatrixBlock(rows, rows)}
+
+    def residual(self, state: State, forces: Forces) -> None:
+        own = self.top.own(forces.end)
+        missed = own[self.top.beside] != 0.0
+        if missed.any():
+            self._met = np.union1d(self._met, self.top.beside[missed] // 3)
+        own[self.top.reached.dofs] += self.top.forces(state)
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        values["soil"][0] += self.top.reached.stiffness
+
+    def energy(self, state: State) -> Energy:
+        """Strain energy since the geostatic start: half of what the forces would do on the way here."""
+        displaced = self.top.displacement(state).ravel()[self.top.reached.dofs]
+        return Energy(strain=0.5 * float(self.top.forces(state) @ displaced))
+
+    def work(self, before: State, after: State) -> Work:
+        """What the forces at the end of the step do beyond the energy stored, all of it by the time scheme."""
+        at = self.top.reached.dofs
+        moved = (self.top.displacement(after) - self.top.committed).ravel()[at]
+        lost = 0.5 * float((self.top.forces(after) - self._loaded[at]) @ moved)
+        return Work(dissipated=lost, by_scheme=lost)
+
+    def commit(self, state: State) -> None:
+        self._loaded = np.zeros(self.top.size)
+        self._loaded[self.top.reached.dofs] = self.top.forces(state)
+        self._met, self._recovered = np.empty(0, dtype=np.int64), False
+
+    @property
+    def outgrown(self) -> bool:
+        return not np.isin(self._wanted(), self.top.reached.nodes).all()
+
+    def rebuild(self, state: State) -> None:
+        """Reach what contact may touch now, what has been met in the step so far, and what bears a force."""
+        self.top.reach(self._wanted())
+
+    def _wanted(self) -> IntArray:
+        pressed = np.flatnonzero(np.abs(self._loaded) > NO_FORCE * np.abs(self._loaded).max()) // 3
+        near = np.unique(self.top.facets[self._in_reach()])
+        return np.union1d(near, np.union1d(pressed, self._met)).astype(np.int64)
+
+    def recover(self) -> Soil:
+        """The whole soil as committed, by one solve with the factors that are kept."""
+        if not self._recovered:
+            whole = self.whole
+            total = self.top.compliance.displacement(self._loaded)
+            state = State.at_rest(0.0, whole.field.offset + whole.field.size)
+            whole.field.own(state.u)[:] = total - whole.field.total
+            whole.commit(state)
+            whole.field.commit(state)
+            self._recovered = True
+        return self.whole
+
+    def state(self) -> Saved:
+        return {"loaded": self._loaded, "met": self._met}
+
+    def restore(self, saved: Saved) -> None:
+        self._loaded, self._met, self._recovered = saved["loaded"], saved["met"], False
