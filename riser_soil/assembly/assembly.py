@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mpi4py import MPI
 
-from riser_soil.assembly.condensation import condensed_soil, condensed_top
+from riser_soil.assembly.condensation import condensed_of
 from riser_soil.assembly.motions import end_positions, set_motions, vessels_of
 from riser_soil.assembly.pressures import pressures_of
 from riser_soil.assembly.riser import attached_weight, attachments_of, elements_of, line_of, springs_of
@@ -271,11 +271,10 @@ def _add_ground(assembly: Assembly) -> None:
     line, elements, assembly.contact_stiffness = assembly.line, assembly.elements, stiffness
     if scene.soil is not None:
         assembly.soil = soil = ground.soil_of(scene, scene.soil, line, assembly.scales.diameter, assembly.comm)
-        top = condensed_top(scene, soil)
-        surface = soil.surface if top is None else top
+        assembly.condensed = condensed_of(scene, soil, line, assembly.scales.diameter)
+        surface = soil.surface if assembly.condensed is None else assembly.condensed.top
         contact = ground.soil_contact_of(scene, settings, line, elements, surface, stiffness["soil"])
         assembly.soil_contact = contact
-        assembly.condensed = None if top is None else condensed_soil(soil, top, contact)
         assembly.soil_friction = ground.soil_friction_of(scene, settings, contact, elements)
         if assembly.laying is not None or scene.stages[0].kind == "static":
             top = soil.surface.points

@@ -1,40 +1,64 @@
-"""Whether linear elastic soil is condensed to its surface, and its parts where it is."""
+"""Whether linear elastic soil is condensed to the part of its top that the riser reaches.
+
+What condensation costs are the solves for the columns of the compliance, some 3e-9 n^(4/3) s for each of the r dofs
+that are reached, of n in all, and the dense block in each factorisation, some 5e-11 r^3 s. What it saves are
+factorisations of the whole, some 2e-9 n^2 s each. With r = 2 n^(2/3) the former is paid for by three of the latter,
+and the dense block is a fifth of one: below that condensation pays, as any scene on soil has tens of iterations.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.errors import SceneError
+from riser_soil.riser.line import Line
 from riser_soil.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from riser_soil.contact.soil_contact import SoilContact
-    from riser_soil.soil.condensed import CondensedSoil, CondensedTop
+    from riser_soil.soil.condensed import CondensedSoil
     from riser_soil.soil.soil import Soil
 
+MOST = 2.0  # dofs that are reached, over n^(2/3) of n in all
 
-def why_whole(scene: Scene, ranks: int) -> str:
-    """Why the soil is solved for as a whole; empty where it is condensed."""
+
+def condensed_of(scene: Scene, soil: Soil, line: Line, diameter: float) -> CondensedSoil | None:
+    """The condensed soil in the place of the whole one, where it is condensed; SceneError where that is asked for and
+    can't be.
+    """
+    reason = why_whole(scene, soil, line, diameter)
+    if reason and scene.solver.soil == "condensed":
+        raise SceneError(f"solver.soil: the soil can't be condensed: {reason}; write auto")
+    if reason:
+        return None
+    from riser_soil.soil.condensed import CondensedSoil, CondensedTop
+
+    return CondensedSoil(soil, CondensedTop(soil))
+
+
+def why_whole(scene: Scene, soil: Soil, line: Line, diameter: float) -> str:
+    """Why the soil is solved for as a whole; empty where it is condensed. diameter: of the riser [m]."""
     assert scene.soil is not None
-    if scene.solver.soil == "whole":
-        return "solver.soil is whole"
-    laws = {law.kind for law in scene.soil.laws}
+    laws, ranks = {law.kind for law in scene.soil.laws}, soil.grid.nodes.comm.size
     if laws != {"linear-elastic"}:
-        return f"its law is {', '.join(sorted(laws))}; condensed is linear-elastic soil alone"
+        return f"its law is {' and '.join(sorted(laws))}, and not linear-elastic alone"
     if ranks > 1:
-        return f"the run is on {ranks} ranks; condensed is soil on one alone"
+        return f"the run is on {ranks} ranks"
+    if scene.solver.soil != "auto":
+        return "solver.soil is whole" if scene.solver.soil == "whole" else ""
+    reached, most = 3 * _under(line, soil.surface.points, diameter), MOST * soil.field.size ** (2.0 / 3.0)
+    if reached > most:
+        return f"{reached} unknowns of its surface lie under the riser; with more than {most:.0f} condensing costs more"
     return ""
 
 
-def condensed_top(scene: Scene, soil: Soil) -> CondensedTop | None:
-    """The soil's top where the soil is condensed to it."""
-    if why_whole(scene, soil.grid.nodes.comm.size):
-        return None
-    from riser_soil.soil.condensed import CondensedTop
-
-    return CondensedTop(soil)
-
-
-def condensed_soil(soil: Soil, top: CondensedTop, contact: SoilContact) -> CondensedSoil:
-    from riser_soil.soil.condensed import CondensedSoil
-
-    return CondensedSoil(soil, top, contact.facets_in_reach)
+def _under(line: Line, points: Array, diameter: float) -> int:
+    """How many points (np, 3) lie under the riser's width in plan, where it begins."""
+    axis = line.to_global(line.x)[:, :2]
+    begin, chord = axis[:-1, None], np.diff(axis, axis=0)[:, None]
+    square = np.maximum(np.sum(chord**2, axis=2), np.finfo(float).tiny)
+    share = np.clip(np.sum((points[:, :2] - begin) * chord, axis=2) / square, 0.0, 1.0)
+    beside = np.linalg.norm(points[:, :2] - begin - share[:, :, None] * chord, axis=2)
+    return int(np.count_nonzero(beside.min(axis=0) <= 0.5 * diameter))

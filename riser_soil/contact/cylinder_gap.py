@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.facets import fill_shape
+from riser_soil.contact.facets import QUAD, fill_shape
 from riser_soil.contact.integration_points import area, place
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
@@ -97,21 +97,37 @@ def _near_points(
     for i, f in enumerate(facets):
         nodes = surface.facets[f]
         clear_of, clearance = (0.0, 0.0, 0.0), -np.inf
-        for k in range(surface.parts[f, 0] * surface.parts[f, 1]):
+        apart, row, k = _apart(surface, f), surface.parts[f, 1], 0
+        while k < surface.parts[f, 0] * row:
             xi, eta, share = place(nv, surface.parts[f], k)
             p = _point(surface.deformed, nodes, xi, eta, N, dN)
-            if _distance(p, clear_of) <= clearance - within:
-                continue
-            e, along, gap, clearance = _nearest(axis, bow, elements[begin[i] : begin[i + 1]], p, within)
-            clear_of = p
-            if gap < within:
-                element[n], facet[n], number[n] = e, f, surface.first[f] + k
-                numbers[n, 0], numbers[n, 1], numbers[n, 2], numbers[n, 3] = along, gap, xi, eta
-                numbers[n, 4] = share * area(surface.at_first, nodes, dN)
-                n += 1
+            clear = clearance - within - _distance(p, clear_of)
+            if clear < 0.0:
+                e, along, gap, clearance = _nearest(axis, bow, elements[begin[i] : begin[i + 1]], p, within)
+                clear_of, clear = p, clearance - within
+                if gap < within:
+                    element[n], facet[n], number[n] = e, f, surface.first[f] + k
+                    numbers[n, 0], numbers[n, 1], numbers[n, 2], numbers[n, 3] = along, gap, xi, eta
+                    numbers[n, 4] = share * area(surface.at_first, nodes, dN)
+                    n += 1
+            k += 1 + (min(int(clear / apart), row - 1 - k % row) if clear > 0.0 else 0)
     values = numbers[:n]
     along, xi, size, gap = values[:, 0].copy(), values[:, 2:4].copy(), values[:, 4].copy(), values[:, 1].copy()
     return element[:n], facet[:n], number[:n], along, xi, size, gap
+
+
+@njit
+def _apart(surface: Surface, f: int) -> float:
+    """Distance that neighbours in a row of a facet's points are apart at most [m]: on quad4, whose rows are straight,
+    that of the longer of two sides; inf on tri6.
+    """
+    at = surface.facets[f]
+    if len(at) != len(QUAD):
+        return np.inf
+    longest = 0.0
+    for begin, end in ((at[0], at[3]), (at[1], at[2])):
+        longest = max(longest, np.sum((surface.deformed[end] - surface.deformed[begin]) ** 2))
+    return math.sqrt(longest) / surface.parts[f, 1]
 
 
 @njit

@@ -102,10 +102,6 @@ class SoilContact(LineContact):
         rows = self.pair_dofs(patch.nodes, patch.facet)
         return {SOIL: MatrixBlock(rows, rows)}
 
-    def facets_in_reach(self) -> IntArray:
-        """Facets that have a place in the pattern, in increasing order."""
-        return np.unique(self._present_patch().facet)
-
     def rebuild(self, state: State) -> None:
         """Choose the candidates anew: around a state, and all that was missed in the step so far."""
         if self.active:

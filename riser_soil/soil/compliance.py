@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from petsc4py import PETSc
 
@@ -13,7 +11,8 @@ from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import State, Weights
 from riser_soil.soil.soil import Soil
 
-AT_ONCE = 32  # nodes whose columns are solved for in one call
+AT_ONCE = 16  # nodes whose columns are solved for in one call
+SAME_ROW = 1e-6  # of the top's longer side: how far points of a row are apart across it
 ROOM = 60  # for fill-in in MUMPS' factorisation [%]
 
 
@@ -31,6 +30,7 @@ class Compliance:
         rows = np.full(int(soil.field.global_index.max()) + 1, -1, dtype=np.int64)
         rows[soil.field.global_index] = self._numbering.index
         self.top: IntArray = rows[soil.surface.global_index]
+        self._rank = np.argsort(_in_rows(soil.surface.points[:, :2]))
 
     def _factorised(self) -> PETSc.PC:
         soil, size = self._soil, self._numbering.size
@@ -48,21 +48,21 @@ class Compliance:
 
     def columns(self, nodes: IntArray) -> Array:
         """Displacements (3 np, n, 3) [m/N] of the top's dofs by unit forces on the three dofs of some of its nodes."""
-        unknown = [int(node) for node in nodes if int(node) not in self._known]
-        for first in range(0, len(unknown), AT_ONCE):
-            self._solve_for(unknown[first : first + AT_ONCE])
+        unknown = np.array([node for node in nodes if int(node) not in self._known], dtype=np.int64)
+        for group in np.unique(self._rank[unknown] // AT_ONCE):
+            self._solve_for(np.flatnonzero(self._rank // AT_ONCE == group))
         if not len(nodes):
             return np.zeros((len(self.top), 0, 3))
         return np.stack([self._known[int(node)] for node in nodes], axis=1)
 
-    def _solve_for(self, nodes: Sequence[int]) -> None:
+    def _solve_for(self, nodes: IntArray) -> None:
         """Columns of some nodes of the top."""
         rows = self.top.reshape(-1, 3)[nodes].ravel()
         loads = np.zeros((self._numbering.free, len(rows)), order="F")
         free = np.flatnonzero(rows >= 0)
         loads[rows[free], free] = 1.0
         at_top = np.where((self.top >= 0)[:, None], self._solved(loads)[self.top], 0.0)
-        self._known |= {node: at_top[:, 3 * i : 3 * i + 3].copy() for i, node in enumerate(nodes)}
+        self._known |= {int(node): at_top[:, 3 * i : 3 * i + 3].copy() for i, node in enumerate(nodes)}
 
     def _solved(self, loads: Array) -> Array:
         """Displacements (n, k) by loads (n, k), of the free dofs."""
@@ -83,3 +83,11 @@ class Compliance:
         moving = self._numbering.index >= 0
         out[moving] = self._solved(loads)[self._numbering.index[moving], 0]
         return out
+
+
+def _in_rows(xy: Array) -> IntArray:
+    """Order of points (n, 2): row by row along the longer side of their box, which is most often the riser's."""
+    extent = np.ptp(xy, axis=0)
+    along = int(extent.argmax())
+    rows = np.round(xy[:, 1 - along] / (SAME_ROW * float(extent.max())))
+    return np.lexsort((xy[:, along], rows))

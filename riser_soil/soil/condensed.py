@@ -1,4 +1,4 @@
-"""Linear elastic soil condensed to the dofs of its top that the riser can reach: the part "soil" in the place of `Soil`.
+"""Linear elastic soil condensed to the dofs of its top that the riser touches: the part "soil" in place of `Soil`.
 
 With no force on it but at the reached dofs A, such soil moves by u = C f: its stiffness there is the inverse of the
 compliance, K = inv(C_AA), and the rest of the top follows as C_TA K u_A. That is static condensation (Guyan's, exact
@@ -8,7 +8,6 @@ and kept while A grows and shrinks. A force on another dof has no place in it: i
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -22,7 +21,8 @@ from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.soil.compliance import Compliance
 from riser_soil.soil.soil import Soil
 
-NO_FORCE = 1e-14  # of the largest force on a dof of the top: round-off where nothing presses
+SPARE, FEW = 1.5, 20  # times the nodes that must be reached, and more: up to so many are kept that were reached before
+NO_FORCE = 1e-11  # of the largest force on a dof of the top: round-off where nothing presses
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,16 +123,16 @@ class CondensedTop:
 class CondensedSoil:
     """Part "soil" over a `CondensedTop`, see the module's text; in group E, as the whole soil is.
 
-    in_reach: facets that contact has in reach now. outgrown: a force has acted, or may act, on dofs that were not
-    reached. It stands behind all parts that load the soil, as it looks at what these have added to the residual.
+    outgrown: a force has acted on dofs that were not reached, or many more are reached than bear one. It stands behind
+    all parts that load the soil, as it looks at what these have added to the residual.
     """
 
     name = "soil"
     active = True
     traits = Traits("E", symmetric=True, roles=(Adaptive, Stateful))
 
-    def __init__(self, soil: Soil, top: CondensedTop, in_reach: Callable[[], IntArray]) -> None:
-        self.whole, self.top, self._in_reach = soil, top, in_reach
+    def __init__(self, soil: Soil, top: CondensedTop) -> None:
+        self.whole, self.top = soil, top
         self._loaded: Array = np.zeros(top.size)
         self._met = np.empty(0, dtype=np.int64)
         self._recovered = True
@@ -170,16 +170,21 @@ class CondensedSoil:
 
     @property
     def outgrown(self) -> bool:
-        return not np.isin(self._wanted(), self.top.reached.nodes).all()
+        wanted, reached = self._wanted(), self.top.reached.nodes
+        return len(reached) > SPARE * len(wanted) + FEW or not np.isin(wanted, reached).all()
 
     def rebuild(self, state: State) -> None:
-        """Reach what contact may touch now, what has been met in the step so far, and what bears a force."""
-        self.top.reach(self._wanted())
+        """Reach all that bears a force or has been met in the step so far, and what was reached as long as that is not
+        much more.
+        """
+        wanted = self._wanted()
+        both = np.union1d(wanted, self.top.reached.nodes)
+        self.top.reach(both if len(both) <= SPARE * len(wanted) + FEW else wanted)
 
     def _wanted(self) -> IntArray:
-        pressed = np.flatnonzero(np.abs(self._loaded) > NO_FORCE * np.abs(self._loaded).max()) // 3
-        near = np.unique(self.top.facets[self._in_reach()])
-        return np.union1d(near, np.union1d(pressed, self._met)).astype(np.int64)
+        """Nodes that must be reached."""
+        bears = np.abs(self._loaded) > NO_FORCE * np.abs(self._loaded).max()
+        return np.union1d(np.flatnonzero(bears) // 3, self._met).astype(np.int64)
 
     def recover(self) -> Soil:
         """The whole soil as committed, by one solve with the factors that are kept."""
