@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.riser.line import Line
 from riser_soil.scene.scene import Scene
@@ -20,6 +19,7 @@ from riser_soil.scene.scene import Scene
 if TYPE_CHECKING:
     from riser_soil.soil.condensed import CondensedSoil
     from riser_soil.soil.soil import Soil
+    from riser_soil.soil.surface import SoilTop
 
 MOST = 2.0  # dofs that are reached, over n^(2/3) of n in all
 
@@ -41,24 +41,26 @@ def condensed_of(scene: Scene, soil: Soil, line: Line, diameter: float) -> Conde
 def why_whole(scene: Scene, soil: Soil, line: Line, diameter: float) -> str:
     """Why the soil is solved for as a whole; empty where it is condensed. diameter: of the riser [m]."""
     assert scene.soil is not None
-    laws, ranks = {law.kind for law in scene.soil.laws}, soil.grid.nodes.comm.size
-    if laws != {"linear-elastic"}:
-        return f"its law is {' and '.join(sorted(laws))}, and not linear-elastic alone"
+    ranks = soil.grid.nodes.comm.size
+    if not scene.soil.is_linear:
+        return f"it is not linear, its law is {' and '.join(sorted({law.kind for law in scene.soil.laws}))}"
     if ranks > 1:
         return f"the run is on {ranks} ranks"
     if scene.solver.soil != "auto":
         return "solver.soil is whole" if scene.solver.soil == "whole" else ""
-    reached, most = 3 * _under(line, soil.surface.points, diameter), MOST * soil.field.size ** (2.0 / 3.0)
+    reached, most = 3 * _under(line, soil.surface, diameter), MOST * soil.field.size ** (2.0 / 3.0)
     if reached > most:
         return f"{reached} unknowns of its surface lie under the riser; with more than {most:.0f} condensing costs more"
     return ""
 
 
-def _under(line: Line, points: Array, diameter: float) -> int:
-    """How many points (np, 3) lie under the riser's width in plan, where it begins."""
-    axis = line.to_global(line.x)[:, :2]
-    begin, chord = axis[:-1, None], np.diff(axis, axis=0)[:, None]
-    square = np.maximum(np.sum(chord**2, axis=2), np.finfo(float).tiny)
-    share = np.clip(np.sum((points[:, :2] - begin) * chord, axis=2) / square, 0.0, 1.0)
-    beside = np.linalg.norm(points[:, :2] - begin - share[:, :, None] * chord, axis=2)
-    return int(np.count_nonzero(beside.min(axis=0) <= 0.5 * diameter))
+def _under(line: Line, surface: SoilTop, diameter: float) -> int:
+    """How many points of the top belong to facets under the riser's width in plan, where it begins."""
+    from riser_soil.contact.candidates import touching_boxes
+
+    axis = line.to_global(line.x)
+    axis[:, 2] = 0.0
+    wide = np.array([0.5 * diameter, 0.5 * diameter, np.inf])
+    low, high = np.minimum(axis[:-1], axis[1:]) - wide, np.maximum(axis[:-1], axis[1:]) + wide
+    _, facets = touching_boxes(low, high, surface.points, surface.facets)
+    return len(np.unique(surface.facets[facets]))

@@ -70,13 +70,11 @@ def _unknowns(assembly: Assembly) -> Iterator[str]:
 
 
 def _condensed(assembly: Assembly, soil: Soil) -> Iterator[str]:
-    """How linear elastic soil is solved for, and why."""
-    from riser_soil.soil.linear_elastic import LinearElastic
-
+    """How linear soil is solved for, and why."""
     assert assembly.scene.soil is not None
     if assembly.condensed is not None:
         yield "soil: condensed to what the riser touches of its surface; the whole is recovered for results"
-    elif all(isinstance(law, LinearElastic) for law in assembly.scene.soil.laws):
+    elif assembly.scene.soil.is_linear:
         reason = why_whole(assembly.scene, soil, assembly.line, assembly.scales.diameter)
         yield f"soil: solved for as a whole, not condensed: {reason}"
 

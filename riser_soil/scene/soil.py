@@ -238,6 +238,11 @@ class SoilScene(BaseModel):
         return any(law.path_dependent for law in self.laws)
 
     @property
+    def is_linear(self) -> bool:
+        """Whether all of its laws are."""
+        return all(law.linear for law in self.laws)
+
+    @property
     def laws(self) -> list[SoilLaw]:
         """The only law, or those of the layers from the top down."""
         return [layer.law for layer in self.layers] if self.layers else [self.top_law]

@@ -17,7 +17,7 @@ from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Adaptive
-from riser_soil.core.saved_state import Saved, Stateful
+from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.soil.compliance import Compliance
 from riser_soil.soil.soil import Soil
 
@@ -133,6 +133,7 @@ class CondensedSoil:
 
     def __init__(self, soil: Soil, top: CondensedTop) -> None:
         self.whole, self.top = soil, top
+        self._undisturbed = gathered(self._owners)
         self._loaded: Array = np.zeros(top.size)
         self._met = np.empty(0, dtype=np.int64)
         self._recovered = True
@@ -187,16 +188,21 @@ class CondensedSoil:
         return np.union1d(np.flatnonzero(bears) // 3, self._met).astype(np.int64)
 
     def recover(self) -> Soil:
-        """The whole soil as committed, by one solve with the factors that are kept."""
+        """The whole soil as committed, by one solve with the factors that are kept, from the undisturbed state: so it
+        does not hang, to the last bit, on how often it was asked for.
+        """
         if not self._recovered:
-            whole = self.whole
-            total = self.top.compliance.displacement(self._loaded)
-            state = State.at_rest(0.0, whole.field.offset + whole.field.size)
-            whole.field.own(state.u)[:] = total - whole.field.total
-            whole.commit(state)
-            whole.field.commit(state)
+            restore_all(self._owners, self._undisturbed)
+            state = State.at_rest(0.0, self.whole.field.size)
+            state.u[:] = self.top.compliance.displacement(self._loaded)
+            self.whole.commit(state)
+            self.whole.field.commit(state)
             self._recovered = True
         return self.whole
+
+    @property
+    def _owners(self) -> dict[str, Stateful]:
+        return {"soil": self.whole, "field": self.whole.field}
 
     def state(self) -> Saved:
         return {"loaded": self._loaded, "met": self._met}
