@@ -47,7 +47,8 @@ class Reached:
 class CondensedTop:
     """Field "surface": the dofs of the soil's top, of which those that are not reached follow the others.
 
-    They are prescribed: their increments are zero, and mean nothing. points, facets, committed: as in `SoilTop`.
+    They are prescribed: their increments are zero, and mean nothing. points, facets, committed: as in `SoilTop`. beside:
+    dofs that are free to move, but are not reached.
     """
 
     name = "surface"
@@ -75,12 +76,8 @@ class CondensedTop:
         self.reached = Reached(nodes, dofs[free], np.ascontiguousarray(columns[:, free]))
         self.prescribed: BoolArray = np.ones(self.size, dtype=bool)
         self.prescribed[self.reached.dofs] = False
+        self.beside: IntArray = np.flatnonzero(self.prescribed & ~self._held)
         self._seen.forget()
-
-    @property
-    def beside(self) -> IntArray:
-        """Dofs that would move, but are not reached."""
-        return np.flatnonzero(self.prescribed & ~self._held)
 
     def own(self, values: Array) -> Array:
         """The field's slice of a local array."""
@@ -135,7 +132,7 @@ class CondensedSoil:
         self.whole, self.top = soil, top
         self._undisturbed = gathered(self._owners)
         self._loaded: Array = np.zeros(top.size)
-        self._met = np.empty(0, dtype=np.int64)
+        self._wanted: BoolArray = np.zeros(len(top.points), dtype=bool)
         self._recovered = True
 
     def blocks(self) -> dict[str, MatrixBlock]:
@@ -144,9 +141,7 @@ class CondensedSoil:
 
     def residual(self, state: State, forces: Forces) -> None:
         own = self.top.own(forces.end)
-        missed = own[self.top.beside] != 0.0
-        if missed.any():
-            self._met = np.union1d(self._met, self.top.beside[missed] // 3)
+        self._wanted[self.top.beside[own[self.top.beside] != 0.0] // 3] = True
         own[self.top.reached.dofs] += self.top.forces(state)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
@@ -167,25 +162,30 @@ class CondensedSoil:
     def commit(self, state: State) -> None:
         self._loaded = np.zeros(self.top.size)
         self._loaded[self.top.reached.dofs] = self.top.forces(state)
-        self._met, self._recovered = np.empty(0, dtype=np.int64), False
+        self._wanted = self._bearing()
+        self._recovered = False
+
+    def _bearing(self) -> BoolArray:
+        """Which nodes (np,) bear a force."""
+        size = np.abs(self._loaded).reshape(-1, 3).max(axis=1)
+        return np.asarray(size > NO_FORCE * size.max())
 
     @property
     def outgrown(self) -> bool:
-        wanted, reached = self._wanted(), self.top.reached.nodes
-        return len(reached) > SPARE * len(wanted) + FEW or not np.isin(wanted, reached).all()
+        reached, wanted = self.top.reached.nodes, np.count_nonzero(self._wanted)
+        return self._spare(len(reached)) or wanted > np.count_nonzero(self._wanted[reached])
 
     def rebuild(self, state: State) -> None:
-        """Reach all that bears a force or has been met in the step so far, and what was reached as long as that is not
+        """Reach all that bears a force or has met one in the step so far, and what was reached as long as that is not
         much more.
         """
-        wanted = self._wanted()
+        wanted = np.flatnonzero(self._wanted)
         both = np.union1d(wanted, self.top.reached.nodes)
-        self.top.reach(both if len(both) <= SPARE * len(wanted) + FEW else wanted)
+        self.top.reach(wanted if self._spare(len(both)) else both)
 
-    def _wanted(self) -> IntArray:
-        """Nodes that must be reached."""
-        bears = np.abs(self._loaded) > NO_FORCE * np.abs(self._loaded).max()
-        return np.union1d(np.flatnonzero(bears) // 3, self._met).astype(np.int64)
+    def _spare(self, nodes: int) -> bool:
+        """Whether so many are too many to be reached."""
+        return nodes > SPARE * np.count_nonzero(self._wanted) + FEW
 
     def recover(self) -> Soil:
         """The whole soil as committed, by one solve with the factors that are kept, from the undisturbed state: so it
@@ -205,7 +205,7 @@ class CondensedSoil:
         return {"soil": self.whole, "field": self.whole.field}
 
     def state(self) -> Saved:
-        return {"loaded": self._loaded, "met": self._met}
+        return {"loaded": self._loaded, "wanted": self._wanted.copy()}
 
     def restore(self, saved: Saved) -> None:
-        self._loaded, self._met, self._recovered = saved["loaded"], saved["met"], False
+        self._loaded, self._wanted, self._recovered = saved["loaded"], saved["wanted"].copy(), False
