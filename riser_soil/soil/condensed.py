@@ -47,8 +47,8 @@ class Reached:
 class CondensedTop:
     """Field "surface": the dofs of the soil's top, of which those that are not reached follow the others.
 
-    They are prescribed: their increments are zero, and mean nothing. points, facets, committed: as in `SoilTop`. beside:
-    dofs that are free to move, but are not reached.
+    They are prescribed: their increments are zero, and mean nothing. points, facets, committed: as in `SoilTop`.
+    beside: dofs that are free to move, but are not reached.
     """
 
     name = "surface"
