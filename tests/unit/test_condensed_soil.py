@@ -10,12 +10,14 @@ import pytest
 
 from riser_soil.assembly import Assembly
 from riser_soil.assembly.condensation import why_whole
+from riser_soil.checks.check import describe
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.roles import owners
 from riser_soil.core.saved_state import gathered, restore_all
 from riser_soil.core.system import System, Timer
 from riser_soil.errors import SceneError
+from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep
 from riser_soil.stages import run_stage
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
@@ -207,6 +209,16 @@ def test_what_is_condensed_and_what_is_not() -> None:
     assert reason(elastic, ranks=2) == "the run is on 2 ranks"
     assert reason(scene("node", "hex", 2, "whole")) == "solver.soil is whole"
     assert reason(touchdown(LAY)) == "it is not linear, its law is von-mises"
+
+
+def test_check_tells_how_the_soil_is_solved_for() -> None:
+    condensed, whole, clay = (
+        describe(scene_from_mapping(mapping))
+        for mapping in (scene("node", "hex", 2, "auto"), scene("node", "hex", 2, "whole"), touchdown(LAY))
+    )
+    assert "soil: condensed to what the riser touches of its surface" in condensed
+    assert "soil: solved for as a whole, not condensed: solver.soil is whole" in whole
+    assert "condensed" not in clay
 
 
 def test_it_is_not_condensed_where_that_costs_more(monkeypatch: pytest.MonkeyPatch) -> None:
