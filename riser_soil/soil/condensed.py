@@ -1,9 +1,9 @@
 """Linear elastic soil condensed to the dofs of its top that the riser touches: the part "soil" in place of `Soil`.
 
 With no force on it but at the reached dofs A, such soil moves by u = C f: its stiffness there is the inverse of the
-compliance, K = inv(C_AA), and the rest of the top follows as C_TA K u_A. That is static condensation (Guyan's, exact
-without inertia; Guyan, AIAA Journal 3, 1965, 380, from memory), done from the compliance, whose columns are solved for once
-and kept while A grows and shrinks. A force on another dof has no place in it: it is noticed, and A is extended.
+compliance, K = inv(C_AA), and the rest of the top follows as C_TA K u_A. That is static condensation (Guyan, AIAA
+Journal 3, 1965, 380, from memory), exact without inertia. It is done from the compliance, whose columns are solved for
+once and kept while A grows and shrinks. A force on another dof has no place in it: it is noticed, and A is extended.
 """
 
 from __future__ import annotations
