@@ -9,6 +9,7 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import State, Weights
+from riser_soil.errors import SolveError
 from riser_soil.soil.soil import Soil
 
 AT_ONCE = 16  # nodes whose columns are solved for in one call
@@ -43,7 +44,10 @@ class Compliance:
         solver.setFactorSolverType("mumps")
         solver.setFactorSetUpSolverType()
         solver.getFactorMatrix().setMumpsIcntl(14, ROOM)
-        solver.setUp()
+        try:
+            solver.setUp()
+        except PETSc.Error as err:
+            raise SolveError(f"the stiffness of the elastic soil can't be factorised: {err}") from err
         return solver
 
     def columns(self, nodes: IntArray) -> Array:
