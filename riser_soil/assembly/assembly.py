@@ -212,8 +212,9 @@ class Assembly:
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
         cushion = [self.cushion] if self.cushion is not None and self.is_laid_in(stage) else []
-        parts += [*self.contacts, *self.frictions, *cushion, *self.soil_parts]
-        return Model([self.line], parts, self.ground_fields)
+        on_ground = [*self.contacts, *self.frictions, *cushion]
+        with_soil = [*on_ground, *self.soil_parts] if self.condensed is not None else [*self.soil_parts, *on_ground]
+        return Model([self.line], [*parts, *with_soil], self.ground_fields)
 
     def moved_in(self, stage: StaticStage) -> float:
         """How far a static stage moves the end that it moves farthest [m], from where it was as the stage began."""
