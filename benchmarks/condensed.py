@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import time
 
 from benchmarks.coupled import SCENE
@@ -47,4 +48,5 @@ def step_seconds(overrides: tuple[str, ...], steps: int) -> float:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(prog="python -m benchmarks.condensed", description=__doc__).parse_args()
     report()
