@@ -56,6 +56,7 @@ class Assembly:
     pressures: inside and outside the pipe; None where the wall tension is not known.
     contact_stiffness [N/m2]: force per length and penetration, by ground (soil, seabed).
     vessels: those that carry ends, None where there are none.
+    condensed: linear soil as it is solved for, in the place of `soil`, whose state is then that of `recovered_soil`.
     begun: by the names of the stages begun so far, where the ends were then (2, 3) [m]: their motions follow from it.
     """
 
