@@ -2,12 +2,13 @@
 
 import argparse
 
-from benchmarks import adaptive, coupled, impact, riser_only, tank, twins, waves
+from benchmarks import adaptive, condensed, coupled, impact, riser_only, tank, twins, waves
 
 argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__).parse_args()
 riser_only.report()
 twins.report()
 coupled.report()
+condensed.report()
 adaptive.report()
 impact.report()
 tank.report()

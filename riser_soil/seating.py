@@ -20,7 +20,7 @@ def seat(assembly: Assembly, model: Model, settings: NewtonSettings, clock: Time
 
     By Newton's method, else by dynamic relaxation: SolveError where that finds none either.
     """
-    absent = [assembly.soil, *assembly.on_soil]
+    absent = [*assembly.soil_parts, *assembly.on_soil]
     alone = Model(model.lines, [part for part in model.parts if not any(part is each for each in absent)])
     system = System(assembly.comm, alone, clock)
     newton = Newton(system, replace(settings, line_search=False))

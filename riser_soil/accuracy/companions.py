@@ -52,8 +52,8 @@ class PeakObserver(StatelessObserver):
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Of a committed step; collective where there is soil."""
-        due, on_soil = self._schedule.due(step.t, last), self._assembly.soil
-        soil = on_soil.output_fields() if on_soil is not None and due.pictures else None
+        whole = self._assembly.recovered_soil() if self._schedule.due(step.t, last).pictures else None
+        soil = None if whole is None else whole.output_fields()
         if self._assembly.comm.rank == 0:
             seen = self._seen(stepper)
             self.peaks.record(step.t, seen, soil)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mpi4py import MPI
 
+from riser_soil.assembly.condensation import condensed_of
 from riser_soil.assembly.motions import end_positions, set_motions, vessels_of
 from riser_soil.assembly.pressures import pressures_of
 from riser_soil.assembly.riser import attached_weight, attachments_of, elements_of, line_of, springs_of
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.riser.catenary import Catenary
     from riser_soil.riser.wall_tension import Pressures
+    from riser_soil.soil.condensed import CondensedSoil
     from riser_soil.soil.soil import Soil
 
 AUTO_TOLERANCE = 0.02  # of the diameter: local error of automatic steps
@@ -54,6 +56,7 @@ class Assembly:
     pressures: inside and outside the pipe; None where the wall tension is not known.
     contact_stiffness [N/m2]: force per length and penetration, by ground (soil, seabed).
     vessels: those that carry ends, None where there are none.
+    condensed: linear soil as it is solved for, in the place of `soil`, whose state is then that of `recovered_soil`.
     begun: by the names of the stages begun so far, where the ends were then (2, 3) [m]: their motions follow from it.
     """
 
@@ -66,6 +69,7 @@ class Assembly:
     attachments: tuple[PointAttachment, ...] = ()
     pressures: Pressures | None = None
     soil: Soil | None = None
+    condensed: CondensedSoil | None = None
     soil_contact: SoilContact | None = None
     seabed: SeabedContact | None = None
     friction: CoulombFriction | None = None
@@ -77,7 +81,9 @@ class Assembly:
 
     @property
     def ground_fields(self) -> list[Field]:
-        return [self.soil.field, self.soil.surface] if self.soil is not None else []
+        if self.soil is None:
+            return []
+        return [self.soil.field, self.soil.surface] if self.condensed is None else [self.condensed.top]
 
     @property
     def fields(self) -> list[Field]:
@@ -93,6 +99,16 @@ class Assembly:
     def frictions(self) -> list[CoulombFriction | SoilFriction]:
         """Friction parts of the riser."""
         return [friction for friction in (self.friction, self.soil_friction) if friction is not None]
+
+    @property
+    def soil_parts(self) -> list[Part]:
+        """The soil as it is solved for: whole, condensed, or none."""
+        parts: tuple[Part | None, Part | None] = (self.condensed, self.soil if self.condensed is None else None)
+        return [part for part in parts if part is not None]
+
+    def recovered_soil(self) -> Soil | None:
+        """The whole soil as of the last accepted step, for results."""
+        return self.soil if self.condensed is None else self.condensed.recover()
 
     @property
     def on_soil(self) -> list[LoadsSoil]:
@@ -196,9 +212,10 @@ class Assembly:
         if isinstance(stage, DynamicStage):
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
-        soil = [self.soil] if self.soil is not None else []
         cushion = [self.cushion] if self.cushion is not None and self.is_laid_in(stage) else []
-        return Model([self.line], [*parts, *soil, *self.contacts, *self.frictions, *cushion], self.ground_fields)
+        on_ground = [*self.contacts, *self.frictions, *cushion]
+        with_soil = [*on_ground, *self.soil_parts] if self.condensed is not None else [*self.soil_parts, *on_ground]
+        return Model([self.line], [*parts, *with_soil], self.ground_fields)
 
     def moved_in(self, stage: StaticStage) -> float:
         """How far a static stage moves the end that it moves farthest [m], from where it was as the stage began."""
@@ -256,7 +273,9 @@ def _add_ground(assembly: Assembly) -> None:
     line, elements, assembly.contact_stiffness = assembly.line, assembly.elements, stiffness
     if scene.soil is not None:
         assembly.soil = soil = ground.soil_of(scene, scene.soil, line, assembly.scales.diameter, assembly.comm)
-        contact = ground.soil_contact_of(scene, settings, line, elements, soil.surface, stiffness["soil"])
+        assembly.condensed = condensed_of(scene, soil, line, assembly.scales.diameter)
+        surface = soil.surface if assembly.condensed is None else assembly.condensed.top
+        contact = ground.soil_contact_of(scene, settings, line, elements, surface, stiffness["soil"])
         assembly.soil_contact = contact
         assembly.soil_friction = ground.soil_friction_of(scene, settings, contact, elements)
         if assembly.laying is not None or scene.stages[0].kind == "static":

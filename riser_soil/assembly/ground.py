@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from riser_soil.seabed.law import NormalLaw
     from riser_soil.soil.grid import DistributedMesh
     from riser_soil.soil.soil import Soil
-    from riser_soil.soil.surface import SoilTop
+    from riser_soil.soil.surface import SoilSurface
 
 GAUSS_POINTS = 5  # of an element on the seabed: where the force sets in within it, three leave ten times the error
 # Integration points across the width that touches at rest, as parts of the diameter, and how much farther apart along.
@@ -78,7 +78,7 @@ def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> Di
 
 
 def soil_contact_of(
-    scene: Scene, settings: ContactScene, line: Line, elements: Elements, surface: SoilTop, stiffness: float
+    scene: Scene, settings: ContactScene, line: Line, elements: Elements, surface: SoilSurface, stiffness: float
 ) -> SoilContact:
     """Contact of the riser with the soil; evaluated on the first rank. stiffness: of the penalty [N/m2]."""
     if not settings.at_nodes:
@@ -99,7 +99,7 @@ def soil_contact_of(
 
 
 def _surface_contact_of(
-    scene: Scene, settings: ContactScene, line: Line, elements: Elements, surface: SoilTop, stiffness: float
+    scene: Scene, settings: ContactScene, line: Line, elements: Elements, surface: SoilSurface, stiffness: float
 ) -> SurfaceContact:
     """Contact of the pipe's cylinder: the penalty's stiffness [N/m2] is spread over the width that touches at rest."""
     from riser_soil.contact.law import Penalty

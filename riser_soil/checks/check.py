@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mpi4py import MPI
 
 from riser_soil.assembly import Assembly, build, sized
+from riser_soil.assembly.condensation import why_whole
 from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_memory
 from riser_soil.checks.inventory import built, left_out, unknowns
 from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tell, too_long
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from riser_soil.soil.soil import Soil
 
 
 def describe(scene: Scene) -> str:
@@ -53,6 +58,7 @@ def _unknowns(assembly: Assembly) -> Iterator[str]:
     if assembly.soil is not None:
         cells = assembly.comm.allreduce(assembly.soil.blocks()["soil"].shape[0])
         yield f"soil: {cells} cells, {unknowns(assembly.comm, assembly.soil.field)} unknowns"
+        yield from _condensed(assembly, assembly.soil)
         yield from resolution(assembly)
         from riser_soil.checks.soil_edge import edge_report
         from riser_soil.checks.soil_mesh import mesh_report
@@ -61,6 +67,16 @@ def _unknowns(assembly: Assembly) -> Iterator[str]:
         yield from edge_report(assembly)
     for ground, stiffness in assembly.contact_stiffness.items():
         yield f"contact stiffness on the {ground}: {stiffness:.4g} N/m2"
+
+
+def _condensed(assembly: Assembly, soil: Soil) -> Iterator[str]:
+    """How linear soil is solved for, and why."""
+    assert assembly.scene.soil is not None
+    if assembly.condensed is not None:
+        yield "soil: condensed to what the riser touches of its surface; the whole is recovered for results"
+    elif assembly.scene.soil.is_linear:
+        reason = why_whole(assembly.scene, soil, assembly.line, assembly.scales.diameter)
+        yield f"soil: solved for as a whole, not condensed: {reason}"
 
 
 def resolution(assembly: Assembly) -> Iterator[str]:

@@ -29,8 +29,8 @@ PER_STEP, PER_CELL = 60, 1 + sum(output.numbers for output in OF_SOIL)
 COPIES = 2.0  # of each file while it grows
 
 # Seconds on one core: to lay an element out; of a step, and in it of an element, of an element and wave component, of a
-# cell, of the soil's factor by unknowns squared.
-BUILD, STEP, ELEMENT, WAVE, CELL, FACTORED = 1.5e-4, 1.5e-3, 6e-5, 3e-7, 5e-5, 3e-9
+# cell, of the soil's factor by unknowns squared; of a step on condensed soil, which has these two once.
+BUILD, STEP, ELEMENT, WAVE, CELL, FACTORED, ON_CONDENSED = 1.5e-4, 1.5e-3, 6e-5, 3e-7, 5e-5, 3e-9, 2e-2
 LONGEST_AUTO = 0.05  # of a stage: the longest automatic step
 
 BYTES_OF_A_CELL = 60.0  # in a mesh file, with its nodes
@@ -106,7 +106,9 @@ def size_of(scene: Scene) -> ProblemSize:
     waves = scene.water.waves if scene.water else None
     components = waves.jonswap.components if waves and waves.jonswap else int(waves is not None)
     of_riser = STEP + elements * (ELEMENT + WAVE * components)
-    seconds = BUILD * elements + steps * (of_riser + cells * CELL + FACTORED * unknowns**2)
+    of_soil = cells * CELL + FACTORED * unknowns**2
+    condensed = scene.soil is not None and scene.soil.is_linear and scene.solver.soil != "whole"
+    seconds = BUILD * elements + steps * of_riser + (of_soil + ON_CONDENSED * steps if condensed else of_soil * steps)
     dofs = 3 if resolved_dimension(scene) == 2 else 6
     auto = any(isinstance(stage, DynamicStage) and stage.time_step == "auto" for stage in scene.stages)
     return ProblemSize(

@@ -8,6 +8,7 @@ import numpy as np
 
 from riser_soil.contact.pairing import bounds
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
 
 EMPTY = np.empty(0, dtype=np.int64)
 
@@ -69,11 +70,30 @@ def touching_boxes(low: Array, high: Array, points: Array, facets: IntArray) -> 
 
     points (np, 3): deformed points. facets (nf, nv).
     """
-    boxes, z = bounds(points, facets), points[facets][:, :, 2]
-    bulge = 0.2 * np.ptp(z, axis=1)
-    near = np.flatnonzero(low[:, 2] <= np.max(z.max(axis=1) + bulge, initial=-np.inf))
-    low, high = low[near][:, None], high[near][:, None]
-    beside = np.all((low[..., :2] <= boxes[None, :, 2:]) & (high[..., :2] >= boxes[None, :, :2]), axis=2)
-    level = (low[..., 2] <= z.max(axis=1) + bulge) & (high[..., 2] >= z.min(axis=1) - bulge)
-    i, facet = np.nonzero(beside & level)
-    return near[i], facet
+    pairs = _touching(low, high, bounds(points, facets), _levels(points[facets][:, :, 2]))
+    return pairs[:, 0], pairs[:, 1]
+
+
+def _levels(z: Array) -> Array:
+    """Lowest and highest level (nf, 2) of facets by those z (nf, nv) of their nodes [m]; curved ones bulge out."""
+    lowest, highest = z.min(axis=1), z.max(axis=1)
+    bulge = 0.2 * (highest - lowest)
+    return np.column_stack((lowest - bulge, highest + bulge))
+
+
+@njit
+def _touching(low: Array, high: Array, boxes: Array, levels: Array) -> IntArray:
+    """Pairs (m, 2) of boxes and of facets' boxes in plan (nf, 4) and levels (nf, 2) that touch, in increasing order."""
+    found, top = [(0, 0) for _ in range(0)], levels[:, 1].max() if len(levels) else -np.inf
+    for i in range(len(low)):
+        if low[i, 2] > top:
+            continue
+        for f in range(len(boxes)):
+            beside = low[i, 0] > boxes[f, 2] or high[i, 0] < boxes[f, 0]
+            beside = beside or low[i, 1] > boxes[f, 3] or high[i, 1] < boxes[f, 1]
+            if not (beside or low[i, 2] > levels[f, 1] or high[i, 2] < levels[f, 0]):
+                found.append((i, f))
+    out = np.empty((len(found), 2), np.int64)
+    for k, (i, f) in enumerate(found):
+        out[k, 0], out[k, 1] = i, f
+    return out

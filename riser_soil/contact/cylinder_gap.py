@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.facets import fill_shape
+from riser_soil.contact.facets import QUAD, fill_shape
 from riser_soil.contact.integration_points import area, place
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
@@ -31,6 +31,7 @@ MAX_ITERATIONS = 30
 CONVERGED = 1e-14  # step along an element, as a part of its length
 THROUGH = 0.5  # radii beside the axis within which a point above it has come through
 PARALLEL = 1e-12  # sine of the angle below which two directions are one
+ROUND_OFF = 1e-6  # by which a reach is widened, and below which a row lies along an element
 THINNEST = 1e-3  # radii: nearer to the axis the direction from it means nothing
 
 
@@ -96,22 +97,66 @@ def _near_points(
     N, dN = np.empty(nv), np.empty((nv, 2))
     for i, f in enumerate(facets):
         nodes = surface.facets[f]
-        clear_of, clearance = (0.0, 0.0, 0.0), -np.inf
-        for k in range(surface.parts[f, 0] * surface.parts[f, 1]):
-            xi, eta, share = place(nv, surface.parts[f], k)
-            p = _point(surface.deformed, nodes, xi, eta, N, dN)
-            if _distance(p, clear_of) <= clearance - within:
-                continue
-            e, along, gap, clearance = _nearest(axis, bow, elements[begin[i] : begin[i + 1]], p, within)
-            clear_of = p
-            if gap < within:
-                element[n], facet[n], number[n] = e, f, surface.first[f] + k
-                numbers[n, 0], numbers[n, 1], numbers[n, 2], numbers[n, 3] = along, gap, xi, eta
-                numbers[n, 4] = share * area(surface.at_first, nodes, dN)
-                n += 1
+        clear_of, clearance, near = (0.0, 0.0, 0.0), -np.inf, elements[begin[i] : begin[i + 1]]
+        rows, columns = surface.parts[f, 0], surface.parts[f, 1]
+        if nv != len(QUAD):
+            rows, columns = 1, rows * columns
+        for row in range(rows):
+            first, last = 0, columns
+            if nv == len(QUAD):
+                xi = -1.0 + (2 * row + 1) / rows
+                a = _point(surface.deformed, nodes, xi, -1.0, N, dN)
+                b = _point(surface.deformed, nodes, xi, 1.0, N, dN)
+                first, last = _in_row(axis, bow, near, a, b, columns, within)
+            for k in range(row * columns + first, row * columns + last):
+                xi, eta, share = place(nv, surface.parts[f], k)
+                p = _point(surface.deformed, nodes, xi, eta, N, dN)
+                if _distance(p, clear_of) <= clearance - within:
+                    continue
+                e, along, gap, clearance = _nearest(axis, bow, near, p, within)
+                clear_of = p
+                if gap < within:
+                    element[n], facet[n], number[n] = e, f, surface.first[f] + k
+                    numbers[n, 0], numbers[n, 1], numbers[n, 2], numbers[n, 3] = along, gap, xi, eta
+                    numbers[n, 4] = share * area(surface.at_first, nodes, dN)
+                    n += 1
     values = numbers[:n]
     along, xi, size, gap = values[:, 0].copy(), values[:, 2:4].copy(), values[:, 4].copy(), values[:, 1].copy()
     return element[:n], facet[:n], number[:n], along, xi, size, gap
+
+
+@njit
+def _in_row(
+    axis: Axis,
+    bow: Array,
+    elements: IntArray,
+    a: tuple[float, float, float],
+    b: tuple[float, float, float],
+    count: int,
+    within: float,
+) -> tuple[int, int]:
+    """First and behind the last of `count` points, evenly spaced on the straight row from a to b, that may have a gap
+    less than `within` [m] to some of the elements: those nearer to the lines through the elements' ends than that.
+    """
+    low, high = 1.0, 0.0
+    for e in elements:
+        q = axis.q[e]
+        reach = (axis.radius[e] + within + bow[e]) * (1.0 + ROUND_OFF)
+        cc = cw = cd = ww = wd = dd = 0.0
+        for i in range(3):
+            c, w, d = q[2, i] - q[0, i], a[i] - q[0, i], b[i] - a[i]
+            cc, cw, cd = cc + c * c, cw + c * w, cd + c * d
+            ww, wd, dd = ww + w * w, wd + w * d, dd + d * d
+        inverse = 1.0 / cc if cc > 0.0 else 0.0
+        square, tilt, at_a = dd - cd * cd * inverse, wd - cw * cd * inverse, ww - cw * cw * inverse - reach * reach
+        root = tilt * tilt - square * at_a
+        if square <= ROUND_OFF * dd or not root < np.inf:  # along the element, or nowhere
+            return 0, count
+        if root >= 0.0:
+            low = min(low, (-tilt - math.sqrt(root)) / square)
+            high = max(high, (-tilt + math.sqrt(root)) / square)
+    first, last = max(math.floor(low * count - 0.5), 0), min(math.ceil(high * count - 0.5) + 1, count)
+    return int(min(first, count)), int(max(last, 0))
 
 
 @njit

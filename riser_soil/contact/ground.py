@@ -10,7 +10,7 @@ from riser_soil.contact.gap import heights
 from riser_soil.contact.pairing import FacetSearch
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import State
-from riser_soil.soil.surface import SoilTop
+from riser_soil.soil.surface import SoilSurface
 
 ASPECT = (
     1.618  # the golden ratio: sides of facets, also diagonals of simple grids, miss all four points of a node
@@ -47,7 +47,7 @@ class ContactPoints:
 class DeformedSurface:
     """The deformed surface: its facets, and the dofs of their nodes."""
 
-    def __init__(self, surface: SoilTop) -> None:
+    def __init__(self, surface: SoilSurface) -> None:
         self._surface = surface
         self._pairing = FacetSearch(surface.points, surface.facets)
         self.facets = np.ascontiguousarray(surface.facets, dtype=np.int64)
@@ -65,9 +65,7 @@ class DeformedSurface:
 
     def deformed(self, state: State) -> Array:
         """Points (np, 3) of the surface at a state [m]."""
-        s = self._surface
-        u = state.u[s.offset : s.offset + s.size].reshape(-1, 3)
-        return np.asarray(s.points + s.committed + u)
+        return np.asarray(self._surface.points + self._surface.displacement(state))
 
     @property
     def at_first(self) -> Array:

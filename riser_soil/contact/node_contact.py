@@ -15,7 +15,7 @@ from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.core.part import Energy, Forces, State, Weights, Work
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser.line import Line
-from riser_soil.soil.surface import SoilTop
+from riser_soil.soil.surface import SoilSurface
 
 FOOTPRINT = 0.25  # default half width of the footprint over the outer radius
 
@@ -41,7 +41,7 @@ class NodeContact(SoilContact):
         self,
         line: Line,
         radius: Array,
-        surface: SoilTop,
+        surface: SoilSurface,
         law: Penalty,
         *,
         footprint: float | None = None,

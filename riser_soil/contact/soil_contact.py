@@ -17,7 +17,7 @@ from riser_soil.core.part import Forces, MatrixBlock, State, Traits, Weights
 from riser_soil.core.roles import Adaptive, Predictor
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line import Line
-from riser_soil.soil.surface import SoilTop
+from riser_soil.soil.surface import SoilSurface
 
 SOIL = "contact.soil"
 
@@ -43,7 +43,7 @@ class SoilContact(LineContact):
     name = "contact"
     traits = Traits("E", symmetric=True, roles=(Adaptive, Predictor, Stateful))
 
-    def __init__(self, line: Line, law: Penalty | SuctionLaw, surface: SoilTop) -> None:
+    def __init__(self, line: Line, law: Penalty | SuctionLaw, surface: SoilSurface) -> None:
         super().__init__(line, law)
         self.outgrown = False
         if not self.active:

@@ -23,7 +23,7 @@ from riser_soil.core.saved_state import Saved, gathered, within
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.trial import Trial
-from riser_soil.soil.surface import SoilTop
+from riser_soil.soil.surface import SoilSurface
 
 AROUND = 0.25  # radii around the pipe in which facets are candidates: each of them couples its nodes to the element
 
@@ -57,7 +57,7 @@ class SurfaceContact(SoilContact):
         self,
         line: Line,
         radius: Array,
-        surface: SoilTop,
+        surface: SoilSurface,
         pressure: Penalty | SuctionLaw,
         spacing: tuple[float, float],
         *,

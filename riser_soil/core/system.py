@@ -60,16 +60,16 @@ class System:
         self.comm, self.model, self.clock = comm, model, clock
         require_roles(model)
         self._active = [part for part in model.parts if part.active]
-        self.numbering = Numbering(comm, model.fields)
-        self.prescribed: BoolArray = self._gather_prescribed()
-        self.prescribed_dofs: IntArray = np.flatnonzero(self.prescribed)
+        self._number()
         self.lever, self.levers = self._weigh_moments()
         self.symmetric: bool = comm.allreduce(all(p.traits.symmetric for p in model.parts), MPI.LAND)
         self.smooth: bool = not comm.allreduce(any("E" in p.traits.groups for p in model.parts), MPI.LOR)
         self.matrix = self._new_matrix()
 
-    def _gather_prescribed(self) -> BoolArray:
-        return np.concatenate([f.prescribed for f in self.model.fields])
+    def _number(self) -> None:
+        self.numbering = Numbering(self.comm, self.model.fields)
+        self.prescribed: BoolArray = np.concatenate([f.prescribed for f in self.model.fields])
+        self.prescribed_dofs: IntArray = np.flatnonzero(self.prescribed)
 
     def _weigh_moments(self) -> tuple[float, Array]:
         levers = np.ones(self.numbering.size)
@@ -85,8 +85,9 @@ class System:
         return Matrix(self.numbering, blocks, self.symmetric)
 
     def renew_pattern(self) -> None:
-        """Build the matrix anew from the parts' present blocks."""
-        self.matrix.destroy()
+        """Number the dofs that are free now, and build the matrix anew from the parts' present blocks."""
+        self.destroy()
+        self._number()
         self.matrix = self._new_matrix()
 
     def prescribe(self, state: State) -> None:

@@ -155,15 +155,17 @@ class Observer:
 
     def _soil(self) -> SoilSnapshot | None:
         """Collective where there is soil."""
-        return None if self._assembly.soil is None else self._assembly.soil.output_fields()
+        soil = self._assembly.recovered_soil()
+        return None if soil is None else soil.output_fields()
 
     def _boundary(self) -> BoundaryStress | None:
         """Collective where there is soil."""
-        if self._assembly.soil is None:
+        soil = self._assembly.recovered_soil()
+        if soil is None:
             return None
         from riser_soil.soil.boundary_stress import boundary_stress
 
-        return boundary_stress(self._assembly.soil, int(np.abs(self._assembly.line.direction[:2]).argmin()))
+        return boundary_stress(soil, int(np.abs(self._assembly.line.direction[:2]).argmin()))
 
     def laid(self, slack: float, steps: int, relaxations: int) -> None:
         """Before the stages, the end of a slack or steep riser was brought to its place from `slack` [m] beyond it."""

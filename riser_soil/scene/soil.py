@@ -235,8 +235,17 @@ class SoilScene(BaseModel):
     @property
     def path_dependent(self) -> bool:
         """Whether any of its laws is."""
-        laws = [layer.law for layer in self.layers] if self.layers else [self.top_law]
-        return any(law.path_dependent for law in laws)
+        return any(law.path_dependent for law in self.laws)
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether all of its laws are."""
+        return all(law.linear for law in self.laws)
+
+    @property
+    def laws(self) -> list[SoilLaw]:
+        """The only law, or those of the layers from the top down."""
+        return [layer.law for layer in self.layers] if self.layers else [self.top_law]
 
     @property
     def top_law(self) -> SoilLaw:

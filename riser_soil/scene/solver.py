@@ -39,3 +39,8 @@ class Solver(BaseModel):
         description="the code that solves the steps; compiled: a compiled loop for the time steps of a riser alone, "
         "and PETSc's SNES for all else; snes: SNES throughout, with the same results",
     )
+    soil: Literal["auto", "condensed", "whole"] = Field(
+        default="auto",
+        description="how linear elastic soil is solved, with the same results; condensed: once, to the part of its "
+        "surface that the riser reaches; whole: all of it in each iteration; auto: condensed where that is cheaper",
+    )

@@ -73,10 +73,12 @@ class SoilLaw(BaseModel, ABC):
     """The model of a soil law in the scene: `kind`, a Literal of one word, and its constants.
 
     path_dependent: whether its history keeps more than the stress, so that it matters in what steps soil is strained.
+    linear: whether stress is linear in strain, so that the soil can be condensed to its surface.
     """
 
     model_config = FROZEN
     path_dependent: ClassVar[bool] = True
+    linear: ClassVar[bool] = False
     kind: str
 
     @abstractmethod

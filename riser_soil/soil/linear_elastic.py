@@ -25,6 +25,7 @@ class LinearElastic(SoilLaw):
     """Linear elastic soil."""
 
     path_dependent: ClassVar[bool] = False
+    linear: ClassVar[bool] = True
     kind: Literal["linear-elastic"] = Field(description="the law's name")
     E: Stress = Field(description="Young's modulus [Pa]")
     nu: PoissonRatio = Field(description="Poisson's ratio [-]")

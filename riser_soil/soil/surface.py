@@ -2,11 +2,27 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import State, local
 from riser_soil.core.saved_state import Saved
+
+
+class SoilSurface(Protocol):
+    """The top as contact sees it; see `SoilTop`."""
+
+    points: Array
+    facets: IntArray
+    committed: Array
+    size: int
+    offset: int
+
+    def displacement(self, state: State) -> Array:
+        """Of all points (np, 3) since the geostatic start [m], at a state."""
+        ...
 
 
 class SoilTop:
@@ -27,6 +43,10 @@ class SoilTop:
         self.offset = 0
         self.owned: BoolArray = np.zeros(self.size, dtype=bool)
 
+    def displacement(self, state: State) -> Array:
+        """Of the whole top (np, 3) since the geostatic start [m]."""
+        return np.asarray(self.committed + state.u[self.offset : self.offset + self.size].reshape(-1, 3))
+
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
         for values in (u, v, a):
             values[self.prescribed] = 0.0
@@ -35,10 +55,10 @@ class SoilTop:
         return np.abs(self.committed.ravel() + state.u[local(self)])
 
     def commit(self, state: State) -> None:
-        self.committed += state.u[local(self)].reshape(-1, 3)
+        self.committed = self.displacement(state)
 
     def state(self) -> Saved:
-        return {"committed": self.committed.copy()}
+        return {"committed": self.committed}
 
     def restore(self, saved: Saved) -> None:
         self.committed = saved["committed"].copy()

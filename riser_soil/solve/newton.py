@@ -41,12 +41,15 @@ class Newton:
     def __init__(self, system: System, settings: NewtonSettings) -> None:
         self.system, self.settings = system, settings
         self.iterations, self.rests = 0, False
-        self._x = system.numbering.vector.duplicate()
-        self._f = system.numbering.vector.duplicate()
-        self._levers = system.numbering.vector.duplicate()
-        system.numbering.to_global(system.levers, self._levers)
+        self._state: State | None = None
+        self._make_vectors()
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
         self._snes = self._create()
+
+    def _make_vectors(self) -> None:
+        numbering = self.system.numbering
+        self._x, self._f, self._levers = (numbering.vector.duplicate() for _ in range(3))
+        numbering.to_global(self.system.levers, self._levers)
 
     def _create(self) -> PETSc.SNES:
         snes = PETSc.SNES().create(self.system.comm)
@@ -91,13 +94,13 @@ class Newton:
         still = np.zeros_like(self._step.guess)
         _, probed = self._balance(PROBE * self._with_prescribed(still))
         start, residual = self._balance(still)
-        self.system.numbering.add_to_global(residual + (probed - residual) / PROBE, self._f)
-        self._norms.append(self._norm())
-        self._first = 1
         self._assemble(start)
         while self._outgrown():
             self._renew(start)
             self._assemble(start)
+        self.system.numbering.add_to_global(residual + (probed - residual) / PROBE, self._f)
+        self._norms.append(self._norm())
+        self._first = 1
         solver = self._snes.getKSP()
         solver.setOperators(self.system.matrix.mat)
         if failure := self._failing(lambda: solver.solve(self._f, self._x), lambda: solver.reason < 0):
@@ -107,7 +110,7 @@ class Newton:
     def _with_prescribed(self, u: Array) -> Array:
         """Increments with those that are prescribed in the step."""
         out = u.copy()
-        out[self.system.prescribed_dofs] = self._prescribed[0]
+        out[self.system.prescribed_dofs] = self._prescribed.u[self.system.prescribed_dofs]
         return out
 
     def _out_of_balance(self, u: Array) -> float:
@@ -204,21 +207,25 @@ class Newton:
         self.renew()
 
     def renew(self) -> None:
-        """Take a matrix of the pattern that the parts have now, if any can change its own."""
+        """Take a matrix of the pattern that the parts have now, and of the dofs that they act on, if any can change."""
         if not self._adaptive:
             return
-        self._snes.destroy()
+        self.destroy()
         self.system.renew_pattern()
+        self._make_vectors()
+        if self._state is not None:
+            self.system.numbering.to_global(self._state.u, self._x)
+            self.system.prescribe(self._prescribed)
+            self._state = None
         self._snes = self._create()
 
     def _begin(self, step: Step) -> None:
         self._step, self._norms, self._first = step, list[float](), 0
         self._weights, self._past = step.scheme.weights(step.dt), step.scheme.past(step.start)
         self._still = step.scheme.trial(step.before, step.t, step.dt, np.zeros_like(step.guess))
-        prescribed = State(step.t, *(x.copy() for x in (step.guess, self._still.v, self._still.a)))
-        self.system.prescribe(prescribed)
-        self._prescribed = [x[self.system.prescribed_dofs] for x in (prescribed.u, prescribed.v, prescribed.a)]
-        self._state: State | None = None
+        self._prescribed = State(step.t, *(x.copy() for x in (step.guess, self._still.v, self._still.a)))
+        self.system.prescribe(self._prescribed)
+        self._state = None
         self.system.numbering.to_global(step.guess, self._x)
         self._answers_load = self.rests or self._x.norm() > 0.0  # one like round-off has an answer, too
         self.rests = False
@@ -237,7 +244,8 @@ class Newton:
         """State of the increments u: rates follow them by the scheme's shifts, but for the prescribed ones."""
         v = self._still.v + self._weights.shift_v * u
         a = self._still.a + self._weights.shift_a * u
-        v[self.system.prescribed_dofs], a[self.system.prescribed_dofs] = self._prescribed[1:]
+        at = self.system.prescribed_dofs
+        v[at], a[at] = self._prescribed.v[at], self._prescribed.a[at]
         return State(self._step.t, u, v, a)
 
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
@@ -293,6 +301,10 @@ class Newton:
         return self.system.smooth and self._weights.inertia > 0.0
 
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
+        reason = self._tested()
+        return OUTGROWN if reason == CONVERGED and self._outgrown() else reason
+
+    def _tested(self) -> int:
         norm = self._norm()
         self._norms.append(norm)
         if not np.isfinite(norm):

@@ -61,8 +61,9 @@ class Pushed:
 
     def settled(self, depth: float) -> float:
         """Downward displacement of the soil at so deep below the pipe [m]."""
-        assert self.assembly.soil is not None
-        field = self.assembly.soil.field
+        soil = self.assembly.recovered_soil()
+        assert soil is not None
+        field = soil.field
         y, z = field.points[:, 1], field.points[:, 2]
         middle = np.abs(y) < np.abs(y).min() + 1e-9
         order = np.argsort(-z[middle])

@@ -10,11 +10,11 @@ from riser_soil.contact.cylinder_gap import Axis, Surface, near_points
 RADIUS, WITHIN, PARTS = 0.15, 0.05, 40
 
 
-def plane_of_soil() -> Surface:
-    """Two facets of 2 m side by side, of 40 by 40 points each."""
+def plane_of_soil(turned: int) -> Surface:
+    """Two facets of 2 m side by side, of 40 by 40 points each, in rows across the pipe, turned along it."""
     points = np.array([[x, y, 0.0] for x in (0.0, 2.0, 4.0) for y in (-1.0, 1.0)])
     parts, first = np.full((2, 2), PARTS), np.array([0, PARTS**2])
-    return Surface(np.array([[0, 2, 3, 1], [2, 4, 5, 3]]), parts, first, points, points)
+    return Surface(np.roll([[0, 2, 3, 1], [2, 4, 5, 3]], turned, axis=1), parts, first, points, points)
 
 
 def axis_of(stretch: float, bend: float) -> Axis:
@@ -26,10 +26,11 @@ def axis_of(stretch: float, bend: float) -> Axis:
     return Axis(q, np.full(2, 2.0), np.full(2, RADIUS))
 
 
+@pytest.mark.parametrize("turned", [0, 1])
 @pytest.mark.parametrize(("stretch", "bend"), [(0.9, 0.0), (0.9, 0.2), (0.5, 1.0), (0.02, 1.0), (50.0, 0.3)])
-def test_no_point_within_the_gap_is_passed_over(stretch: float, bend: float) -> None:
+def test_no_point_within_the_gap_is_passed_over(stretch: float, bend: float, turned: int) -> None:
     """Beside a search so wide that every point is tried on every element."""
-    axis, surface = axis_of(stretch, bend), plane_of_soil()
+    axis, surface = axis_of(stretch, bend), plane_of_soil(turned)
     pairs = np.array([0, 1, 0, 1]), np.array([0, 0, 1, 1])
     found, tried = (near_points(axis, surface, *pairs, within) for within in (WITHIN, 1e3))
     assert len(tried.number) == 2 * PARTS**2

@@ -73,7 +73,9 @@ def pushed(scene: Scene) -> Found:
     assert state is not None
     assert assembly.soil is not None
     assert assembly.soil_contact is not None
-    grid, fields = assembly.soil.grid, assembly.soil.output_fields()
+    recovered = assembly.recovered_soil()
+    assert recovered is not None
+    grid, fields = assembly.soil.grid, recovered.output_fields()
     force = -float(assembly.soil_contact.force_on_soil(state)[2]) / float(grid.high[0] - grid.low[0])
     return Found(force, fields.von_mises.max(), fields.plastic_strain.max(), 3 * len(assembly.soil.field.points))
 
@@ -132,8 +134,9 @@ def lifted(law: Mapping, along: float = 1.0, elements: int = 16) -> tuple[float,
     assembly, state = build(scene, MPI.COMM_SELF), None
     for stage in scene.stages:
         state = take(assembly, stage, state)
-    assert assembly.soil is not None
-    mesh, fields = assembly.soil.output_mesh(), assembly.soil.output_fields()
+    recovered = assembly.recovered_soil()
+    assert recovered is not None
+    mesh, fields = recovered.output_mesh(), recovered.output_fields()
     nodes, cells = mesh.points[:, 0], mesh.points[mesh.cells].mean(axis=1)[:, 0]
     down = -fields.displacement[(nodes > 1.5) & (nodes < 7.0), 2].min()
     return float(down), float(fields.von_mises[(cells > 1.5) & (cells < 7.0)].max())

@@ -39,6 +39,7 @@ class Case:
         scene = touchdown(LAY, NEXT[stage], kind=kind, dimension=dimension, su=1000.0)
         scene["soil"]["law"] = law or scene["soil"]["law"]
         scene["contact"] = {"method": method} | CONTACT[method]
+        scene["solver"]["soil"] = "whole"
         assembly = built(scene)
         self.step = FirstStep(assembly)
         self.assembly = assembly

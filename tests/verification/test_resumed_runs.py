@@ -42,6 +42,12 @@ def surface_on_clay() -> Scene:
     return scene_from_mapping(scene | {"contact": {"method": "surface", "smoothing": 1e-3}})
 
 
+def condensed_soil() -> Scene:
+    scene = touchdown(LAY, heave(0.6))
+    scene["soil"]["law"] = {"kind": "linear-elastic", "E": 4.0e5, "nu": 0.45}
+    return scene_from_mapping(scene | {"contact": {"method": "surface", "smoothing": 1e-3}})
+
+
 def laid_and_lifted_on_clay() -> Scene:
     """As many load steps are left as there would have been: they follow from how far the whole stage moves the end."""
     lift = {"name": "lift", "kind": "static", "move": {"end": [22.5, 0.0, 15.3]}}
@@ -57,6 +63,7 @@ SHORT = {
     "touchdown on clay": (lambda: shortened("demos/touchdown_clay/scene.yaml", 1.0, *COARSE), (4,)),
     "plastic clay in space": (plastic_clay_in_space, (4,)),
     "surface contact on plastic clay": (surface_on_clay, (4, 10)),
+    "condensed soil": (condensed_soil, (4, 10)),
     "laid and lifted on clay": (laid_and_lifted_on_clay, (10,)),
     "midpoint rule": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT), (6,)),
     "midpoint rule in space": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT, *IN_SPACE), (6,)),

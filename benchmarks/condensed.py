@@ -1,0 +1,52 @@
+"""Elastic soil condensed to its surface: a time step beside one on springs, and beside one on the whole soil."""
+
+from __future__ import annotations
+
+import argparse
+import time
+
+from benchmarks.coupled import SCENE
+from benchmarks.stage import last_stage
+from riser_soil.core.system import Timer
+
+PLANE = ("dimension=2", "water={density: 1025.0}")  # without a current: a step on springs is a cheap one
+SPRINGS = (*PLANE, "soil=null", "contact={}")
+ELASTIC = (*PLANE, "soil.law={kind: linear-elastic, E: 2.0e6, nu: 0.4}")
+MESHES = {  # cells along and across the riser, and far from it [m], by unknowns
+    4_500: (1.0, 0.075, 0.75),
+    22_000: (0.5, 0.05, 0.5),
+}
+STEPS = {"springs": 40, "condensed": 20, "whole": 4}
+
+
+def report() -> None:
+    springs = step_seconds(SPRINGS, STEPS["springs"])
+    print(f"the demo's riser in a plane on springs: {1e3 * springs:.2f} ms of processor time a step")
+    for unknowns, mesh in MESHES.items():
+        condensed, whole = (step_seconds(on_soil(mesh, soil), STEPS[soil]) for soil in ("condensed", "whole"))
+        print(
+            f"on {unknowns} unknowns of elastic soil: condensed {1e3 * condensed:.1f} ms, whole {1e3 * whole:.0f} ms; "
+            f"condensed/springs {condensed / springs:.1f}, whole/condensed {whole / condensed:.0f}"
+        )
+
+
+def on_soil(mesh: tuple[float, float, float], soil: str) -> tuple[str, ...]:
+    along, across, far = mesh
+    at_riser = f"{{along: {along}, across: {across}, strip: 0.15}}"
+    return (*ELASTIC, f"soil.mesh={{kind: hex, size_at_riser: {at_riser}, size_far: {far}}}", f"solver.soil={soil}")
+
+
+def step_seconds(overrides: tuple[str, ...], steps: int) -> float:
+    """Processor time of a time step [s], the mean of some after two others."""
+    stage = last_stage(SCENE, overrides, Timer.new())
+    stage.walk(2)
+    began = time.process_time()
+    stage.walk(steps)
+    taken = time.process_time() - began
+    stage.destroy()
+    return taken / steps
+
+
+if __name__ == "__main__":
+    argparse.ArgumentParser(prog="python -m benchmarks.condensed", description=__doc__).parse_args()
+    report()

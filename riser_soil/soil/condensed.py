@@ -1,0 +1,214 @@
+"""Linear elastic soil condensed to the dofs of its top that the riser touches: the part "soil" in place of `Soil`.
+
+With no force on it but at the reached dofs A, such soil moves by u = C f: its stiffness there is the inverse of the
+compliance, K = inv(C_AA), and the rest of the top follows as C_TA K u_A. That is static condensation (Guyan, AIAA
+Journal 3, 1965, 380, from memory), exact without inertia. It is done from the compliance, whose columns are solved for
+once and kept while A grows and shrinks. A force on another dof has no place in it: it is noticed, and A is extended.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.identity_cache import IdentityCache
+from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
+from riser_soil.core.roles import Adaptive
+from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
+from riser_soil.soil.compliance import Compliance
+from riser_soil.soil.soil import Soil
+
+SPARE, FEW = 1.5, 20  # times the nodes that must be reached, and more: up to so many are kept that were reached before
+NO_FORCE = 1e-11  # of the largest force on a dof of the top: round-off where nothing presses
+
+
+@dataclass(frozen=True, eq=False)
+class Reached:
+    """Dofs of the top that forces may act on, and how the soil answers.
+
+    nodes: of the top. dofs (na,): free ones of these nodes. compliance (3 np, na) [m/N]: of all the top's dofs.
+    """
+
+    nodes: IntArray
+    dofs: IntArray
+    compliance: Array
+
+    @cached_property
+    def stiffness(self) -> Array:
+        """(na, na) [N/m], of the reached dofs while no other bears a force."""
+        own = self.compliance[self.dofs]
+        inverse = np.linalg.inv(0.5 * (own + own.T))
+        return np.asarray(0.5 * (inverse + inverse.T))
+
+
+class CondensedTop:
+    """Field "surface": the dofs of the soil's top, of which those that are not reached follow the others.
+
+    They are prescribed: their increments are zero, and mean nothing. points, facets, committed: as in `SoilTop`.
+    beside: dofs that are free to move, but are not reached.
+    """
+
+    name = "surface"
+    space = "soil"
+
+    def __init__(self, soil: Soil) -> None:
+        top = soil.surface
+        self.points, self.facets, self.global_index = top.points, top.facets, top.global_index
+        self.committed: Array = np.zeros_like(top.points)
+        self.size, self.offset = top.size, 0
+        self.owned: BoolArray = np.ones(top.size, dtype=bool)
+        self._held, self._soil = top.prescribed, soil
+        self._seen = IdentityCache[State, Array]()
+        self.reach(np.empty(0, dtype=np.int64))
+
+    @cached_property
+    def compliance(self) -> Compliance:
+        return Compliance(self._soil)
+
+    def reach(self, nodes: IntArray) -> None:
+        """Let forces act on these nodes, and on no others."""
+        dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
+        free = ~self._held[dofs]
+        columns = self.compliance.columns(nodes).reshape(self.size, -1) if len(nodes) else np.zeros((self.size, 0))
+        self.reached = Reached(nodes, dofs[free], np.ascontiguousarray(columns[:, free]))
+        self.prescribed: BoolArray = np.ones(self.size, dtype=bool)
+        self.prescribed[self.reached.dofs] = False
+        self.beside: IntArray = np.flatnonzero(self.prescribed & ~self._held)
+        self._seen.forget()
+
+    def own(self, values: Array) -> Array:
+        """The field's slice of a local array."""
+        return values[self.offset : self.offset + self.size]
+
+    def forces(self, state: State) -> Array:
+        """Forces on the reached dofs (na,) [N] that hold the top where it is at a state."""
+        at = self.reached.dofs
+        return np.asarray(self.reached.stiffness @ (self.committed.ravel()[at] + self.own(state.u)[at]))
+
+    def displacement(self, state: State) -> Array:
+        """Of the whole top (np, 3) since the geostatic start [m]; kept for the last state."""
+        return self._seen.made_of(state, self._displacement)
+
+    def _displacement(self, state: State) -> Array:
+        at = self.reached.dofs
+        out = self.reached.compliance @ self.forces(state)
+        out[at] = self.committed.ravel()[at] + self.own(state.u)[at]
+        return out.reshape(-1, 3)
+
+    def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
+        for values in (u, v, a):
+            values[self.prescribed] = 0.0
+
+    def magnitudes(self, state: State) -> Array:
+        return np.abs(self.displacement(state).ravel())
+
+    def commit(self, state: State) -> None:
+        self.committed = self.displacement(state)
+        self._seen.forget()
+
+    def state(self) -> Saved:
+        return {"committed": self.committed, "reached": self.reached.nodes}
+
+    def restore(self, saved: Saved) -> None:
+        self.committed = saved["committed"].copy()
+        self.reach(saved["reached"])
+
+    def describe(self, entry: int) -> str:
+        return self._soil.surface.describe(entry)
+
+
+class CondensedSoil:
+    """Part "soil" over a `CondensedTop`, see the module's text; in group E, as the whole soil is.
+
+    outgrown: a force has acted on dofs that were not reached, or many more are reached than bear one. It stands behind
+    all parts that load the soil, as it looks at what these have added to the residual.
+    """
+
+    name = "soil"
+    active = True
+    traits = Traits("E", symmetric=True, roles=(Adaptive, Stateful))
+
+    def __init__(self, soil: Soil, top: CondensedTop) -> None:
+        self.whole, self.top = soil, top
+        self._undisturbed = gathered(self._owners)
+        self._loaded: Array = np.zeros(top.size)
+        self._wanted: BoolArray = np.zeros(len(top.points), dtype=bool)
+        self._recovered = True
+
+    def blocks(self) -> dict[str, MatrixBlock]:
+        rows = (self.top.offset + self.top.reached.dofs)[None]
+        return {"soil": MatrixBlock(rows, rows)}
+
+    def residual(self, state: State, forces: Forces) -> None:
+        own = self.top.own(forces.end)
+        self._wanted[self.top.beside[own[self.top.beside] != 0.0] // 3] = True
+        own[self.top.reached.dofs] += self.top.forces(state)
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        values["soil"][0] += self.top.reached.stiffness
+
+    def energy(self, state: State) -> Energy:
+        """Strain energy since the geostatic start: half of what the forces would do on the way here."""
+        displaced = self.top.displacement(state).ravel()[self.top.reached.dofs]
+        return Energy(strain=0.5 * float(self.top.forces(state) @ displaced))
+
+    def work(self, before: State, after: State) -> Work:
+        """What the forces at the end of the step do beyond the energy stored, all of it by the time scheme."""
+        at = self.top.reached.dofs
+        moved = (self.top.displacement(after) - self.top.committed).ravel()[at]
+        lost = 0.5 * float((self.top.forces(after) - self._loaded[at]) @ moved)
+        return Work(dissipated=lost, by_scheme=lost)
+
+    def commit(self, state: State) -> None:
+        self._loaded = np.zeros(self.top.size)
+        self._loaded[self.top.reached.dofs] = self.top.forces(state)
+        self._wanted = self._bearing()
+        self._recovered = False
+
+    def _bearing(self) -> BoolArray:
+        """Which nodes (np,) bear a force."""
+        size = np.abs(self._loaded).reshape(-1, 3).max(axis=1)
+        return np.asarray(size > NO_FORCE * size.max())
+
+    @property
+    def outgrown(self) -> bool:
+        reached, wanted = self.top.reached.nodes, np.count_nonzero(self._wanted)
+        return self._spare(len(reached)) or wanted > np.count_nonzero(self._wanted[reached])
+
+    def rebuild(self, state: State) -> None:
+        """Reach all that bears a force or has met one in the step so far, and what was reached as long as that is not
+        much more.
+        """
+        wanted = np.flatnonzero(self._wanted)
+        both = np.union1d(wanted, self.top.reached.nodes)
+        self.top.reach(wanted if self._spare(len(both)) else both)
+
+    def _spare(self, nodes: int) -> bool:
+        """Whether so many are too many to be reached."""
+        return nodes > SPARE * np.count_nonzero(self._wanted) + FEW
+
+    def recover(self) -> Soil:
+        """The whole soil as committed, by one solve with the factors that are kept, from the undisturbed state: so it
+        does not hang, to the last bit, on how often it was asked for.
+        """
+        if not self._recovered:
+            restore_all(self._owners, self._undisturbed)
+            state = State.at_rest(0.0, self.whole.field.size)
+            state.u[:] = self.top.compliance.displacement(self._loaded)
+            self.whole.commit(state)
+            self.whole.field.commit(state)
+            self._recovered = True
+        return self.whole
+
+    @property
+    def _owners(self) -> dict[str, Stateful]:
+        return {"soil": self.whole, "field": self.whole.field}
+
+    def state(self) -> Saved:
+        return {"loaded": self._loaded, "wanted": self._wanted.copy()}
+
+    def restore(self, saved: Saved) -> None:
+        self._loaded, self._wanted, self._recovered = saved["loaded"], saved["wanted"].copy(), False
