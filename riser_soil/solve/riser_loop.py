@@ -106,7 +106,9 @@ def solve_step(
 @njit
 def _stays(norms: Array, taken: int) -> bool:
     """See `round_off.stays`."""
-    return taken > 1 and min(norms[taken] / norms[taken - 1], norms[taken - 1] / norms[taken - 2]) > STALLED
+    if taken < 2:
+        return False
+    return norms[taken] > STALLED * norms[taken - 1] and norms[taken - 1] > STALLED * norms[taken - 2]
 
 
 @njit
