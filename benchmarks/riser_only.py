@@ -26,7 +26,7 @@ CASES: dict[str, tuple[Path, tuple[str, ...]]] = {
     "3D, 100 elements": (CATENARY, ("dimension=3", ELEMENTS.format(100), "line_types.flexible.GJ=2.0e4")),
     "3D, 400 elements": (CATENARY, ("dimension=3", ELEMENTS.format(400), "line_types.flexible.GJ=2.0e4")),
     "hose in a tank, 200 elements": (TANK, ()),
-    "storm over clay, 3D, 78 elements, 200 wave components": (STORM, ()),
+    "storm over clay, 3D, 96 elements, 200 wave components": (STORM, ()),
 }
 RAMP, STEPS = 150, 140  # steps until the surge has grown; steps of one period
 
