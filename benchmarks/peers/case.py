@@ -1,6 +1,6 @@
 """The cases as numbers alone, for any program: a line in still water, one end held, the other moved; perhaps a floor.
 
-This file and the programs' own (`moordyn.py`, …) need numpy and nothing of riser_soil: they run in an environment apart.
+This file and those of other programs (`moordyn.py`, …) need nothing of riser_soil: they run in an environment apart.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ class Swing:
     def at(self, s: float, v: float, a: float) -> tuple[tuple[float, float], ...]:
         angle, rate, change = (self.amplitude * each for each in (s, v, a))
         sine, cosine = self.arm * math.sin(angle), self.arm * math.cos(angle)
-        moved = -sine, self.arm - cosine
-        velocity = -cosine * rate, sine * rate
-        return moved, velocity, (-cosine * change + sine * rate**2, sine * change + cosine * rate**2)
+        moved = sine, self.arm - cosine
+        velocity = cosine * rate, sine * rate
+        return moved, velocity, (cosine * change - sine * rate**2, sine * change + cosine * rate**2)
 
 
 @dataclass(frozen=True)
@@ -44,8 +44,8 @@ class Case:
     """A line from `start`, which is held, to `end`, which moves; both ends turn freely. SI units, z upwards.
 
     mass: with contents, in air. The drag of Morison's formula and the added mass act across the line alone.
-    floor: force per length and depth [N/m2] at z = 0, without damping or friction; none is none. since: from when on the
-    extremes are taken [s]. clearance: height above the floor [m] at which the line counts as lifted off.
+    floor: force per length and depth [N/m2] at z = 0, without damping or friction; None for none. since: when the time
+    begins in which extremes are taken [s]. clearance: height [m] over the floor at which the line counts as lifted off.
     """
 
     name: str

@@ -1,0 +1,50 @@
+"""Which programs compute which runs: every number of elements with every time step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+ELEMENTS = (20, 40, 80, 160)
+STEPS = (0.2, 0.1, 0.05, 0.025)  # s, of implicit schemes
+FINEST = (320, 0.0125)
+# Explicit: half of what an axial wave needs for an element [s], by case and number of elements; and half of that.
+WAVE_STEPS = {
+    "catenary": {20: 0.002, 40: 0.001, 80: 0.0005, 160: 0.00025},
+    "tank": {20: 0.004, 40: 0.002, 80: 0.001, 160: 0.0005},
+}
+
+
+@dataclass(frozen=True)
+class Program:
+    """module: of this package, whose `run` takes the options; own: whether it runs in riser_soil's environment."""
+
+    name: str
+    module: str
+    options: Mapping[str, str] = field(default_factory=dict)
+    own: bool = False
+    explicit: bool = False
+
+    @property
+    def stem(self) -> str:
+        """Of its files."""
+        return "_".join([self.module, *self.options.values()]).replace(" ", "_")
+
+    def runs(self, case: str) -> Iterator[tuple[int, float]]:
+        """Numbers of elements and time steps [s]; the finest run last."""
+        if self.explicit:
+            steps = WAVE_STEPS[case]
+            yield from ((elements, step) for elements, whole in steps.items() for step in (whole, 0.5 * whole))
+            return
+        yield from ((elements, step) for elements in ELEMENTS for step in STEPS)
+        yield FINEST
+
+
+PROGRAMS = (
+    Program("riser_soil, compiled", "riser", {"newton": "compiled"}, own=True),
+    Program("riser_soil, SNES", "riser", {"newton": "snes"}, own=True),
+    Program("CableDyn", "cabledyn"),
+    Program("CableDyn, tolerance 1e-4", "cabledyn", {"tolerances": "1e-4 1e-14 100 12"}),
+    Program("Exudyn", "exudyn"),
+    Program("MoorDyn", "moordyn", explicit=True),
+)
