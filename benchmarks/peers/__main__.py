@@ -8,23 +8,20 @@ Runs that have left a file in the folder are not repeated. A program that is not
 from __future__ import annotations
 
 import argparse
-import subprocess
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from benchmarks.peers.case import CASES, Case, Record
 from benchmarks.peers.draw import draw
+from benchmarks.peers.in_turn import ROOT, file_of, measure
 from benchmarks.peers.judge import RANGE, TENSIONS, Judged, cheapest, consensus, errors, kept_error, quantities
-from benchmarks.peers.ladder import PROGRAMS, Program
-from benchmarks.peers.measure import file_of, read
+from benchmarks.peers.ladder import PROGRAMS
+from benchmarks.peers.measure import read
 from demos.page import publish, table
 from riser_soil.results.derived import peak
 
-ROOT = Path(__file__).parents[2]
 PAGE, PLOT = ROOT / "docs" / "peers.md", ROOT / "docs" / "peers.png"
-THEIRS = ROOT / "build" / "peers" / "bin" / "python"
 TARGETS = (0.05, 0.02, 0.01, 0.005, 0.002)
 
 
@@ -59,9 +56,7 @@ class Compared:
 
 def main(results: Path, page: bool) -> None:
     results.mkdir(parents=True, exist_ok=True)
-    for case in CASES.values():
-        for number, program in enumerate(PROGRAMS):
-            _measure(number, program, case, results)
+    measure(list(CASES), results)
     compared = [_compared(case, results) for case in CASES.values()]
     blocks: dict[str, str] = {}
     for each in compared:
@@ -74,13 +69,6 @@ def main(results: Path, page: bool) -> None:
         }
     publish(blocks, results, PAGE if page else None)
     draw({each.case.name: each.judged() for each in compared}, PLOT if page else results / PLOT.name)
-
-
-def _measure(number: int, program: Program, case: Case, results: Path) -> None:
-    python = sys.executable if program.own else str(THEIRS)
-    command = [python, "-m", "benchmarks.peers.measure", str(number), case.name, str(results)]
-    if subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL, check=False).returncode:
-        print(f"{program.name} could not compute all of {case.name}", file=sys.stderr)
 
 
 def _compared(case: Case, results: Path) -> Compared:

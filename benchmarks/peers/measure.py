@@ -1,28 +1,26 @@
-"""The runs of one program for one case, each into a file; those that are there already are left.
+"""One program at work: it computes what it is told, line by line.
 
-    python -m benchmarks.peers.measure NUMBER CASE FOLDER      # the program's place in ladder.PROGRAMS
+    python -m benchmarks.peers.measure NUMBER      # the program's place in ladder.PROGRAMS; in its own environment
 
-Runs in the program's own environment.
+Each line on standard input names a case, a number of elements, a time step and the file that the run goes to; each is
+answered by a line: the seconds of the time loop, or what went wrong. A file is left as it is where it is there and its
+run was cheaper.
 """
 
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks.peers.case import CASES, Case, Record
+from benchmarks.peers.case import CASES, Record
 from benchmarks.peers.ladder import PROGRAMS, Program
 
 SERIES = ("time", "held", "moved", "arc", "moment", "position")
-REPEATS, LONG = 3, 10.0  # a run of more than so many seconds is not repeated
-
-
-def file_of(folder: Path, case: str, program: Program, elements: int, time_step: float) -> Path:
-    return folder / f"{case}_{program.stem}_{elements}_{time_step:g}.npz"
 
 
 def read(path: Path) -> Record:
@@ -30,21 +28,25 @@ def read(path: Path) -> Record:
         return Record(seconds=float(stored["seconds"]), **{name: stored[name] for name in SERIES})
 
 
-def measure(program: Program, case: Case, folder: Path) -> None:
-    run = importlib.import_module(f"benchmarks.peers.{program.module}").run
-    for elements, time_step in program.runs(case.name):
-        path = file_of(folder, case.name, program, elements, time_step)
-        if path.exists():
-            continue
-        record = run(case, elements, time_step, **program.options)
-        for _ in range(REPEATS - 1 if record.seconds < LONG else 0):
-            again = run(case, elements, time_step, **program.options)
-            record = min(record, again, key=lambda each: each.seconds)
+def measured(program: Program, case: str, elements: int, time_step: float, path: Path) -> str:
+    """One run. Whatever goes wrong in another program must not end the comparison."""
+    try:
+        run = importlib.import_module(f"benchmarks.peers.{program.module}").run
+        record = run(CASES[case], elements, time_step, **program.options)
+    except Exception as trouble:
+        return " ".join(f"{type(trouble).__name__}: {trouble}".split())
+    if not path.exists() or record.seconds < read(path).seconds:
         np.savez(path, **asdict(record))
-        told = f"{program.name}, {case.name}, {elements} elements, {time_step:g} s"
-        print(f"{told}: {record.seconds / case.duration:.4f} s/s", file=sys.stderr, flush=True)
+    return str(record.seconds)
+
+
+def main(program: Program) -> None:
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # what programs print is no answer
+    for line in sys.stdin:
+        case, elements, time_step, path = line.split()
+        print(measured(program, case, int(elements), float(time_step), Path(path)), file=answers, flush=True)
 
 
 if __name__ == "__main__":
-    number, name, results = sys.argv[1:]
-    measure(PROGRAMS[int(number)], CASES[name], Path(results))
+    main(PROGRAMS[int(sys.argv[1])])
