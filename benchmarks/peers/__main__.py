@@ -34,14 +34,13 @@ class Compared:
 
     @property
     def finest(self) -> dict[str, dict[str, float]]:
-        """Quantities of each program's last run."""
-        return {name: quantities(self.case, list(runs.values())[-1]) for name, runs in self.found.items()}
+        """Quantities of each program's last run, but of those that are again a program before them."""
+        programs = [program.name for program in PROGRAMS if program.name in self.found and not program.again]
+        return {name: quantities(self.case, list(self.found[name].values())[-1]) for name in programs}
 
     @property
     def agreed(self) -> dict[str, float]:
-        """By one voice for each program that computes differently, not for each of its settings."""
-        voices = {name.split(",")[0]: values for name, values in self.finest.items()}
-        return consensus(list(voices.values()))
+        return consensus(list(self.finest.values()))
 
     def judged(self) -> dict[str, list[Judged]]:
         agreed = self.agreed
@@ -84,8 +83,8 @@ def _compared(case: Case, results: Path) -> Compared:
 def rest_page(compared: Compared) -> str:
     """Before the motion, on each program's finest mesh."""
     rows = []
-    for name, runs in compared.found.items():
-        (elements, _), run = list(runs.items())[-1]
+    for name in compared.finest:
+        (elements, _), run = list(compared.found[name].items())[-1]
         moment = float(peak(run.arc, run.moment[0]))
         rows.append([name, str(elements), f"{run.moved[0]:.2f}", f"{run.held[0]:.2f}", f"{moment:.2f}"])
     return table(["at rest", "elements", "top tension N", "bottom tension N", "largest moment N.m"], rows)

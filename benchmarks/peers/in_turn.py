@@ -1,4 +1,4 @@
-"""All programs' runs, one program after the other on each rung, so that a machine whose speed drifts slows all alike."""
+"""All programs' runs, one program after the other on each rung: where a machine's speed drifts, all drift alike."""
 
 from __future__ import annotations
 

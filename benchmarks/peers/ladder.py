@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 ELEMENTS = (20, 40, 80, 160)
-STEPS = (0.2, 0.1, 0.05, 0.025)  # s, of implicit schemes
+STEPS = (0.2, 0.1, 0.05)  # s, of implicit schemes
 FINEST = (320, 0.0125)
 # Explicit: half of what an axial wave needs for an element [s]; half of that changes nothing in five digits.
 WAVE_STEPS = {
@@ -17,13 +17,16 @@ WAVE_STEPS = {
 
 @dataclass(frozen=True)
 class Program:
-    """module: of this package, whose `run` takes the options; own: whether it runs in riser_soil's environment."""
+    """module: of this package, whose `run` takes the options. own: whether it runs in riser_soil's environment. again:
+    whether it is a program before it with other settings, which is not to have another finest run of its own.
+    """
 
     name: str
     module: str
     options: Mapping[str, str] = field(default_factory=dict, hash=False)
     own: bool = False
     explicit: bool = False
+    again: bool = False
 
     @property
     def stem(self) -> str:
@@ -31,19 +34,20 @@ class Program:
         return "_".join([self.module, *self.options.values()]).replace(" ", "_")
 
     def runs(self, case: str) -> Iterator[tuple[int, float]]:
-        """Numbers of elements and time steps [s]; the finest run last."""
+        """Numbers of elements and time steps [s]; the finest run, if it has one, last."""
         if self.explicit:
             yield from WAVE_STEPS[case].items()
             return
         yield from ((elements, step) for elements in ELEMENTS for step in STEPS)
-        yield FINEST
+        if not self.again:
+            yield FINEST
 
 
 PROGRAMS = (
     Program("riser_soil, compiled", "riser", {"newton": "compiled"}, own=True),
-    Program("riser_soil, SNES", "riser", {"newton": "snes"}, own=True),
+    Program("riser_soil, SNES", "riser", {"newton": "snes"}, own=True, again=True),
     Program("CableDyn", "cabledyn"),
-    Program("CableDyn, tolerance 1e-4", "cabledyn", {"tolerances": "1e-4 1e-14 100 12"}),
+    Program("CableDyn, tolerance 1e-4", "cabledyn", {"tolerances": "1e-4 1e-14 100 12"}, again=True),
     Program("Exudyn", "exudyn"),
     Program("MoorDyn", "moordyn", explicit=True),
 )
