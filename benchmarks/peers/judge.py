@@ -60,6 +60,13 @@ def consensus(finest: Sequence[Mapping[str, float]]) -> dict[str, float]:
     return {name: median(each[name] for each in finest) for name in finest[0]}
 
 
+def apart(finest: Sequence[Mapping[str, float]]) -> float:
+    """How far the finest runs are from each other, as errors are told: a smaller error of any run means nothing."""
+    agreed = consensus(finest)
+    differences = ((a[name] - b[name]) / _scale(name, agreed) for name in agreed for a in finest for b in finest)
+    return max(differences)
+
+
 def errors(found: Mapping[str, float], agreed: Mapping[str, float]) -> dict[str, float]:
     """Relative: of tensions to the greatest at that end, of all else to itself."""
     return {name: abs(found[name] - agreed[name]) / _scale(name, agreed) for name in agreed}

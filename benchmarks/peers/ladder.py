@@ -18,7 +18,7 @@ WAVE_STEPS = {
 @dataclass(frozen=True)
 class Program:
     """module: of this package, whose `run` takes the options. own: whether it runs in riser_soil's environment. again:
-    whether it is a program before it with other settings, which is not to have another finest run of its own.
+    whether it is the program before it with other settings, and so has no voice of its own.
     """
 
     name: str
@@ -34,13 +34,12 @@ class Program:
         return "_".join([self.module, *self.options.values()]).replace(" ", "_")
 
     def runs(self, case: str) -> Iterator[tuple[int, float]]:
-        """Numbers of elements and time steps [s]; the finest run, if it has one, last."""
+        """Numbers of elements and time steps [s]; the finest run last."""
         if self.explicit:
             yield from WAVE_STEPS[case].items()
             return
         yield from ((elements, step) for elements in ELEMENTS for step in STEPS)
-        if not self.again:
-            yield FINEST
+        yield FINEST
 
 
 PROGRAMS = (

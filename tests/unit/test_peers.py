@@ -9,7 +9,18 @@ import pytest
 from mpi4py import MPI
 
 from benchmarks.peers.case import CASES, CATENARY, TANK, Case, Record, catenary
-from benchmarks.peers.judge import MOMENT, RANGE, Judged, cheapest, consensus, errors, front, kept_error, quantities
+from benchmarks.peers.judge import (
+    MOMENT,
+    RANGE,
+    Judged,
+    apart,
+    cheapest,
+    consensus,
+    errors,
+    front,
+    kept_error,
+    quantities,
+)
 from benchmarks.peers.ladder import PROGRAMS
 from benchmarks.peers.riser import scene_of
 from riser_soil.assembly import build
@@ -44,6 +55,12 @@ def test_tensions_err_in_parts_of_the_greatest_at_their_end() -> None:
     agreed = {"top min": 10.0, "top max": 100.0, MOMENT: 5.0}
     found = errors({"top min": 11.0, "top max": 100.0, MOMENT: 6.0}, agreed)
     assert found == pytest.approx({"top min": 0.01, "top max": 0.0, MOMENT: 0.2})
+
+
+def test_finest_runs_are_as_far_apart_as_their_worst_pair() -> None:
+    least, greatest = (10.0, 13.0, 11.0), (100.0, 100.0, 101.0)
+    finest = [{"top min": low, "top max": high} for low, high in zip(least, greatest, strict=True)]
+    assert apart(finest) == pytest.approx(0.03)
 
 
 def travelling(case: Case) -> Record:
