@@ -73,7 +73,8 @@ def main(results: Path, page: bool) -> None:
             f"{name} runs": runs_page(judged),
         }
     publish(blocks, results, PAGE if page else None)
-    draw({each.case.name: each.judged() for each in compared}, PLOT if page else results / PLOT.name)
+    least = {each.case.name: apart(each.voices) for each in compared}
+    draw({each.case.name: each.judged() for each in compared}, least, PLOT if page else results / PLOT.name)
 
 
 def _compared(case: Case, results: Path) -> Compared:
