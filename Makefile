@@ -20,7 +20,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test lint verify stress fuzz bench parts bars asked quality verify-fresh docker pins clean
+.PHONY: help setup demo demos test lint verify stress fuzz bench bench-peers parts bars asked quality verify-fresh docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -56,6 +56,10 @@ fuzz: setup ## 600 mutated scenes, each in a process with limits: how they end; 
 
 bench: setup ## seconds by part of the demo, Newton iterations against the bare work in them, waves against plain sums, energy of an impact by scheme
 	$(PYTHON) -m benchmarks
+
+bench-peers: setup ## what the same answers cost by CableDyn, Exudyn and MoorDyn: docs/peers.md; half an hour
+	@scripts/peers.sh
+	$(PYTHON) -m benchmarks.peers --page
 
 parts: setup ## what each part of a scene costs: docs/parts.md
 	$(PYTHON) -m benchmarks.parts --page
