@@ -34,7 +34,7 @@ KEPT = 4  # cache folders of other versions, the latest ones, for those who go b
 IN_USE = 3600.0  # s since its last start within which a run of another version may still need its folder
 ROOM = 1 << 25  # bytes that all kernels need, and some more
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "arcp"}}
-ANNOUNCEMENT = "compiling kernels (once, about half a minute)"
+ANNOUNCEMENT = "compiling kernels (once, about a minute)"
 
 
 def njit(function: Callable[..., object], apart: bool = False) -> Any:

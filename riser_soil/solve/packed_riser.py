@@ -16,7 +16,7 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import LineWeights, add_energy, add_forces, add_tangent, add_work, forces_of
 from riser_soil.solve import banded
 from riser_soil.solve import riser_loop as loop
-from riser_soil.solve.riser_loop import Dofs, Progress, StepNumbers, StopLimits, TangentRoom
+from riser_soil.solve.riser_loop import Dofs, NewtonProgress, StepNumbers, StopLimits, TangentRoom
 
 Numbers = tuple[Any, ...]
 
@@ -35,7 +35,7 @@ class PackedRiser:
         self.step, self._begun = StepNumbers(*_zeros(6, shape)), _zeros(2, shape)
         self.forces, self.room = forces_of(line), _tangent_room(line)
         self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
-        self.progress = Progress(np.zeros(most + 1), np.zeros(2, dtype=np.int64))
+        self.progress = NewtonProgress(np.zeros(most + 1), np.zeros(2, dtype=np.int64))
         self._energy, self._work = np.zeros(3), np.zeros((len(turning), 4))
         self._maps, self._weights = Packed(_maps_of(line)), Packed(LineWeights(0.0, 0.0))
         self._limits = Packed(StopLimits(0.0, 0.0, 0.0, most, 0, False))

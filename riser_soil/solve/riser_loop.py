@@ -72,7 +72,7 @@ class StopLimits(NamedTuple):
     answers_load: bool
 
 
-class Progress(NamedTuple):
+class NewtonProgress(NamedTuple):
     """norms (most + 1,): of the residuals [N] so far; ending (2,): the outcome, and the iterations taken."""
 
     norms: Array
@@ -81,7 +81,7 @@ class Progress(NamedTuple):
 
 @njit
 def solve_step(
-    evaluate: Calls, probe: Calls, renew: Calls, improve: Calls, limits: StopLimits, progress: Progress
+    evaluate: Calls, probe: Calls, renew: Calls, improve: Calls, limits: StopLimits, progress: NewtonProgress
 ) -> None:
     """Solve a step. Kernels to call at each trial, where the residual's norm stays as it is, for a new tangent, and for
     its answer to the residual.
@@ -156,7 +156,7 @@ def combine(forces: LineForces, step: StepNumbers, weights: LineWeights, dofs: D
 
 
 @njit
-def judge(forces: LineForces, dofs: Dofs, limits: StopLimits, progress: Progress) -> None:
+def judge(forces: LineForces, dofs: Dofs, limits: StopLimits, progress: NewtonProgress) -> None:
     """Write the norm of the residual, and whether it is small enough or none."""
     norms, ending = progress
     taken, norm = ending[1], _norm(dofs)
@@ -218,7 +218,7 @@ def turn(room: TangentRoom) -> None:
 
 
 @njit
-def judge_round_off(room: TangentRoom, dofs: Dofs, progress: Progress) -> None:
+def judge_round_off(room: TangentRoom, dofs: Dofs, progress: NewtonProgress) -> None:
     """Whether nothing in the residual can be told from its round-off, see `round_off`; K: at held rates."""
     K, sizes, terms = room.K, dofs.sizes, dofs.terms
     ndof = sizes.shape[1]
@@ -255,7 +255,7 @@ def fill(room: TangentRoom, dofs: Dofs) -> None:
 
 
 @njit
-def factorise(room: TangentRoom, progress: Progress) -> None:
+def factorise(room: TangentRoom, progress: NewtonProgress) -> None:
     """Factorise the matrix."""
     if not banded.factorise(room.ab, room.pivots, room.band):
         progress.ending[0] = SINGULAR
