@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Energy, Forces, Part, State, Work
+from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
@@ -16,7 +17,6 @@ from riser_soil.riser.part_kernels import add_work
 from riser_soil.solve import riser_loop
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, largest_at, told
-from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
 
 WHY = {
     riser_loop.NOT_FINITE: "diverged_fnorm_nan",
@@ -26,34 +26,28 @@ WHY = {
 }
 
 
-def runs_compiled(system: System, scheme: Scheme) -> bool:
-    """Whether the steps of a stage can be solved by the compiled loop: a riser alone, all of whose parts have kernels,
-    on one rank, in time steps of Newmark's scheme or generalised-alpha.
-    """
-    model = system.model
-    if system.comm.size > 1 or len(model.fields) > 1 or not isinstance(scheme, GeneralizedAlpha):
-        return False
-    return isinstance(model.lines[0], Line) and all(_numbers(part) is not None for part in model.parts)
+Numbered = Sequence[tuple[Any, tuple[Any, ...]]]  # parts of a line
 
 
-def _numbers(part: Part) -> tuple[Any, ...] | None:
-    return part.numbers() if isinstance(part, LinePart) else None
+def riser_newton(system: System, settings: NewtonSettings) -> RiserNewton | None:
+    """The compiled loop over a riser alone, where all of its parts have kernels."""
+    asked = [(part, part.numbers()) for part in system.model.parts if isinstance(part, LinePart)]
+    numbered = [(part, numbers) for part, numbers in asked if numbers is not None]
+    return RiserNewton(system, settings, numbered) if len(numbered) == len(system.model.parts) else None
 
 
 class RiserNewton:
-    """Solver of a riser's time steps. Create once a stage; see `Newton`."""
+    """Solver of a riser's time steps. Create once a stage, by `riser_newton`; see `Newton`."""
 
-    def __init__(self, system: System, settings: NewtonSettings) -> None:
+    def __init__(self, system: System, settings: NewtonSettings, parts: Numbered) -> None:
         self.system, self.settings = system, settings
         self.iterations, self.rests = 0, False
         (line,) = system.model.lines
         assert isinstance(line, Line)
-        parts = [part for part in system.model.parts if isinstance(part, LinePart)]
-        numbers = [(part, held) for part in parts if (held := part.numbers()) is not None]
         self._line, most = line, settings.max_iterations
-        self._riser = PackedRiser(line, [held for _, held in numbers], system.prescribed, system.levers, most)
-        self._renewed = [part for part in parts if overrides(part, "renew_numbers")]
-        kernels = [(part, type(held) in add_work.kernels) for part, held in numbers]
+        self._riser = PackedRiser(line, [held for _, held in parts], system.prescribed, system.levers, most)
+        self._renewed = [part for part, _ in parts if overrides(part, "renew_numbers")]
+        kernels = [(part, type(held) in add_work.kernels) for part, held in parts]
         self._turning = [(part, kernel) for part, kernel in kernels if kernel or overrides(part, "work")]
 
     def solve(self, step: Step) -> Solution:

@@ -7,9 +7,8 @@ from typing import Protocol
 from riser_soil.core.part import Energy, State, Work
 from riser_soil.core.system import System
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.riser_newton import RiserNewton, runs_compiled
 from riser_soil.solve.solution import NewtonSettings, Solution, Step
-from riser_soil.solve.time_scheme import Scheme
+from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
 
 
 class StepSolver(Protocol):
@@ -35,7 +34,11 @@ class StepSolver(Protocol):
 
 
 def solver_of(system: System, scheme: Scheme, settings: NewtonSettings, compiled: bool) -> StepSolver:
-    """SNES, or where it is asked for and can be, the compiled loop."""
-    if compiled and runs_compiled(system, scheme):
-        return RiserNewton(system, settings)
+    """SNES; or, where that is wanted and can be, the compiled loop: for a riser alone on one rank, in time steps of
+    Newmark's scheme or generalised-alpha.
+    """
+    if compiled and system.comm.size == len(system.model.fields) == 1 and isinstance(scheme, GeneralizedAlpha):
+        from riser_soil.solve.riser_newton import riser_newton
+
+        return riser_newton(system, settings) or Newton(system, settings)
     return Newton(system, settings)
