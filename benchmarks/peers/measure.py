@@ -1,6 +1,4 @@
-"""One program at work: it computes what it is told, line by line.
-
-    python -m benchmarks.peers.measure NUMBER      # the program's place in ladder.PROGRAMS; in its own environment
+"""One program at work, in its own environment: it computes what it is told, line by line.
 
 Each line on standard input names a case, a number of elements, a time step and the file that the run goes to; each is
 answered by a line: the seconds of the time loop, or what went wrong. A file is left as it is where it is there and its
@@ -9,6 +7,7 @@ run was cheaper.
 
 from __future__ import annotations
 
+import argparse
 import importlib
 import os
 import sys
@@ -49,4 +48,6 @@ def main(program: Program) -> None:
 
 
 if __name__ == "__main__":
-    main(PROGRAMS[int(sys.argv[1])])
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.peers.measure", description=__doc__)
+    parser.add_argument("program", type=int, metavar="NUMBER", help="the program's place in ladder.PROGRAMS")
+    main(PROGRAMS[parser.parse_args().program])

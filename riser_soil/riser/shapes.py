@@ -127,17 +127,22 @@ def _columns(tangent: Array, second: Array) -> Array:
 
 
 def smallest_turn(a: Array, b: Array) -> Array:
-    """Rotation matrix that takes unit vector a to b along the great circle; a half turn when they are
-    opposite.
+    """Rotation matrix that takes unit vector a to b along the great circle; a half turn when they are opposite.
+
+    Else half turns about a and about the direction between both, which stay exact where these are nearly opposite.
     """
     cosine = float(a @ b)
     if cosine < -1.0 + 1e-12:
         normal = np.cross(a, UP if abs(a @ UP) < 0.9 else X)
         normal /= np.linalg.norm(normal)
-        return np.asarray(2.0 * np.outer(normal, normal) - np.eye(3))
-    v = np.cross(a, b)
-    cross = np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
-    return np.asarray(np.eye(3) + cross + cross @ cross / (1.0 + cosine))
+        return _half_turn(normal)
+    middle = (a + b) / np.linalg.norm(a + b)
+    return np.asarray(_half_turn(middle) @ _half_turn(a))
+
+
+def _half_turn(axis: Array) -> Array:
+    """Rotation matrix; axis: unit."""
+    return np.asarray(2.0 * np.outer(axis, axis) - np.eye(3))
 
 
 def _second_axis(tangent: Array) -> Array:

@@ -16,7 +16,7 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import LineWeights, add_energy, add_forces, add_tangent, add_work, forces_of
 from riser_soil.solve import banded
 from riser_soil.solve import riser_loop as loop
-from riser_soil.solve.riser_loop import Dofs, NewtonProgress, StepNumbers, StopLimits, TangentRoom
+from riser_soil.solve.riser_loop import Dofs, MatrixRoom, NewtonProgress, StepNumbers, StopLimits
 
 Numbers = tuple[Any, ...]
 
@@ -33,7 +33,7 @@ class PackedRiser:
         self._line, shape = line, (line.nodes, line.ndof)
         turning = [each for each in numbers if type(each) in add_work.kernels]
         self.step, self._begun = StepNumbers(*_zeros(6, shape)), _zeros(2, shape)
-        self.forces, self.room = forces_of(line), _tangent_room(line)
+        self.forces, self.room = forces_of(line), _matrix_room(line)
         self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
         self.progress = NewtonProgress(np.zeros(most + 1), np.zeros(2, dtype=np.int64))
         self._energy, self._work = np.zeros(3), np.zeros((len(turning), 4))
@@ -131,10 +131,10 @@ def _maps_of(line: Line) -> Maps:
     return Maps(np.empty((ne, 2, d, r)), np.empty((ne, 2, d, r)), 0.0, 0.0)
 
 
-def _tangent_room(line: Line) -> TangentRoom:
+def _matrix_room(line: Line) -> MatrixRoom:
     ne, d, r, n = line.length.size, line.dimension, line.frames.dofs, line.ndof
     matrix, band = banded.room(line.size, 2 * n - 1)
-    return TangentRoom(
+    return MatrixRoom(
         np.empty((ne, 2 * n, 2 * n)),
         np.empty((ne, 2, d)),
         np.empty((ne, 2, r, r)),

@@ -48,7 +48,7 @@ class Dofs(NamedTuple):
     terms: Array
 
 
-class TangentRoom(NamedTuple):
+class MatrixRoom(NamedTuple):
     """Room for the tangent: element matrices K (ne, n, n); what is conjugate to the tangents (ne, 2, d), and its
     turning (ne, 2, r, r); the matrix as in `banded`, its pivots and its band.
     """
@@ -195,13 +195,13 @@ def _scale(forces: LineForces, dofs: Dofs) -> float:
 
 
 @njit
-def clear_tangent(room: TangentRoom) -> None:
+def clear_tangent(room: MatrixRoom) -> None:
     """Write zero."""
     room.K[:] = 0.0
 
 
 @njit
-def weigh(forces: LineForces, weights: LineWeights, room: TangentRoom) -> None:
+def weigh(forces: LineForces, weights: LineWeights, room: MatrixRoom) -> None:
     """Write what is conjugate to the tangents of the elements' ends, groups weighted."""
     for e in range(room.conjugate.shape[0]):
         for side in range(2):
@@ -212,13 +212,13 @@ def weigh(forces: LineForces, weights: LineWeights, room: TangentRoom) -> None:
 
 
 @njit
-def turn(room: TangentRoom) -> None:
+def turn(room: MatrixRoom) -> None:
     """Add what the turning of the tangents gives to the element matrices."""
     add_geometric(room.K, 1.0, room.turning, room.conjugate.shape[2])
 
 
 @njit
-def judge_round_off(room: TangentRoom, dofs: Dofs, progress: NewtonProgress) -> None:
+def judge_round_off(room: MatrixRoom, dofs: Dofs, progress: NewtonProgress) -> None:
     """Whether nothing in the residual can be told from its round-off, see `round_off`; K: at held rates."""
     K, sizes, terms = room.K, dofs.sizes, dofs.terms
     ndof = sizes.shape[1]
@@ -235,7 +235,7 @@ def judge_round_off(room: TangentRoom, dofs: Dofs, progress: NewtonProgress) -> 
 
 
 @njit
-def fill(room: TangentRoom, dofs: Dofs) -> None:
+def fill(room: MatrixRoom, dofs: Dofs) -> None:
     """Sum element matrices into the banded one, with ones on the diagonal for what is fixed."""
     K, ab, fixed = room.K, room.ab, dofs.fixed
     ndof = fixed.shape[1]
@@ -255,14 +255,14 @@ def fill(room: TangentRoom, dofs: Dofs) -> None:
 
 
 @njit
-def factorise(room: TangentRoom, progress: NewtonProgress) -> None:
+def factorise(room: MatrixRoom, progress: NewtonProgress) -> None:
     """Factorise the matrix."""
     if not banded.factorise(room.ab, room.pivots, room.band):
         progress.ending[0] = SINGULAR
 
 
 @njit
-def improve(room: TangentRoom, step: StepNumbers, dofs: Dofs) -> None:
+def improve(room: MatrixRoom, step: StepNumbers, dofs: Dofs) -> None:
     """Take what the factorised tangent answers to the residual off the increments."""
     for n in range(step.u.shape[0]):
         for i in range(step.u.shape[1]):

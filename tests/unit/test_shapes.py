@@ -83,6 +83,13 @@ def test_smallest_turn_is_a_rotation_about_the_common_normal(a: Array, b: Array)
     assert 1.0 + a @ b < 1e-9 or turn @ np.cross(a, b) == pytest.approx(np.cross(a, b), abs=1e-6)
 
 
+def test_turns_by_nearly_half_a_turn_are_exact() -> None:
+    a = np.array([0.625, 1e-5, 0.0])
+    turn = shapes.smallest_turn(a / np.linalg.norm(a), -EAST)
+    assert turn @ turn.T == pytest.approx(np.eye(3), abs=1e-14)
+    assert turn @ a / np.linalg.norm(a) == pytest.approx(-EAST, abs=1e-10)
+
+
 def test_half_turns_keep_to_the_vertical_plane() -> None:
     assert shapes.smallest_turn(EAST, -EAST) == pytest.approx(np.diag([-1.0, 1.0, -1.0]))
 
