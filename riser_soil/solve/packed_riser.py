@@ -99,8 +99,8 @@ class PackedRiser:
     def solve(self) -> tuple[int, int]:
         """Solve the step: the outcome, see `riser_loop`, and the number of iterations."""
         self._solve()
-        outcome, taken = self.progress.ending.tolist()
-        return outcome, taken
+        outcome, taken = self.progress.ending
+        return int(outcome), int(taken)
 
     def solved(self, t: float) -> State:
         """The state of the step solved last."""

@@ -60,7 +60,7 @@ class RiserNewton:
         outcome, taken = self._riser.solve()
         self.rests = False
         self.iterations += taken
-        norms: list[float] = self._riser.progress.norms[: taken + 1].tolist()
+        norms = [float(norm) for norm in self._riser.progress.norms[: taken + 1]]
         self.system.clock.add("riser alone", since)
         if outcome != riser_loop.CONVERGED:
             raise NotConvergedError(self._reason(outcome, norms))
@@ -74,11 +74,11 @@ class RiserNewton:
         since = time.perf_counter()
         work = {part.name: Work() for part in self.system.model.parts}
         energy, rows = self._riser.account(before)
-        compiled = iter(rows.tolist())
+        compiled = (Work(*(float(joules) for joules in row)) for row in rows)
         for part, kernel in self._turning:
-            work[part.name] += Work(*next(compiled)) if kernel else part.work(before, solution.state)
+            work[part.name] += next(compiled) if kernel else part.work(before, solution.state)
         self.system.clock.add("riser alone", since)
-        return Energy(*energy.tolist()), work
+        return Energy(*(float(joules) for joules in energy)), work
 
     def _guess(self, step: Step) -> State:
         """The first guess, with the rates of no increments but those that are prescribed."""
