@@ -14,7 +14,7 @@ from typing import Any
 import numba
 import numpy as np
 
-FORMATS: dict[type, str] = {float: "d", int: "q", bool: "?"}
+FORMATS: dict[type, str] = {float: "d", np.float64: "d", int: "q", np.int64: "q", bool: "?", np.bool_: "?"}
 
 
 class Packed:
