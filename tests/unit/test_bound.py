@@ -23,7 +23,11 @@ class Outer(NamedTuple):
     weight: float
     inner: Inner
     lengths: tuple[int, ...]
-    last: bool | np.bool_
+    last: bool
+
+
+float_: Any = np.float64
+bool_: Any = np.bool_
 
 
 @numba.njit
@@ -35,7 +39,7 @@ def add(given: Outer, out: np.ndarray) -> None:
             out[i] += given.weight * inner.values[i, j] * given.lengths[j] if on else 0.0
 
 
-def given(values: np.ndarray, weight: float = 2.0, last: bool | np.bool_ = True) -> Outer:
+def given(values: np.ndarray, weight: float = 2.0, last: bool = True) -> Outer:
     return Outer(True, weight, Inner(False, True, values), (3, 5, 7, 11), last)
 
 
@@ -43,7 +47,7 @@ def given(values: np.ndarray, weight: float = 2.0, last: bool | np.bool_ = True)
 def test_a_kernel_finds_what_was_packed(values: np.ndarray) -> None:
     packed, out = Packed(given(values)), np.zeros(2)
     call = Bound(add, packed, Packed(out))
-    for weight, last in ((2.0, True), (np.float64(-1.5), np.bool_(True)), (1.0, False)):
+    for weight, last in ((2.0, True), (float_(-1.5), bool_(True)), (1.0, False)):
         out[:], expected = 1.0, np.ones(2)
         packed.renew(given(values, weight, last))
         call()
