@@ -31,31 +31,31 @@ class PackedRiser:
         self, line: Line, numbers: Sequence[Numbers], prescribed: BoolArray, levers: Array, most: int
     ) -> None:
         self._line, shape = line, (line.nodes, line.ndof)
-        turning = [each for each in numbers if type(each) in add_work.kernels]
-        self.step, self._begun = StepNumbers(*_zeros(6, shape)), _zeros(2, shape)
-        self.forces, self.room = forces_of(line), _matrix_room(line)
+        self.step, self.forces, self.room = StepNumbers(*_zeros(6, shape)), forces_of(line), _matrix_room(line)
         self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
         self.progress = NewtonProgress(np.zeros(most + 1), np.zeros(2, dtype=np.int64))
-        self._energy, self._work = np.zeros(3), np.zeros((len(turning), 4))
+        base = base_of(line)
+        self._base = Packed(type(base)(*map(np.copy, base)))
         self._maps, self._weights = Packed(_maps_of(line)), Packed(LineWeights(0.0, 0.0))
         self._limits = Packed(StopLimits(0.0, 0.0, 0.0, most, 0, False))
-        base, at, begun = base_of(line), room_for(line), room_for(line)
-        self._base, now, then = Packed(type(base)(*map(np.copy, base))), Packed(at), Packed(begun)
-        step, forces, room, dofs, progress = map(Packed, (self.step, self.forces, self.room, self.dofs, self.progress))
+        self._bind(numbers)
+        self._bind_account(numbers)
+
+    def _bind(self, numbers: Sequence[Numbers]) -> None:
+        """Bind the kernels of the loop to where they read and write."""
+        at = room_for(self._line)
+        written = self.step, self.forces, self.dofs, self.room, self.progress
+        now, step, forces, dofs, room, progress = map(Packed, (at, *written))
         maps, weights, limits, K = self._maps, self._weights, self._limits, Packed(self.room.K)
-        held_rates = Packed(maps.value)  # no shifts
-        motion = [Packed(values) for values in (self.step.u, self.step.v, self.step.a)]
-        start = [Packed(values) for values in (np.zeros(shape), *self._begun)]
-        joules, rows = Packed(self._energy), [Packed(row) for row in self._work]
-        evaluate = (
+        evaluate = [
             Bound(loop.follow, step, maps, dofs),
-            _bound(place, at, self._base, *motion),
+            _bound(place, at, self._base, *map(Packed, (self.step.u, self.step.v, self.step.a))),
             Bound(loop.clear, forces),
             *(_bound(add_forces, each, now, forces) for each in numbers),
             Bound(loop.collect, now, forces),
             Bound(loop.combine, forces, step, weights, dofs),
             Bound(loop.judge, forces, dofs, limits, progress),
-        )
+        ]
 
         def tangent(maps: Packed) -> list[Bound]:
             return [
@@ -67,17 +67,29 @@ class PackedRiser:
                 Bound(loop.turn, room),
             ]
 
+        at_held_rates = tangent(Packed(maps.value))  # without shifts
         put_sizes = _bound(put_magnitudes, at, Packed(self.dofs.sizes))
-        probe = calls(*tangent(held_rates), put_sizes, Bound(loop.judge_round_off, room, dofs, progress))
+        probe = [*at_held_rates, put_sizes, Bound(loop.judge_round_off, room, dofs, progress)]
         put_tangent = [*tangent(maps), Bound(loop.fill, room, dofs)]
-        renew = calls(*put_tangent, Bound(loop.factorise, room, progress))
-        improve = calls(Bound(loop.improve, room, step, dofs))
-        self._solve = Bound(loop.solve_step, *map(Packed, (calls(*evaluate), probe, renew, improve)), limits, progress)
+        renew = [*put_tangent, Bound(loop.factorise, room, progress)]
+        improve = [Bound(loop.improve, room, step, dofs)]
+        tables = (Packed(calls(*kernels)) for kernels in (evaluate, probe, renew, improve))
+        self._solve = Bound(loop.solve_step, *tables, limits, progress)
         self.evaluate, self.put_tangent = _in_turn(*evaluate), _in_turn(*put_tangent, put_sizes)
+        self._at = now
+
+    def _bind_account(self, numbers: Sequence[Numbers]) -> None:
+        """Bind the kernels of energy and work."""
+        turning = [each for each in numbers if type(each) in add_work.kernels]
+        still, *self._begun = _zeros(3, self.step.u.shape)
+        self._energy, self._work = np.zeros(3), np.zeros((len(turning), 4))
+        first = room_for(self._line)
+        then, now, energy = Packed(first), self._at, Packed(self._energy)
+        rows = [Packed(row) for row in self._work]
         self._account = _in_turn(
-            _bound(place, begun, self._base, *start),
-            Bound(loop.clear_account, joules, Packed(self._work)),
-            *(_bound(add_energy, each, now, joules) for each in numbers),
+            _bound(place, first, self._base, *map(Packed, (still, *self._begun))),
+            Bound(loop.clear_account, energy, Packed(self._work)),
+            *(_bound(add_energy, each, now, energy) for each in numbers),
             *(_bound(add_work, each, then, now, row) for each, row in zip(turning, rows, strict=True)),
         )
 
@@ -122,7 +134,7 @@ def _in_turn(*bound: Bound) -> Bound:
     return Bound(call_each, Packed(calls(*bound)))
 
 
-def _zeros(n: int, shape: tuple[int, int]) -> list[Array]:
+def _zeros(n: int, shape: tuple[int, ...]) -> list[Array]:
     return [np.zeros(shape) for _ in range(n)]
 
 
