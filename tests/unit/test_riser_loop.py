@@ -1,6 +1,6 @@
 """The compiled loop over a riser alone: its kernels are those of the parts, and its steps are those of SNES.
 
-`tests/verification/test_riser_loop.py` has the same in space and on a floor, which take longer to compile.
+`tests/verification/test_riser_loop.py` has the same in space, on a floor and in moving water, which takes longer.
 """
 
 from __future__ import annotations
@@ -16,16 +16,7 @@ from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
 from riser_soil.solve import banded
 from riser_soil.solve.newton import Newton
-from tests.support import sample_water
-from tests.support.riser_loop import (
-    CASES,
-    SCENES,
-    require_kernels,
-    require_kernels_of_parts,
-    require_steps_of_snes,
-    walked,
-)
-from tests.support.sample_line import sample
+from tests.support.riser_loop import CASES, SCENES, require_kernels_of_parts, require_steps_of_snes, walked
 
 
 def test_kernels_in_a_plane_are_those_of_the_parts() -> None:
@@ -34,11 +25,6 @@ def test_kernels_in_a_plane_are_those_of_the_parts() -> None:
 
 def test_steps_in_a_plane_are_those_of_snes() -> None:
     require_steps_of_snes("surge in a plane")
-
-
-def test_kernels_in_waves_are_those_of_the_parts() -> None:
-    at = sample(2)
-    require_kernels(at, [sample_water.half_out_in_waves(at), sample_water.floating_in_waves(at)])
 
 
 @pytest.mark.parametrize(("n", "b"), [(3, 2), (9, 2), (40, 5), (66, 11)])
