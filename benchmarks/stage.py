@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from statistics import median
 
-import numpy as np
 from mpi4py import MPI
 
 from riser_soil.assembly import Assembly, build
@@ -76,7 +75,3 @@ def typical_seconds(action: Callable[[], object], repeats: int) -> float:
         action()
         taken.append(time.perf_counter() - began)
     return median(taken)
-
-
-def random_right_hand_side(size: int) -> np.ndarray:
-    return np.random.default_rng(1).normal(size=size)

@@ -58,14 +58,6 @@ def caching() -> Iterator[None]:
         numba.config.CACHE_DIR = before
 
 
-def inlined(function: Callable[..., object]) -> Any:
-    """Compile a function as a piece of each that calls it, which takes less time where it only calls others in turn.
-
-    Loops have no place in it: numba has been seen to mix up their variables with those of the caller.
-    """
-    return numba.njit(inline="always", error_model="numpy")(function)
-
-
 def fixed(n: int) -> tuple[int, ...]:
     """A tuple of length n, which compiled code knows beforehand: it unrolls loops over range(len(...))."""
     return (0,) * n

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -195,12 +196,12 @@ def _fields(assembly: Assembly) -> tuple[Array, Array]:
 def reason(mapping: Mapping, ranks: int = 1) -> str:
     assembly = built(mapping)
     assert assembly.soil is not None
-    soil = SimpleNamespace(
+    soil: Any = SimpleNamespace(
         grid=SimpleNamespace(nodes=SimpleNamespace(comm=SimpleNamespace(size=ranks))),
         surface=assembly.soil.surface,
         field=assembly.soil.field,
     )
-    return why_whole(assembly.scene, soil, assembly.line, assembly.scales.diameter)  # type: ignore[arg-type]
+    return why_whole(assembly.scene, soil, assembly.line, assembly.scales.diameter)
 
 
 def test_what_is_condensed_and_what_is_not() -> None:
