@@ -47,15 +47,22 @@ class WriteError(RiserSoilError):
 class Interruption(KeyboardInterrupt):
     """A signal that asks the program to end; as KeyboardInterrupt passes all that catches errors.
 
-    place: where the run was, and what is in its folder. together: whether all ranks stopped at the same place. told:
-    whether the user has been told.
+    place: where the run was, and what is in its folder; a run that has told this is concluded, and an error after that
+    is one of its own. together: whether all ranks stopped at the same place. told: whether the user has been told.
     """
+
+    nowhere = "before the first stage; nothing was computed"
 
     def __init__(self, number: int, together: bool = False) -> None:
         super().__init__(number, together)
         self.number, self.together = number, together
         self.told = False
-        self.place = "before the first stage; nothing was computed"
+        self.place = self.nowhere
+
+    @property
+    def concluded(self) -> bool:
+        """Whether somebody has seen to it."""
+        return self.told or self.place != self.nowhere
 
     @property
     def exit_status(self) -> int:

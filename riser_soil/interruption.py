@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any, NoReturn
 
-from riser_soil.errors import Interruption
+from riser_soil.errors import Interruption, RiserSoilError
 
 OURS = (signal.SIGINT, signal.SIGTERM)
 
@@ -68,16 +68,30 @@ def handling_signals() -> Iterator[None]:
 
 @contextmanager
 def unmasked() -> Iterator[None]:
-    """Raises the Interruption of a signal that came within compiled code: its caller makes a SystemError of that, the
-    import of a compiled module an ImportError.
+    """Raises the Interruption of a signal where another exception has taken its place.
+
+    One that came within compiled code makes a SystemError of its caller, one within the import of a compiled module an
+    ImportError; where an import was cut off and its caller tried another way, anything may have followed.
     """
     try:
         yield
-    except (SystemError, ImportError) as err:
-        end = err.__cause__ if isinstance(err.__cause__, Interruption) else _pending.latest
-        if end is not None:
+    except (RiserSoilError, OSError):
+        raise
+    except Exception as err:
+        end = _interruption_behind(err)
+        if end is None and isinstance(err, (SystemError, ImportError)):
+            end = _pending.latest
+        if end is not None and not end.concluded:
             raise end from None
         raise
+
+
+def _interruption_behind(err: BaseException) -> Interruption | None:
+    """The one that an error came of, or in whose handling it was raised."""
+    behind: BaseException | None = err
+    while behind is not None and not isinstance(behind, Interruption):
+        behind = behind.__cause__ or behind.__context__
+    return behind
 
 
 @contextmanager
