@@ -293,11 +293,11 @@ class Newton:
     @property
     def _least_iterations(self) -> int:
         """A motion that continues by its first guess alone would keep its errors."""
-        return max(self.settings.least_iterations, int(self._starts_near))
+        return max(self.settings.least_iterations, int(self._weights.inertia > 0.0))
 
     @property
     def _starts_near(self) -> bool:
-        """Whether the guess continues a smooth motion: time steps without contact."""
+        """Whether a tangent holds for the next iteration, too: in time steps without contact."""
         return self.system.smooth and self._weights.inertia > 0.0
 
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
