@@ -9,24 +9,17 @@ A tension T bends elements into shapes that a cubic can't follow, which leaves T
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
 
 import numpy as np
 
 from riser_soil.accuracy.headlines import FORCE_FLOOR
 from riser_soil.core.arrays import Array
 from riser_soil.core.snapshot import Instant
-from riser_soil.scene.riser import Segment
 
 GAP = 0.5  # of the accuracy asked: what falls between nodes
 FORGIVEN = 0.2  # of how far a moment is below the largest, or a tension above the least
-FEWEST = 12  # elements along the whole riser
-GROWTH = 0.3  # of the length of elements from one to the next
 SHRINK = 6.0  # at most, from one run to the next: what is not resolved yet asks for more than it needs
-STRAIGHT = 0.15  # in the logarithm of h, what a stretch of steadily growing elements may be off
-SAMPLES = 400
 
 
 @dataclass
@@ -81,16 +74,6 @@ class CurveEnvelope:
         return float((np.diff(self.arc) / np.minimum(asked[1:], asked[:-1])).max())
 
 
-def graded(segments: Sequence[Segment], envelope: CurveEnvelope, share: float) -> tuple[Segment, ...]:
-    """The segments, each in stretches of steadily growing elements, by a run's envelope."""
-    arc, lengths = _smooth(envelope.arc, envelope.lengths(share))
-    stretches, begin = list[Segment](), 0.0
-    for segment in segments:
-        stretches += _stretches(segment, begin, arc, lengths)
-        begin += segment.length
-    return tuple(stretches)
-
-
 def _bend(arc: Array, values: Array) -> Array:
     """Size of the second derivative (nn,) of values (nn, m); at the ends that of the neighbours."""
     if arc.size < 3:
@@ -109,47 +92,3 @@ def _present(arc: Array) -> Array:
     """The shorter of the elements at each node (nn,)."""
     length = np.diff(arc)
     return np.minimum(np.append(length, length[-1]), np.insert(length, 0, length[0]))
-
-
-def _smooth(arc: Array, lengths: Array) -> tuple[Array, Array]:
-    """Lengths between the nodes, too, that grow slowly from where they are least; arc and lengths (n,)."""
-    beside = np.minimum(lengths, np.minimum(np.append(lengths[1:], np.inf), np.insert(lengths[:-1], 0, np.inf)))
-    fine = np.union1d(arc, np.linspace(arc[0], arc[-1], SAMPLES))
-    reach = beside[None, :] + GROWTH * np.abs(fine[:, None] - arc[None, :])
-    return fine, np.minimum(reach.min(axis=1), (arc[-1] - arc[0]) / FEWEST)
-
-
-def _stretches(segment: Segment, begin: float, arc: Array, lengths: Array) -> list[Segment]:
-    end = begin + segment.length
-    inner = arc[(arc > begin) & (arc < end)]
-    at = np.concatenate([[begin], inner, [end]])
-    h = np.minimum(np.interp(at, arc, lengths), 0.5 * segment.length)
-    corners = _long_enough(at, h, _corners(at, np.log(h)))
-    given = segment.model_dump(exclude={"length", "elements", "element_length"})
-    return [
-        Segment(**given, length=float(at[j] - at[i]), element_length=(_told(h[i]), _told(h[j])))
-        for i, j in pairwise(corners)
-    ]
-
-
-def _corners(x: Array, y: Array) -> list[int]:
-    """Indices at which a polygon that follows y(x) has its corners (Ramer 1972; Douglas and Peucker 1973)."""
-    off = np.abs(y - np.interp(x, x[[0, -1]], y[[0, -1]]))
-    worst = int(off.argmax())
-    if off[worst] <= STRAIGHT:
-        return [0, len(x) - 1]
-    return [*_corners(x[: worst + 1], y[: worst + 1]), *(worst + i for i in _corners(x[worst:], y[worst:])[1:])]
-
-
-def _long_enough(x: Array, h: Array, corners: list[int]) -> list[int]:
-    """Without corners that leave less than two elements between them; the shorter length stays."""
-    kept = corners[:1]
-    for at in corners[1:-1]:
-        if x[at] - x[kept[-1]] >= 2.0 * h[at] and x[corners[-1]] - x[at] >= 2.0 * h[at]:
-            kept.append(at)
-    return [*kept, corners[-1]]
-
-
-def _told(length: float) -> float:
-    """To four figures."""
-    return float(f"{length:.4g}")

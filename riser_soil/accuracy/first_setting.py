@@ -1,22 +1,18 @@
-"""First setting of a scene that asks for an accuracy: a few even elements, some steps to a period, automatic soil.
-
-Where forces, moments or attachments act within the riser there are nodes: moments need them, and shear jumps there.
-"""
+"""First setting of a scene that asks for an accuracy: a few even elements, some steps to a period, automatic soil."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from itertools import pairwise
 
 from riser_soil.accuracy.knobs import resolved
 from riser_soil.assembly.end_places import periods_of
+from riser_soil.assembly.graded_segments import broken
 from riser_soil.scene.riser import Segment
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage
 
 EVEN, LEAST, BROKEN = 24, 4, 2  # elements of the riser; at least of a segment, and of a part of one between two places
-SAME_PLACE = 1e-6  # of the riser's length
 # Time steps to the shortest period of what moves, times the root of the accuracy, as errors fall with the step's
 # square; within limits. Where nothing has a period, to a quarter of a stage; so many to any stage at least.
 OF_PERIOD, FEWEST, MOST = 5.0, 16.0, 500.0
@@ -35,26 +31,8 @@ def first_setting(scene: Scene) -> Scene:
 
 def _parts(scene: Scene) -> Iterator[tuple[Segment, int]]:
     """Segments, broken where something acts, with their least number of elements."""
-    begin, near = 0.0, SAME_PLACE * scene.riser.length
-    for segment in scene.riser.segments:
-        end, cuts = begin + segment.length, [begin]
-        for place in sorted(_places(scene)):
-            if cuts[-1] + near < place < end - near:
-                cuts.append(place)
-        if len(cuts) == 1:
-            yield segment, LEAST
-        else:
-            for a, b in pairwise([*cuts, end]):
-                yield segment.model_copy(update={"length": b - a}), BROKEN
-        begin = end
-
-
-def _places(scene: Scene) -> Iterator[float]:
-    """Arc lengths [m] of point loads and attachments."""
-    for stage in scene.stages:
-        yield from (load.at for load in stage.loads if isinstance(load.at, float))
-    for attachment in scene.riser.attachments:
-        yield from attachment.arcs
+    for parts in broken(scene):
+        yield from ((part, LEAST if len(parts) == 1 else BROKEN) for part in parts)
 
 
 def _cut(segment: Segment, length: float, least: int) -> Segment:

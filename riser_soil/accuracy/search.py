@@ -8,10 +8,11 @@ from typing import Any, TypeVar
 
 from riser_soil.accuracy.chain import COARSER, Ratios, companions, run_values
 from riser_soil.accuracy.companions import peaks_of
-from riser_soil.accuracy.element_sizes import CurveEnvelope, graded
+from riser_soil.accuracy.element_sizes import CurveEnvelope
 from riser_soil.accuracy.error_bars import ErrorBar, RunValues, error_bars
 from riser_soil.accuracy.headlines import headlines
 from riser_soil.accuracy.knobs import KNOBS, varied
+from riser_soil.assembly.graded_segments import graded
 from riser_soil.errors import SolveError
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.riser import Segment
@@ -89,7 +90,7 @@ def _computed(scene: Scene, comm: Any) -> tuple[Scene, CurveEnvelope, RunPeaks]:
 
 
 def _graded(scene: Scene, segments: tuple[Segment, ...], seen: CurveEnvelope, accuracy: float, comm: Any) -> Scene:
-    made = _on_first(comm, lambda: graded(segments, seen, accuracy))
+    made = _on_first(comm, lambda: graded(segments, seen.arc, seen.lengths(accuracy)))
     return scene.model_copy(update={"riser": scene.riser.model_copy(update={"segments": made})})
 
 

@@ -40,13 +40,13 @@ def forecast(scene: Scene, elements: Elements) -> TouchdownForecast | None:
     attachments = attachments_of(scene)
     if not all(isinstance(end, Support) for end in (scene.riser.start, scene.riser.end)):
         return None
-    found = [_touchdown(scene, elements, attachments, *ends) for ends in _extreme_places(scene)]
+    found = [_touchdown(scene, elements, attachments, *ends) for ends in extreme_places(scene)]
     if not found or found[0] is None:
         return None
     return TouchdownForecast(np.array([point for point, _ in filter(None, found)]), found[0][1])
 
 
-def _extreme_places(scene: Scene) -> Iterator[tuple[Array, Array]]:
+def extreme_places(scene: Scene) -> Iterator[tuple[Array, Array]]:
     """First places of start and end (3,), then where they are nearest, farthest, highest and lowest to each other."""
     for n, place in enumerate(end_places(scene)):
         start, end = place["start"], place["end"]

@@ -10,6 +10,7 @@ from mpi4py import MPI
 
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.condensation import why_whole
+from riser_soil.checks.element_proposal import proposal
 from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_memory
 from riser_soil.checks.inventory import built, left_out, unknowns
 from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tell, too_long
@@ -52,6 +53,8 @@ def _unknowns(assembly: Assembly) -> Iterator[str]:
         f"riser: {line.length.size} elements of {line.length.min():.4g} to {line.length.max():.4g} m, "
         f"{unknowns(assembly.comm, line)} unknowns"
     )
+    if better := proposal(assembly):
+        yield better
     if assembly.attachments:
         net = sum(attachment.net_weight for attachment in assembly.attachments)
         yield f"{_counted(len(assembly.attachments), 'attachment')}: weight less buoyancy {net:.4g} N in all"

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from riser_soil.accuracy.element_sizes import FORGIVEN, GAP, GROWTH, SHRINK, CurveEnvelope, graded
+from riser_soil.accuracy.element_sizes import FORGIVEN, GAP, SHRINK, CurveEnvelope
 from riser_soil.accuracy.headlines import FORCE_FLOOR
+from riser_soil.assembly.graded_segments import GROWTH, graded
 from riser_soil.core.arrays import Array
 from riser_soil.core.snapshot import Instant
 from riser_soil.scene.riser import Segment
@@ -104,16 +105,17 @@ def layered() -> CurveEnvelope:
 
 def test_stretches_follow_the_curve_and_keep_the_segments_whole() -> None:
     segments = (Segment(line_type="a", length=60.0, elements=6), Segment(line_type="b", length=40.0, elements=4))
-    made = graded(segments, layered(), SHARE)
+    made = graded(segments, ARC, layered().lengths(SHARE))
     assert [math.fsum(s.length for s in made if s.line_type == name) for name in "ab"] == pytest.approx([60.0, 40.0])
     lengths = np.array([x for segment in made for x in segment.element_lengths])
     assert lengths[0] == pytest.approx(math.sqrt(8.0 * GAP * SHARE * 1e3 / 250.0), rel=0.25)
     assert lengths.max() <= LENGTH / 12 * 1.001
     assert max(b / a for a, b in pairwise(lengths)) < 1.0 + 2.0 * GROWTH
-    fine = np.array([x for segment in graded(segments, layered(), SHARE / 100.0) for x in segment.element_lengths])
+    finer = graded(segments, ARC, layered().lengths(SHARE / 100.0))
+    fine = np.array([x for segment in finer for x in segment.element_lengths])
     assert fine[0] < 0.2 * lengths[0]
 
 
 def test_a_short_segment_has_two_elements_at_least() -> None:
     segments = (Segment(line_type="a", length=99.0, elements=6), Segment(line_type="b", length=1.0, elements=4))
-    assert graded(segments, envelope(seen(0.0 * BULGE, EVEN)), SHARE)[-1].element_count == 2
+    assert graded(segments, ARC, envelope(seen(0.0 * BULGE, EVEN)).lengths(SHARE))[-1].element_count == 2
