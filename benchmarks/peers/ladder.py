@@ -45,6 +45,7 @@ class Program:
 PROGRAMS = (
     Program("riser_soil, compiled", "riser", {"newton": "compiled"}, own=True),
     Program("riser_soil, SNES", "riser", {"newton": "snes"}, own=True, again=True),
+    Program("riser_soil, compiled, graded", "riser", {"newton": "compiled", "mesh": "graded"}, own=True, again=True),
     Program("CableDyn", "cabledyn"),
     Program("CableDyn, tolerance 1e-4", "cabledyn", {"tolerances": "1e-4 1e-14 100 12"}, again=True),
     Program("Exudyn", "exudyn"),

@@ -12,27 +12,35 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from mpi4py import MPI
+from scipy.interpolate import CubicSpline
 
 from benchmarks.peers.case import GRAVITY, WATER, Case, Record, Surge
 from demos.compute import timed
+from riser_soil.assembly import build
+from riser_soil.assembly.graded_segments import graded
+from riser_soil.checks.element_proposal import asked_lengths
 from riser_soil.results import Run
+from riser_soil.scene.reader import scene_from_mapping
 
 REPEATS = 2  # of a single step; the first ever compiles
+HALVINGS = 40
+LOOKED_AT = 321  # nodes at equal arcs, where those of the mesh are not
 
 
-def run(case: Case, elements: int, time_step: float, newton: str = "snes") -> Record:
+def run(case: Case, elements: int, time_step: float, newton: str = "snes", mesh: str = "equal") -> Record:
     """One run, and its time loop's seconds: those of the run less those of a run of a single step."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         scene = folder / "scene.yaml"
-        scene.write_text(json.dumps(scene_of(case, elements, time_step, newton)), encoding="utf-8")
+        scene.write_text(json.dumps(scene_of(case, elements, time_step, newton, mesh)), encoding="utf-8")
         still = [timed(scene, folder / "still", f"stages.1.duration={time_step}")[1] for _ in range(REPEATS)]
         done, moving = timed(scene, folder / "moving")
         return _read(done, moving - min(still))
 
 
-def scene_of(case: Case, elements: int, time_step: float, newton: str) -> dict[str, Any]:
-    """The case as a scene: at rest, then in motion."""
+def scene_of(case: Case, elements: int, time_step: float, newton: str, mesh: str = "equal") -> dict[str, Any]:
+    """The case as a scene: at rest, then in motion. mesh: equal, or graded as `riser-soil check` proposes."""
     line = {
         "outer_diameter": case.diameter,
         "mass": case.mass,
@@ -64,7 +72,24 @@ def scene_of(case: Case, elements: int, time_step: float, newton: str) -> dict[s
     if case.floor is not None:
         scene["seabed"] = {"kind": "rigid", "level": 0.0, "contact_at": "axis"}
         scene["contact"] = {"stiffness": case.floor}
+    if mesh == "graded":
+        scene["riser"]["segments"] = _graded(scene, elements)
     return scene
+
+
+def _graded(scene: dict[str, Any], elements: int) -> list[dict[str, Any]]:
+    """Segments of no more elements than so many, in the lengths' proportions to each other that are proposed."""
+    checked = scene_from_mapping(scene)
+    asked = asked_lengths(build(checked, MPI.COMM_SELF))
+    assert asked is not None
+    arc, lengths = asked
+    coarse, fine = 1e3, 1e-3  # times the proposed lengths
+    for _ in range(HALVINGS):
+        middle = math.sqrt(coarse * fine)
+        found = graded(checked.riser.segments, arc, middle * lengths)
+        enough = sum(segment.element_count for segment in found) > elements
+        coarse, fine = (coarse, middle) if enough else (middle, fine)
+    return [segment.model_dump(mode="json") for segment in graded(checked.riser.segments, arc, coarse * lengths)]
 
 
 def _motion(case: Case) -> dict[str, Any]:
@@ -77,13 +102,16 @@ def _motion(case: Case) -> dict[str, Any]:
 
 def _read(run: Run, seconds: float) -> Record:
     """The stage in motion; its first record is that of the rest."""
-    tension = run["effective_tension"]
+    tension, arc = run["effective_tension"], np.asarray(run.arc)
+    position = run["position"][..., ::2]
+    if np.ptp(np.diff(arc)) > 1e-6 * arc[-1]:
+        position = CubicSpline(arc, position, axis=1)(np.linspace(0.0, arc[-1], LOOKED_AT))
     return Record(
         time=np.asarray(run.time),
         held=tension[:, 0],
         moved=tension[:, -1],
-        arc=np.asarray(run.arc),
+        arc=arc,
         moment=run["bending_moment"],
-        position=run["position"][..., ::2],
+        position=position,
         seconds=seconds,
     )
