@@ -2,10 +2,11 @@
 
 import argparse
 
-from benchmarks import adaptive, condensed, coupled, impact, riser_only, tank, twins, waves
+from benchmarks import adaptive, condensed, coupled, impact, length, riser_only, tank, twins, waves
 
 argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__).parse_args()
 riser_only.report()
+length.report()
 twins.report()
 coupled.report()
 condensed.report()
