@@ -43,7 +43,7 @@ def measure(dimension: int, elements: int) -> tuple[float, float, float, float, 
     bending = () if dimension == 2 else ("line_types.flexible.GJ=2.0e4",)
     stage = last_stage(CATENARY, (f"dimension={dimension}", ELEMENTS.format(elements), *sizes, *bending), Timer.new())
     stage.walk(BEFORE)
-    stage.iterations, taken = 0, []
+    stage.iterations, taken = 0, list[float]()
     for _ in range(STEPS):
         began = time.process_time()
         stage.walk(1)
