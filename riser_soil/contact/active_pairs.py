@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from riser_soil.contact.cylinder_gap import NearPoints
+from riser_soil.contact.cylinder_gap import FORMS, NearPoints
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 
@@ -50,9 +50,7 @@ class ActivePairs:
         """d²ψ/dz² (m, nz, nz) of the pairs."""
         nz = self.forms.shape[2]
         out = np.zeros((len(self.element), nz, nz))
-        core = -self.force[:, None, None] * self.C
-        core[:, 0, 0] += self.slope
-        add_products(out, self.pair, self.forms, core @ self.forms)
+        add_products(out, self.pair, self.forms, by_curvature(self.forms, self.C, self.force, self.slope))
         return out
 
 
@@ -65,11 +63,27 @@ def add_rows(out: Array, pair: IntArray, factor: Array, rows: Array) -> None:
 
 
 @njit
+def by_curvature(forms: Array, C: Array, force: Array, slope: Array) -> Array:
+    """Forms (n, 4, nz) times the matrices (n, 4, 4) with which forms·…·forms is d²ψ: of the law's slope, and of its force
+    by C, see `gap_forms`.
+    """
+    out = np.zeros_like(forms)
+    for i in range(len(force)):
+        for a in range(FORMS):
+            for b in range(FORMS):
+                factor = slope[i] - force[i] * C[i, 0, 0] if a == b == 0 else -force[i] * C[i, a, b]
+                if factor != 0.0:
+                    for c in range(forms.shape[2]):
+                        out[i, a, c] += factor * forms[i, b, c]
+    return out
+
+
+@njit
 def add_products(out: Array, pair: IntArray, left: Array, right: Array) -> None:
-    """Add the sums of left (n, k, nz) times right (n, k, nz), by row and column, to those (m, nz, nz) of the pairs."""
+    """Add the sums of left (n, 4, nz) times right (n, 4, nz), by row and column, to those (m, nz, nz) of the pairs."""
     for i in range(len(pair)):
-        for a in range(left.shape[1]):
-            for r in range(left.shape[2]):
-                if left[i, a, r] != 0.0:
-                    for c in range(right.shape[2]):
-                        out[pair[i], r, c] += left[i, a, r] * right[i, a, c]
+        block, (r0, r1, r2, r3) = out[pair[i]], (right[i, 0], right[i, 1], right[i, 2], right[i, 3])
+        for r in range(left.shape[2]):
+            row, (l0, l1, l2, l3) = block[r], (left[i, 0, r], left[i, 1, r], left[i, 2, r], left[i, 3, r])
+            for c in range(len(row)):
+                row[c] += l0 * r0[c] + l1 * r1[c] + l2 * r2[c] + l3 * r3[c]

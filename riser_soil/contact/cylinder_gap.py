@@ -28,7 +28,7 @@ from riser_soil.riser.hermite import shape as axis_shape
 
 FORMS = 4
 MAX_ITERATIONS = 30
-CONVERGED = 1e-14  # step along an element, as a part of its length
+CONVERGED = 1e-9  # step along an element, as a part of its length, after which one more would be below round-off
 THROUGH = 0.5  # radii beside the axis within which a point above it has come through
 PARALLEL = 1e-12  # sine of the angle below which two directions are one
 ROUND_OFF = 1e-6  # by which a reach is widened, and below which a row lies along an element
@@ -202,15 +202,21 @@ def _distance(p: tuple[float, float, float], r: tuple[float, float, float]) -> f
 @njit
 def _from_chord(q: Array, p: tuple[float, float, float]) -> float:
     """Distance of a point from the straight line between an element's ends [m]."""
-    along = square = beside = 0.0
+    share, beside = _along_chord(q, p), 0.0
+    for i in range(3):
+        beside += (p[i] - q[0, i] - share * (q[2, i] - q[0, i])) ** 2
+    return math.sqrt(beside)
+
+
+@njit
+def _along_chord(q: Array, p: tuple[float, float, float]) -> float:
+    """Place, 0 to 1, on the straight line between an element's ends that is closest to a point."""
+    along = square = 0.0
     for i in range(3):
         chord = q[2, i] - q[0, i]
         along += (p[i] - q[0, i]) * chord
         square += chord * chord
-    share = min(max(along / square, 0.0), 1.0) if square > 0.0 else 0.0
-    for i in range(3):
-        beside += (p[i] - q[0, i] - share * (q[2, i] - q[0, i])) ** 2
-    return math.sqrt(beside)
+    return min(max(along / square, 0.0), 1.0) if square > 0.0 else 0.0
 
 
 def _bow(axis: Axis) -> Array:
@@ -240,7 +246,7 @@ def _signed(c: tuple[float, float, float], p: tuple[float, float, float], radius
 @njit
 def _closest(q: Array, L: float, p: tuple[float, float, float]) -> float:
     """Place xi in 0..1 on an element's axis that is closest to a point."""
-    xi = 0.5
+    xi = _along_chord(q, p)
     for _ in range(MAX_ITERATIONS):
         c, c1 = combined(q, axis_shape(xi, L)), combined(q, slope(xi, L))
         c2 = combined(q, bend(xi, L))
