@@ -4,12 +4,15 @@
     [V  D] [y] = [g]
 
 B is factorised by its band, and the Schur complement D - V inv(B) U densely, both with partial pivoting. Few rows of U
-and columns of V, the touched ones, are not zero: it costs the band's solutions for so many unit vectors. Where the whole
-is positive definite, so is B, and of no larger condition: eliminating it first is as stable as any order.
+and columns of V, the touched ones, are not zero: it costs the band's solutions for so many unit vectors. Where the
+whole is positive definite, so is B, and of no larger condition: eliminating it first is as stable as any order.
 Source: Golub & Van Loan, Matrix Computations (2013), 4.3 and 3.4.
 """
 
 from __future__ import annotations
+
+import atexit
+from typing import ClassVar
 
 import numpy as np
 from petsc4py import PETSc
@@ -19,6 +22,7 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.solve import banded
 
+NO_ROWS: IntArray = np.empty(0, dtype=np.int64)
 WIDEST = 32  # entries beside the diagonal up to which a matrix is a chain's
 
 
@@ -29,8 +33,11 @@ class SingularError(Exception):
 class BorderedBand:
     """PETSc's preconditioner of type python for such matrices: an exact solver.
 
-    chain: rows of B, the first ones.
+    chain: rows of B, the first ones. in_use: all that are not destroyed. PETSc would call them as it ends, after Python
+    has: they are let go before.
     """
+
+    in_use: ClassVar[dict[BorderedBand, PETSc.PC]] = {}
 
     def __init__(self, matrix: PETSc.Mat, chain: int) -> None:
         self._indptr, self._indices, _ = matrix.getValuesCSR()
@@ -43,6 +50,7 @@ class BorderedBand:
 
     def setUp(self, pc: PETSc.PC) -> None:
         """Factorise the present matrix; SingularError where it can't be."""
+        self.in_use[self] = pc
         values = pc.getOperators()[1].getValuesCSR()[2]
         _spread(self._indptr, self._indices, values, self._band, self._right, self._below, self._corner)
         if not banded.factorise(self._band, self._pivots, self._wide):
@@ -52,7 +60,7 @@ class BorderedBand:
         self._by_chain = np.ascontiguousarray(self._below[:, self._touched])
         self._by_border = np.ascontiguousarray(self._right[self._touched])
         schur = self._corner - self._by_chain @ (between @ self._by_border)
-        self._schur, self._exchanged, singular = dgetrf(schur) if schur.size else (schur, None, 0)
+        self._schur, self._exchanged, singular = dgetrf(schur) if schur.size else (schur, NO_ROWS, 0)
         if singular:
             raise SingularError
 
@@ -67,6 +75,19 @@ class BorderedBand:
             x[self._touched] -= self._by_border @ x[chain:]
         banded.solve(self._band, self._pivots, x[:chain], self._wide)
         found.setArray(x)
+
+
+    def reset(self, pc: PETSc.PC) -> None:
+        """Called as the preconditioner is destroyed."""
+        self.in_use.pop(self, None)
+
+
+@atexit.register
+def let_go() -> None:
+    """Part all preconditioners from their contexts here."""
+    while BorderedBand.in_use:
+        _, pc = BorderedBand.in_use.popitem()
+        pc.setType(PETSc.PC.Type.NONE)
 
 
 def bandwidth(matrix: PETSc.Mat, chain: int) -> int:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from petsc4py import PETSc
@@ -69,3 +72,37 @@ def test_a_singular_matrix_is_told(row: int) -> None:
     with pytest.raises(SingularError):
         pc.setUp()
     mat.destroy()
+
+
+LEFT_OVER = """
+import numpy as np
+from petsc4py import PETSc
+from riser_soil.solve.bordered_band import BorderedBand
+
+class Solver:
+    def __init__(self):
+        size = np.arange(4, dtype=PETSc.IntType)
+        mat = PETSc.Mat().createAIJ((3, 3), csr=(size, size[:3], np.full(3, 2.0)), comm=PETSc.COMM_SELF)
+        self.snes, self.x, self.f = PETSc.SNES().create(PETSc.COMM_SELF), *mat.createVecs()
+        self.snes.setFunction(self.function, self.f)
+        self.snes.setJacobian(lambda *_: None, mat)
+        self.snes.getKSP().setType("preonly")
+        self.snes.getKSP().getPC().setType("python")
+        self.snes.getKSP().getPC().setPythonContext(BorderedBand(mat, 2))
+
+    def function(self, snes, x, f):
+        f.setArray(2.0 * x.getArray(readonly=True) - 6.0)
+
+solver = Solver()
+solver.snes.solve(None, solver.x)
+print(*solver.x.getArray(readonly=True))
+%s
+"""
+
+
+@pytest.mark.parametrize(("end", "in_use"), [("", 1), ("del solver", 1), ("solver.snes.destroy()", 0)])
+def test_python_ends_well_with_solvers_left_over(end: str, in_use: int) -> None:
+    """Of those destroyed, nothing is kept."""
+    counted = f"{end}\nprint(len(BorderedBand.in_use))"
+    done = subprocess.run([sys.executable, "-c", LEFT_OVER % counted], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout.split()) == (0, ["3.0", "3.0", "3.0", str(in_use)]), done.stderr
