@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from riser_soil.contact.pairing import bounds
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 
 EMPTY = np.empty(0, dtype=np.int64)
@@ -36,6 +37,11 @@ class CandidatePairs:
     def joined(self, other: CandidatePairs) -> CandidatePairs:
         """The candidates of both."""
         return CandidatePairs(self.facets, np.union1d(self.pairs, other.pairs).astype(np.int64))
+
+    @cached_property
+    def filled(self) -> BoolArray:
+        """Those pairs whose blocks of the tangent are written to, see `MatrixBlock`."""
+        return np.zeros(len(self.pairs), dtype=bool)
 
     @property
     def nodes(self) -> IntArray:
