@@ -64,8 +64,8 @@ def add_rows(out: Array, pair: IntArray, factor: Array, rows: Array) -> None:
 
 @njit
 def by_curvature(forms: Array, C: Array, force: Array, slope: Array) -> Array:
-    """Forms (n, 4, nz) times the matrices (n, 4, 4) with which forms·…·forms is d²ψ: of the law's slope, and of its force
-    by C, see `gap_forms`.
+    """Forms (n, 4, nz) times the matrices (n, 4, 4) with which forms·…·forms is d²ψ: of the law's slope, and of its
+    force by C, see `gap_forms`.
     """
     out = np.zeros_like(forms)
     for i in range(len(force)):
