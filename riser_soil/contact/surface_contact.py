@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.contact.active_pairs import ActivePairs
 from riser_soil.contact.candidates import CandidatePairs, touching_boxes
-from riser_soil.contact.cylinder_gap import Axis, NearPoints, Surface, gap_forms, near_points
+from riser_soil.contact.cylinder_gap import Axis, NearPoints, Surface, boxes, gap_forms, near_points
 from riser_soil.contact.detection import add_blocks, add_shares
 from riser_soil.contact.gap import heights
 from riser_soil.contact.integration_points import divisions
@@ -121,10 +121,9 @@ class SurfaceContact(SoilContact):
 
     def _pairs(self, axis: Axis, deformed: Array, reach: CandidateRange) -> tuple[IntArray, IntArray]:
         """Elements and facets (n,) whose boxes touch, those of the pipe wider by the reach."""
-        handles = axis.q[:, 1::2] * axis.length[:, None, None] / 3.0
-        corners = np.stack([axis.q[:, 0], axis.q[:, 0] + handles[:, 0], axis.q[:, 2] - handles[:, 1], axis.q[:, 2]], 1)
-        wide = axis.radius[:, None] + np.array([reach.around, reach.around, reach.above])
-        return touching_boxes(corners.min(axis=1) - wide, corners.max(axis=1) + wide, deformed, self._soil.facets)
+        low, high = boxes(axis, reach.above, reach.around)
+        found: tuple[IntArray, IntArray] = touching_boxes(low, high, deformed, self._soil.facets)
+        return found
 
     def blocks(self) -> dict[str, MatrixBlock]:
         """Those of the pairs; all dofs of each element, whose directors turn."""

@@ -22,7 +22,6 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.solve import banded
 
-NO_ROWS: IntArray = np.empty(0, dtype=np.int64)
 WIDEST = 32  # entries beside the diagonal up to which a matrix is a chain's
 
 
@@ -60,9 +59,11 @@ class BorderedBand:
         self._by_chain = np.ascontiguousarray(self._below[:, self._touched])
         self._by_border = np.ascontiguousarray(self._right[self._touched])
         schur = self._corner - self._by_chain @ (between @ self._by_border)
-        self._schur, self._exchanged, singular = dgetrf(schur) if schur.size else (schur, NO_ROWS, 0)
-        if singular:
-            raise SingularError
+        if schur.size:
+            schur, self._exchanged, singular = dgetrf(schur)
+            if singular:
+                raise SingularError
+        self._schur = schur
 
     def apply(self, pc: PETSc.PC, load: PETSc.Vec, found: PETSc.Vec) -> None:
         """Solve."""
