@@ -18,7 +18,7 @@ import numpy as np
 from petsc4py import PETSc
 from scipy.linalg.lapack import dgetrf, dgetrs
 
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.solve import banded
 
@@ -51,10 +51,10 @@ class BorderedBand:
         """Factorise the present matrix; SingularError where it can't be."""
         self.in_use[self] = pc
         values = pc.getOperators()[1].getValuesCSR()[2]
-        _spread(self._indptr, self._indices, values, self._band, self._right, self._below, self._corner)
+        parts = self._band, self._right, self._below, self._corner
+        self._touched = np.flatnonzero(_spread(self._indptr, self._indices, values, *parts))
         if not banded.factorise(self._band, self._pivots, self._wide):
             raise SingularError
-        self._touched = np.flatnonzero(self._right.any(axis=1) | self._below.any(axis=0))
         between = banded.inverse_at(self._band, self._pivots, self._touched, self._wide)
         self._by_chain = np.ascontiguousarray(self._below[:, self._touched])
         self._by_border = np.ascontiguousarray(self._right[self._touched])
@@ -102,9 +102,12 @@ def bandwidth(matrix: PETSc.Mat, chain: int) -> int:
 @njit
 def _spread(
     indptr: IntArray, indices: IntArray, values: Array, band: Array, right: Array, below: Array, corner: Array
-) -> None:
-    """Write the values of a CSR matrix to its four parts; band: as `banded` has it."""
+) -> BoolArray:
+    """Write the values of a CSR matrix to its four parts; which rows of the chain the border touches. band: as `banded`
+    has it.
+    """
     chain, middle = right.shape[0], (band.shape[1] - 1) // 3
+    touched = np.zeros(chain, np.bool_)
     for part in (band, right, below, corner):
         part[...] = 0.0
     for i in range(indptr.size - 1):
@@ -114,7 +117,10 @@ def _spread(
                 band[i, j - i + middle] = values[k]
             elif i < chain:
                 right[i, j - chain] = values[k]
+                touched[i] |= values[k] != 0.0
             elif j < chain:
                 below[i - chain, j] = values[k]
+                touched[j] |= values[k] != 0.0
             else:
                 corner[i - chain, j - chain] = values[k]
+    return touched
