@@ -55,11 +55,58 @@ class ActivePairs:
 
 
 @njit
+def paired(element: IntArray, facet: IntArray, elements: int) -> tuple[IntArray, IntArray, IntArray]:
+    """Pairs of n points that come facet by facet, numbered as they come: the pair of each point (n,), element and facet
+    of each pair (m,). elements: of the riser.
+    """
+    n, m = len(element), 0
+    pair, first, last = np.empty(n, np.int64), np.empty(n, np.int64), np.full(elements, -1)
+    for i in range(n):
+        known = last[element[i]]
+        if known < 0 or facet[first[known]] != facet[i]:
+            known, first[m], m = m, i, m + 1
+            last[element[i]] = known
+        pair[i] = known
+    return pair, element[first[:m]], facet[first[:m]]
+
+
+@njit
 def add_rows(out: Array, pair: IntArray, factor: Array, rows: Array) -> None:
     """Add factor (n,) times rows (n, nz) to those (m, nz) of the points' pairs (n,)."""
     for i in range(len(pair)):
         for c in range(rows.shape[1]):
             out[pair[i], c] += factor[i] * rows[i, c]
+
+
+@njit
+def in_dofs(by_z: Array, element: IntArray, P: Array) -> Array:
+    """Second derivatives (m, nr, nr) by the dofs of pairs, from those (m, nz, nz) by their z. P (ne, 2, d, r): those of
+    the tangents in q by the rotation dofs; all else in z is a dof.
+    """
+    m, nz, (d, r) = len(element), by_z.shape[1], P.shape[2:]
+    n, ns = d + r, nz - 4 * d
+    half, out = np.zeros((nz, 2 * n + ns)), np.zeros((m, 2 * n + ns, 2 * n + ns))
+    for k in range(m):
+        half[...] = 0.0
+        for i in range(nz):
+            _add_in_dofs(half[i], by_z[k, i], P[element[k]])
+        for j in range(2 * n + ns):
+            _add_in_dofs(out[k, :, j], half[:, j], P[element[k]])
+    return out
+
+
+@njit
+def _add_in_dofs(out: Array, by_z: Array, P: Array) -> None:
+    """Add a derivative (nz,) by z to that by the dofs (nr,); P (2, d, r) of the element."""
+    d, r = P.shape[1], P.shape[2]
+    for side in range(2):
+        q, dof = 2 * side * d, side * (d + r)
+        for i in range(d):
+            out[dof + i] += by_z[q + i]
+            for j in range(r):
+                out[dof + d + j] += by_z[q + d + i] * P[side, i, j]
+    for i in range(4 * d, by_z.size):
+        out[2 * (d + r) + i - 4 * d] += by_z[i]
 
 
 @njit

@@ -158,8 +158,8 @@ def _near_points(
                     numbers[n, 4] = share * area(surface.at_first, nodes, dN)
                     n += 1
     values = numbers[:n]
-    along, xi, size, gap = values[:, 0].copy(), values[:, 2:4].copy(), values[:, 4].copy(), values[:, 1].copy()
-    return element[:n], facet[:n], number[:n], along, xi, size, gap
+    whose = element[:n], facet[:n], number[:n]
+    return *whose, values[:, 0].copy(), values[:, 2:4].copy(), values[:, 4].copy(), values[:, 1].copy()
 
 
 @njit
