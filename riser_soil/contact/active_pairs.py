@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from riser_soil.contact.cylinder_gap import NearPoints
+from riser_soil.contact.cylinder_gap import FORMS, NearPoints
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 
@@ -50,10 +50,24 @@ class ActivePairs:
         """d²ψ/dz² (m, nz, nz) of the pairs."""
         nz = self.forms.shape[2]
         out = np.zeros((len(self.element), nz, nz))
-        core = -self.force[:, None, None] * self.C
-        core[:, 0, 0] += self.slope
-        add_products(out, self.pair, self.forms, core @ self.forms)
+        add_products(out, self.pair, self.forms, by_curvature(self.forms, self.C, self.force, self.slope))
         return out
+
+
+@njit
+def paired(element: IntArray, facet: IntArray, elements: int) -> tuple[IntArray, IntArray, IntArray]:
+    """Pairs of n points that come facet by facet, numbered as they come: the pair of each point (n,), element and facet
+    of each pair (m,). elements: of the riser.
+    """
+    n, m = len(element), 0
+    pair, first, last = np.empty(n, np.int64), np.empty(n, np.int64), np.full(elements, -1)
+    for i in range(n):
+        known = last[element[i]]
+        if known < 0 or facet[first[known]] != facet[i]:
+            known, first[m], m = m, i, m + 1
+            last[element[i]] = known
+        pair[i] = known
+    return pair, element[first[:m]], facet[first[:m]]
 
 
 @njit
@@ -65,11 +79,58 @@ def add_rows(out: Array, pair: IntArray, factor: Array, rows: Array) -> None:
 
 
 @njit
+def in_dofs(by_z: Array, element: IntArray, P: Array) -> Array:
+    """Second derivatives (m, nr, nr) by the dofs of pairs, from those (m, nz, nz) by their z. P (ne, 2, d, r): those of
+    the tangents in q by the rotation dofs; all else in z is a dof.
+    """
+    m, nz, (d, r) = len(element), by_z.shape[1], P.shape[2:]
+    n, ns = d + r, nz - 4 * d
+    half, out = np.zeros((nz, 2 * n + ns)), np.zeros((m, 2 * n + ns, 2 * n + ns))
+    for k in range(m):
+        half[...] = 0.0
+        for i in range(nz):
+            _add_in_dofs(half[i], by_z[k, i], P[element[k]])
+        for j in range(2 * n + ns):
+            _add_in_dofs(out[k, :, j], half[:, j], P[element[k]])
+    return out
+
+
+@njit
+def _add_in_dofs(out: Array, by_z: Array, P: Array) -> None:
+    """Add a derivative (nz,) by z to that by the dofs (nr,); P (2, d, r) of the element."""
+    d, r = P.shape[1], P.shape[2]
+    for side in range(2):
+        q, dof = 2 * side * d, side * (d + r)
+        for i in range(d):
+            out[dof + i] += by_z[q + i]
+            for j in range(r):
+                out[dof + d + j] += by_z[q + d + i] * P[side, i, j]
+    for i in range(4 * d, by_z.size):
+        out[2 * (d + r) + i - 4 * d] += by_z[i]
+
+
+@njit
+def by_curvature(forms: Array, C: Array, force: Array, slope: Array) -> Array:
+    """Forms (n, 4, nz) times the matrices (n, 4, 4) with which forms·…·forms is d²ψ: of the law's slope, and of its
+    force by C, see `gap_forms`.
+    """
+    out = np.zeros_like(forms)
+    for i in range(len(force)):
+        for a in range(FORMS):
+            for b in range(FORMS):
+                factor = slope[i] - force[i] * C[i, 0, 0] if a == b == 0 else -force[i] * C[i, a, b]
+                if factor != 0.0:
+                    for c in range(forms.shape[2]):
+                        out[i, a, c] += factor * forms[i, b, c]
+    return out
+
+
+@njit
 def add_products(out: Array, pair: IntArray, left: Array, right: Array) -> None:
-    """Add the sums of left (n, k, nz) times right (n, k, nz), by row and column, to those (m, nz, nz) of the pairs."""
+    """Add the sums of left (n, 4, nz) times right (n, 4, nz), by row and column, to those (m, nz, nz) of the pairs."""
     for i in range(len(pair)):
-        for a in range(left.shape[1]):
-            for r in range(left.shape[2]):
-                if left[i, a, r] != 0.0:
-                    for c in range(right.shape[2]):
-                        out[pair[i], r, c] += left[i, a, r] * right[i, a, c]
+        block, (r0, r1, r2, r3) = out[pair[i]], (right[i, 0], right[i, 1], right[i, 2], right[i, 3])
+        for r in range(left.shape[2]):
+            row, (l0, l1, l2, l3) = block[r], (left[i, 0, r], left[i, 1, r], left[i, 2, r], left[i, 3, r])
+            for c in range(len(row)):
+                row[c] += l0 * r0[c] + l1 * r1[c] + l2 * r2[c] + l3 * r3[c]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from riser_soil.contact.pairing import bounds
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 
 EMPTY = np.empty(0, dtype=np.int64)
@@ -37,6 +38,11 @@ class CandidatePairs:
         """The candidates of both."""
         return CandidatePairs(self.facets, np.union1d(self.pairs, other.pairs).astype(np.int64))
 
+    @cached_property
+    def filled(self) -> BoolArray:
+        """Those pairs whose blocks of the tangent are written to, see `MatrixBlock`."""
+        return np.zeros(len(self.pairs), dtype=bool)
+
     @property
     def nodes(self) -> IntArray:
         return self.pairs // self.facets
@@ -65,25 +71,14 @@ def pairs_around(nodes: IntArray, xy: Array, points: Array, facets: IntArray, di
     return CandidatePairs.of(len(facets), nodes[i], facet)
 
 
+@njit
 def touching_boxes(low: Array, high: Array, points: Array, facets: IntArray) -> tuple[IntArray, IntArray]:
-    """Pairs of boxes, low and high (n, 3), with facets whose boxes they touch: numbers of both, (m,) each.
+    """Pairs of boxes, low and high (n, 3), with facets whose boxes they touch, in increasing order: numbers of both,
+    (m,) each.
 
     points (np, 3): deformed points. facets (nf, nv).
     """
-    pairs = _touching(low, high, bounds(points, facets), _levels(points[facets][:, :, 2]))
-    return pairs[:, 0], pairs[:, 1]
-
-
-def _levels(z: Array) -> Array:
-    """Lowest and highest level (nf, 2) of facets by those z (nf, nv) of their nodes [m]; curved ones bulge out."""
-    lowest, highest = z.min(axis=1), z.max(axis=1)
-    bulge = 0.2 * (highest - lowest)
-    return np.column_stack((lowest - bulge, highest + bulge))
-
-
-@njit
-def _touching(low: Array, high: Array, boxes: Array, levels: Array) -> IntArray:
-    """Pairs (m, 2) of boxes and of facets' boxes in plan (nf, 4) and levels (nf, 2) that touch, in increasing order."""
+    boxes, levels = bounds(points, facets), _levels(points, facets)
     found, top = [(0, 0) for _ in range(0)], levels[:, 1].max() if len(levels) else -np.inf
     for i in range(len(low)):
         if low[i, 2] > top:
@@ -93,7 +88,20 @@ def _touching(low: Array, high: Array, boxes: Array, levels: Array) -> IntArray:
             beside = beside or low[i, 1] > boxes[f, 3] or high[i, 1] < boxes[f, 1]
             if not (beside or low[i, 2] > levels[f, 1] or high[i, 2] < levels[f, 0]):
                 found.append((i, f))
-    out = np.empty((len(found), 2), np.int64)
+    first, second = np.empty(len(found), np.int64), np.empty(len(found), np.int64)
     for k, (i, f) in enumerate(found):
-        out[k, 0], out[k, 1] = i, f
+        first[k], second[k] = i, f
+    return first, second
+
+
+@njit
+def _levels(points: Array, facets: IntArray) -> Array:
+    """Lowest and highest level (nf, 2) of facets by those of their points (np, 3) [m]; curved ones bulge out."""
+    out = np.empty((len(facets), 2))
+    for f in range(len(facets)):
+        lowest, highest = np.inf, -np.inf
+        for a in facets[f]:
+            lowest, highest = min(lowest, points[a, 2]), max(highest, points[a, 2])
+        bulge = 0.2 * (highest - lowest)
+        out[f, 0], out[f, 1] = lowest - bulge, highest + bulge
     return out

@@ -28,7 +28,7 @@ from riser_soil.riser.hermite import shape as axis_shape
 
 FORMS = 4
 MAX_ITERATIONS = 30
-CONVERGED = 1e-14  # step along an element, as a part of its length
+CONVERGED = 1e-9  # step along an element, as a part of its length, after which one more would be below round-off
 THROUGH = 0.5  # radii beside the axis within which a point above it has come through
 PARALLEL = 1e-12  # sine of the angle below which two directions are one
 ROUND_OFF = 1e-6  # by which a reach is widened, and below which a row lies along an element
@@ -75,54 +75,128 @@ class NearPoints(NamedTuple):
         return NearPoints(*whose, self.along[c], self.xi[c], self.area[c], self.gap[c])
 
 
+@njit
+def boxes(axis: Axis, above: float, around: float) -> tuple[Array, Array]:
+    """Boxes, low and high (ne, 3), around the pipe's elements, as Bézier curves between their handles, wider by a reach
+    above the ground and around the pipe [m].
+    """
+    low, high = np.empty((len(axis.length), 3)), np.empty((len(axis.length), 3))
+    for e in range(len(low)):
+        q, third = axis.q[e], axis.length[e] / 3.0
+        for i in range(3):
+            wide, a, b = axis.radius[e] + (above if i == 2 else around), q[0, i], q[2, i]
+            c, d = a + q[1, i] * third, b - q[3, i] * third
+            low[e, i], high[e, i] = min(a, b, c, d) - wide, max(a, b, c, d) + wide
+    return low, high
+
+
 def near_points(axis: Axis, surface: Surface, elements: IntArray, facets: IntArray, within: float) -> NearPoints:
     """Points of candidate pairs (m,) of an element and a facet whose gap is less than `within` [m]."""
-    order = np.lexsort((elements, facets))
-    elements, facets = elements[order], facets[order]
-    first = np.flatnonzero(np.diff(facets, prepend=-1))
-    begin = np.append(first, len(facets))
-    kept = _near_points(axis, _bow(axis), surface, elements, facets[first], begin, within)
-    return NearPoints(*kept)
+    return NearPoints(*_near_points(axis, surface, *_by_facet(elements, facets, len(surface.facets)), within))
+
+
+@njit
+def _by_facet(elements: IntArray, facets: IntArray, count: int) -> tuple[IntArray, IntArray, IntArray]:
+    """The m pairs, facet by facet of those that are in any: their elements (m,), in the order given; the facets (k,);
+    where the elements of each begin (k + 1,).
+    """
+    begin = np.zeros(count + 1, np.int64)
+    for f in facets:
+        begin[f + 1] += 1
+    paired = np.flatnonzero(begin[1:])
+    begin = np.cumsum(begin)
+    first, order, at = np.append(begin[paired], len(facets)), np.empty_like(elements), begin[:-1].copy()
+    for k, f in enumerate(facets):
+        order[at[f]] = elements[k]
+        at[f] += 1
+    return order, paired, first
 
 
 @njit
 def _near_points(
-    axis: Axis, bow: Array, surface: Surface, elements: IntArray, facets: IntArray, begin: IntArray, within: float
+    axis: Axis, surface: Surface, elements: IntArray, facets: IntArray, begin: IntArray, within: float
 ) -> tuple[IntArray, IntArray, IntArray, Array, Array, Array, Array]:
+    bow = _bow(axis)
     room = 0
     for f in facets:
         room += surface.parts[f, 0] * surface.parts[f, 1]
     element, facet, number = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
     numbers, n, nv = np.empty((room, 5)), 0, surface.facets.shape[1]
-    N, dN = np.empty(nv), np.empty((nv, 2))
+    N, dN, kept = np.empty(nv), np.empty((nv, 2)), np.empty_like(elements)
     for i, f in enumerate(facets):
         nodes = surface.facets[f]
-        clear_of, clearance, near = (0.0, 0.0, 0.0), -np.inf, elements[begin[i] : begin[i + 1]]
-        rows, columns = surface.parts[f, 0], surface.parts[f, 1]
-        if nv != len(QUAD):
-            rows, columns = 1, rows * columns
-        for row in range(rows):
-            first, last = 0, columns
-            if nv == len(QUAD):
+        near = elements[begin[i] : begin[i + 1]]
+        rows, columns, even = 1, surface.parts[f, 0] * surface.parts[f, 1], nv == len(QUAD)
+        if even:
+            rows, columns = surface.parts[f, 0], surface.parts[f, 1]
+            near = _not_beyond(axis, bow, near, surface.deformed, nodes, within)
+        for row in range(rows if near.size > 0 else 0):
+            beside, a, b = near, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+            first, last, clear_of, clearance = 0, columns, a, -np.inf
+            if even:
                 xi = -1.0 + (2 * row + 1) / rows
                 a = _point(surface.deformed, nodes, xi, -1.0, N, dN)
                 b = _point(surface.deformed, nodes, xi, 1.0, N, dN)
-                first, last = _in_row(axis, bow, near, a, b, columns, within)
-            for k in range(row * columns + first, row * columns + last):
-                xi, eta, share = place(nv, surface.parts[f], k)
-                p = _point(surface.deformed, nodes, xi, eta, N, dN)
+                first, last, count = _in_row(axis, bow, near, a, b, columns, within, kept)
+                beside = kept[:count]
+            for column in range(first, last):
+                k = row * columns + column
+                if even:
+                    p = _between(a, b, (column + 0.5) / columns)
+                else:
+                    xi, eta, _ = place(nv, surface.parts[f], k)
+                    p = _point(surface.deformed, nodes, xi, eta, N, dN)
                 if _distance(p, clear_of) <= clearance - within:
                     continue
-                e, along, gap, clearance = _nearest(axis, bow, near, p, within)
+                e, along, gap, clearance = _nearest(axis, bow, beside, p, within)
                 clear_of = p
                 if gap < within:
+                    xi, eta, share = place(nv, surface.parts[f], k)
+                    fill_shape(xi, eta, N, dN)
                     element[n], facet[n], number[n] = e, f, surface.first[f] + k
                     numbers[n, 0], numbers[n, 1], numbers[n, 2], numbers[n, 3] = along, gap, xi, eta
                     numbers[n, 4] = share * area(surface.at_first, nodes, dN)
                     n += 1
     values = numbers[:n]
-    along, xi, size, gap = values[:, 0].copy(), values[:, 2:4].copy(), values[:, 4].copy(), values[:, 1].copy()
-    return element[:n], facet[:n], number[:n], along, xi, size, gap
+    whose = element[:n], facet[:n], number[:n]
+    return *whose, values[:, 0].copy(), values[:, 2:4].copy(), values[:, 4].copy(), values[:, 1].copy()
+
+
+@njit
+def _not_beyond(
+    axis: Axis, bow: Array, elements: IntArray, points: Array, nodes: IntArray, within: float
+) -> IntArray:
+    """Those elements to which a point between a facet's corners may have a gap less than `within` [m]: seen from the
+    line through the element's ends towards the corners' middle, some corner is no farther than that.
+    """
+    kept, n = np.empty(len(elements), np.int64), 0
+    for e in elements:
+        least = _least_beside(axis.q[e], points, nodes)
+        if least < (axis.radius[e] + within + bow[e]) * (1.0 + ROUND_OFF):
+            kept[n] = e
+            n += 1
+    return kept[:n]
+
+
+@njit
+def _least_beside(q: Array, points: Array, nodes: IntArray) -> float:
+    """Least distance [m] of some points from the line through an element's ends in the direction, square to that line,
+    of the points' mean; no point between them is nearer to the line.
+    """
+    chord = (q[2, 0] - q[0, 0], q[2, 1] - q[0, 1], q[2, 2] - q[0, 2])
+    x = y = z = 0.0
+    for a in nodes:
+        x, y, z = x + points[a, 0] - q[0, 0], y + points[a, 1] - q[0, 1], z + points[a, 2] - q[0, 2]
+    square = chord[0] ** 2 + chord[1] ** 2 + chord[2] ** 2
+    share = (x * chord[0] + y * chord[1] + z * chord[2]) / square if square > 0.0 else 0.0
+    x, y, z = x - share * chord[0], y - share * chord[1], z - share * chord[2]
+    size, least = math.sqrt(x * x + y * y + z * z), np.inf
+    if not size > 0.0:
+        return 0.0
+    for a in nodes:
+        beside = x * (points[a, 0] - q[0, 0]) + y * (points[a, 1] - q[0, 1]) + z * (points[a, 2] - q[0, 2])
+        least = min(least, beside / size)
+    return least
 
 
 @njit
@@ -134,11 +208,13 @@ def _in_row(
     b: tuple[float, float, float],
     count: int,
     within: float,
-) -> tuple[int, int]:
+    kept: IntArray,
+) -> tuple[int, int, int]:
     """First and behind the last of `count` points, evenly spaced on the straight row from a to b, that may have a gap
-    less than `within` [m] to some of the elements: those nearer to the lines through the elements' ends than that.
+    less than `within` [m] to some of the elements: those nearer to the lines through the elements' ends than that. Such
+    elements, whose ends the row does not lie farther beyond either, are written to `kept`; last their number.
     """
-    low, high = 1.0, 0.0
+    low, high, n = 1.0, 0.0, 0
     for e in elements:
         q = axis.q[e]
         reach = (axis.radius[e] + within + bow[e]) * (1.0 + ROUND_OFF)
@@ -147,16 +223,26 @@ def _in_row(
             c, w, d = q[2, i] - q[0, i], a[i] - q[0, i], b[i] - a[i]
             cc, cw, cd = cc + c * c, cw + c * w, cd + c * d
             ww, wd, dd = ww + w * w, wd + w * d, dd + d * d
+        ahead = max(-max(cw, cw + cd), min(cw, cw + cd) - cc)
+        if ahead > reach * math.sqrt(cc):
+            continue
+        kept[n] = e
         inverse = 1.0 / cc if cc > 0.0 else 0.0
         square, tilt, at_a = dd - cd * cd * inverse, wd - cw * cd * inverse, ww - cw * cw * inverse - reach * reach
         root = tilt * tilt - square * at_a
         if square <= ROUND_OFF * dd or not root < np.inf:  # along the element, or nowhere
-            return 0, count
-        if root >= 0.0:
+            low, high, n = 0.0, 1.0, n + 1
+        elif root >= 0.0:
             low = min(low, (-tilt - math.sqrt(root)) / square)
-            high = max(high, (-tilt + math.sqrt(root)) / square)
+            high, n = max(high, (-tilt + math.sqrt(root)) / square), n + 1
     first, last = max(math.floor(low * count - 0.5), 0), min(math.ceil(high * count - 0.5) + 1, count)
-    return int(min(first, count)), int(max(last, 0))
+    return int(min(first, count)), int(max(last, 0)), n
+
+
+@njit
+def _between(a: tuple[float, float, float], b: tuple[float, float, float], share: float) -> tuple[float, float, float]:
+    """The point at a share of the way from a to b."""
+    return a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])
 
 
 @njit
@@ -202,30 +288,34 @@ def _distance(p: tuple[float, float, float], r: tuple[float, float, float]) -> f
 @njit
 def _from_chord(q: Array, p: tuple[float, float, float]) -> float:
     """Distance of a point from the straight line between an element's ends [m]."""
-    along = square = beside = 0.0
-    for i in range(3):
-        chord = q[2, i] - q[0, i]
-        along += (p[i] - q[0, i]) * chord
-        square += chord * chord
-    share = min(max(along / square, 0.0), 1.0) if square > 0.0 else 0.0
+    share, beside = _along_chord(q, p), 0.0
     for i in range(3):
         beside += (p[i] - q[0, i] - share * (q[2, i] - q[0, i])) ** 2
     return math.sqrt(beside)
 
 
+@njit
+def _along_chord(q: Array, p: tuple[float, float, float]) -> float:
+    """Place, 0 to 1, on the straight line between an element's ends that is closest to a point."""
+    along = square = 0.0
+    for i in range(3):
+        chord = q[2, i] - q[0, i]
+        along += (p[i] - q[0, i]) * chord
+        square += chord * chord
+    return min(max(along / square, 0.0), 1.0) if square > 0.0 else 0.0
+
+
+@njit
 def _bow(axis: Axis) -> Array:
-    """How far (ne,) the axis leaves the chord at most [m]: no farther than its handles, being a Bézier curve, stretched
-    as it may be.
+    """How far (ne,) the axis leaves the chord at most [m], stretched as it may be: being a Bézier curve, no farther
+    than 3/4 of what its handles do, whose weights sum to that at most.
     """
-    chord = axis.q[:, 2] - axis.q[:, 0]
-    third = axis.length[:, None] / 3.0
-    return np.maximum(_beside(axis.q[:, 1] * third, chord), _beside(axis.q[:, 3] * third, chord))
-
-
-def _beside(handle: Array, chord: Array) -> Array:
-    """Distance (n,) of handles (n, 3) from the chords (n, 3) that begin where they do [m]."""
-    share = np.sum(handle * chord, axis=1) / np.maximum(np.sum(chord * chord, axis=1), np.finfo(float).tiny)
-    return np.asarray(np.linalg.norm(handle - np.clip(share, 0.0, 1.0)[:, None] * chord, axis=1))
+    out = np.empty(len(axis.length))
+    for e in range(len(out)):
+        q, third = axis.q[e], axis.length[e] / 3.0
+        first, last = combined(q, (1.0, third, 0.0, 0.0)), combined(q, (1.0, 0.0, 0.0, third))
+        out[e] = 0.75 * max(_from_chord(q, first), _from_chord(q, last))
+    return out
 
 
 @njit
@@ -240,7 +330,7 @@ def _signed(c: tuple[float, float, float], p: tuple[float, float, float], radius
 @njit
 def _closest(q: Array, L: float, p: tuple[float, float, float]) -> float:
     """Place xi in 0..1 on an element's axis that is closest to a point."""
-    xi = 0.5
+    xi = _along_chord(q, p)
     for _ in range(MAX_ITERATIONS):
         c, c1 = combined(q, axis_shape(xi, L)), combined(q, slope(xi, L))
         c2 = combined(q, bend(xi, L))
@@ -283,11 +373,11 @@ def gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array) -> t
 @njit
 def _gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array, forms: Array, C: Array) -> None:
     nv = surface.facets.shape[1]
-    N, dN = np.empty(nv), np.empty((nv, 2))
+    N, dN, vectors = np.empty(nv), np.empty((nv, 2)), np.empty((FORMS, 2, 3))
     for i in range(len(near.gap)):
         e, nodes, xi = near.element[i], surface.facets[near.facet[i]], near.along[i]
         p = _point(surface.deformed, nodes, near.xi[i, 0], near.xi[i, 1], N, dN)
-        vectors = _frame(axis.q[e], axis.length[e], axis.radius[e], xi, p, C[i])
+        _frame(axis.q[e], axis.length[e], axis.radius[e], xi, p, vectors, C[i])
         _fill(vectors, basis, axis_shape(xi, axis.length[e]), slope(xi, axis.length[e]), forms[i])
         for k in range(FORMS):
             for a in range(nv):
@@ -310,14 +400,16 @@ def _fill(vectors: Array, basis: Array, N: Four, dN: Four, forms: Array) -> None
 
 
 @njit
-def _frame(q: Array, L: float, radius: float, xi: float, p: tuple[float, float, float], C: Array) -> Array:
-    """Vectors (4, 2, 3) of the forms δg, b·(…), ε and δs, by δp - N δq and by N'δq; writes C (4, 4), see `gap_forms`.
+def _frame(
+    q: Array, L: float, radius: float, xi: float, p: tuple[float, float, float], vectors: Array, C: Array
+) -> None:
+    """Writes vectors (4, 2, 3) of the forms δg, b·(…), ε and δs, by δp - N δq and by N'δq; C (4, 4), see `gap_forms`.
 
     At an end of the element the third form is along the other direction square to n.
     """
     c, c1, c2 = combined(q, axis_shape(xi, L)), combined(q, slope(xi, L)), combined(q, bend(xi, L))
     rho = _signed(c, p, radius)
-    vectors = np.zeros((FORMS, 2, 3))
+    vectors[...] = 0.0
     n = ((p[0] - c[0]) / rho, (p[1] - c[1]) / rho, (p[2] - c[2]) / rho)
     ahead = c1[0] * c1[0] + c1[1] * c1[1] + c1[2] * c1[2]
     kappa = n[0] * c2[0] + n[1] * c2[1] + n[2] * c2[2]
@@ -330,14 +422,13 @@ def _frame(q: Array, L: float, radius: float, xi: float, p: tuple[float, float, 
     C[1, 1] = 1.0 / rho
     if not free:
         C[2, 2] = 1.0 / rho
-        return vectors
+        return
     for i in range(3):
         vectors[3, 0, i] = c1[i] / (ahead - rho * kappa)
         vectors[3, 1, i] = rho * n[i] / (ahead - rho * kappa)
     C[2, 2] = rho / ahead
     C[2, 3] = C[3, 2] = rho * kappa / ahead - 1.0
     C[3, 3] = rho * kappa * kappa / ahead - kappa
-    return vectors
 
 
 @njit

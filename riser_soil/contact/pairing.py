@@ -2,45 +2,72 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
-from scipy.spatial import cKDTree
 
 from riser_soil.contact.facets import centre, fill_shape, inside
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 
-NEIGHBOURS = 8  # facets tried first; a point that none of them holds is looked for in all facets
 RIM = 1e-9  # widening of a facet in (ξ, η): round-off must not open a slit between neighbours
 MAX_ITERATIONS = 25
 DIVERGED = 100.0  # (ξ, η) of a point that is nowhere near
 CONVERGED = 1e-10  # step in (ξ, η) after which one more Newton step would be below round-off
 
 
-class FacetSearch:
-    """Finds facets below points by a tree over the facets' centres and Newton's method on the facets' map.
+class Plan(NamedTuple):
+    """Equal rectangles over a surface in plan, row by row along y, and the facets whose boxes touch each.
 
-    The tree holds the reference geometry and only proposes; the answer depends on the deformed geometry
-    alone. A point on the rim of several facets belongs to the one with the lowest number.
+    corner, size (2,): of the lowest rectangle [m]. counts (2,): of rectangles along x and y. Facets of rectangle k:
+    facets[first[k] : first[k + 1]].
+    """
+
+    corner: Array
+    size: Array
+    counts: IntArray
+    first: IntArray
+    facets: IntArray
+
+
+class FacetSearch:
+    """Finds facets below points by a plan of the facets and Newton's method on the facets' map.
+
+    The plan shows the reference geometry and only proposes: a point that no facet proposed holds is looked for in all
+    of them. The answer depends on the deformed geometry alone. A point on the rim of several facets belongs to the one
+    with the lowest number.
 
     points (np, 3): reference points [m]. facets (nf, 4 or 6): their points, ordered as in `facets`.
     """
 
     def __init__(self, points: Array, facets: IntArray) -> None:
         self._facets = np.ascontiguousarray(facets, dtype=np.int64)
-        corners = self._facets[:, : 4 if facets.shape[1] == 4 else 3]
-        self._tree = cKDTree(points[corners].mean(axis=1)[:, :2])
-        self._tried = np.arange(1, min(NEIGHBOURS, len(facets)) + 1)
+        self._plan = _plan(bounds(points, self._facets))
 
     def locate(self, xy: Array, points: Array) -> tuple[IntArray, Array]:
         """Facet (n,), −1 where there is none, and (ξ, η) on it (n, 2), of horizontal positions xy (n, 2).
 
         points (np, 3): the deformed points [m].
         """
-        _, near = self._tree.query(xy, self._tried)
-        found: tuple[IntArray, Array] = _locate(
-            np.ascontiguousarray(xy), near.astype(np.int64), self._facets, points
-        )
+        found: tuple[IntArray, Array] = _locate(np.ascontiguousarray(xy), self._plan, self._facets, points)
         return found
+
+
+def _plan(boxes: Array) -> Plan:
+    """As many rectangles as facets, about as long as wide; boxes: see `bounds`."""
+    corner, extent = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)
+    counts = np.ceil(np.sqrt(len(boxes) * extent / extent[::-1])).astype(np.int64)
+    size = extent / counts
+    low, high = (((ends - corner) / size).astype(np.int64) for ends in (boxes[:, :2], boxes[:, 2:]))
+    high = np.minimum(high, counts - 1)
+    touched = [
+        (np.arange(y0, y1 + 1)[:, None] * counts[0] + np.arange(x0, x1 + 1)).ravel()
+        for (x0, y0), (x1, y1) in zip(low, high, strict=True)
+    ]
+    rectangles, facets = np.concatenate(touched), np.repeat(np.arange(len(boxes)), [len(part) for part in touched])
+    order = np.argsort(rectangles, kind="stable")
+    first = np.append(0, np.cumsum(np.bincount(rectangles, minlength=int(counts.prod()))))
+    return Plan(corner, size, counts, first, facets[order])
 
 
 @njit
@@ -64,17 +91,26 @@ def _box(points: Array, nodes: IntArray) -> tuple[float, float, float, float]:
 
 
 @njit
-def _locate(xy: Array, near: IntArray, facets: IntArray, points: Array) -> tuple[IntArray, Array]:
+def _locate(xy: Array, plan: Plan, facets: IntArray, points: Array) -> tuple[IntArray, Array]:
     facet, xi = np.full(len(xy), -1), np.zeros((len(xy), 2))
     boxes = bounds(points, facets)
     low_x, low_y, high_x, high_y = boxes[:, 0].min(), boxes[:, 1].min(), boxes[:, 2].max(), boxes[:, 3].max()
     everything, work = np.arange(len(facets)), np.empty((facets.shape[1], 3))
     for i in range(len(xy)):
         if low_x <= xy[i, 0] <= high_x and low_y <= xy[i, 1] <= high_y:
-            facet[i] = _lowest_holding(xy[i], near[i], facets, points, boxes, work, xi[i])
+            facet[i] = _lowest_holding(xy[i], _proposed(plan, xy[i]), facets, points, boxes, work, xi[i])
             if facet[i] < 0:
                 facet[i] = _lowest_holding(xy[i], everything, facets, points, boxes, work, xi[i])
     return facet, xi
+
+
+@njit
+def _proposed(plan: Plan, xy: Array) -> IntArray:
+    """Facets whose boxes touch the rectangle of a point, or the nearest one."""
+    column = min(max(int((xy[0] - plan.corner[0]) / plan.size[0]), 0), plan.counts[0] - 1)
+    row = min(max(int((xy[1] - plan.corner[1]) / plan.size[1]), 0), plan.counts[1] - 1)
+    k = row * plan.counts[0] + column
+    return plan.facets[plan.first[k] : plan.first[k + 1]]
 
 
 @njit

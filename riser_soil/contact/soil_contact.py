@@ -100,7 +100,7 @@ class SoilContact(LineContact):
         """Dofs of a node or element and of a facet, candidate pair by pair."""
         patch = self._present_patch()
         rows = self.pair_dofs(patch.nodes, patch.facet)
-        return {SOIL: MatrixBlock(rows, rows)}
+        return {SOIL: MatrixBlock(rows, rows, patch.filled)}
 
     def rebuild(self, state: State) -> None:
         """Choose the candidates anew: around a state, and all that was missed in the step so far."""
@@ -113,7 +113,9 @@ class SoilContact(LineContact):
         self._missed = CandidatePairs.none(len(self._soil.facets))
 
     def places(self, values: Array, on_line: IntArray, facet: IntArray) -> IntArray:
-        """Where the pattern has pairs (m,), and the matrix its `values`; -1, which is noted, where it has not."""
+        """Where the pattern has pairs (m,), and the matrix its `values`, to be filled; -1, which is noted, where it has
+        not.
+        """
         patch = self._present_patch()
         if len(values) != len(patch.pairs):
             raise RuntimeError("contact on soil: its pattern was rebuilt, and the matrix is that of the one before")
@@ -123,6 +125,7 @@ class SoilContact(LineContact):
             self.outgrown = True
             found = CandidatePairs.of(len(self._soil.facets), on_line[missed], facet[missed])
             self._missed = self._missed.joined(found)
+        patch.filled[places[~missed]] = True
         return places
 
     def _present_patch(self) -> CandidatePairs:

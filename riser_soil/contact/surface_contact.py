@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from riser_soil.contact.active_pairs import ActivePairs
+from riser_soil.contact.active_pairs import ActivePairs, add_rows, in_dofs, paired
 from riser_soil.contact.candidates import CandidatePairs, touching_boxes
-from riser_soil.contact.cylinder_gap import Axis, NearPoints, Surface, gap_forms, near_points
+from riser_soil.contact.cylinder_gap import Axis, NearPoints, Surface, boxes, gap_forms, near_points
 from riser_soil.contact.detection import add_blocks, add_shares
 from riser_soil.contact.gap import heights
 from riser_soil.contact.integration_points import divisions
@@ -96,8 +96,7 @@ class SurfaceContact(SoilContact):
         if self._upright:
             first = 4 * self.line.dimension
             forms[:, :, first::3] = forms[:, :, first + 1 :: 3] = 0.0
-        pairs, pair = np.unique(near.element * len(self._soil.facets) + near.facet, return_inverse=True)
-        element, facet = np.divmod(pairs, len(self._soil.facets))
+        pair, element, facet = paired(near.element, near.facet, self.line.length.size)
         answer = self.law.update(-near.gap, self._memory.at(near.number))
         weighed = near.area * answer.force, near.area * answer.slope, float(near.area @ answer.stored)
         return ActivePairs(near, pair, element, facet, forms, C, *weighed, answer.history, self.line.dimension)
@@ -121,10 +120,9 @@ class SurfaceContact(SoilContact):
 
     def _pairs(self, axis: Axis, deformed: Array, reach: CandidateRange) -> tuple[IntArray, IntArray]:
         """Elements and facets (n,) whose boxes touch, those of the pipe wider by the reach."""
-        handles = axis.q[:, 1::2] * axis.length[:, None, None] / 3.0
-        corners = np.stack([axis.q[:, 0], axis.q[:, 0] + handles[:, 0], axis.q[:, 2] - handles[:, 1], axis.q[:, 2]], 1)
-        wide = axis.radius[:, None] + np.array([reach.around, reach.around, reach.above])
-        return touching_boxes(corners.min(axis=1) - wide, corners.max(axis=1) + wide, deformed, self._soil.facets)
+        low, high = boxes(axis, reach.above, reach.around)
+        found: tuple[IntArray, IntArray] = touching_boxes(low, high, deformed, self._soil.facets)
+        return found
 
     def blocks(self) -> dict[str, MatrixBlock]:
         """Those of the pairs; all dofs of each element, whose directors turn."""
@@ -161,9 +159,9 @@ class SurfaceContact(SoilContact):
     def _on_line(self, pressed: ActivePairs, gradient: Array) -> Array:
         """Residual conjugate to q (ne, 4, d)."""
         d = self.line.dimension
-        F = np.zeros((self.line.length.size, 4, d))
-        np.add.at(F, pressed.element, gradient[:, : 4 * d].reshape(-1, 4, d))
-        return F
+        F = np.zeros((self.line.length.size, 4 * d))
+        add_rows(F, pressed.element, np.ones(len(gradient)), gradient[:, : 4 * d])
+        return F.reshape(-1, 4, d)
 
     def _on_facets(self, gradient: Array) -> Array:
         """Residual (m, 3 nv) of the pairs' facets [N]."""
@@ -177,22 +175,10 @@ class SurfaceContact(SoilContact):
     def add_tangent(self, values: dict[str, Array], found: SurfaceState, by_z: Array, gradient: Array) -> None:
         """Add the derivative of the pairs' forces, minus `gradient` (m, nz), which is `by_z` (m, nz, nz)."""
         pressed = found.pressed
-        by_dofs = self._by_dofs(found.trial, pressed)
+        by_dofs = in_dofs(by_z, pressed.element, found.trial.turn.P)
         places = self.places(values[SOIL], pressed.element, pressed.facet)
-        add_blocks(values[SOIL], places, np.swapaxes(by_dofs, 1, 2) @ by_z @ by_dofs)
+        add_blocks(values[SOIL], places, by_dofs)
         found.trial.add_turning(values[self.line.name], 1.0, self._on_line(pressed, gradient))
-
-    def _by_dofs(self, trial: Trial, pressed: ActivePairs) -> Array:
-        """Derivative (m, nz, nr) of the pairs' q and facet nodes by their dofs."""
-        P, d = trial.turn.P[pressed.element], self.line.dimension
-        n, soil = d + P.shape[3], pressed.forms.shape[2] - 4 * d
-        out = np.zeros((len(P), 4 * d + soil, 2 * n + soil))
-        for side in range(2):
-            q, dofs = 2 * side * d, side * n
-            out[:, q : q + d, dofs : dofs + d] = np.eye(d)
-            out[:, q + d : q + 2 * d, dofs + d : dofs + n] = P[:, side]
-        out[:, 4 * d :, 2 * n :] = np.eye(soil)
-        return out
 
     def energy(self, state: State) -> Energy:
         """Potential of the penalty."""

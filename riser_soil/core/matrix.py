@@ -47,14 +47,23 @@ class Matrix:
         return PETSc.Mat().createAIJWithArrays((n, n), arrays, comm=PETSc.COMM_SELF)
 
     def clear(self) -> None:
-        for values in self.values.values():
-            values[...] = 0.0
+        for key, values in self.values.items():
+            filled = self._blocks[key].filled
+            values[... if filled is None else filled] = 0.0
+            if filled is not None:
+                filled[:] = False
 
     def assemble(self) -> None:
         """Sum the blocks' values into the matrix."""
         self._data[:] = 0.0
         for key, values in self.values.items():
-            _add_at(self._data, self._places[key], values.reshape(-1))
+            filled = self._blocks[key].filled
+            if filled is None:
+                _add_at(self._data, self._places[key], values.reshape(-1))
+                continue
+            each = self._places[key].reshape(len(values), -1)
+            for block in np.flatnonzero(filled):
+                _add_at(self._data, each[block], values[block].reshape(-1))
         if self._exchange is not None:
             self._exchange.put(self._data[:-1])
         self.mat.assemble()

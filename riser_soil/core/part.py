@@ -55,10 +55,14 @@ class Weights:
 
 @dataclass(frozen=True, eq=False)
 class MatrixBlock:
-    """A batch of m dense element matrices: local dof numbers of rows (m, nr) and columns (m, nc); -1 is absent."""
+    """A batch of m dense element matrices: local dof numbers of rows (m, nr) and columns (m, nc); -1 is absent.
+
+    filled (m,): of a batch most of which stays zero, those that the parts have written to, who mark them; else None.
+    """
 
     rows: IntArray
     cols: IntArray
+    filled: BoolArray | None = None
 
     @property
     def shape(self) -> tuple[int, int, int]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -44,6 +45,15 @@ class Reached:
         return np.asarray(0.5 * (inverse + inverse.T))
 
 
+class Answer(NamedTuple):
+    """What the soil does at a state: forces (na,) on the reached dofs that hold the top there [N], displacement (np, 3)
+    of the whole top since the geostatic start [m].
+    """
+
+    forces: Array
+    displacement: Array
+
+
 class CondensedTop:
     """Field "surface": the dofs of the soil's top, of which those that are not reached follow the others.
 
@@ -61,7 +71,7 @@ class CondensedTop:
         self.size, self.offset = top.size, 0
         self.owned: BoolArray = np.ones(top.size, dtype=bool)
         self._held, self._soil = top.prescribed, soil
-        self._seen = IdentityCache[State, Array]()
+        self._seen = IdentityCache[State, Answer](latest=2, first=1)
         self.reach(np.empty(0, dtype=np.int64))
 
     @cached_property
@@ -85,18 +95,23 @@ class CondensedTop:
 
     def forces(self, state: State) -> Array:
         """Forces on the reached dofs (na,) [N] that hold the top where it is at a state."""
-        at = self.reached.dofs
-        return np.asarray(self.reached.stiffness @ (self.committed.ravel()[at] + self.own(state.u)[at]))
+        return self._at(state).forces
 
     def displacement(self, state: State) -> Array:
-        """Of the whole top (np, 3) since the geostatic start [m]; kept for the last state."""
-        return self._seen.made_of(state, self._displacement)
+        """Of the whole top (np, 3) since the geostatic start [m]."""
+        return self._at(state).displacement
 
-    def _displacement(self, state: State) -> Array:
+    def _at(self, state: State) -> Answer:
+        """Kept for the first state of a step and the last two."""
+        return self._seen.made_of(state, self._answer)
+
+    def _answer(self, state: State) -> Answer:
         at = self.reached.dofs
-        out = self.reached.compliance @ self.forces(state)
-        out[at] = self.committed.ravel()[at] + self.own(state.u)[at]
-        return out.reshape(-1, 3)
+        moved = self.committed.ravel()[at] + self.own(state.u)[at]
+        forces = np.asarray(self.reached.stiffness @ moved)
+        out = self.reached.compliance @ forces
+        out[at] = moved
+        return Answer(forces, out.reshape(-1, 3))
 
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
         for values in (u, v, a):

@@ -67,3 +67,34 @@ def solve(ab: Array, pivots: IntArray, x: Array, B: Size) -> None:
         for j in range(1, min(2 * b, n - 1 - k) + 1):
             total -= ab[k, b + j] * x[k + j]
         x[k] = total / ab[k, b]
+
+
+@njit
+def inverse_at(ab: Array, pivots: IntArray, at: IntArray, B: Size) -> Array:
+    """Rows and columns `at` (m,), in increasing order, of the inverse (m, m), with the factors of `factorise`."""
+    n, b, m = pivots.size, len(B), at.size
+    x = np.zeros((n, m))
+    if m == 0:
+        return x[at]
+    for k in range(m):
+        x[at[k], k] = 1.0
+    for k in range(max(at[0] - b, 0), n):
+        p = pivots[k]
+        if p != k:
+            for c in range(m):
+                x[k, c], x[p, c] = x[p, c], x[k, c]
+        for i in range(1, min(b, n - 1 - k) + 1):
+            factor = ab[k + i, b - i]
+            if factor != 0.0:
+                for c in range(m):
+                    x[k + i, c] -= factor * x[k, c]
+    for k in range(n - 1, at[0] - 1, -1):
+        for j in range(1, min(2 * b, n - 1 - k) + 1):
+            factor = ab[k, b + j]
+            if factor != 0.0:
+                for c in range(m):
+                    x[k, c] -= factor * x[k + j, c]
+        inverse = 1.0 / ab[k, b]
+        for c in range(m):
+            x[k, c] *= inverse
+    return x[at]

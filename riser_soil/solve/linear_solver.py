@@ -1,4 +1,6 @@
-"""Linear solver: PETSc's banded LU where a serial system is a chain, MUMPS otherwise."""
+"""Linear solver: PETSc's banded LU where a serial system is a chain, the one of `bordered_band` where it is a chain on
+few other dofs that all couple, MUMPS otherwise.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +8,11 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
+import numpy as np
 from petsc4py import PETSc
 
 from riser_soil.core.system import System
+from riser_soil.solve.bordered_band import WIDEST, BorderedBand, SingularError, bandwidth
 
 PREFIX = "riser_soil_"
 # MUMPS' controls: room for fill-in in per cent (14); for counting pivots, on several ranks too (13), null pivots (24).
@@ -33,13 +37,20 @@ def defaults(options: Mapping[str, str]) -> Iterator[None]:
 
 
 def factorise_directly(pc: PETSc.PC, system: System) -> None:
-    """Make a preconditioner an exact solver, symmetric where the system is."""
+    """Make a preconditioner an exact solver, symmetric where MUMPS is it and the system is."""
+    if (chain := _bordered_chain(system)) is not None:
+        pc.setOperators(system.matrix.mat)
+        pc.setType(PETSc.PC.Type.PYTHON)
+        pc.setPythonContext(BorderedBand(system.matrix.mat, chain))
+        return
     mumps = not _is_chain(system)
     _choose(pc, system, "cholesky" if mumps and system.symmetric else "lu", ROOM)
 
 
-def complaint(err: PETSc.Error) -> str:
-    """What MUMPS said of a system that it could not solve, the same on all ranks; "" for other errors of PETSc."""
+def complaint(err: PETSc.Error | SingularError) -> str:
+    """What was said of a system that could not be solved, the same on all ranks; "" for other errors of PETSc."""
+    if isinstance(err, SingularError):
+        return "the linear solver failed (the matrix is singular)"
     if err.ierr != IN_LIBRARY:
         return ""
     said = re.search(r"(?:in|during) (?:the )?(\w[\w ]*) phase.*INFOG\(1\)\s*=\s*(-?\d+)", str(err))
@@ -74,3 +85,16 @@ def _choose(pc: PETSc.PC, system: System, kind: str, controls: Mapping[int, int]
 
 def _is_chain(system: System) -> bool:
     return system.comm.size == 1 and len(system.model.fields) == 1
+
+
+def _bordered_chain(system: System) -> int | None:
+    """Rows of a serial system that are a chain's, the first ones, where all the others couple with each other."""
+    if system.comm.size > 1 or _is_chain(system):
+        return None
+    at = slice(0, sum(line.size for line in system.model.lines))
+    chain, rows = int(np.count_nonzero(system.numbering.index[at] >= 0)), system.numbering.free
+    indptr, indices, _ = system.matrix.mat.getValuesCSR()
+    coupled = np.count_nonzero(indices[indptr[chain] :] >= chain)
+    if coupled < (rows - chain) ** 2 or bandwidth(system.matrix.mat, chain) > WIDEST:
+        return None
+    return chain

@@ -14,6 +14,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Work, local
 from riser_soil.core.roles import Adaptive, with_role
 from riser_soil.core.system import System
+from riser_soil.solve.bordered_band import SingularError
 from riser_soil.solve.failed_step import place_of_largest, reason_name
 from riser_soil.solve.line_search import step_length
 from riser_soil.solve.linear_solver import PREFIX, complaint, defaults, factorise_directly
@@ -147,7 +148,7 @@ class Newton:
         began, counted, complained = time.perf_counter(), self.system.clock.total, ""
         try:
             solve()
-        except PETSc.Error as err:
+        except (PETSc.Error, SingularError) as err:
             complained = complaint(err)
             if not complained:
                 raise

@@ -127,13 +127,24 @@ def test_no_facet_outside_the_surface(nv: int) -> None:
     np.testing.assert_array_equal(heights(facet, np.zeros((4, 2)), facets, points), -np.inf)
 
 
-def test_far_facet_is_found_where_the_nearest_centres_mislead() -> None:
-    """A long facet beside many small ones: the tree proposes only small ones."""
+@KINDS
+def test_the_facet_is_found_where_the_surface_has_moved_far_sideways(nv: int) -> None:
+    """By more than a facet, which the plan of the reference geometry knows nothing of; beyond its end, too."""
+    points, facets = grid(nv)
+    place = np.array([0.2, 0.3])
+    for moved in ([0.9, 0.0, 0.0], [-0.4, -0.7, 0.0], [5.0, 0.0, 0.0]):
+        deformed = points + moved
+        xy = shape(nv, *place)[0] @ deformed[facets]
+        facet, _ = FacetSearch(points, facets).locate(xy[:, :2], deformed)
+        np.testing.assert_array_equal(facet, np.arange(len(facets)))
+
+
+def test_a_long_facet_beside_many_small_ones_is_found() -> None:
     x = np.append(np.linspace(0.0, 0.2, 21), 10.0)
     points = np.array([[a, b, 0.0] for a in x for b in (0.0, 1.0)])
     facets = np.array([[2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1] for i in range(21)])
-    facet, _ = FacetSearch(points, facets).locate(np.array([[0.25, 0.5]]), points)
-    assert facet[0] == 20
+    facet, _ = FacetSearch(points, facets).locate(np.array([[0.25, 0.5], [9.9, 0.1], [0.195, 0.2]]), points)
+    assert facet.tolist() == [20, 20, 19]
 
 
 def gap(q: Array, nv: int) -> float:

@@ -40,6 +40,24 @@ def test_blocks_add_up_and_absent_dofs_drop_out() -> None:
     numbering.destroy()
 
 
+def test_of_a_batch_with_marks_the_filled_blocks_add_up_and_are_cleared() -> None:
+    chain = Chain(np.arange(4.0), prescribed=True)
+    numbering = Numbering(MPI.COMM_SELF, [chain])
+    filled = np.zeros(3, dtype=bool)
+    pairs = MatrixBlock(chain.pairs().rows, chain.pairs().cols, filled)
+    matrix = Matrix(numbering, {"pairs": pairs}, symmetric=True)
+    for block in (1, 2):
+        matrix.clear()
+        matrix.values["pairs"][block] = np.array([[1.0, -1.0], [-1.0, 1.0]])
+        filled[block] = True
+        matrix.assemble()
+        expected = np.zeros((3, 3))
+        expected[block - 1 : block + 1, block - 1 : block + 1] = [[1.0, -1.0], [-1.0, 1.0]]
+        assert matrix.mat.getValues(range(3), range(3)) == pytest.approx(expected)
+    matrix.destroy()
+    numbering.destroy()
+
+
 def test_magnitudes_are_sums_of_absolute_values_over_the_blocks() -> None:
     """Where the blocks' own entries cancel one another, too; of absent dofs nothing, of prescribed ones their size."""
     chain = Chain(np.arange(4.0), prescribed=True)

@@ -1,0 +1,108 @@
+"""A banded matrix with a dense border, against a dense solve."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from petsc4py import PETSc
+
+from riser_soil.core.arrays import Array
+from riser_soil.solve.bordered_band import BorderedBand, SingularError, bandwidth
+
+
+def matrix(chain: int, border: int, band: int, touched: slice) -> Array:
+    """Random, not symmetric; the first diagonal entry is zero, so that rows must be exchanged."""
+    random = np.random.default_rng(7)
+    n = chain + border
+    out = random.normal(size=(n, n))
+    i, j = np.indices((n, n))
+    out[(i < chain) & (j < chain) & (abs(i - j) > band)] = 0.0
+    away = np.ones(chain, dtype=bool)
+    away[touched] = False
+    out[:chain, chain:][away] = 0.0
+    out[chain:, :chain][:, away] = 0.0
+    out[0, 0] = 0.0
+    return out
+
+
+def solver(entries: Array, chain: int) -> tuple[PETSc.PC, PETSc.Mat]:
+    n = len(entries)
+    mat = PETSc.Mat().createAIJ((n, n), csr=_csr(entries), comm=PETSc.COMM_SELF)
+    pc = PETSc.PC().create(PETSc.COMM_SELF)
+    pc.setOperators(mat)
+    pc.setType(PETSc.PC.Type.PYTHON)
+    pc.setPythonContext(BorderedBand(mat, chain))
+    return pc, mat
+
+
+def _csr(entries: Array) -> tuple[Array, Array, Array]:
+    rows, columns = np.nonzero(entries)
+    indptr = np.append(0, np.cumsum(np.bincount(rows, minlength=len(entries))))
+    return indptr.astype(PETSc.IntType), columns.astype(PETSc.IntType), entries[rows, columns]
+
+
+@pytest.mark.parametrize(
+    ("chain", "border", "band", "touched"),
+    [(30, 7, 3, slice(10, 15)), (30, 7, 3, slice(0, 30)), (12, 20, 2, slice(11, 12)), (15, 0, 2, slice(0, 0))],
+)
+def test_it_solves(chain: int, border: int, band: int, touched: slice) -> None:
+    entries = matrix(chain, border, band, touched)
+    load = np.random.default_rng(8).normal(size=chain + border)
+    pc, mat = solver(entries, chain)
+    assert bandwidth(mat, chain) == band
+    given, found = mat.createVecs()
+    for scale in (1.0, 2.0):  # the factors are renewed with the matrix
+        pc.setOperators(mat)
+        given.setArray(load)
+        pc.apply(given, found)
+        expected = np.linalg.solve(scale * entries, load)
+        assert np.abs(found.getArray() - expected).max() < 1e-9 * np.abs(expected).max()
+        mat.scale(2.0)
+
+
+@pytest.mark.parametrize("row", [4, 33])
+def test_a_singular_matrix_is_told(row: int) -> None:
+    """In the band, and in the border."""
+    entries = matrix(30, 7, 3, slice(10, 15))
+    entries[row] = 0.0
+    pc, mat = solver(entries, 30)
+    with pytest.raises(SingularError):
+        pc.setUp()
+    mat.destroy()
+
+
+LEFT_OVER = """
+import numpy as np
+from petsc4py import PETSc
+from riser_soil.solve.bordered_band import BorderedBand
+
+class Solver:
+    def __init__(self):
+        size = np.arange(4, dtype=PETSc.IntType)
+        mat = PETSc.Mat().createAIJ((3, 3), csr=(size, size[:3], np.full(3, 2.0)), comm=PETSc.COMM_SELF)
+        self.snes, self.x, self.f = PETSc.SNES().create(PETSc.COMM_SELF), *mat.createVecs()
+        self.snes.setFunction(self.function, self.f)
+        self.snes.setJacobian(lambda *_: None, mat)
+        self.snes.getKSP().setType("preonly")
+        self.snes.getKSP().getPC().setType("python")
+        self.snes.getKSP().getPC().setPythonContext(BorderedBand(mat, 2))
+
+    def function(self, snes, x, f):
+        f.setArray(2.0 * x.getArray(readonly=True) - 6.0)
+
+solver = Solver()
+solver.snes.solve(None, solver.x)
+print(*solver.x.getArray(readonly=True))
+%s
+"""
+
+
+@pytest.mark.parametrize(("end", "in_use"), [("", 1), ("del solver", 1), ("solver.snes.destroy()", 0)])
+def test_python_ends_well_with_solvers_left_over(end: str, in_use: int) -> None:
+    """Of those destroyed, nothing is kept."""
+    counted = f"{end}\nprint(len(BorderedBand.in_use))"
+    done = subprocess.run([sys.executable, "-c", LEFT_OVER % counted], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout.split()) == (0, ["3.0", "3.0", "3.0", str(in_use)]), done.stderr
