@@ -55,7 +55,7 @@ def scene_of(case: Case, elements: int, time_step: float, newton: str, mesh: str
     }
     segment = {"line_type": "line", "length": case.length, "elements": elements}
     moving = {"name": "moving", "kind": "dynamic", "duration": case.duration, "time_step": time_step}
-    scene = {
+    scene: dict[str, Any] = {
         "title": f"{case.name}, beside other programs",
         "gravity": GRAVITY,
         "water": {"density": WATER},
