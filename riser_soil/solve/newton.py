@@ -13,10 +13,12 @@ from petsc4py import PETSc
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Work, local
 from riser_soil.core.roles import Adaptive, with_role
+from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
 from riser_soil.solve.failed_step import place_of_largest, reason_name
+from riser_soil.solve.kept_factors import KeptFactors
 from riser_soil.solve.line_search import step_length
-from riser_soil.solve.linear_solver import PREFIX, complaint, defaults, factorise_directly
+from riser_soil.solve.linear_solver import PREFIX, complaint, defaults, factorise_directly, keeps_factors
 from riser_soil.solve.round_off import ROUND_OFF, stays
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError, told
 from riser_soil.solve.stability import prescribe_free_turns, unstable_modes
@@ -27,6 +29,8 @@ DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_DTOL
 NOT_SOLVED = PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE
 ITERATING = PETSc.SNES.ConvergedReason.ITERATING
 OUTGROWN = PETSc.SNES.ConvergedReason.CONVERGED_ITS  # stops where the matrix' pattern lacks places
+LOOSE, TIGHT = 1e-3, 1e-10  # shares of the residual that the iterations of a linear system may leave
+BELOW = 0.1  # of what is expected of Newton's method, or asked of it: what the linear system may leave
 PROBE = 1e-6  # of the prescribed motion, along which the slope of the residual is taken
 STATIC = Static().weights(0.0)
 
@@ -44,6 +48,7 @@ class Newton:
         self._state: State | None = None
         self._make_vectors()
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
+        self._kept = KeptFactors(system) if keeps_factors(system, settings.linear) else None
         self._snes = self._create()
 
     def _make_vectors(self) -> None:
@@ -60,8 +65,11 @@ class Newton:
         snes.setTolerances(max_it=self.settings.max_iterations)
         if self.settings.line_search:
             snes.setLineSearchPreCheck(self._shorten)
-        snes.getKSP().setType(PETSc.KSP.Type.PREONLY)
-        factorise_directly(snes.getKSP().getPC(), self.system)
+        if self._kept is None:
+            snes.getKSP().setType(PETSc.KSP.Type.PREONLY)
+            factorise_directly(snes.getKSP().getPC(), self.system)
+        else:
+            self._kept.serve(snes.getKSP())
         snes.setOptionsPrefix(PREFIX)
         with defaults({"snes_linesearch_type": "basic"}):
             snes.setFromOptions()
@@ -103,6 +111,7 @@ class Newton:
         self._first = 1
         solver = self._snes.getKSP()
         solver.setOperators(self.system.matrix.mat)
+        solver.setTolerances(rtol=LOOSE)
         if failure := self._failing(lambda: solver.solve(self._f, self._x), lambda: solver.reason < 0):
             raise NotConvergedError(failure)
         self._x.scale(-1.0)
@@ -155,6 +164,8 @@ class Newton:
         if not complained and not unsolved():
             return ""
         failure = self._reason(NOT_SOLVED, complained)
+        if self._kept is not None:
+            self._kept.forget()
         self._snes.destroy()
         self._snes = self._create()
         return failure
@@ -210,7 +221,9 @@ class Newton:
         """Take a matrix of the pattern that the parts have now, and of the dofs that they act on, if any can change."""
         if not self._adaptive:
             return
-        self.destroy()
+        self._release()
+        if self._kept is not None:
+            self._kept.renew()
         self.system.renew_pattern()
         self._make_vectors()
         if self._state is not None:
@@ -332,11 +345,23 @@ class Newton:
 
     def _next_tangent(self) -> int:
         """Assemble that of the next iteration, if there is one with a tangent of its own; whether it has a place."""
+        self._snes.getKSP().setTolerances(rtol=self._linear_tolerance())
         if self._taken >= self.settings.max_iterations or self._reusable():
             return ITERATING
         self._trial(self._x)
         self._assemble(self._balanced)
         return OUTGROWN if self._outgrown() else ITERATING
+
+    def _linear_tolerance(self) -> float:
+        """Share of the residual that the next linear system may leave, where it is solved by iterations.
+
+        A fall by a factor f promises a next one by f² (Eisenstat & Walker, SIAM J. Sci. Comput. 17, 1996, choice 2); what
+        is left stays below that, or below Newton's tolerance.
+        """
+        fall = self._norms[-1] / self._norms[-2] if self._taken > self._first else 1.0
+        enough = self.settings.tolerance * self._scale(self._forces) / max(self._norms[-1], self.settings.floor)
+        share = BELOW * max(fall**2, enough)
+        return min(max(share, TIGHT), LOOSE) if math.isfinite(share) else LOOSE
 
     def _norm(self) -> float:
         """Norm of the residual [N]; collective."""
@@ -361,6 +386,19 @@ class Newton:
         """This rank's residual [N], moments over the lever."""
         return np.asarray(self._f.array_r / self._levers.array_r)
 
+    def state(self) -> Saved:
+        """The factors that are kept."""
+        return {} if self._kept is None else under("kept", self._kept.state())
+
+    def restore(self, saved: Saved) -> None:
+        if self._kept is not None:
+            self._kept.restore(within(saved, "kept"))
+
     def destroy(self) -> None:
+        self._release()
+        if self._kept is not None:
+            self._kept.forget()
+
+    def _release(self) -> None:
         for thing in (self._snes, self._x, self._f, self._levers):
             thing.destroy()
