@@ -59,7 +59,8 @@ class KeptFactors:
         return self._iterate(matrix, tolerance, b, x)
 
     def _iterate(self, matrix: PETSc.Mat, tolerance: float, b: PETSc.Vec, x: PETSc.Vec) -> int:
-        """PETSc's reason to end, below 0 without convergence. Factors are stale once a solve costs more than the mean."""
+        """PETSc's reason to end, below 0 without convergence. Factors are stale once a solve costs more than the mean.
+        """
         assert self._krylov is not None
         self._krylov.setOperators(matrix, self._factored)
         self._krylov.setTolerances(rtol=tolerance, atol=0.0, max_it=self._most)

@@ -78,7 +78,7 @@ def _choose(pc: PETSc.PC, system: System, kind: str, controls: Mapping[int, int]
 
 
 def use_mumps(pc: PETSc.PC, kind: str, controls: Mapping[int, int]) -> None:
-    """Let MUMPS factorise the operators of a preconditioner. kind: "lu", or "cholesky" for LDLᵀ of the upper triangle."""
+    """Let MUMPS factorise a preconditioner's operator. kind: "lu", or "cholesky": LDLᵀ of the upper triangle."""
     pc.setType(kind)
     pc.setFactorSolverType("mumps")
     pc.setFactorSetUpSolverType()

@@ -48,7 +48,7 @@ class Newton:
         self._state: State | None = None
         self._make_vectors()
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
-        self._kept = KeptFactors(system) if keeps_factors(system, settings.linear) else None
+        self.kept = KeptFactors(system) if keeps_factors(system, settings.linear) else None
         self._snes = self._create()
 
     def _make_vectors(self) -> None:
@@ -65,11 +65,11 @@ class Newton:
         snes.setTolerances(max_it=self.settings.max_iterations)
         if self.settings.line_search:
             snes.setLineSearchPreCheck(self._shorten)
-        if self._kept is None:
+        if self.kept is None:
             snes.getKSP().setType(PETSc.KSP.Type.PREONLY)
             factorise_directly(snes.getKSP().getPC(), self.system)
         else:
-            self._kept.serve(snes.getKSP())
+            self.kept.serve(snes.getKSP())
         snes.setOptionsPrefix(PREFIX)
         with defaults({"snes_linesearch_type": "basic"}):
             snes.setFromOptions()
@@ -164,8 +164,8 @@ class Newton:
         if not complained and not unsolved():
             return ""
         failure = self._reason(NOT_SOLVED, complained)
-        if self._kept is not None:
-            self._kept.forget()
+        if self.kept is not None:
+            self.kept.forget()
         self._snes.destroy()
         self._snes = self._create()
         return failure
@@ -222,8 +222,8 @@ class Newton:
         if not self._adaptive:
             return
         self._release()
-        if self._kept is not None:
-            self._kept.renew()
+        if self.kept is not None:
+            self.kept.renew()
         self.system.renew_pattern()
         self._make_vectors()
         if self._state is not None:
@@ -355,8 +355,8 @@ class Newton:
     def _linear_tolerance(self) -> float:
         """Share of the residual that the next linear system may leave, where it is solved by iterations.
 
-        A fall by a factor f promises a next one by f² (Eisenstat & Walker, SIAM J. Sci. Comput. 17, 1996, choice 2); what
-        is left stays below that, or below Newton's tolerance.
+        A fall by a factor f promises a next one by f² (Eisenstat & Walker, SIAM J. Sci. Comput. 17, 1996, choice 2, from
+        memory); what is left stays below that, or below Newton's tolerance.
         """
         fall = self._norms[-1] / self._norms[-2] if self._taken > self._first else 1.0
         enough = self.settings.tolerance * self._scale(self._forces) / max(self._norms[-1], self.settings.floor)
@@ -388,16 +388,16 @@ class Newton:
 
     def state(self) -> Saved:
         """The factors that are kept."""
-        return {} if self._kept is None else under("kept", self._kept.state())
+        return {} if self.kept is None else under("kept", self.kept.state())
 
     def restore(self, saved: Saved) -> None:
-        if self._kept is not None:
-            self._kept.restore(within(saved, "kept"))
+        if self.kept is not None:
+            self.kept.restore(within(saved, "kept"))
 
     def destroy(self) -> None:
         self._release()
-        if self._kept is not None:
-            self._kept.forget()
+        if self.kept is not None:
+            self.kept.forget()
 
     def _release(self) -> None:
         for thing in (self._snes, self._x, self._f, self._levers):
