@@ -29,9 +29,10 @@ STEPS = 24
 
 @dataclass(frozen=True)
 class Walk:
-    """Some steps of the stage: Newton iterations, processor time of one [s], how it is made up.
+    """Some steps of a stage: Newton iterations, processor time of one [s].
 
-    yielded: share of the soil's points with plastic strain. factorisations, krylov: of kept factors.
+    yielded: share of the soil's points with plastic strain. factorisations, krylov: of kept factors. alone: processor
+    time of one factorisation [s].
     """
 
     unknowns: int

@@ -10,10 +10,10 @@ own counts of its work, so that a run can be repeated to the last bit.
 from __future__ import annotations
 
 import numpy as np
+from mpi4py import MPI
 from petsc4py import PETSc
 
 from riser_soil.core.saved_state import Saved
-from riser_soil.core.system import System
 from riser_soil.solve.linear_solver import ROOM, use_mumps
 
 FEWEST = 10  # iterations that GMRES may take in any case
@@ -23,14 +23,15 @@ PER_ENTRY = 36.0  # operations of a factorisation that take as long as a solve f
 class KeptFactors:
     """Linear solver of a system's tangents, one after the other; collective.
 
-    factorisations, iterations: how many there were, the latter of GMRES. worth: iterations that cost as much as a
-    factorisation. whole: whether the factors are LU of all the tangent, as those of its upper triangle did not do.
+    symmetric: whether the tangents are. factorisations, iterations: how many there were, the latter of GMRES. worth:
+    iterations that cost as much as a factorisation.
     """
 
-    def __init__(self, system: System) -> None:
-        self._system = system
+    def __init__(self, comm: MPI.Intracomm, symmetric: bool) -> None:
+        self._comm, self._symmetric = comm, symmetric
         self.factorisations = self.iterations = 0
-        self.worth, self._whole = 0.0, False
+        self.worth = 0.0
+        self._whole = False  # whether the factors are LU of all the tangent, as those of its upper triangle did not do
         self._krylov: PETSc.KSP | None = None
         self._factored: PETSc.Mat | None = None
         self._outgrown = False
@@ -48,8 +49,8 @@ class KeptFactors:
         reason = -1 if self._stale else self._iterate(matrix, ksp.rtol, b, x)
         if reason < 0:
             reason = self._solve_anew(matrix, ksp.rtol, b, x)
-        if reason < 0 and not (self._whole or self._system.symmetric):
-            self._whole, self._outgrown = True, True
+        if reason < 0 and not (self._whole or self._symmetric):
+            self._whole = self._outgrown = True
             reason = self._solve_anew(matrix, ksp.rtol, b, x)
         ksp.setConvergedReason(reason)
 
@@ -92,7 +93,7 @@ class KeptFactors:
     def _keep(self, factored: PETSc.Mat) -> None:
         """Become the solver with the factors of a matrix, once they are made."""
         self._factored, self._outgrown = factored, False
-        self._krylov = PETSc.KSP().create(self._system.comm)
+        self._krylov = PETSc.KSP().create(self._comm)
         self._krylov.setType(PETSc.KSP.Type.GMRES)
         self._krylov.setPCSide(PETSc.PC.Side.RIGHT)
         self._krylov.setOperators(factored)
@@ -134,7 +135,7 @@ class KeptFactors:
             return
         rows = (len(saved["starts"]) - 1, PETSc.DETERMINE)
         csr = tuple(saved[name] for name in ("starts", "columns", "values"))
-        self._keep(PETSc.Mat().createAIJ((rows, rows), csr=csr, comm=self._system.comm))
+        self._keep(PETSc.Mat().createAIJ((rows, rows), csr=csr, comm=self._comm))
         self.worth, self._spent, self._solves = (saved[name].item() for name in ("worth", "spent", "solves"))
         self._outgrown, self._stale = bool(saved["outgrown"]), False
         assert self._krylov is not None

@@ -29,8 +29,8 @@ DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_DTOL
 NOT_SOLVED = PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE
 ITERATING = PETSc.SNES.ConvergedReason.ITERATING
 OUTGROWN = PETSc.SNES.ConvergedReason.CONVERGED_ITS  # stops where the matrix' pattern lacks places
-LOOSE, TIGHT = 1e-3, 1e-10  # shares of the residual that the iterations of a linear system may leave
-BELOW = 0.1  # of what is expected of Newton's method, or asked of it: what the linear system may leave
+LOOSE, TIGHT = 1e-3, 1e-10  # shares of the residual that a linear system solved by iterations may leave
+BELOW = 0.1  # what it may leave, of what Newton's method is expected to leave, or may
 PROBE = 1e-6  # of the prescribed motion, along which the slope of the residual is taken
 STATIC = Static().weights(0.0)
 
@@ -48,7 +48,7 @@ class Newton:
         self._state: State | None = None
         self._make_vectors()
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
-        self.kept = KeptFactors(system) if keeps_factors(system, settings.linear) else None
+        self.kept = KeptFactors(system.comm, system.symmetric) if keeps_factors(system, settings.linear) else None
         self._snes = self._create()
 
     def _make_vectors(self) -> None:
@@ -345,7 +345,8 @@ class Newton:
 
     def _next_tangent(self) -> int:
         """Assemble that of the next iteration, if there is one with a tangent of its own; whether it has a place."""
-        self._snes.getKSP().setTolerances(rtol=self._linear_tolerance())
+        if self.kept is not None:
+            self._snes.getKSP().setTolerances(rtol=self._linear_tolerance())
         if self._taken >= self.settings.max_iterations or self._reusable():
             return ITERATING
         self._trial(self._x)
@@ -353,15 +354,16 @@ class Newton:
         return OUTGROWN if self._outgrown() else ITERATING
 
     def _linear_tolerance(self) -> float:
-        """Share of the residual that the next linear system may leave, where it is solved by iterations.
+        """Share of the residual that the next linear system may leave, where factors are kept.
 
-        A fall by a factor f promises a next one by f² (Eisenstat & Walker, SIAM J. Sci. Comput. 17, 1996, choice 2, from
-        memory); what is left stays below that, or below Newton's tolerance.
+        A fall by a factor f promises a next one by f² (Eisenstat & Walker, SIAM J. Sci. Comput. 17, 1996, choice 2,
+        from memory); what is left stays below that, or below Newton's tolerance.
         """
-        fall = self._norms[-1] / self._norms[-2] if self._taken > self._first else 1.0
-        enough = self.settings.tolerance * self._scale(self._forces) / max(self._norms[-1], self.settings.floor)
-        share = BELOW * max(fall**2, enough)
-        return min(max(share, TIGHT), LOOSE) if math.isfinite(share) else LOOSE
+        norm, before = self._norms[-1], self._norms[-2] if self._taken > self._first else 0.0
+        if not 0.0 < norm < before:
+            return LOOSE
+        enough = self.settings.tolerance * self._scale(self._forces) / norm
+        return min(max(BELOW * (norm / before) ** 2, BELOW * enough, TIGHT), LOOSE)
 
     def _norm(self) -> float:
         """Norm of the residual [N]; collective."""
