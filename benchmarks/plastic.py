@@ -19,12 +19,12 @@ from riser_soil.solve.newton import Newton
 
 CLAY = "su: 2.0e3, su_gradient: 1.5e3, E_over_su: 300.0"
 LAWS = {
-    "cyclic clay": f"soil.law={{kind: kinematic-hardening, {CLAY}}}",
     "perfectly plastic clay": f"soil.law={{kind: von-mises, {CLAY}}}",
+    "cyclic clay": f"soil.law={{kind: kinematic-hardening, {CLAY}}}",
 }
 QUICK = ((1.0, 0.075, 0.75), (0.7, 0.065, 0.65))  # cells along and across the riser, and far from it [m]
 LARGE = ((0.4, 0.042, 0.41), (0.35, 0.036, 0.36))
-STEPS = 24
+STEPS = 16
 
 
 @dataclass(frozen=True)
