@@ -1,4 +1,4 @@
-"""Kept factors as a linear solver: the solution of each matrix, new factors where the old don't do, saved and restored."""
+"""Kept factors as a linear solver: solutions, new factors where the old don't do, saved and restored."""
 
 from __future__ import annotations
 
@@ -63,10 +63,11 @@ def sparse(rows: Array) -> PETSc.Mat:
 
 
 def springs() -> Array:
-    """Stiffness of a cube of nodes with springs between neighbours, each held by a weak one to the ground."""
+    """Stiffness of a cube of nodes with springs between neighbours, held all around."""
     chain = np.diag(np.full(SIDE, 2.0)) - np.eye(SIDE, k=1) - np.eye(SIDE, k=-1)
     one = np.eye(SIDE)
-    return sum(np.kron(np.kron(a, b), c) for a, b, c in ((chain, one, one), (one, chain, one), (one, one, chain)))
+    along = ((chain, one, one), (one, chain, one), (one, one, chain))
+    return np.sum([np.kron(np.kron(a, b), c) for a, b, c in along], axis=0)
 
 
 K = springs()
