@@ -17,10 +17,9 @@ from riser_soil.core.system import System, Timer
 from riser_soil.results.observer import Observer
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
-from riser_soil.solve.solution import NewtonSettings
 from riser_soil.solve.step_solver import solver_of
 from riser_soil.solve.time_stepper import TimeStepper
-from riser_soil.stages import LayingCounter, lay, run_stage, steps_of
+from riser_soil.stages import LayingCounter, lay, run_stage, settings_of, steps_of
 
 
 class TimedStage:
@@ -30,7 +29,7 @@ class TimedStage:
         self.assembly, self.stage = assembly, stage
         solver = assembly.scene.solver
         self.system = System(assembly.comm, assembly.begin(stage), clock)
-        settings = NewtonSettings(solver.tolerance, solver.max_iterations, assembly.scales.force_floor)
+        settings = settings_of(assembly)
         self.newton = solver_of(self.system, scheme_of(stage), settings, solver.newton == "compiled")
         self.stepper = TimeStepper(self.system, self.newton, scheme_of(stage), replace(before, t=0.0))
         self.control = steps_of(assembly, stage, self.stepper)

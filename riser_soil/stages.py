@@ -121,11 +121,11 @@ def _take(
 ) -> State:
     """From the state that the stage begins with, or from where it was saved."""
     if isinstance(begin, State) and assembly.cushion is not None and assembly.is_laid_in(stage):
-        seat(assembly, model, _settings(assembly), clock)
+        seat(assembly, model, settings_of(assembly), clock)
     system = System(assembly.comm, model, clock)
     if not isinstance(begin, State):
         _restore(system, begin)
-    settings = replace(_settings(assembly), linear_start=_starts_at_rest(assembly, stage))
+    settings = replace(settings_of(assembly), linear_start=_starts_at_rest(assembly, stage))
     newton = solver_of(system, scheme_of(stage), settings, assembly.scene.solver.newton == "compiled")
     try:
         run = _begin_run(assembly, stage, system, newton, begin, observer)
@@ -222,7 +222,7 @@ def _static_step(run: StageRun) -> AcceptedStep:
 
 def _relaxed(assembly: Assembly, stepper: TimeStepper, control: Control, observer: StageObserver) -> bool:
     """Whether an equilibrium was found at the load factor that Newton's method missed; else the step is halved."""
-    system, settings, weight = stepper.system, _settings(assembly), assembly.scales.weight
+    system, settings, weight = stepper.system, settings_of(assembly), assembly.scales.weight
     try:
         relaxed = relax(assembly.comm, system.model, assembly.line, weight, settings, system.clock, control.target)
     except SolveError:
@@ -237,10 +237,14 @@ def _relaxed(assembly: Assembly, stepper: TimeStepper, control: Control, observe
     return True
 
 
-def _settings(assembly: Assembly) -> NewtonSettings:
+def settings_of(assembly: Assembly) -> NewtonSettings:
+    """Newton's settings in a scene's stages."""
     solver = assembly.scene.solver
     on_soil = assembly.soil is not None
-    return NewtonSettings(solver.tolerance, solver.max_iterations, assembly.scales.force_floor, line_search=on_soil)
+    floor = assembly.scales.force_floor
+    return NewtonSettings(
+        solver.tolerance, solver.max_iterations, floor, line_search=on_soil, linear=solver.linear
+    )
 
 
 def _starts_at_rest(assembly: Assembly, stage: Stage) -> bool:

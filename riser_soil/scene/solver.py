@@ -44,3 +44,9 @@ class Solver(BaseModel):
         description="how linear elastic soil is solved, with the same results; condensed: once, to the part of its "
         "surface that the riser reaches; whole: all of it in each iteration; auto: condensed where that is cheaper",
     )
+    linear: Literal["auto", "kept", "direct"] = Field(
+        default="auto",
+        description="how the linear systems of riser and soil are solved, with the same results to the tolerance; "
+        "direct: each is factorised; kept: by GMRES with the factors of an earlier one, which are made anew where that "
+        "is cheaper; auto: kept from 4000 unknowns on",
+    )

@@ -124,13 +124,18 @@ class FrictionalSoil:
         return np.column_stack((self.initial, np.zeros(len(self.bulk))))
 
     @cached_property
+    def _elastic(self) -> Array:
+        """Moduli (n, 6, 6) [Pa] where nothing yields."""
+        return mandel.stiffness(self.bulk, self.shear)
+
+    @cached_property
     def _resistance(self) -> Array:
         """3 G + K M M' (n,) [Pa]: fall of q + M σm by Δλ."""
         return 3.0 * self.shear + self.bulk * self.slope * self.dilation
 
     def update(self, strain_increment: Array, history: Array) -> StressUpdate:
         stress = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
-        tangent, slip = mandel.stiffness(self.bulk, self.shear), np.zeros(len(stress))
+        tangent, slip = self._elastic.copy(), np.zeros(len(stress))
         q, excess = mandel.von_mises(stress), self._excess(stress)
         at_apex = 3.0 * self.shear * excess > q * self._resistance
         cone = np.flatnonzero((excess > 0.0) & ~at_apex)

@@ -64,14 +64,20 @@ def add_internal_force(
 
 
 @njit
-def add_stiffness(full: Array, volume: Array, weights: Array, moduli: Array, out: Array) -> None:
-    """Add the cell matrices ∫ B̄ᵀ C B̄ [N/m] of the moduli C (nc, nq, 6, 6) [Pa] to out (nc, 3nn, 3nn)."""
+def renew_stiffness(full: Array, volume: Array, weights: Array, moduli: Array, known: Array, out: Array) -> None:
+    """Cell matrices ∫ B̄ᵀ C B̄ [N/m] of the moduli C (nc, nq, 6, 6) [Pa], written to out (nc, 3nn, 3nn) where it does
+    not hold them yet: known: the moduli that it is of, which become those.
+    """
     nc, nq, nn, _ = full.shape
     step = 0 if volume.shape[1] == 1 else 1
     B = np.zeros((6, 3 * nn))
     CB = np.zeros((6, 3 * nn))
     for c in range(nc):
+        if _same(moduli[c], known[c]):
+            continue
+        known[c] = moduli[c]
         K = out[c]
+        K[:] = 0.0
         for q in range(nq):
             _operator(full[c, q], volume[c, q * step], B)
             _product(weights[c, q], moduli[c, q], B, CB)
@@ -82,6 +88,14 @@ def add_stiffness(full: Array, volume: Array, weights: Array, moduli: Array, out
                     if factor != 0.0:
                         for j in range(3 * nn):
                             row[j] += factor * CB[k, j]
+
+
+@njit
+def _same(a: Array, b: Array) -> bool:
+    same = True
+    for x, y in zip(a.ravel(), b.ravel()):  # noqa: B905
+        same &= x == y
+    return same
 
 
 @njit

@@ -36,6 +36,7 @@ else:
 
 BACKSTRESS = tuple(f"backstress_{component}" for component in ("xx", "yy", "zz", "xy", "xz", "yz"))
 MOST_ITERATIONS, CONVERGED = 50, 1e-14  # of Δp; change over the largest that Δp may be
+ROUND_OFF = 4e-15  # of |η| in the equation for Δp: a change that makes no more is none
 
 
 class KinematicHardening(UndrainedClay):
@@ -93,6 +94,11 @@ class CyclicClay:
         return (bound / np.maximum(np.sqrt(1.5 * mandel.product(s, s)), bound))[:, None] * s
 
     @cached_property
+    def _elastic(self) -> Array:
+        """Moduli (n, 6, 6) [Pa] where nothing yields."""
+        return mandel.stiffness(self.bulk, self.shear)
+
+    @cached_property
     def _recall(self) -> Array:
         """γ (n,) [-]."""
         return self.hardening / (self.limit - self.elastic_limit)
@@ -101,7 +107,7 @@ class CyclicClay:
         now = replace(self, limit=strength * self.limit, elastic_limit=strength * self.elastic_limit)
         stress = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
         backstress, slip = now._bounded(history[:, 7:]), np.zeros(len(stress))
-        tangent = mandel.stiffness(self.bulk, self.shear)
+        tangent = self._elastic.copy()
         relative = mandel.deviator(stress) - backstress
         at = np.flatnonzero(np.sqrt(1.5 * mandel.product(relative, relative)) > now.elastic_limit)
         if at.size:
@@ -140,13 +146,13 @@ class CyclicClay:
         found, theta, eta, size = excess(slip)
         low: Array = np.zeros(len(at))
         high: Array = found / stiff
-        most = high.copy()
+        least = np.maximum(CONVERGED * high, ROUND_OFF / stiff * size)
         for _ in range(MOST_ITERATIONS):
             along = mandel.product(eta, backstress) / size
             falls = stiff + theta**2 * (root * C - recall * along)
             better = slip + found / falls
             better = np.where((better < low) | (better > high), 0.5 * (low + high), better)
-            done = np.abs(better - slip) <= CONVERGED * most
+            done = np.abs(better - slip) <= least
             slip = better
             found, theta, eta, size = excess(slip)
             low, high = np.where(found > 0.0, slip, low), np.where(found < 0.0, slip, high)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
-from riser_soil.soil.element import cell_gradients
+from riser_soil.soil.element import Gradients, cell_gradients
 from riser_soil.soil.field import SoilField, components
 from riser_soil.soil.gathered import GatheredMesh, gather, gather_rows, top_of
 from riser_soil.soil.grid import DistributedMesh, on_all_ranks
@@ -58,6 +58,7 @@ class Soil:
         depth = np.maximum(level - self._gradients.points[..., 2], 0.0).ravel()
         weight = LayeredWeight((), (unit_weight,)) if isinstance(unit_weight, int | float) else unit_weight
         initial = _geostatic(weight.stress(depth), K0) if start == "geostatic" else np.zeros((depth.size, 6))
+        self._stiffness = _Stiffness.unknown(self._gradients)
         self.law = law(depth, initial)
         self.traits = Traits("E", self.law.symmetric, roles=(Stateful,))
         self._check_start(initial, depth, K0)
@@ -76,7 +77,8 @@ class Soil:
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         _, found = self._answer(state)
         g, moduli = self._gradients, found.tangent.reshape(*self._shape, 6, 6)
-        kernels.add_stiffness(g.full, g.volume, g.weights, moduli, values["soil"])
+        kernels.renew_stiffness(g.full, g.volume, g.weights, moduli, *self._stiffness)
+        values["soil"] += self._stiffness.matrices
 
     def energy(self, state: State) -> Energy:
         """Strain energy by the law since the start, and potential of the unbalanced weight.
@@ -196,6 +198,18 @@ class Soil:
     def restore(self, saved: Saved) -> None:
         self._found = self._found._replace(**saved)
         self._answers.forget()
+
+
+class _Stiffness(NamedTuple):
+    """Cell matrices (nc, 3nn, 3nn) [N/m] and the moduli (nc, nq, 6, 6) [Pa] that they are of: most keep them."""
+
+    moduli: Array
+    matrices: Array
+
+    @classmethod
+    def unknown(cls, gradients: Gradients) -> _Stiffness:
+        nc, nq, nn, _ = gradients.full.shape
+        return cls(np.full((nc, nq, 6, 6), np.nan), np.zeros((nc, 3 * nn, 3 * nn)))
 
 
 def _at_rest(law: Formula, initial: Array) -> StressUpdate:

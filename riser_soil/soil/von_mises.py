@@ -8,6 +8,7 @@ Computational Inelasticity (1998), box 3.2, without hardening.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import Field
@@ -70,11 +71,16 @@ class PerfectlyPlastic:
 
     def _tangent(self, s: Array, q: Array, shrink: Array) -> Array:
         """K 1⊗1 + 2G θ (P − n⊗n) where it yields: n = s/|s| of the trial, θ = limit/q = shrink; else elastic."""
-        moduli = mandel.stiffness(self.bulk, self.shear * shrink)
-        yields = np.flatnonzero(shrink < 1.0)
-        n = s[yields] * (np.sqrt(1.5) / q[yields])[:, None]
-        moduli[yields] -= (2.0 * self.shear * shrink)[yields, None, None] * n[:, :, None] * n[:, None, :]
+        moduli, at = self._elastic.copy(), np.flatnonzero(shrink < 1.0)
+        n, shear = s[at] * (np.sqrt(1.5) / q[at])[:, None], (self.shear * shrink)[at]
+        along = (2.0 * shear)[:, None, None] * n[:, :, None] * n[:, None, :]
+        moduli[at] = mandel.stiffness(self.bulk[at], shear) - along
         return moduli
+
+    @cached_property
+    def _elastic(self) -> Array:
+        """Moduli (n, 6, 6) [Pa] where nothing yields."""
+        return mandel.stiffness(self.bulk, self.shear)
 
     def overstress(self, stress: Array) -> Array:
         return mandel.von_mises(stress) / self.limit

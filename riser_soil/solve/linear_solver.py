@@ -19,6 +19,7 @@ PREFIX = "riser_soil_"
 ROOM = {14: 60}
 COUNTING = {13: 1, 24: 1}
 IN_LIBRARY = 76  # PETSc's code of an error in another library, here MUMPS
+LARGE = 4000  # unknowns from which on kept factors are cheaper than new ones
 NO_PIVOT = 1e-200  # whatever the units; by PETSc's default the stiffness of a riser a fingernail long is none
 
 
@@ -34,6 +35,13 @@ def defaults(options: Mapping[str, str]) -> Iterator[None]:
     finally:
         for key in added:
             database.delValue(PREFIX + key)
+
+
+def keeps_factors(system: System, asked: str) -> bool:
+    """Whether factors are kept from one tangent to the next: as asked ("kept", "direct"), or where that is cheaper."""
+    if _is_chain(system) or asked == "direct":
+        return False
+    return asked == "kept" or system.numbering.free >= LARGE
 
 
 def factorise_directly(pc: PETSc.PC, system: System) -> None:
@@ -72,11 +80,17 @@ def negative_pivots(system: System) -> int:
 
 def _choose(pc: PETSc.PC, system: System, kind: str, controls: Mapping[int, int]) -> None:
     pc.setOperators(system.matrix.mat)
-    pc.setType(kind)
     if _is_chain(system):
+        pc.setType(kind)
         pc.setFactorOrdering("natural")
         pc.setFactorPivot(zeropivot=NO_PIVOT)
         return
+    use_mumps(pc, kind, controls)
+
+
+def use_mumps(pc: PETSc.PC, kind: str, controls: Mapping[int, int]) -> None:
+    """Let MUMPS factorise a preconditioner's operator. kind: "lu", or "cholesky": LDLᵀ of the upper triangle."""
+    pc.setType(kind)
     pc.setFactorSolverType("mumps")
     pc.setFactorSetUpSolverType()
     for control, value in controls.items():

@@ -13,11 +13,13 @@ from petsc4py import PETSc
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Work, local
 from riser_soil.core.roles import Adaptive, with_role
+from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
 from riser_soil.solve.bordered_band import SingularError
 from riser_soil.solve.failed_step import place_of_largest, reason_name
+from riser_soil.solve.kept_factors import KeptFactors
 from riser_soil.solve.line_search import step_length
-from riser_soil.solve.linear_solver import PREFIX, complaint, defaults, factorise_directly
+from riser_soil.solve.linear_solver import PREFIX, complaint, defaults, factorise_directly, keeps_factors
 from riser_soil.solve.round_off import ROUND_OFF, stays
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError, told
 from riser_soil.solve.stability import prescribe_free_turns, unstable_modes
@@ -28,6 +30,8 @@ DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_DTOL
 NOT_SOLVED = PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE
 ITERATING = PETSc.SNES.ConvergedReason.ITERATING
 OUTGROWN = PETSc.SNES.ConvergedReason.CONVERGED_ITS  # stops where the matrix' pattern lacks places
+LOOSE, TIGHT = 1e-4, 1e-10  # shares of the residual that a linear system solved by iterations may leave
+BELOW = 0.1  # what it may leave, of what Newton's method is expected to leave, or may
 PROBE = 1e-6  # of the prescribed motion, along which the slope of the residual is taken
 STATIC = Static().weights(0.0)
 
@@ -45,6 +49,7 @@ class Newton:
         self._state: State | None = None
         self._make_vectors()
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
+        self.kept = KeptFactors(system.comm, system.symmetric) if keeps_factors(system, settings.linear) else None
         self._snes = self._create()
 
     def _make_vectors(self) -> None:
@@ -61,8 +66,11 @@ class Newton:
         snes.setTolerances(max_it=self.settings.max_iterations)
         if self.settings.line_search:
             snes.setLineSearchPreCheck(self._shorten)
-        snes.getKSP().setType(PETSc.KSP.Type.PREONLY)
-        factorise_directly(snes.getKSP().getPC(), self.system)
+        if self.kept is None:
+            snes.getKSP().setType(PETSc.KSP.Type.PREONLY)
+            factorise_directly(snes.getKSP().getPC(), self.system)
+        else:
+            self.kept.serve(snes.getKSP())
         snes.setOptionsPrefix(PREFIX)
         with defaults({"snes_linesearch_type": "basic"}):
             snes.setFromOptions()
@@ -104,6 +112,7 @@ class Newton:
         self._first = 1
         solver = self._snes.getKSP()
         solver.setOperators(self.system.matrix.mat)
+        solver.setTolerances(rtol=LOOSE)
         if failure := self._failing(lambda: solver.solve(self._f, self._x), lambda: solver.reason < 0):
             raise NotConvergedError(failure)
         self._x.scale(-1.0)
@@ -156,6 +165,8 @@ class Newton:
         if not complained and not unsolved():
             return ""
         failure = self._reason(NOT_SOLVED, complained)
+        if self.kept is not None:
+            self.kept.forget()
         self._snes.destroy()
         self._snes = self._create()
         return failure
@@ -211,7 +222,9 @@ class Newton:
         """Take a matrix of the pattern that the parts have now, and of the dofs that they act on, if any can change."""
         if not self._adaptive:
             return
-        self.destroy()
+        self._release()
+        if self.kept is not None:
+            self.kept.renew()
         self.system.renew_pattern()
         self._make_vectors()
         if self._state is not None:
@@ -333,11 +346,25 @@ class Newton:
 
     def _next_tangent(self) -> int:
         """Assemble that of the next iteration, if there is one with a tangent of its own; whether it has a place."""
+        if self.kept is not None:
+            self._snes.getKSP().setTolerances(rtol=self._linear_tolerance())
         if self._taken >= self.settings.max_iterations or self._reusable():
             return ITERATING
         self._trial(self._x)
         self._assemble(self._balanced)
         return OUTGROWN if self._outgrown() else ITERATING
+
+    def _linear_tolerance(self) -> float:
+        """Share of the residual that the next linear system may leave, where factors are kept.
+
+        A fall by a factor f promises a next one by f² (Eisenstat & Walker, SIAM J. Sci. Comput. 17, 1996, choice 2,
+        from memory); what is left stays below that, or below Newton's tolerance.
+        """
+        norm, before = self._norms[-1], self._norms[-2] if self._taken > self._first else 0.0
+        if not 0.0 < norm < before:
+            return LOOSE
+        enough = self.settings.tolerance * self._scale(self._forces) / norm
+        return min(max(BELOW * (norm / before) ** 2, BELOW * enough, TIGHT), LOOSE)
 
     def _norm(self) -> float:
         """Norm of the residual [N]; collective."""
@@ -362,6 +389,19 @@ class Newton:
         """This rank's residual [N], moments over the lever."""
         return np.asarray(self._f.array_r / self._levers.array_r)
 
+    def state(self) -> Saved:
+        """The factors that are kept."""
+        return {} if self.kept is None else under("kept", self.kept.state())
+
+    def restore(self, saved: Saved) -> None:
+        if self.kept is not None:
+            self.kept.restore(within(saved, "kept"))
+
     def destroy(self) -> None:
+        self._release()
+        if self.kept is not None:
+            self.kept.forget()
+
+    def _release(self) -> None:
         for thing in (self._snes, self._x, self._f, self._levers):
             thing.destroy()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Literal
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
@@ -45,7 +46,8 @@ class NewtonSettings:
     less than one with its own tangent. Only in time steps without contact, which start near their end: contact has
     corners, and an equilibrium may be far away. least_iterations: before a residual counts as small.
     line_search: shorten steps that lead far beyond the least energy, see `line_search`. linear_start: begin a static
-    step with the linear response to it, instead of the guess.
+    step with the linear response to it, instead of the guess. linear: "direct" factorises each tangent, "kept" keeps
+    factors as preconditioners, "auto" does so in large systems, see `kept_factors`.
     """
 
     tolerance: float
@@ -55,6 +57,7 @@ class NewtonSettings:
     least_iterations: int = 0
     line_search: bool = False
     linear_start: bool = False
+    linear: Literal["auto", "kept", "direct"] = "auto"
 
 
 @dataclass(frozen=True, eq=False)

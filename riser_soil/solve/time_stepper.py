@@ -271,6 +271,7 @@ class TimeStepper:
         """The accepted state with its forces and energy, and what the next step is foreseen and judged by."""
         owners: dict[str, Stateful | None] = {"predictor": self._past, "mass": self._mass, "error": self._error}
         owners["gain"] = self._gain
+        owners["newton"] = self.newton if isinstance(self.newton, Stateful) else None
         kept = {"before": self.before, "forces": self._forces, "history": self._history, "energy": self.energy}
         if self.now is not self.before:
             kept["now"] = self.now
@@ -292,6 +293,8 @@ class TimeStepper:
         self._past.restore(within(saved, "predictor"))
         if self._mass is not None:
             self._mass.restore(within(saved, "mass"))
+        if isinstance(self.newton, Stateful):
+            self.newton.restore(within(saved, "newton"))
         if error := within(saved, "error"):
             self._error = self._new_error()
             self._error.restore(error)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -53,7 +55,7 @@ class GrowingFloor(Floor):
         self.grown.append(len(self.held))
 
 
-def solved(chain: Chain, parts: list[Springs | Floor], **settings: bool) -> Solution:
+def solved(chain: Chain, parts: list[Springs | Floor], **settings: Any) -> Solution:
     system = System(MPI.COMM_SELF, Model([chain], parts), Timer.new())
     newton, z = Newton(system, NewtonSettings(1e-8, 25, 1e-12, **settings)), np.zeros(chain.size)
     guess = z.copy()

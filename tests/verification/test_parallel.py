@@ -34,6 +34,10 @@ def scene(name: str) -> Mapping:
         pressed = touchdown(LAY, heave(0.5), su=6000.0, dimension=3, tolerance=1e-10)
         held = {"friction": {"axial": 0.4, "lateral": 0.7}, "suction": {"cap": 100.0, "reach": 0.03}}
         return pressed | {"contact": {"method": "surface", "smoothing": 1e-3} | held}
+    if name == "kept":
+        yielding = touchdown(LAY, heave(0.5), su=1000.0, tolerance=1e-10)
+        contact = {"method": "surface", "smoothing": 1e-3}
+        return yielding | {"contact": contact, "solver": {"tolerance": 1e-10, "linear": "kept"}}
     if name == "sea":
         return in_waves(0.1, 21.0) | {"output": {"interval": 0.1}}
     if name == "demo held":
@@ -139,6 +143,11 @@ def test_small_scenes_agree_on_several_ranks(name: str, ranks: int) -> None:
 
 def test_surface_contact_agrees_on_two_ranks() -> None:
     assert_same("surface", 2)
+
+
+def test_kept_factors_agree_on_two_ranks() -> None:
+    """On clay that yields."""
+    assert_same("kept", 2)
 
 
 @pytest.mark.parametrize("name", ["sea", "clay"])

@@ -11,6 +11,7 @@ import pytest
 
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.solver import Solver
 from tests.support.coupled_scenes import LAY, heave, touchdown
 from tests.support.interrupted_run import differing, differing_rows, resumed, summary, whole
 
@@ -42,6 +43,11 @@ def surface_on_clay() -> Scene:
     return scene_from_mapping(scene | {"contact": {"method": "surface", "smoothing": 1e-3}})
 
 
+def kept_factors() -> Scene:
+    """Resumed with factors that are older than the step before."""
+    return surface_on_clay().model_copy(update={"solver": Solver(linear="kept")})
+
+
 def condensed_soil() -> Scene:
     scene = touchdown(LAY, heave(0.6))
     scene["soil"]["law"] = {"kind": "linear-elastic", "E": 4.0e5, "nu": 0.45}
@@ -63,6 +69,7 @@ SHORT = {
     "touchdown on clay": (lambda: shortened("demos/touchdown_clay/scene.yaml", 1.0, *COARSE), (4,)),
     "plastic clay in space": (plastic_clay_in_space, (4,)),
     "surface contact on plastic clay": (surface_on_clay, (4, 10)),
+    "kept factors": (kept_factors, (4, 10, 12)),
     "condensed soil": (condensed_soil, (4, 10)),
     "laid and lifted on clay": (laid_and_lifted_on_clay, (10,)),
     "midpoint rule": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT), (6,)),
