@@ -9,7 +9,7 @@ from mpi4py import MPI
 
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.checks.check import resolution
-from riser_soil.checks.limits import size_that_fits, tell, too_long
+from riser_soil.checks.limits import size_that_fits, tell, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.core.system import Timer
 from riser_soil.errors import Interruption, SolveError
@@ -35,12 +35,13 @@ def run(scene: Scene, folder: Path | str, force: bool = False, peaks: RunPeaks |
         scene = sized(scene)
         size = size_that_fits(scene, folder, comm)
         tell(size, comm)
+        of_size = [*tight(size, comm), *too_long(size)]
         assembly = build(scene, comm)
         clock.add("build", since)
         if comm.rank == 0:
             for told in resolution(assembly):
                 print(told)
-        for warning in (*physical_warnings(assembly), *too_long(size)):
+        for warning in (*physical_warnings(assembly), *of_size):
             if comm.rank == 0:
                 print(f"warning: {warning}")
         with agreeing(comm), Observer.open(assembly, clock, folder, force, peaks) as observer:
