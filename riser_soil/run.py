@@ -12,7 +12,7 @@ from riser_soil.checks.check import resolution
 from riser_soil.checks.limits import size_that_fits, tell, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.core.system import Timer
-from riser_soil.errors import Interruption, SolveError
+from riser_soil.errors import Interruption, MemoryShortageError, SolveError
 from riser_soil.interruption import agreeing, handling_signals, uninterrupted, unmasked
 from riser_soil.results.observer import Observer
 from riser_soil.results.ownership import refuse_together
@@ -25,8 +25,8 @@ def run(scene: Scene, folder: Path | str, force: bool = False, peaks: RunPeaks |
     """Run a scene and leave its results in a folder; collective over all ranks.
 
     force: overwrite a finished run. peaks: gathered on the way, where they are wanted. Raises SceneError or MeshError
-    before anything is computed. After SolveError, and Interruption at Ctrl-C or SIGTERM, the folder keeps everything up
-    to the last accepted step, after WriteError what went in; it is marked unfinished.
+    before anything is computed. After SolveError, MemoryShortageError and Interruption (Ctrl-C, SIGTERM) the folder
+    keeps everything up to the last accepted step, after WriteError what went in; it is marked unfinished.
     """
     folder = Path(folder)
     with handling_signals():
@@ -58,6 +58,6 @@ def _take_all(assembly: Assembly, observer: Observer, clock: Timer) -> None:
                 before = run_stage(assembly, stage, before, observer, clock)
         with uninterrupted():
             observer.finish()
-    except (SolveError, Interruption) as end:
+    except (SolveError, MemoryShortageError, Interruption) as end:
         observer.record_last(end)
         raise

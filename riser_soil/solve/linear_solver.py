@@ -8,11 +8,11 @@ from contextlib import contextmanager
 
 from petsc4py import PETSc
 
+from riser_soil.core.factor_memory import Room
 from riser_soil.core.system import System
 
 PREFIX = "riser_soil_"
-# MUMPS' controls: room for fill-in in per cent (14); for counting pivots, on several ranks too (13), null pivots (24).
-ROOM = {14: 60}
+# MUMPS' controls for counting pivots, on several ranks too (13), null pivots (24).
 COUNTING = {13: 1, 24: 1}
 IN_LIBRARY = 76  # PETSc's code of an error in another library, here MUMPS
 NO_PIVOT = 1e-200  # whatever the units; by PETSc's default the stiffness of a riser a fingernail long is none
@@ -32,10 +32,10 @@ def defaults(options: Mapping[str, str]) -> Iterator[None]:
             database.delValue(PREFIX + key)
 
 
-def factorise_directly(pc: PETSc.PC, system: System) -> None:
+def factorise_directly(pc: PETSc.PC, system: System, room: Room) -> None:
     """Make a preconditioner an exact solver, symmetric where the system is."""
     mumps = not _is_chain(system)
-    _choose(pc, system, "cholesky" if mumps and system.symmetric else "lu", ROOM)
+    _choose(pc, system, "cholesky" if mumps and system.symmetric else "lu", room.controls)
 
 
 def complaint(err: PETSc.Error) -> str:
@@ -49,14 +49,16 @@ def complaint(err: PETSc.Error) -> str:
 
 def negative_pivots(system: System) -> int:
     """Negative pivots of the system's symmetric matrix: its number of negative eigenvalues; collective."""
-    pc = PETSc.PC().create(system.comm)
-    try:
-        _choose(pc, system, "cholesky", ROOM | COUNTING)
-        pc.setUp()
-        negative: int = pc.getFactorMatrix().getInertia()[0]
-    finally:
-        pc.destroy()
-    return negative
+    room = Room()
+    while True:
+        pc = PETSc.PC().create(system.comm)
+        try:
+            _choose(pc, system, "cholesky", room.controls | COUNTING)
+            pc.setUp()
+            if not room.grows_after(pc):
+                return int(pc.getFactorMatrix().getInertia()[0])
+        finally:
+            pc.destroy()
 
 
 def _choose(pc: PETSc.PC, system: System, kind: str, controls: Mapping[int, int]) -> None:
