@@ -11,10 +11,11 @@ from petsc4py import PETSc
 
 from benchmarks.coupled import SCENE
 from benchmarks.stage import TimedStage, last_stage
+from riser_soil.core.factor_memory import Room
 from riser_soil.core.system import Timer
 from riser_soil.soil.law import PLASTIC_STRAIN
 from riser_soil.soil.soil import Soil
-from riser_soil.solve.linear_solver import ROOM, use_mumps
+from riser_soil.solve.linear_solver import use_mumps
 from riser_soil.solve.newton import Newton
 
 CLAY = "su: 2.0e3, su_gradient: 1.5e3, E_over_su: 300.0"
@@ -88,7 +89,7 @@ def _factorisation_seconds(matrix: PETSc.Mat, repeats: int = 3) -> float:
     """Least processor time [s] of a numeric factorisation as LDL^T, the symbolic one reused."""
     pc, taken = PETSc.PC().create(matrix.comm), list[float]()
     pc.setOperators(matrix)
-    use_mumps(pc, "cholesky", ROOM)
+    use_mumps(pc, "cholesky", Room().controls)
     for _ in range(1 + repeats):
         matrix.assemble()
         began = time.process_time()

@@ -34,6 +34,12 @@ class SolveError(RiserSoilError):
     exit_status = 3
 
 
+class MemoryShortageError(RiserSoilError):
+    """The solve ran out of memory, which no smaller step mends; what is kept is as after SolveError."""
+
+    exit_status = 3
+
+
 class AccuracyError(SolveError):
     """The accuracy that a scene asks for was not reached; the finest run is kept whole, with its error bars."""
 

@@ -9,10 +9,10 @@ from mpi4py import MPI
 
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.checks.check import resolution
-from riser_soil.checks.limits import size_that_fits, tell, too_long
+from riser_soil.checks.limits import size_that_fits, tell, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.core.system import Timer
-from riser_soil.errors import Interruption, SolveError
+from riser_soil.errors import Interruption, MemoryShortageError, SolveError
 from riser_soil.interruption import agreeing, handling_signals, uninterrupted, unmasked
 from riser_soil.results.observer import Observer
 from riser_soil.results.ownership import refuse_together
@@ -25,8 +25,8 @@ def run(scene: Scene, folder: Path | str, force: bool = False, peaks: RunPeaks |
     """Run a scene and leave its results in a folder; collective over all ranks.
 
     force: overwrite a finished run. peaks: gathered on the way, where they are wanted. Raises SceneError or MeshError
-    before anything is computed. After SolveError, and Interruption at Ctrl-C or SIGTERM, the folder keeps everything up
-    to the last accepted step, after WriteError what went in; it is marked unfinished.
+    before anything is computed. After SolveError, MemoryShortageError and Interruption (Ctrl-C, SIGTERM) the folder
+    keeps everything up to the last accepted step, after WriteError what went in; it is marked unfinished.
     """
     folder = Path(folder)
     with handling_signals():
@@ -35,12 +35,13 @@ def run(scene: Scene, folder: Path | str, force: bool = False, peaks: RunPeaks |
         scene = sized(scene)
         size = size_that_fits(scene, folder, comm)
         tell(size, comm)
+        of_size = [*tight(size, comm), *too_long(size)]
         assembly = build(scene, comm)
         clock.add("build", since)
         if comm.rank == 0:
             for told in resolution(assembly):
                 print(told)
-        for warning in (*physical_warnings(assembly), *too_long(size)):
+        for warning in (*physical_warnings(assembly), *of_size):
             if comm.rank == 0:
                 print(f"warning: {warning}")
         with agreeing(comm), Observer.open(assembly, clock, folder, force, peaks) as observer:
@@ -57,6 +58,6 @@ def _take_all(assembly: Assembly, observer: Observer, clock: Timer) -> None:
                 before = run_stage(assembly, stage, before, observer, clock)
         with uninterrupted():
             observer.finish()
-    except (SolveError, Interruption) as end:
+    except (SolveError, MemoryShortageError, Interruption) as end:
         observer.record_last(end)
         raise

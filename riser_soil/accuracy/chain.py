@@ -10,7 +10,7 @@ from riser_soil.accuracy.companions import peaks_of
 from riser_soil.accuracy.error_bars import SOURCES, Companion, RunValues
 from riser_soil.accuracy.headlines import Headline, headlines
 from riser_soil.accuracy.knobs import Knob, knobs_of, varied
-from riser_soil.errors import MeshError, SceneError, SolveError
+from riser_soil.errors import MemoryShortageError, MeshError, SceneError, SolveError
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.scene import Scene
 
@@ -88,7 +88,7 @@ def _run(step: CoarserScene, comm: Any) -> Companion:
         return Companion(step.source, step.ratio, None, step.reason)
     try:
         return Companion(step.source, step.ratio, values_of(peaks_of(step.scene, comm), "peaks"))
-    except (SolveError, SceneError, MeshError, ArithmeticError, ValueError) as err:
+    except (SolveError, MemoryShortageError, SceneError, MeshError, ArithmeticError, ValueError) as err:
         reason = str(err).partition("\n")[0]
         return Companion(step.source, step.ratio, None, f"its coarser companion failed: {reason}")
 

@@ -11,9 +11,9 @@ from mpi4py import MPI
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.condensation import why_whole
 from riser_soil.checks.element_proposal import proposal
-from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_memory
+from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_factor, soil_memory
 from riser_soil.checks.inventory import built, left_out, unknowns
-from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tell, too_long
+from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tell, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.scene.scene import Scene
 
@@ -26,9 +26,10 @@ def describe(scene: Scene) -> str:
     scene = sized(scene)
     size = size_that_fits(scene, Path(), MPI.COMM_WORLD)
     tell(size, MPI.COMM_WORLD)
+    of_size = [*tight(size, MPI.COMM_WORLD), *too_long(size)]
     assembly = build(scene, MPI.COMM_WORLD)
     lines = [*_parts(assembly), *_unknowns(assembly), _memory_line(assembly), *_results(size)]
-    warnings = [*physical_warnings(assembly), *too_long(size)]
+    warnings = [*physical_warnings(assembly), *of_size]
     return "\n".join([*lines, *(f"warning: {warning}" for warning in warnings), _verdict(warnings)])
 
 
@@ -106,7 +107,8 @@ def memory(assembly: Assembly) -> float:
     """Estimated bytes over all ranks; collective."""
     comm = assembly.comm
     total = riser_memory(comm.size, unknowns(comm, assembly.line))
-    if assembly.soil is not None:
+    if assembly.soil is not None and assembly.scene.soil is not None:
         cells, rows, cols = assembly.soil.blocks()["soil"].shape
-        total += soil_memory(comm.size, comm.allreduce(cells), rows * cols, unknowns(comm, assembly.soil.field))
+        factor = soil_factor(assembly.scene, assembly.scene.soil, unknowns(comm, assembly.soil.field))
+        total += soil_memory(comm.size, comm.allreduce(cells), rows * cols, factor)
     return total

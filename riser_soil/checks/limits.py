@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from riser_soil.checks.estimate import ProblemSize, riser_memory, size_of
+from riser_soil.checks.estimate import WITHIN, ProblemSize, riser_memory, size_of
 from riser_soil.checks.machine import available_memory, free_disk
 from riser_soil.errors import SceneError
 from riser_soil.scene.scene import Scene
@@ -24,16 +24,31 @@ _UNITS = ((365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "h"), (60.0, 
 
 def size_that_fits(scene: Scene, folder: Path, comm: MPI.Intracomm) -> ProblemSize:
     """The size of a scene whose results go to a folder; SceneError, with the numbers, where it exceeds the memory that
-    is available or the disk that is free. Collective: all ranks come to the same answer.
+    is available, by more than the forecast may be off, or the disk that is free. Collective: all ranks come to the same
+    answer.
     """
     size = size_of(scene)
-    most = comm.allreduce(available_memory() * _nodes(comm), MPI.MIN)
-    free = comm.allreduce(free_disk(folder), MPI.MIN)
-    if size.memory(comm.size) > most:
+    most, free = _memory_left(comm), comm.allreduce(free_disk(folder), MPI.MIN)
+    if size.memory(comm.size) > WITHIN * most:
         raise SceneError(_too_much_memory(size, comm.size, most))
     if size.disk > free:
         raise SceneError(_too_much_disk(size, free))
     return size
+
+
+def tight(size: ProblemSize, comm: MPI.Intracomm) -> list[str]:
+    """A warning of a run that may not fit into the memory that is available; to be asked for before it takes any.
+    Collective.
+    """
+    most = _memory_left(comm)
+    if WITHIN * size.memory(comm.size) <= most:
+        return []
+    return [f"the run may end for want of memory: {_too_much_memory(size, comm.size, most)}"]
+
+
+def _memory_left(comm: MPI.Intracomm) -> float:
+    """Bytes that all ranks together can still have; collective."""
+    return float(comm.allreduce(available_memory() * _nodes(comm), MPI.MIN))
 
 
 def too_long(size: ProblemSize) -> Iterator[str]:

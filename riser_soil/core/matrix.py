@@ -6,16 +6,18 @@ own first and sends what belongs to others in one exchange; PETSc's own sums, bl
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import MatrixBlock
+
+AT_ONCE = 2048  # blocks whose entries are looked up together: all at once take several times the matrix' own memory
 
 
 class Matrix:
@@ -92,10 +94,24 @@ def _in_system(numbering: Numbering, local: IntArray) -> IntArray:
 
 
 def _keys(rows: IntArray, cols: IntArray, n: int) -> IntArray:
-    """Sorted distinct entries row·n + col of a batch of blocks."""
+    """Sorted distinct entries row·n + col of a batch of blocks, found some of them at a time."""
+    found = [_distinct(rows[some], cols[some], n) for some in _some_at_a_time(len(rows))]
+    return np.unique(np.concatenate(found)) if found else np.empty(0, dtype=np.int64)
+
+
+def _distinct(rows: IntArray, cols: IntArray, n: int) -> IntArray:
+    keys, there = _entries(rows, cols, n)
+    return np.unique(keys[there])
+
+
+def _entries(rows: IntArray, cols: IntArray, n: int) -> tuple[IntArray, BoolArray]:
+    """Entries row·n + col (m, nr, nc) of blocks, and which are there."""
     keys = rows.astype(np.int64)[:, :, None] * n + cols[:, None, :]
-    kept = keys[(rows >= 0)[:, :, None] & (cols >= 0)[:, None, :]]
-    return np.unique(kept)
+    return keys, (rows >= 0)[:, :, None] & (cols >= 0)[:, None, :]
+
+
+def _some_at_a_time(blocks: int) -> Iterator[slice]:
+    yield from (slice(first, first + AT_ONCE) for first in range(0, blocks, AT_ONCE))
 
 
 def _merge(parts: Iterable[IntArray]) -> IntArray:
@@ -113,10 +129,11 @@ def _csr(keys: IntArray, first: int, count: int, n: int) -> tuple[IntArray, IntA
 
 def _places(keys: IntArray, rows: IntArray, cols: IntArray, n: int) -> IntArray:
     """Position of every block entry in the CSR values; absent entries go to a slot behind the last."""
-    wanted = rows.astype(np.int64)[:, :, None] * n + cols[:, None, :]
-    places = np.searchsorted(keys, wanted)
-    places[~((rows >= 0)[:, :, None] & (cols >= 0)[:, None, :])] = len(keys)
-    return places.reshape(-1).astype(np.int32)
+    places = np.empty((*rows.shape, cols.shape[1]), dtype=np.int32)
+    for some in _some_at_a_time(len(rows)):
+        wanted, there = _entries(rows[some], cols[some], n)
+        places[some] = np.where(there, np.searchsorted(keys, wanted), len(keys))
+    return places.reshape(-1)
 
 
 class _Exchange:

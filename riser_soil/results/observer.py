@@ -19,7 +19,7 @@ from riser_soil.core.part import Energy
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import ContactSnapshot, Instant, RiserSnapshot, RunFacts, SoilSnapshot, StepStatistics
 from riser_soil.core.system import Timer
-from riser_soil.errors import Interruption, RiserSoilError, SolveError
+from riser_soil.errors import Interruption, MemoryShortageError, RiserSoilError, SolveError
 from riser_soil.interruption import uninterrupted
 from riser_soil.results.energy_ledger import EnergyLedger
 from riser_soil.results.peaks import RunPeaks
@@ -143,7 +143,7 @@ class Observer:
         stage = recorder.summary.stages[-1]
         stage.implausible, stage.indicators.bending = self._plausibility.warnings(), self._plausibility.bending()
 
-    def record_last(self, end: SolveError | Interruption) -> None:
+    def record_last(self, end: SolveError | MemoryShortageError | Interruption) -> None:
         """The run ends before its time: write the last accepted step; collective where the ranks end together."""
         together = self._assembly.comm.size == 1 or not isinstance(end, Interruption) or end.together
         with uninterrupted():

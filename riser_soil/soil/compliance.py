@@ -6,6 +6,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.factor_memory import Room
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import State, Weights
@@ -14,7 +15,6 @@ from riser_soil.soil.soil import Soil
 
 AT_ONCE = 16  # nodes whose columns are solved for in one call
 SAME_ROW = 1e-6  # of the top's longer side: how far points of a row are apart across it
-ROOM = 60  # for fill-in in MUMPS' factorisation [%]
 
 
 class Compliance:
@@ -38,17 +38,22 @@ class Compliance:
         matrix = Matrix(self._numbering, soil.blocks(), symmetric=True)
         soil.tangent(State.at_rest(0.0, size), Weights(0.0, 1.0, 0.0, 0.0), matrix.values)
         matrix.assemble()
-        solver = PETSc.PC().create(self._numbering.comm)
-        solver.setOperators(matrix.mat)
-        solver.setType("cholesky")
-        solver.setFactorSolverType("mumps")
-        solver.setFactorSetUpSolverType()
-        solver.getFactorMatrix().setMumpsIcntl(14, ROOM)
-        try:
-            solver.setUp()
-        except PETSc.Error as err:
-            raise SolveError(f"the stiffness of the elastic soil can't be factorised: {err}") from err
-        return solver
+        room = Room()
+        while True:
+            solver = PETSc.PC().create(self._numbering.comm)
+            solver.setOperators(matrix.mat)
+            solver.setType("cholesky")
+            solver.setFactorSolverType("mumps")
+            solver.setFactorSetUpSolverType()
+            for control, value in room.controls.items():
+                solver.getFactorMatrix().setMumpsIcntl(control, value)
+            try:
+                solver.setUp()
+            except PETSc.Error as err:
+                raise SolveError(f"the stiffness of the elastic soil can't be factorised: {err}") from err
+            if not room.grows_after(solver):
+                return solver
+            solver.destroy()
 
     def columns(self, nodes: IntArray) -> Array:
         """Displacements (3 np, n, 3) [m/N] of the top's dofs by unit forces on the three dofs of some of its nodes."""

@@ -14,6 +14,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.factor_memory import Room
 from riser_soil.core.part import State, Weights
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
@@ -46,7 +47,7 @@ def buckling_mode(system: System, part: Relaxation, line: Line, state: State, we
     drag = system.matrix.mat.getDiagonal()
     system.assemble(state, weights, parts)
     solver = PETSc.PC().create(system.comm)
-    factorise_directly(solver, system)
+    factorise_directly(solver, system, Room())
     solver.setUp()
     mode = _iterate(solver, drag, _start(system, line))
     found = np.zeros(system.numbering.size)

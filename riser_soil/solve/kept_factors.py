@@ -13,8 +13,9 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from riser_soil.core.factor_memory import Room
 from riser_soil.core.saved_state import Saved
-from riser_soil.solve.linear_solver import ROOM, use_mumps
+from riser_soil.solve.linear_solver import use_mumps
 
 FEWEST = 10  # iterations that GMRES may take in any case
 PER_ENTRY = 36.0  # operations of a factorisation that take as long as a solve for one entry of its factors: 32 to 40
@@ -23,12 +24,12 @@ PER_ENTRY = 36.0  # operations of a factorisation that take as long as a solve f
 class KeptFactors:
     """Linear solver of a system's tangents, one after the other; collective.
 
-    symmetric: whether the tangents are. factorisations, iterations: how many there were, the latter of GMRES. worth:
-    iterations that cost as much as a factorisation.
+    symmetric: whether the tangents are. room: for fill-in; it grows where it was too little. factorisations,
+    iterations: how many there were, the latter of GMRES. worth: iterations that cost as much as a factorisation.
     """
 
-    def __init__(self, comm: MPI.Intracomm, symmetric: bool) -> None:
-        self._comm, self._symmetric = comm, symmetric
+    def __init__(self, comm: MPI.Intracomm, symmetric: bool, room: Room) -> None:
+        self._comm, self._symmetric, self._room = comm, symmetric, room
         self.factorisations = self.iterations = 0
         self.worth = 0.0
         self._whole = False  # whether the factors are LU of all the tangent, as those of its upper triangle did not do
@@ -84,11 +85,19 @@ class KeptFactors:
             self._keep(matrix.copy())
         else:
             matrix.copy(self._factored, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
+        krylov = self._set_up(matrix)
+        while self._room.grows_after(krylov.getPC()):
+            self.forget()
+            self._keep(matrix.copy())
+            krylov = self._set_up(matrix)
+        self._weigh()
+        self.factorisations += 1
+
+    def _set_up(self, matrix: PETSc.Mat) -> PETSc.KSP:
         assert self._krylov is not None
         self._krylov.setOperators(matrix, self._factored)
         self._krylov.setUp()
-        self._weigh()
-        self.factorisations += 1
+        return self._krylov
 
     def _keep(self, factored: PETSc.Mat) -> None:
         """Become the solver with the factors of a matrix, once they are made."""
@@ -97,7 +106,7 @@ class KeptFactors:
         self._krylov.setType(PETSc.KSP.Type.GMRES)
         self._krylov.setPCSide(PETSc.PC.Side.RIGHT)
         self._krylov.setOperators(factored)
-        use_mumps(self._krylov.getPC(), "lu" if self._whole else "cholesky", ROOM)
+        use_mumps(self._krylov.getPC(), "lu" if self._whole else "cholesky", self._room.controls)
 
     def _weigh(self) -> None:
         assert self._krylov is not None

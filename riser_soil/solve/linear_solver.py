@@ -11,12 +11,12 @@ from contextlib import contextmanager
 import numpy as np
 from petsc4py import PETSc
 
+from riser_soil.core.factor_memory import Room
 from riser_soil.core.system import System
 from riser_soil.solve.bordered_band import WIDEST, BorderedBand, SingularError, bandwidth
 
 PREFIX = "riser_soil_"
-# MUMPS' controls: room for fill-in in per cent (14); for counting pivots, on several ranks too (13), null pivots (24).
-ROOM = {14: 60}
+# MUMPS' controls for counting pivots, on several ranks too (13), null pivots (24).
 COUNTING = {13: 1, 24: 1}
 IN_LIBRARY = 76  # PETSc's code of an error in another library, here MUMPS
 LARGE = 4000  # unknowns from which on kept factors are cheaper than new ones
@@ -44,7 +44,7 @@ def keeps_factors(system: System, asked: str) -> bool:
     return asked == "kept" or system.numbering.free >= LARGE
 
 
-def factorise_directly(pc: PETSc.PC, system: System) -> None:
+def factorise_directly(pc: PETSc.PC, system: System, room: Room) -> None:
     """Make a preconditioner an exact solver, symmetric where MUMPS is it and the system is."""
     if (chain := _bordered_chain(system)) is not None:
         pc.setOperators(system.matrix.mat)
@@ -52,7 +52,7 @@ def factorise_directly(pc: PETSc.PC, system: System) -> None:
         pc.setPythonContext(BorderedBand(system.matrix.mat, chain))
         return
     mumps = not _is_chain(system)
-    _choose(pc, system, "cholesky" if mumps and system.symmetric else "lu", ROOM)
+    _choose(pc, system, "cholesky" if mumps and system.symmetric else "lu", room.controls)
 
 
 def complaint(err: PETSc.Error | SingularError) -> str:
@@ -68,14 +68,16 @@ def complaint(err: PETSc.Error | SingularError) -> str:
 
 def negative_pivots(system: System) -> int:
     """Negative pivots of the system's symmetric matrix: its number of negative eigenvalues; collective."""
-    pc = PETSc.PC().create(system.comm)
-    try:
-        _choose(pc, system, "cholesky", ROOM | COUNTING)
-        pc.setUp()
-        negative: int = pc.getFactorMatrix().getInertia()[0]
-    finally:
-        pc.destroy()
-    return negative
+    room = Room()
+    while True:
+        pc = PETSc.PC().create(system.comm)
+        try:
+            _choose(pc, system, "cholesky", room.controls | COUNTING)
+            pc.setUp()
+            if not room.grows_after(pc):
+                return int(pc.getFactorMatrix().getInertia()[0])
+        finally:
+            pc.destroy()
 
 
 def _choose(pc: PETSc.PC, system: System, kind: str, controls: Mapping[int, int]) -> None:

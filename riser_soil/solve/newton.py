@@ -11,6 +11,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.factor_memory import Room
 from riser_soil.core.part import Energy, Forces, State, Work, local
 from riser_soil.core.roles import Adaptive, with_role
 from riser_soil.core.saved_state import Saved, under, within
@@ -47,9 +48,11 @@ class Newton:
         self.system, self.settings = system, settings
         self.iterations, self.rests = 0, False
         self._state: State | None = None
+        self._room, self._has_more_room = Room(), False
         self._make_vectors()
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
-        self.kept = KeptFactors(system.comm, system.symmetric) if keeps_factors(system, settings.linear) else None
+        keeps = keeps_factors(system, settings.linear)
+        self.kept = KeptFactors(system.comm, system.symmetric, self._room) if keeps else None
         self._snes = self._create()
 
     def _make_vectors(self) -> None:
@@ -68,7 +71,7 @@ class Newton:
             snes.setLineSearchPreCheck(self._shorten)
         if self.kept is None:
             snes.getKSP().setType(PETSc.KSP.Type.PREONLY)
-            factorise_directly(snes.getKSP().getPC(), self.system)
+            factorise_directly(snes.getKSP().getPC(), self.system, self._room)
         else:
             self.kept.serve(snes.getKSP())
         snes.setOptionsPrefix(PREFIX)
@@ -110,12 +113,17 @@ class Newton:
         self.system.numbering.add_to_global(residual + (probed - residual) / PROBE, self._f)
         self._norms.append(self._norm())
         self._first = 1
+        while failure := self._failing(self._respond, lambda: self._snes.getKSP().reason < 0):
+            if not self._has_more_room:
+                raise NotConvergedError(failure)
+        self._x.scale(-1.0)
+
+    def _respond(self) -> None:
+        """Solve the linear system of the tangent and the residual."""
         solver = self._snes.getKSP()
         solver.setOperators(self.system.matrix.mat)
         solver.setTolerances(rtol=LOOSE)
-        if failure := self._failing(lambda: solver.solve(self._f, self._x), lambda: solver.reason < 0):
-            raise NotConvergedError(failure)
-        self._x.scale(-1.0)
+        solver.solve(self._f, self._x)
 
     def _with_prescribed(self, u: Array) -> Array:
         """Increments with those that are prescribed in the step."""
@@ -135,13 +143,16 @@ class Newton:
         return state, self._step.scheme.combine(self._forces, self._past)
 
     def _iterate(self) -> str:
-        """Iterate, from wherever the pattern was outgrown with a wider one; "" where that converges, else why not."""
+        """Iterate, from wherever the pattern was outgrown with a wider one, and from wherever factors found too little
+        room with more; "" where that converges, else why not.
+        """
         while True:
             failure = self._run()
-            if failure or self._snes.reason != OUTGROWN:
-                self.iterations += self._taken
-                return failure
-            self._renew(self._balanced)
+            if not (failure and self._has_more_room):
+                if failure or self._snes.reason != OUTGROWN:
+                    self.iterations += self._taken
+                    return failure
+                self._renew(self._balanced)
             self._norms.pop()
 
     def _run(self) -> str:
@@ -152,9 +163,10 @@ class Newton:
 
     def _failing(self, solve: Callable[[], None], unsolved: Callable[[], bool]) -> str:
         """Call a solver; why its linear systems could not be solved, else "". No factors outlive a failed
-        factorisation: MUMPS would refuse all that comes after it.
+        factorisation: MUMPS would refuse all that comes after it. Where they had too little room, the next get more.
         """
         began, counted, complained = time.perf_counter(), self.system.clock.total, ""
+        self._has_more_room = False
         try:
             solve()
         except (PETSc.Error, SingularError) as err:
@@ -165,7 +177,9 @@ class Newton:
         if not complained and not unsolved():
             return ""
         failure = self._reason(NOT_SOLVED, complained)
-        if self.kept is not None:
+        if self.kept is None:
+            self._has_more_room = self._room.grows_after(self._snes.getKSP().getPC())
+        else:
             self.kept.forget()
         self._snes.destroy()
         self._snes = self._create()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import resource
 from pathlib import Path
 
@@ -93,6 +94,29 @@ def test_what_exceeds_the_memory_is_refused_with_the_numbers(
     for part in (what, " GB of memory, and 3 GB are available; ", remedy):
         assert part in done.stderr
     assert [file.name for file in tmp_path.iterdir()] == ["case.yaml"]
+
+
+def test_what_may_not_fit_into_the_memory_is_warned_of_with_the_numbers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The forecast is within 30 %: what may fit is not refused, and what may not is told."""
+    scene = scene_from_mapping(with_mesh(kind="hex", size_at_riser=0.1, size_far=0.1))
+    need, numbers = size_of(scene).memory(1), r"soil\.mesh: .* need about .* of memory, and .* are available; take"
+    for share, told in ((0.8, 1), (1.25, 1), (1.35, 0)):
+        monkeypatch.setattr(limits, "available_memory", lambda share=share: share * need)
+        found = limits.tight(limits.size_that_fits(scene, tmp_path, COMM), COMM)
+        assert len(found) == told
+        assert all(re.match("the run may end for want of memory: " + numbers, warning) for warning in found)
+    monkeypatch.setattr(limits, "available_memory", lambda: 0.75 * need)
+    with pytest.raises(SceneError, match=numbers):
+        limits.size_that_fits(scene, tmp_path, COMM)
+
+
+def test_a_warning_of_memory_is_in_the_report(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = scene_from_mapping(touchdown(LAY))
+    need = size_of(scene).memory(1)
+    monkeypatch.setattr(limits, "available_memory", lambda: need)
+    assert "warning: the run may end for want of memory: " in describe(scene)
 
 
 def test_what_exceeds_the_disk_is_refused_with_the_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

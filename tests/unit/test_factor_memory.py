@@ -1,0 +1,63 @@
+"""Factorisations that find too little room get more; those that find no memory end the run in plain words."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from typer.testing import CliRunner
+
+from riser_soil.__main__ import app
+from riser_soil.assembly import build
+from riser_soil.core.arrays import Array
+from riser_soil.core.factor_memory import MOST_ROOM, ROOM, Room
+from riser_soil.core.part import State
+from riser_soil.core.system import Timer
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.solve import linear_solver, newton
+from riser_soil.stages import LayingCounter, run_stage
+from tests.support.coupled_scenes import LAY, Mapping, touchdown
+
+
+def on_fine_soil() -> Mapping:
+    """Enough of it that MUMPS does not work in the least memory that it takes."""
+    scene = touchdown(LAY, su=1000.0, tolerance=1e-10)
+    scene["soil"]["mesh"] = {"kind": "hex", "size_at_riser": 0.25, "size_far": 0.5}
+    return scene
+
+
+def laid() -> Array:
+    """Increments since the start of all that a riser laid on soil has moved."""
+    assembly = build(scene_from_mapping(on_fine_soil()), MPI.COMM_SELF)
+    start = State.at_rest(0.0, assembly.size)
+    run_stage(assembly, assembly.scene.stages[0], start, LayingCounter(), Timer.new())
+    assert assembly.soil is not None
+    return assembly.soil.field.total.copy()
+
+
+@pytest.mark.parametrize("place", [newton, linear_solver])
+def test_too_little_room_grows_and_the_step_is_the_same(place: object, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Room below nothing is less than what MUMPS has foretold."""
+    expected, rooms = laid(), []
+
+    def tight() -> Room:
+        rooms.append(Room(-90))
+        return rooms[-1]
+
+    monkeypatch.setattr(place, "Room", tight)
+    np.testing.assert_allclose(laid(), expected, rtol=0.0, atol=1e-7 * np.abs(expected).max())
+    assert ROOM <= max(room.percent for room in rooms) < MOST_ROOM
+
+
+def test_a_run_without_memory_ends_in_plain_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """MUMPS is forbidden more than a megabyte (control 23)."""
+    monkeypatch.setattr(Room, "controls", property(lambda room: {23: 1}))
+    (tmp_path / "scene.yaml").write_text(json.dumps(on_fine_soil()), encoding="utf-8")
+    done = CliRunner().invoke(app, ["run", str(tmp_path / "scene.yaml"), "-o", str(tmp_path / "out")])
+    assert done.exit_code == 3
+    (told,) = done.stderr.strip().splitlines()
+    assert " unknowns ran out of memory: a rank wanted " in told
+    assert "INFOG(1) = -19); take larger cells or a smaller block" in told

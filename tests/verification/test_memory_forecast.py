@@ -1,0 +1,46 @@
+"""The memory that a run on soil takes at its peak is what its size foretells, within 30 %."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from riser_soil.checks.estimate import WITHIN, size_of
+from riser_soil.scene.reader import read_scene
+from tests.support.coupled_scenes import DEMO
+from tests.support.on_ranks import ROOT, environment
+
+SHORT = ("stages.1.duration=0.2", "solver.tolerance=1e-4")
+MESHES = {
+    "small": (),
+    "middling": ("soil.mesh={kind: hex, size_at_riser: {along: 0.5, across: 0.05, strip: 0.15}, size_far: 0.5}",),
+    "of tetrahedra": ("soil.mesh={kind: tet, size_at_riser: 0.2, size_far: 1.0}",),
+}
+
+
+def peak(overrides: tuple[str, ...], folder: Path) -> float:
+    """Largest resident memory of a run [bytes]."""
+    given = [word for override in overrides for word in ("--set", override)]
+    call = [sys.executable, "-m", "riser_soil", "run", str(DEMO), "-o", str(folder), "--force", *given]
+    run = subprocess.Popen(call, cwd=ROOT, env=environment(), stdout=subprocess.DEVNULL)
+    _, status, used = os.wait4(run.pid, 0)
+    run.returncode = os.waitstatus_to_exitcode(status)
+    assert run.returncode == 0
+    return 1024.0 * used.ru_maxrss
+
+
+LONG = [pytest.param(name, marks=pytest.mark.verify) for name in ("middling", "of tetrahedra")]
+
+
+@pytest.mark.parametrize("mesh", ["small", *LONG])
+def test_memory_is_foretold_within_thirty_per_cent(mesh: str, tmp_path: Path) -> None:
+    """The second of two runs, as the first may compile kernels."""
+    overrides = SHORT + MESHES[mesh]
+    foretold = size_of(read_scene(DEMO, overrides)).memory(1)
+    peak(overrides, tmp_path / "out")
+    taken = peak(overrides, tmp_path / "out")
+    assert foretold / WITHIN < taken < foretold * WITHIN, f"{foretold / 1e6:.0f} MB foretold, {taken / 1e6:.0f} taken"
