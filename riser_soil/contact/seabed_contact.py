@@ -144,9 +144,8 @@ class SeabedContact(LineContact):
         """None beside soil."""
         if self._covered is not None:
             return None
-        ground, law = self.ground.numbers, self.law.numbers
         stations = self.at, self.share, self._radius, self.memory
-        self.in_loop = seabed_numbers(self.line, *stations, ground, law)
+        self.in_loop = seabed_numbers(self.line, *stations, self.ground.numbers, self.law)
         return self.in_loop
 
     def renew_numbers(self, start: float, end: float) -> None:

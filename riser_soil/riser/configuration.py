@@ -121,6 +121,12 @@ def room_for(line: Line) -> Configuration:
     return SpatialConfiguration(T0=line.frames.T0, **given, **_empty(shapes))
 
 
+def maps_for(line: Line) -> Maps:
+    """Maps to be written to, without shifts."""
+    ne, d, r = line.length.size, line.dimension, line.frames.dofs
+    return Maps(np.empty((ne, 2, d, r)), np.empty((ne, 2, d, r)), 0.0, 0.0)
+
+
 def _empty(shapes: dict[str, tuple[int, ...]]) -> dict[str, Any]:
     return {name: np.empty(shape) for name, shape in shapes.items()}
 
