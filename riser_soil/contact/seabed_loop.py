@@ -154,7 +154,7 @@ def _contact_work(part: SeabedNumbers, first: Configuration, last: Configuration
                 gained += share * found.stored[e, g]
             if touched:
                 gained -= share * answer(part.law, before[g], part.memory[e, g], found.after)[2]
-            if part.memory.shape[2] > 0:
+            if part.memory.shape[2] > 0 and (touched or found.touches[e]):
                 after = found.penetration[e, g]
                 by_law += share * work_at(part.law, part.reach, before[g], after, part.memory[e, g], found.after)
     work[0] += taken - gained

@@ -93,20 +93,24 @@ def _runs(clearance: Array, force: Array) -> IntArray:
     """First and last points (k, 2) of what touches, small gaps within included; none that presses nowhere beside
     others.
     """
-    runs, k, pressing = np.empty((clearance.size, 2), dtype=np.int64), 0, np.zeros(clearance.size, dtype=np.bool_)
-    small, highest = -clearance.min(), 0.0
+    runs, k, pressing, pushed = np.empty((clearance.size, 2), dtype=np.int64), 0, 0, False
+    small, highest = -math.inf, 0.0
+    for gap in clearance:
+        small = max(small, -gap)
     for i in range(clearance.size):
         if k > 0:
             highest = max(highest, clearance[i])
         if clearance[i] < 0.0 or force[i] != 0.0:
             if k == 0 or (i > runs[k - 1, 1] + 1 and highest > small):
-                runs[k, 0] = i
+                runs[k, 0], pushed = i, False
                 k += 1
             runs[k - 1, 1], highest = i, clearance[i]
-            pressing[k - 1] |= force[i] != 0.0
-    if pressing.any():
-        return runs[pressing]
-    return runs[:k]
+            if force[i] != 0.0 and not pushed:  # those that press come first, in their order
+                runs[pressing, 0], pushed = runs[k - 1, 0], True
+                pressing += 1
+            if pushed:
+                runs[pressing - 1, 1] = i
+    return runs[: pressing if pressing > 0 else k]
 
 
 def _leaving(arc: Array, share: Array, clearance: Array, force: Array, last: int) -> float:
@@ -175,8 +179,9 @@ def _resting(weight: Array, force: Array) -> float:
 @njit
 def _equivalent(arc: Array, share: Array, near: Array, force: Array, f0: float) -> float:
     """d: see the module's text. The sums go to the line's end; tau = 2 E1/(R + E0) is the same, where that is safe."""
-    length = share.sum()
-    E0 = E1 = 0.0
+    length = E0 = E1 = 0.0
+    for own in share:
+        length += own
     for i in range(arc.size):
         excess = near[i] * share[i] * (force[i] - f0)
         E0, E1 = E0 + excess, E1 + excess * (length - arc[i])

@@ -43,5 +43,5 @@ def kernel(function: Callable[..., object], options: dict[str, Any]) -> Kernel:
     given = {"nopython": True, "boundscheck": None, **options}
     made = Kernel(function, targetoptions={**given, **BARE})
     made.called = CPUDispatcher(function, targetoptions={**given, "no_cfunc_wrapper": True})
-    made._cache, made.called._cache = KernelCache(function, "bare"), KernelCache(function, "called")
+    made._cache, made.called._cache = KernelCache(function, "bare"), KernelCache(function)
     return made

@@ -23,7 +23,7 @@ class KernelCache(FunctionCache):
     `_cache`.
     """
 
-    def __init__(self, function: Callable[..., object], caller: str) -> None:
+    def __init__(self, function: Callable[..., object], caller: str = "called") -> None:
         super().__init__(function)
         self._caller = caller
 

@@ -27,10 +27,13 @@ Numbers = tuple[Any, ...]
 
 
 class MassNumbers(NamedTuple):
-    """levers (nn, ndof) [m] of moments; moving (nn, ndof, ndof): see `riser_mass.projectors`."""
+    """levers (nn, ndof) [m] of moments; moving (nn, ndof, ndof): see `riser_mass.projectors`; whole (nn,): where they
+    change nothing.
+    """
 
     levers: Array
     moving: Array
+    whole: BoolArray
 
 
 class CompiledMass:
@@ -57,7 +60,7 @@ class CompiledMass:
         self._rates = np.zeros(shape), np.zeros(shape)
         self._step, self._room = StepNumbers(*(np.zeros(shape) for _ in range(6))), matrix_room(line)
         self._dofs = Dofs(np.zeros(shape, dtype=bool), np.ones(shape), *(np.zeros(shape) for _ in range(3)))
-        self._mass = MassNumbers(levers.reshape(shape), np.zeros((*shape, line.ndof)))
+        self._mass = MassNumbers(levers.reshape(shape), np.zeros((*shape, line.ndof)), np.zeros(line.nodes, dtype=bool))
         self._bind_state(bulk, inertial)
         self._bind_mass(inertial)
 
@@ -121,8 +124,7 @@ class CompiledMass:
         self._renew_base()
         self._find_matrices()
         if not self._known:
-            self._mass.moving[...] = projectors(self._room.K, self._free)
-            self._known = True
+            self._know(projectors(self._room.K, self._free))
         self._step.u[...] = 0.0
         np.negative(force, out=self._dofs.residual.ravel())
         self._solve()
@@ -133,19 +135,25 @@ class CompiledMass:
         return {self._line.name: self._mass.moving.copy()} if self._known else {}
 
     def restore(self, saved: Saved) -> None:
-        self._known = self._line.name in saved
-        if self._known:
-            self._mass.moving[...] = saved[self._line.name]
+        self._known = False
+        if self._line.name in saved:
+            self._know(saved[self._line.name])
+
+    def _know(self, moving: Array) -> None:
+        self._mass.moving[...], self._known = moving, True
+        self._mass.whole[...] = (moving == np.eye(moving.shape[1])).all(axis=(1, 2))
 
 
 @njit
 def weigh(room: MatrixRoom, mass: MassNumbers) -> None:
     """Divide element matrices by the levers, so that all masses are in kg."""
-    K, ndof = room.K, mass.levers.shape[1]
+    K, levers, ndof = room.K, mass.levers, mass.levers.shape[1]
     for e in range(K.shape[0]):
-        for i in range(2 * ndof):
-            for j in range(2 * ndof):
-                K[e, i, j] /= mass.levers[e + i // ndof, i % ndof] * mass.levers[e + j // ndof, j % ndof]
+        for row in range(2):
+            for i in range(ndof):
+                for j in range(ndof):
+                    K[e, row * ndof + i, j] /= levers[e + row, i] * levers[e, j]
+                    K[e, row * ndof + i, ndof + j] /= levers[e + row, i] * levers[e + 1, j]
 
 
 @njit
@@ -160,8 +168,9 @@ def project(room: MatrixRoom, dofs: Dofs, mass: MassNumbers) -> None:
         for row in range(2):
             for column in range(2):
                 block = K[e, row * ndof : (row + 1) * ndof, column * ndof : (column + 1) * ndof]
-                _multiply(mass.moving[e + row], block, left)
-                _multiply(left, mass.moving[e + column], block)
+                if not (mass.whole[e + row] and mass.whole[e + column]):
+                    _multiply(mass.moving[e + row], block, left)
+                    _multiply(left, mass.moving[e + column], block)
     if largest == 0.0:
         largest = 1.0
     for n in range(dofs.residual.shape[0]):

@@ -54,6 +54,7 @@ class PackedRiser:
         base = base_of(line)
         self._base = Packed(type(base)(*map(np.copy, base)))
         self._maps, self._weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
+        self._weighed = Weights(0.0, 0.0, 0.0, 0.0)  # as in both
         self._limits = Packed(StopLimits(0.0, 0.0, 0.0, most, 0, False))
         self._bind(numbers)
         self._bind_account(numbers)
@@ -117,13 +118,19 @@ class PackedRiser:
         """
         for kept, given in zip(self._base.value, base_of(self._line), strict=True):
             kept[...] = given
-        step, maps = self.step, self._maps
+        step = self.step
         for kept, given in ((step.u, state.u), (step.v0, state.v), (step.a0, state.a)):
             kept.ravel()[:] = given
         step.past.ravel()[:] = 0.0 if past is None else past
+        if weights != self._weighed:
+            self._weigh(weights)
+        if limits != self._limits.value:
+            self._limits.renew(limits)
+
+    def _weigh(self, weights: Weights) -> None:
+        maps, self._weighed = self._maps, weights
         maps.renew(Maps(maps.value.rate, maps.value.acceleration, weights.shift_v, weights.shift_a))
         self._weights.renew(LineWeights(weights.inertia, weights.force))
-        self._limits.renew(limits)
 
     def solve(self) -> tuple[int, int]:
         """Solve the step: the outcome, see `riser_loop`, and the number of iterations."""
