@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.contact import seabed_stations
+from riser_soil.contact.landing import landing_predictor
 from riser_soil.contact.line_contact import ContactAlongLine, LineContact
 from riser_soil.contact.seabed_loop import SeabedNumbers, seabed_numbers
 from riser_soil.contact.station_forces import StationForces
@@ -20,7 +21,7 @@ from riser_soil.riser import stations
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.trial import Trial
-from riser_soil.seabed.grounds import Distance, Ground
+from riser_soil.seabed.grounds import Ground
 from riser_soil.seabed.law import NormalLaw
 
 CoveredBySoil = Callable[[Array], BoolArray]
@@ -78,6 +79,7 @@ class SeabedContact(LineContact):
     ) -> None:
         super().__init__(line, law)
         self.ground, self._radius, self._covered = ground, radius, covered
+        self._radius_of_nodes = larger_beside(radius)
         self._frame = seabed_stations.frame_of(line)
         self.at = stations.stations(line.length, rule)
         self._forces = StationForces(line, self.at)
@@ -93,7 +95,7 @@ class SeabedContact(LineContact):
 
     def _evaluate(self, trial: Trial) -> StationContact:
         x = stations.interpolate(self.at, trial.q)
-        penetration, normal, bend = self._over_ground(x)
+        penetration, normal, bend = self._over_ground(x, self._radius)
         at = seabed_stations.touched(self.law.numbers, penetration, self.memory)
         force, slope, stored, normals, resistance = seabed_stations.answers(
             self.law.numbers, at, penetration, self.memory, normal
@@ -103,22 +105,17 @@ class SeabedContact(LineContact):
             x, penetration, normal, ContactElements(at, force, slope, normals, bends, resistance, stored)
         )
 
-    def _over_ground(self, x: Array) -> tuple[Array, Array, Array]:
-        """Penetration (ne, ng) of stations x (ne, ng, d), its normal, and the normal's derivative, empty where zero."""
+    def _over_ground(self, x: Array, radius: Array) -> tuple[Array, Array, Array]:
+        """Penetration (ne, ng) of stations x (ne, ng, d), its normal, and the normal's derivative, empty where zero;
+        radius (ne,): as of the contact.
+        """
         ne, ng, d = x.shape
         found = np.empty((ne, ng)), np.empty((ne, ng, d)), np.empty((0 if self.ground.flat else ne, ng, d, d))
-        seabed_stations.over_ground(self._frame, self.ground.numbers, self._radius, x, *found)
+        seabed_stations.over_ground(self._frame, self.ground.numbers, radius, x, *found)
         if self._covered is not None:
             covered = self._covered(self.line.to_global(x).reshape(-1, 3)[:, :2])
             found[0][covered.reshape(ne, ng)] = -np.inf
         return found
-
-    def _distance(self, x: Array) -> Distance:
-        """From the ground, inf where something else covers it; x (n, 3) in global axes."""
-        found = self.ground.distance(x)
-        if self._covered is None:
-            return found
-        return found._replace(value=np.where(self._covered(x[:, :2]), np.inf, found.value))
 
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
@@ -144,9 +141,8 @@ class SeabedContact(LineContact):
         """None beside soil."""
         if self._covered is not None:
             return None
-        ground, law = self.ground.numbers, self.law.numbers
         stations = self.at, self.share, self._radius, self.memory
-        self.in_loop = seabed_numbers(self.line, *stations, ground, law)
+        self.in_loop = seabed_numbers(self.line, *stations, self.ground.numbers, self.law)
         return self.in_loop
 
     def renew_numbers(self, start: float, end: float) -> None:
@@ -224,8 +220,21 @@ class SeabedContact(LineContact):
 
     def clearance(self, state: State) -> Array:
         """Gap (nn,) of the nodes less that at which the force begins [m]."""
-        value = self._distance(self.line.to_global(self.line.trial(state).x)).value
-        return value - larger_beside(self._radius) - self.law.start
+        found: Array = self.line.trial(state).once((self, "clearance"), lambda trial: self._clearance(trial.x))
+        return found
+
+    def _clearance(self, x: Array) -> Array:
+        """The same of nodes at x (nn, d)."""
+        penetration, _, _ = self._over_ground(x[:, None], self._radius_of_nodes)
+        return -penetration[:, 0] - self.law.start
+
+    def predict(self, guess: State) -> Array:
+        """Increments of a first guess that lands, see `landing`."""
+        if not self.active:
+            return guess.u
+        moved = self.line.nodal(guess.u)[:, : self.line.dimension]
+        present, guessed = (self._clearance(x) for x in (self.line.x, self.line.x + moved))
+        return landing_predictor(guess, self.line.translation_dofs[:, -1], present, guessed, self.law.start)
 
     def state(self) -> Saved:
         return {"memory": self.memory}

@@ -9,14 +9,16 @@ import numpy as np
 from riser_soil.contact.coulomb import Pair, return_map
 from riser_soil.contact.friction_stations import elastic_guess, read_along, resistance_by_position, vector_of
 from riser_soil.contact.seabed_stations import LineFrame, by_position, distance_in, frame_of
+from riser_soil.contact.work_along_step import work_at
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.line import Line
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
+from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
 from riser_soil.riser.vectors import Vec, dot, padded, put, put_matrix, scale, sub
 from riser_soil.seabed.compiled_law import answer, may_act
+from riser_soil.seabed.law import NormalLaw
 
 
 class Found(NamedTuple):
@@ -36,7 +38,8 @@ class Found(NamedTuple):
 
 class SeabedNumbers(NamedTuple):
     """A `SeabedContact`: its stations and their share of arc length (ne, ng), radius (ne,), memory (ne, ng, nh), and
-    the numbers of its ground and law; room for an element, and for the force and its derivative at a station.
+    the numbers of its ground and law; the law's reach; room for an element, and for the force and its derivative at a
+    station.
     """
 
     at: stations.Stations
@@ -46,6 +49,7 @@ class SeabedNumbers(NamedTuple):
     frame: LineFrame
     ground: Any
     law: Any
+    reach: float
     found: Found
     element: stations.ElementRoom
     f: Array
@@ -67,9 +71,9 @@ class FrictionNumbers(NamedTuple):
 
 
 def seabed_numbers(
-    line: Line, at: stations.Stations, share: Array, radius: Array, memory: Array, ground: Any, law: Any
+    line: Line, at: stations.Stations, share: Array, radius: Array, memory: Array, ground: Any, law: NormalLaw
 ) -> SeabedNumbers:
-    """With the room that they need; ground and law: their numbers."""
+    """With the room that they need; ground: its numbers."""
     (ne, ng), d = share.shape, line.dimension
     position, normal = np.zeros((ne, ng, d)), np.zeros((ne, ng, d))
     penetration, force, slope, stored = (np.zeros((ne, ng)) for _ in range(4))
@@ -77,7 +81,7 @@ def seabed_numbers(
     found = Found(touches, position, normal, penetration, force, slope, stored, after)
     element = stations.element_room(ng, 2 * line.ndof, fixed(d))
     room = found, element, np.zeros(d), np.zeros((d, d))
-    return SeabedNumbers(at, share, radius, memory.copy(), frame_of(line), ground, law, *room)
+    return SeabedNumbers(at, share, radius, memory.copy(), frame_of(line), ground, law.numbers, law.reach, *room)
 
 
 @add_forces.of(SeabedNumbers)
@@ -129,6 +133,34 @@ def _contact_energy(part: SeabedNumbers, at: Configuration, energy: Array) -> No
                 energy[2] += part.share[e, g] * part.found.stored[e, g]
 
 
+@add_work.of(SeabedNumbers)
+def _contact_work(part: SeabedNumbers, first: Configuration, last: Configuration, work: Array) -> None:
+    """See `SeabedContact.work`; the last configuration is that of the forces found last."""
+    found, ng = part.found, part.share.shape[1]
+    taken, gained, by_law = 0.0, 0.0, 0.0
+    before, began = np.zeros(ng), np.zeros((ng, part.f.size))
+    for e in range(part.radius.size):
+        touched = False
+        for g in range(ng):
+            stations.put_value(part.at.N[e, g], first.q[e], began[g], last.D)
+            value, _, _ = distance_in(part.frame, part.ground, padded(began[g]))
+            before[g] = part.radius[e] - value
+            touched |= may_act(part.law, before[g], part.memory[e, g])
+        for g in range(ng):
+            share = part.share[e, g]
+            if found.touches[e]:
+                way = sub(padded(found.position[e, g]), padded(began[g]))
+                taken -= share * found.force[e, g] * dot(padded(found.normal[e, g]), way)
+                gained += share * found.stored[e, g]
+            if touched:
+                gained -= share * answer(part.law, before[g], part.memory[e, g], found.after)[2]
+            if part.memory.shape[2] > 0 and (touched or found.touches[e]):
+                after = found.penetration[e, g]
+                by_law += share * work_at(part.law, part.reach, before[g], after, part.memory[e, g], found.after)
+    work[0] += taken - gained
+    work[3] += taken - by_law if part.memory.shape[2] > 0 else taken - gained
+
+
 @njit
 def _elastic(part: FrictionNumbers, e: int, g: int) -> Pair:
     """t* of `coulomb` at a station."""
@@ -178,3 +210,17 @@ def _friction_energy(part: FrictionNumbers, at: Configuration, energy: Array) ->
             for g in range(part.contact.share.shape[1]):
                 t: Vec = padded(part.resistance[e, g])
                 energy[2] += 0.5 * part.contact.share[e, g] / part.stiffness[e] * dot(t, t)
+
+
+@add_work.of(FrictionNumbers)
+def _friction_work(part: FrictionNumbers, first: Configuration, last: Configuration, work: Array) -> None:
+    """See `CoulombFriction.work`."""
+    contact = part.contact
+    for e in range(part.stiffness.size):
+        for g in range(contact.share.shape[1]):
+            share, begun = contact.share[e, g], padded(part.traction[e, g])
+            work[0] += 0.5 * share / part.stiffness[e] * dot(begun, begun)
+            if contact.found.touches[e]:
+                t: Vec = padded(part.resistance[e, g])
+                way = sub(padded(contact.found.position[e, g]), padded(part.position[e, g]))
+                work[0] += share * dot(t, way) - 0.5 * share / part.stiffness[e] * dot(t, t)

@@ -85,11 +85,15 @@ def over_ground(
 @njit
 def touched(law: Any, penetration: Array, memory: Array) -> IntArray:
     """Elements (m,) that have a station where the law may act; memory (ne, ng, nh)."""
-    found = np.zeros(len(penetration), dtype=np.bool_)
+    found, m = np.empty(len(penetration), dtype=np.int64), 0
     for e in range(penetration.shape[0]):
+        acts = False
         for g in range(penetration.shape[1]):
-            found[e] |= may_act(law, penetration[e, g], memory[e, g])
-    return np.flatnonzero(found)
+            acts |= may_act(law, penetration[e, g], memory[e, g])
+        if acts:
+            found[m] = e
+            m += 1
+    return found[:m]
 
 
 @njit

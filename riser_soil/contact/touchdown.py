@@ -29,11 +29,13 @@ contact. All weights and means are continuous in the forces, and so is d: a stat
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
 
 DEEP = 96.0  # rises of the force within a depth of 1: 43 l on stiff springs, of which f0 is read from the far half
 LEAST = 60.0  # stations within a depth of 1 in a layer that the mesh doesn't resolve
@@ -72,39 +74,53 @@ def contact_intervals(arc: Array, share: Array, clearance: Array, force: Array) 
     A gap that is no higher than the deepest penetration does not end a stretch: just behind the touchdown point a stiff
     bed lifts the riser off a little.
     """
-    turned = float(np.sum(share)) - arc[::-1], share[::-1], clearance[::-1]
-    found, n = [], len(arc)
+    found, n, whole = [], len(arc), float(np.sum(share))
     for first, last in _runs(clearance, force):
-        f = np.where((np.arange(n) >= first) & (np.arange(n) <= last), force, 0.0)
-        start = float(np.sum(share)) - _leaving(*turned, f[::-1], n - 1 - first) if first > 0 else 0.0
-        end = _leaving(arc, share, clearance, f, last) if last < n - 1 else float(np.sum(share))
-        found.append(ContactInterval(start, end, first, last))
+        f = np.zeros(n)
+        f[first : last + 1] = force[first : last + 1]
+        start, end = 0.0, whole
+        if first > 0:
+            turned, behind, gap, pressing = (np.ascontiguousarray(x[::-1]) for x in (whole - arc, share, clearance, f))
+            start = whole - _leaving(turned, behind, gap, pressing, n - 1 - int(first))
+        if last < n - 1:
+            end = _leaving(arc, share, clearance, f, int(last))
+        found.append(ContactInterval(start, end, int(first), int(last)))
     return found
 
 
-def _runs(clearance: Array, force: Array) -> list[tuple[int, int]]:
-    """First and last points of what touches, small gaps within included; none that presses nowhere beside others."""
-    touching = np.flatnonzero((clearance < 0.0) | (force != 0.0))
-    if len(touching) == 0:
-        return []
-    small = -float(clearance.min())
-    after = np.flatnonzero(np.diff(touching) > 1)
-    parting = [i for i in after if clearance[touching[i] : touching[i + 1] + 1].max() > small]
-    runs = [(int(part[0]), int(part[-1])) for part in np.split(touching, np.array(parting, dtype=int) + 1)]
-    return [run for run in runs if force[run[0] : run[1] + 1].any()] or runs
+@njit
+def _runs(clearance: Array, force: Array) -> IntArray:
+    """First and last points (k, 2) of what touches, small gaps within included; none that presses nowhere beside
+    others.
+    """
+    runs, k, pressing, pushed = np.empty((clearance.size, 2), dtype=np.int64), 0, 0, False
+    small, highest = -math.inf, 0.0
+    for gap in clearance:
+        small = max(small, -gap)
+    for i in range(clearance.size):
+        if k > 0:
+            highest = max(highest, clearance[i])
+        if clearance[i] < 0.0 or force[i] != 0.0:
+            if k == 0 or (i > runs[k - 1, 1] + 1 and highest > small):
+                runs[k, 0], pushed = i, False
+                k += 1
+            runs[k - 1, 1], highest = i, clearance[i]
+            if force[i] != 0.0 and not pushed:  # those that press come first, in their order
+                runs[pressing, 0], pushed = runs[k - 1, 0], True
+                pressing += 1
+            if pushed:
+                runs[pressing - 1, 1] = i
+    return runs[: pressing if pressing > 0 else k]
 
 
 def _leaving(arc: Array, share: Array, clearance: Array, force: Array, last: int) -> float:
     """Arc length [m] at which the stretch whose last point is given ends."""
     end = _edge(arc, clearance, last)
-    pressing = share * np.maximum(force, 0.0)
-    if not pressing.any():
+    near, weight, middle = _layer(arc, share, force)
+    if math.isnan(middle):
         return end
-    depth = _depth(share[::-1], force[::-1])[::-1]
-    near = 1.0 - _rise(4.0 * depth - 3.0)
-    f0 = _resting(share * near * np.minimum(depth, 1.0) ** FADING, force)
-    middle = float(np.average(arc, weights=pressing))
-    return float(np.clip(_equivalent(arc, share, near, force, f0), middle, end))
+    d: float = _equivalent(arc, share, near, force, _resting(weight, force))
+    return min(max(d, middle), end)
 
 
 def _edge(arc: Array, clearance: Array, last: int) -> float:
@@ -115,37 +131,60 @@ def _edge(arc: Array, clearance: Array, last: int) -> float:
     return float(arc[last] + (arc[last + 1] - arc[last]) * here / (here - there))
 
 
-def _depth(share: Array, force: Array) -> Array:
-    """Depth of points (n,) behind the touchdown layer, counted from the free side; see the module's text."""
-    pressing = np.maximum(force, 0.0)
-    largest = np.maximum.accumulate(pressing)
-    m = np.where(largest > 0.0, largest, 1.0)
-    B = np.cumsum(share * largest) / m
-    A = 4.0 * np.maximum(B - np.cumsum(share * largest**2) / m**2, 0.0)
-    counted = np.cumsum(largest) / (LEAST * m)
-    layers = np.minimum(np.divide(B, DEEP * A, out=counted.copy(), where=A > 0.0), counted)
-    outside = np.cumsum(share * pressing) - 0.5 * share * pressing
-    return np.maximum.accumulate(np.maximum(layers, 1.5 * outside / float(share @ pressing)))
+@njit
+def _layer(arc: Array, share: Array, force: Array) -> tuple[Array, Array, float]:
+    """How far points (n,) belong to the touchdown layer, their weight in f0, and the middle of the forces [m], which is
+    nan where nothing presses. Depths are counted from the free side; see the module's text.
+    """
+    near, weight, total, moment = np.zeros(arc.size), np.zeros(arc.size), 0.0, 0.0
+    for i in range(arc.size):
+        total += share[i] * max(force[i], 0.0)
+        moment += arc[i] * share[i] * max(force[i], 0.0)
+    largest = count = first = second = outside = depth = 0.0
+    for i in range(arc.size - 1, -1, -1):
+        pressing = max(force[i], 0.0)
+        largest = max(largest, pressing)
+        m = largest if largest > 0.0 else 1.0
+        count, first, second = count + largest, first + share[i] * largest, second + share[i] * largest**2
+        B, counted = first / m, count / (LEAST * m)
+        A = 4.0 * max(B - second / m**2, 0.0)
+        outside += share[i] * pressing
+        depth = max(depth, min(B / (DEEP * A), counted) if A > 0.0 else counted)
+        if total > 0.0:
+            depth = max(depth, 1.5 * (outside - 0.5 * share[i] * pressing) / total)
+        near[i] = 1.0 - _rise(4.0 * depth - 3.0)
+        weight[i] = share[i] * near[i] * min(depth, 1.0) ** FADING
+    return near, weight, moment / total if total > 0.0 else math.nan
 
 
-def _rise(x: Array) -> Array:
+@njit
+def _rise(x: float) -> float:
     """From 0 to 1 over 0 < x < 1, twice continuously differentiable."""
-    x = np.clip(x, 0.0, 1.0)
+    x = min(max(x, 0.0), 1.0)
     return x**3 * (10.0 - 15.0 * x + 6.0 * x**2)
 
 
 def _resting(weight: Array, force: Array) -> float:
     """Mean of the middle half of forces, by weight: stations loaded by a clump or bridging a dip do not count."""
-    order = np.argsort(force)
+    counting = weight > 0.0
+    weight, force = weight[counting], force[counting]
+    order = force.argsort()
     total = float(weight.sum())
-    upto = np.clip(np.cumsum(weight[order]), 0.25 * total, 0.75 * total)
-    counted = np.diff(upto, prepend=0.25 * total)
-    return float(counted @ force[order]) / (0.5 * total) if total > 0.0 else 0.0
+    upto = np.minimum(np.maximum(weight[order].cumsum(), 0.25 * total), 0.75 * total)
+    upto[1:] -= upto[:-1].copy()
+    upto[:1] -= 0.25 * total
+    return float(upto @ force[order]) / (0.5 * total) if total > 0.0 else 0.0
 
 
+@njit
 def _equivalent(arc: Array, share: Array, near: Array, force: Array, f0: float) -> float:
     """d: see the module's text. The sums go to the line's end; tau = 2 E1/(R + E0) is the same, where that is safe."""
-    excess, length = near * share * (force - f0), float(np.sum(share))
-    E0, E1 = float(excess.sum()), float(excess @ (length - arc))
-    R = np.sqrt(max(E0**2 + 2.0 * f0 * E1, 0.0))
-    return length - (2.0 * E1 / (R + E0) if E0 > 0.0 else (R - E0) / f0)
+    length = E0 = E1 = 0.0
+    for own in share:
+        length += own
+    for i in range(arc.size):
+        excess = near[i] * share[i] * (force[i] - f0)
+        E0, E1 = E0 + excess, E1 + excess * (length - arc[i])
+    R = math.sqrt(max(E0**2 + 2.0 * f0 * E1, 0.0))
+    tau: float = 2.0 * E1 / (R + E0) if E0 > 0.0 else (R - E0) / f0
+    return length - tau

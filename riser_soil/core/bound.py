@@ -68,6 +68,11 @@ def calls(*bound: Bound) -> Calls:
     return Calls(*(np.asarray(_Addresses(column, bound)) for column in columns))
 
 
+def in_turn(*bound: Bound) -> Bound:
+    """Bound kernels as one, called one after the other."""
+    return Bound(call_each, Packed(calls(*bound)))
+
+
 def _entry(kernel: Any, *kinds: Any) -> Any:
     """The function of one address that calls a kernel with arguments of these types, which it finds there."""
     key = kernel, *kinds

@@ -27,7 +27,8 @@ from typing import Any
 import numba
 from numba.core import event
 
-from riser_soil.core.kernel_cache import PACKAGE, KernelCache
+from riser_soil.core.kernel import kernel
+from riser_soil.core.kernel_cache import PACKAGE
 
 NAME = PACKAGE.name
 KEPT = 4  # cache folders of other versions, the latest ones, for those who go back and forth
@@ -43,9 +44,7 @@ def njit(function: Callable[..., object], apart: bool = False) -> Any:
     apart: not inlined where others call it, so that those that call many are compiled in a bearable time.
     """
     with caching():
-        made = numba.njit(**OPTIONS, forceinline=not apart)(function)
-        made._cache = KernelCache(function)
-        return made
+        return kernel(function, {**OPTIONS, "forceinline": not apart})
 
 
 @contextmanager

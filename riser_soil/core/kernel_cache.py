@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,13 @@ PACKAGE = Path(__file__).parents[1]
 
 
 class KernelCache(FunctionCache):
-    """Cache of one function; in the place of that of numba's dispatcher, `_cache`."""
+    """Cache of one function as it is compiled for one kind of caller; in the place of that of numba's dispatcher,
+    `_cache`.
+    """
+
+    def __init__(self, function: Callable[..., object], caller: str = "called") -> None:
+        super().__init__(function)
+        self._caller = caller
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         self._choose_index(sig)
@@ -30,7 +36,7 @@ class KernelCache(FunctionCache):
         super().save_overload(sig, data)
 
     def _choose_index(self, sig: Any) -> None:
-        base = "-".join([self._impl.filename_base, *_marks(sig)])
+        base = "-".join([self._impl.filename_base, self._caller, *_marks(sig)])
         self._cache_file = IndexDataCacheFile(self._cache_path, base, self._impl.locator.get_source_stamp())
 
 

@@ -121,6 +121,12 @@ def room_for(line: Line) -> Configuration:
     return SpatialConfiguration(T0=line.frames.T0, **given, **_empty(shapes))
 
 
+def maps_for(line: Line) -> Maps:
+    """Maps to be written to, without shifts."""
+    ne, d, r = line.length.size, line.dimension, line.frames.dofs
+    return Maps(np.empty((ne, 2, d, r)), np.empty((ne, 2, d, r)), 0.0, 0.0)
+
+
 def _empty(shapes: dict[str, tuple[int, ...]]) -> dict[str, Any]:
     return {name: np.empty(shape) for name, shape in shapes.items()}
 
@@ -160,8 +166,11 @@ def _place_in_plane(at: PlanarConfiguration, base: PlanarBase, u: Array, v: Arra
 @place.of(SpatialConfiguration)
 def _place_in_space(at: SpatialConfiguration, base: SpatialBase, u: Array, v: Array, a: Array) -> None:
     _move(at, base, u, v, a)
-    at.Theta[:] = u[:, 3:]
-    at.Rn[:] = base.R
+    for n in range(u.shape[0]):
+        for i in range(3):
+            at.Theta[n, i] = u[n, 3 + i]
+            for j in range(3):
+                at.Rn[n, i, j] = base.R[n, i, j]
     spatial_directors.orient(base.R, at.Theta, base.T0, at.frames, at.H, at.frame1, at.frame2, at.tangent, at.P)
     spatial_directors.put_motion(at.frames, base.T0, v, a, at.rate, at.acceleration)
     hermite.put_interleaved(at.x, at.tangent, at.q, at.D)
@@ -182,14 +191,16 @@ def _move(at: Configuration, base: Base, u: Array, v: Array, a: Array) -> None:
 
 @put_magnitudes.of(PlanarConfiguration)
 def _put_magnitudes_in_plane(at: PlanarConfiguration, out: Array) -> None:
-    out[:, :2] = np.abs(at.x)
-    out[:, 2] = np.maximum(np.abs(at.angle), 1.0)
+    for n in range(out.shape[0]):
+        out[n, 0], out[n, 1] = abs(at.x[n, 0]), abs(at.x[n, 1])
+        out[n, 2] = max(abs(at.angle[n]), 1.0)
 
 
 @put_magnitudes.of(SpatialConfiguration)
 def _put_magnitudes_in_space(at: SpatialConfiguration, out: Array) -> None:
-    out[:, :3] = np.abs(at.x)
-    out[:, 3:] = 1.0
+    for n in range(out.shape[0]):
+        for i in range(3):
+            out[n, i], out[n, 3 + i] = abs(at.x[n, i]), 1.0
 
 
 @put_maps.of(PlanarConfiguration)

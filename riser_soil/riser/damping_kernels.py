@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 from riser_soil.riser import beam2d, beam3d, damping2d, damping3d, increments
 from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
@@ -30,10 +31,18 @@ class SpatialViscosity(NamedTuple):
     spin: Array
 
 
+@njit
+def _put_chord_rates(v: Array, out: Array) -> None:
+    """Rates of the chords (ne, d) from those of the dofs (nn, ndof)."""
+    for e in range(out.shape[0]):
+        for i in range(out.shape[1]):
+            out[e, i] = v[e + 1, i] - v[e, i]
+
+
 @add_forces.of(PlanarViscosity)
 def _planar_forces(part: PlanarViscosity, at: PlanarConfiguration, out: LineForces) -> None:
     f, first, second = np.empty(6), at.end_angle[:, 0], at.end_angle[:, 1]
-    part.chord_rate[:] = at.v[1:, :2] - at.v[:-1, :2]
+    _put_chord_rates(at.v, part.chord_rate)
     for e in range(at.chord.shape[0]):
         damping2d.put_element_forces(
             e, at.chord, first, second, part.reference, part.viscosity, part.chord_rate, at.v[:, 2], f
@@ -67,7 +76,7 @@ def _planar_tangent(part: PlanarViscosity, at: PlanarConfiguration, maps: Maps, 
 @add_forces.of(SpatialViscosity)
 def _spatial_forces(part: SpatialViscosity, at: SpatialConfiguration, out: LineForces) -> None:
     f = np.empty(12)
-    part.chord_rate[:] = at.v[1:, :3] - at.v[:-1, :3]
+    _put_chord_rates(at.v, part.chord_rate)
     for n in range(at.v.shape[0]):
         spin = matvec(matrix(at.frames[n]), vector(at.v[n, 3:]))
         part.spin[n, 0], part.spin[n, 1], part.spin[n, 2] = spin

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.riser import rotations
 from riser_soil.riser.configuration import Configuration, Maps, PlanarConfiguration, SpatialConfiguration
@@ -120,7 +118,10 @@ def _spatial_tangent(part: SpatialSpring, at: SpatialConfiguration, maps: Maps, 
 @add_energy.of(GivenForces)
 def _given_energy(part: GivenForces, at: Configuration, energy: Array) -> None:
     if part.potential:
-        energy[2] += np.sum(part.F * at.q)
+        for e in range(at.q.shape[0]):
+            for k in range(4):
+                for i in range(at.q.shape[2]):
+                    energy[2] += part.F[e, k, i] * at.q[e, k, i]
 
 
 @add_energy.of(SpatialMoments)

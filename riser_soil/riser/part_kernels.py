@@ -6,12 +6,14 @@ functions that its methods call, too, so that each formula is in one place.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.bound import Bound
 from riser_soil.core.by_type import by_type
+from riser_soil.core.packed import Packed
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.line import Line
 
@@ -38,6 +40,11 @@ def forces_of(line: Line) -> LineForces:
     """Room for the residuals of a line."""
     conjugate = (np.zeros((line.length.size, 4, line.dimension)) for _ in range(3))
     return LineForces(*conjugate, *(np.zeros((line.nodes, line.ndof)) for _ in range(3)))
+
+
+def bound(stub: Any, numbers: tuple[Any, ...], *arguments: Packed) -> Bound:
+    """The kernel for these numbers, bound to them and to its other arguments."""
+    return Bound(stub.kernels[type(numbers)], Packed(numbers), *arguments)
 
 
 @by_type

@@ -14,17 +14,33 @@ moment.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.riser.line import Line
-from riser_soil.riser.section_forces import end_forces
+from riser_soil.riser.section_forces import end_forces, section_frames
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.spatial_directors import SpatialOrientation
 from riser_soil.riser.trial import Trial
+from riser_soil.riser.vectors import (
+    Vec,
+    add,
+    cross,
+    dot,
+    matmul,
+    norm,
+    padded,
+    padded_matrix,
+    put,
+    scale,
+    sub,
+    transpose,
+)
 
 
 class BendingMisfit(NamedTuple):
@@ -42,40 +58,65 @@ class BendingMisfit(NamedTuple):
 
 def misfit(line: Line, elements: Elements, state: State, residual: Array) -> BendingMisfit:
     """residual (ne, 2 ndof): from `section_forces.element_residual`, less its viscous share."""
-    trial, L = line.trial(state), line.length[:, None]
-    force, moment = _sections(line, trial, residual)
-    tangent = trial.turn.tangent @ line.basis.T
-    bending = moment - np.sum(moment * tangent, axis=2, keepdims=True) * tangent
-    k, slope = (_over_stiffness(trial, elements, M) for M in (bending, np.cross(force, tangent)))
-    trapezoidal = _turns(line, trial, tangent) - 0.5 * L * (k[:, 0] + k[:, 1])
-    corrected = trapezoidal + L * L / 12.0 * (slope[:, 1] - slope[:, 0])
-    size = np.linalg.norm(bending, axis=2)
-    EI = np.maximum(elements.EI_y, elements.EI_z)
-    smooth, steep = (EI / line.length * np.linalg.norm(turn, axis=1) for turn in (corrected, trapezoidal))
-    for end, other in ((0, 1), (-1, 0)):
-        steep[end] *= size[end, 1 - other] > size[end, other]
-    i, j = int(smooth.argmax()), int(steep.argmax())
-    return BendingMisfit(float(smooth[i]), i, float(steep[j]), j)
+    trial = line.trial(state)
+    tangent, on_ends = trial.turn.tangent @ line.basis.T, end_forces(line, trial, residual)
+    EI, out = np.maximum(elements.EI_y, elements.EI_z), (np.empty(line.length.size), np.empty(line.length.size))
+    stiffness = *section_frames(trial), *elements.flexibility, EI
+    _put_misfits(line.length, *on_ends, tangent, _turns(line, trial, tangent), *stiffness, *out)
+    i, j = (int(values.argmax()) for values in out)
+    return BendingMisfit(float(out[0][i]), i, float(out[1][j]), j)
 
 
-def _sections(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]:
-    """Force and moment (ne, 2, 3), global axes, that what follows the elements' ends exerts on what goes before."""
-    sign = np.array([-1.0, 1.0])[:, None]
-    force, moment = end_forces(line, trial, residual)
-    return sign * force, sign * moment
+@njit
+def _put_misfits(
+    length: Array,
+    force: Array,
+    moment: Array,
+    tangent: Array,
+    turn: Array,
+    first: Array,
+    second: Array,
+    y: Array,
+    z: Array,
+    EI: Array,
+    smooth: Array,
+    steep: Array,
+) -> None:
+    """Write the misfits (ne,) of the elements by the formula with shear, and by the trapezoidal rule.
+
+    force, moment (ne, 2, 3): on the elements' ends; tangent: there; turn: of `_turns`; first, second: of
+    `section_frames`; y, z (ne,): 1/EI.
+    """
+    ne, size = len(length), np.empty(2)
+    k, slope = np.empty((2, 3)), np.empty((2, 3))
+    for e in range(ne):
+        for end in range(2):
+            sign, t, F = 2.0 * end - 1.0, padded(tangent[e, end]), padded(force[e, end])
+            M = scale(sign, padded(moment[e, end]))
+            bending, shear = sub(M, scale(dot(M, t), t)), scale(sign, cross(F, t))
+            size[end] = norm(bending)
+            for vector, out in ((bending, k[end]), (shear, slope[end])):
+                if len(first) == 0:
+                    put(scale(y[e], vector), out)
+                else:
+                    _put_over_stiffness(first[e] if end == 0 else second[e], vector, y[e], z[e], out)
+        L, trapezoidal, corrected = length[e], 0.0, 0.0
+        for i in range(3):
+            plain = turn[e, i] - 0.5 * L * (k[0, i] + k[1, i])
+            trapezoidal += plain**2
+            corrected += (plain + L * L / 12.0 * (slope[1, i] - slope[0, i])) ** 2
+        smooth[e], steep[e] = EI[e] / L * math.sqrt(corrected), EI[e] / L * math.sqrt(trapezoidal)
+        if (e == 0 and not size[0] > size[1]) or (e == ne - 1 and not size[1] > size[0]):
+            steep[e] = 0.0
 
 
-def _over_stiffness(trial: Trial, elements: Elements, moment: Array) -> Array:
-    """Curvatures (ne, 2, 3) of moments, global axes; about the section axes where there are two stiffnesses."""
-    y, z = elements.flexibility
-    if not isinstance(trial.turn, SpatialOrientation):
-        return np.asarray(moment * y[:, None, None])
-    frames = np.stack([trial.turn.frame1, trial.turn.frame2], axis=1)
-    about = np.einsum("enij,eni->enj", frames, moment)
-    about[..., 0] = 0.0
-    about[..., 1] *= y[:, None]
-    about[..., 2] *= z[:, None]
-    return np.asarray(np.einsum("enij,enj->eni", frames, about))
+@njit
+def _put_over_stiffness(frame: Array, moment: Vec, y: float, z: float, out: Array) -> None:
+    """Write the curvature of a moment, global axes, about the section axes of two stiffnesses."""
+    about_y = frame[0, 1] * moment[0] + frame[1, 1] * moment[1] + frame[2, 1] * moment[2]
+    about_z = frame[0, 2] * moment[0] + frame[1, 2] * moment[1] + frame[2, 2] * moment[2]
+    for i in range(3):
+        out[i] = frame[i, 1] * y * about_y + frame[i, 2] * z * about_z
 
 
 def _turns(line: Line, trial: Trial, tangent: Array) -> Array:
@@ -83,12 +124,22 @@ def _turns(line: Line, trial: Trial, tangent: Array) -> Array:
     twist.
     """
     if not isinstance(trial.turn, SpatialOrientation):
-        return np.asarray(np.diff(trial.turn.angle)[:, None] * line.normal)
-    R = trial.turn.R
-    Q = R[1:] @ R[:-1].transpose(0, 2, 1)
-    vector = 0.5 * np.stack([Q[:, 2, 1] - Q[:, 1, 2], Q[:, 0, 2] - Q[:, 2, 0], Q[:, 1, 0] - Q[:, 0, 1]], axis=1)
-    sine, cosine = np.linalg.norm(vector, axis=1), 0.5 * (np.trace(Q, axis1=1, axis2=2) - 1.0)
-    turn = vector * np.where(sine > 0.0, np.arctan2(sine, cosine) / np.where(sine > 0.0, sine, 1.0), 1.0)[:, None]
-    middle = tangent.sum(axis=1)
-    middle /= np.linalg.norm(middle, axis=1, keepdims=True)
-    return np.asarray(turn - np.sum(turn * middle, axis=1, keepdims=True) * middle)
+        angle = trial.turn.angle
+        return np.asarray((angle[1:] - angle[:-1])[:, None] * line.normal)
+    turns = np.empty((line.length.size, 3))
+    _put_turns(trial.turn.R, tangent, turns)
+    return turns
+
+
+@njit
+def _put_turns(R: Array, tangent: Array, out: Array) -> None:
+    """R (nn, 3, 3): frames of the nodes; tangent (ne, 2, 3): at the elements' ends."""
+    for e in range(len(out)):
+        Q = matmul(padded_matrix(R[e + 1]), transpose(padded_matrix(R[e])))
+        twice = Q[2][1] - Q[1][2], Q[0][2] - Q[2][0], Q[1][0] - Q[0][1]
+        vector = scale(0.5, twice)
+        sine, cosine = norm(vector), 0.5 * (Q[0][0] + Q[1][1] + Q[2][2] - 1.0)
+        turn = scale(math.atan2(sine, cosine) / sine if sine > 0.0 else 1.0, vector)
+        middle = add(padded(tangent[e, 0]), padded(tangent[e, 1]))
+        middle = scale(1.0 / norm(middle), middle)
+        put(sub(turn, scale(dot(turn, middle), middle)), out[e])

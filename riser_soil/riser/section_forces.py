@@ -91,11 +91,11 @@ def section_forces(
     out = SectionForces(*(np.empty(shape) for shape in (*at_nodes, *at_ends)))
     free, tangent = np.empty((nn, 3)), trial.turn.tangent @ line.basis.T
     _put_at_nodes(on_ends, moments_on_ends, damping, tangent, elements.bends_beside, free, out)
-    _put_curvatures(free, *_frames(trial), *elements.flexibility, out)
+    _put_curvatures(free, *section_frames(trial), *elements.flexibility, out)
     return out
 
 
-def _frames(trial: Trial) -> tuple[Array, Array]:
+def section_frames(trial: Trial) -> tuple[Array, Array]:
     """Section frames (ne, 3, 3) at the elements' ends; none in a plane, where there is one stiffness."""
     if isinstance(trial.turn, SpatialOrientation):
         return trial.turn.frame1, trial.turn.frame2

@@ -116,7 +116,8 @@ def add_residual(D: Size, chord: Array, tangent: Array, L: Array, w: Array, F: A
             F[k, 2, i] -= 0.5 * L[k] * w[k, i]
         for end in range(2):
             factor = (2 * end - 1) * L[k] * L[k] / 12.0
-            t[:] = tangent[k, end]
+            for i in range(d):
+                t[i] = tangent[k, end, i]
             _psi_slopes(D, e, t, load, _factor(_dot(D, e, t)), by_t, by_e)
             along = _dot(D, e, by_e)
             for i in range(d):
@@ -207,7 +208,8 @@ def add_tangent_to(
         l, load = _axis(D, chord[k], e), w[k]
         for end in range(2):
             factor = weight * (2 * end - 1) * L[k] * L[k] / 12.0
-            t[:] = tangent[k, end]
+            for i in range(d):
+                t[i] = tangent[k, end, i]
             g = _factor(_dot(D, e, t))
             _psi_slopes(D, e, t, load, g, by_t, by_e)
             _psi_bends(D, e, t, load, g, tt, te, ee)

@@ -57,8 +57,8 @@ def put_at_rest(motion: WaterMotion, level: float, x: Array) -> None:
 @njit
 def put_in_plane(found: WaterMotion, basis: Array, motion: WaterMotion) -> None:
     """Write the motion (n, 3) as it is seen in a plane, basis (3, 2)."""
-    motion.immersion[:] = found.immersion
     for p in range(found.immersion.size):
+        motion.immersion[p] = found.immersion[p]
         _project(found.velocity[p], basis, motion.velocity[p])
         _project(found.acceleration[p], basis, motion.acceleration[p])
         _project(found.immersion_gradient[p], basis, motion.immersion_gradient[p])

@@ -105,7 +105,7 @@ def see_end(stream: Stream, q: Array) -> None:
     if found[END] != t or not _same(stream.x, stream.place):
         call_each(stream.find_end)
         found[END] = t
-        stream.place[:] = stream.x
+        _copy(stream.x, stream.place)
 
 
 @njit
@@ -121,6 +121,13 @@ def _place(stream: Stream, q: Array) -> None:
                 for a in range(len(stream.D)):
                     x += stream.basis[i, a] * inside[a]
                 stream.x[p, i] = x
+
+
+@njit
+def _copy(x: Array, out: Array) -> None:
+    for p in range(x.shape[0]):
+        for i in range(3):
+            out[p, i] = x[p, i]
 
 
 @njit

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from functools import cached_property
 
 import numpy as np
 from mpi4py import MPI
@@ -21,6 +22,7 @@ from riser_soil.solve.failed_step import place_of_largest, reason_name
 from riser_soil.solve.kept_factors import KeptFactors
 from riser_soil.solve.line_search import step_length
 from riser_soil.solve.linear_solver import PREFIX, complaint, defaults, factorise_directly, keeps_factors
+from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.round_off import ROUND_OFF, stays
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError, told
 from riser_soil.solve.stability import prescribe_free_turns, unstable_modes
@@ -89,6 +91,15 @@ class Newton:
         state = self._trial(self._x)
         self.require_admissible(state)
         return Solution(state, self._forces, self._norms)
+
+    @cached_property
+    def mass(self) -> RiserMass:
+        """Inverse of the lines' mass."""
+        return RiserMass(self.system)
+
+    def bulk_forces(self, state: State) -> Forces:
+        """Forces of groups I and F at an accepted state, those of group E zero; collective."""
+        return self.system.forces(state, "IF")
 
     def _continues(self) -> bool:
         """Whether a static step goes on as those before: its guess leaves less out of balance than its loads put there.

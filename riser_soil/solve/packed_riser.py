@@ -8,12 +8,29 @@ from typing import Any
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.core.bound import Bound, call_each, calls
+from riser_soil.core.bound import Bound, calls, in_turn
 from riser_soil.core.packed import Packed
 from riser_soil.core.part import State, Weights
-from riser_soil.riser.configuration import Maps, base_of, place, put_magnitudes, put_maps, put_turning, room_for
+from riser_soil.riser.configuration import (
+    Maps,
+    base_of,
+    maps_for,
+    place,
+    put_magnitudes,
+    put_maps,
+    put_turning,
+    room_for,
+)
 from riser_soil.riser.line import Line
-from riser_soil.riser.part_kernels import LineWeights, add_energy, add_forces, add_tangent, add_work, forces_of
+from riser_soil.riser.part_kernels import (
+    LineWeights,
+    add_energy,
+    add_forces,
+    add_tangent,
+    add_work,
+    bound,
+    forces_of,
+)
 from riser_soil.solve import banded
 from riser_soil.solve import riser_loop as loop
 from riser_soil.solve.riser_loop import Dofs, MatrixRoom, NewtonProgress, StepNumbers, StopLimits
@@ -31,12 +48,13 @@ class PackedRiser:
         self, line: Line, numbers: Sequence[Numbers], prescribed: BoolArray, levers: Array, most: int
     ) -> None:
         self._line, shape = line, (line.nodes, line.ndof)
-        self.step, self.forces, self.room = StepNumbers(*_zeros(6, shape)), forces_of(line), _matrix_room(line)
+        self.step, self.forces, self.room = StepNumbers(*_zeros(6, shape)), forces_of(line), matrix_room(line)
         self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
         self.progress = NewtonProgress(np.zeros(most + 1), np.zeros(2, dtype=np.int64))
         base = base_of(line)
         self._base = Packed(type(base)(*map(np.copy, base)))
-        self._maps, self._weights = Packed(_maps_of(line)), Packed(LineWeights(0.0, 0.0))
+        self._maps, self._weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
+        self._weighed = Weights(0.0, 0.0, 0.0, 0.0)  # as in both
         self._limits = Packed(StopLimits(0.0, 0.0, 0.0, most, 0, False))
         self._bind(numbers)
         self._bind_account(numbers)
@@ -49,9 +67,9 @@ class PackedRiser:
         maps, weights, limits, K = self._maps, self._weights, self._limits, Packed(self.room.K)
         evaluate = [
             Bound(loop.follow, step, maps, dofs),
-            _bound(place, at, self._base, *map(Packed, (self.step.u, self.step.v, self.step.a))),
+            bound(place, at, self._base, *map(Packed, (self.step.u, self.step.v, self.step.a))),
             Bound(loop.clear, forces),
-            *(_bound(add_forces, each, now, forces) for each in numbers),
+            *(bound(add_forces, each, now, forces) for each in numbers),
             Bound(loop.collect, now, forces),
             Bound(loop.combine, forces, step, weights, dofs),
             Bound(loop.judge, forces, dofs, limits, progress),
@@ -59,23 +77,23 @@ class PackedRiser:
 
         def tangent(maps: Packed) -> list[Bound]:
             return [
-                _bound(put_maps, at, maps),
+                bound(put_maps, at, maps),
                 Bound(loop.clear_tangent, room),
-                *(_bound(add_tangent, each, now, maps, weights, K) for each in numbers),
+                *(bound(add_tangent, each, now, maps, weights, K) for each in numbers),
                 Bound(loop.weigh, forces, weights, room),
-                _bound(put_turning, at, Packed(self.room.conjugate), Packed(self.room.turning)),
+                bound(put_turning, at, Packed(self.room.conjugate), Packed(self.room.turning)),
                 Bound(loop.turn, room),
             ]
 
         at_held_rates = tangent(Packed(maps.value))  # without shifts
-        put_sizes = _bound(put_magnitudes, at, Packed(self.dofs.sizes))
+        put_sizes = bound(put_magnitudes, at, Packed(self.dofs.sizes))
         probe = [*at_held_rates, put_sizes, Bound(loop.judge_round_off, room, dofs, progress)]
         put_tangent = [*tangent(maps), Bound(loop.fill, room, dofs)]
         renew = [*put_tangent, Bound(loop.factorise, room, progress)]
         improve = [Bound(loop.improve, room, step, dofs)]
         tables = (Packed(calls(*kernels)) for kernels in (evaluate, probe, renew, improve))
         self._solve = Bound(loop.solve_step, *tables, limits, progress)
-        self.evaluate, self.put_tangent = _in_turn(*evaluate), _in_turn(*put_tangent, put_sizes)
+        self.evaluate, self.put_tangent = in_turn(*evaluate), in_turn(*put_tangent, put_sizes)
         self._at = now
 
     def _bind_account(self, numbers: Sequence[Numbers]) -> None:
@@ -86,11 +104,11 @@ class PackedRiser:
         first = room_for(self._line)
         then, now, energy = Packed(first), self._at, Packed(self._energy)
         rows = [Packed(row) for row in self._work]
-        self._account = _in_turn(
-            _bound(place, first, self._base, *map(Packed, (still, *self._begun))),
+        self._account = in_turn(
+            bound(place, first, self._base, *map(Packed, (still, *self._begun))),
             Bound(loop.clear_account, energy, Packed(self._work)),
-            *(_bound(add_energy, each, now, energy) for each in numbers),
-            *(_bound(add_work, each, then, now, row) for each, row in zip(turning, rows, strict=True)),
+            *(bound(add_energy, each, now, energy) for each in numbers),
+            *(bound(add_work, each, then, now, row) for each, row in zip(turning, rows, strict=True)),
         )
 
     def begin(self, state: State, past: Array | None, weights: Weights, limits: StopLimits) -> None:
@@ -100,13 +118,19 @@ class PackedRiser:
         """
         for kept, given in zip(self._base.value, base_of(self._line), strict=True):
             kept[...] = given
-        step, maps = self.step, self._maps
+        step = self.step
         for kept, given in ((step.u, state.u), (step.v0, state.v), (step.a0, state.a)):
             kept.ravel()[:] = given
         step.past.ravel()[:] = 0.0 if past is None else past
+        if weights != self._weighed:
+            self._weigh(weights)
+        if limits != self._limits.value:
+            self._limits.renew(limits)
+
+    def _weigh(self, weights: Weights) -> None:
+        maps, self._weighed = self._maps, weights
         maps.renew(Maps(maps.value.rate, maps.value.acceleration, weights.shift_v, weights.shift_a))
         self._weights.renew(LineWeights(weights.inertia, weights.force))
-        self._limits.renew(limits)
 
     def solve(self) -> tuple[int, int]:
         """Solve the step: the outcome, see `riser_loop`, and the number of iterations."""
@@ -126,24 +150,12 @@ class PackedRiser:
         return self._energy, self._work
 
 
-def _bound(stub: Any, numbers: Numbers, *arguments: Packed) -> Bound:
-    return Bound(stub.kernels[type(numbers)], Packed(numbers), *arguments)
-
-
-def _in_turn(*bound: Bound) -> Bound:
-    return Bound(call_each, Packed(calls(*bound)))
-
-
 def _zeros(n: int, shape: tuple[int, ...]) -> list[Array]:
     return [np.zeros(shape) for _ in range(n)]
 
 
-def _maps_of(line: Line) -> Maps:
-    ne, d, r = line.length.size, line.dimension, line.frames.dofs
-    return Maps(np.empty((ne, 2, d, r)), np.empty((ne, 2, d, r)), 0.0, 0.0)
-
-
-def _matrix_room(line: Line) -> MatrixRoom:
+def matrix_room(line: Line) -> MatrixRoom:
+    """Room for the tangent of a line."""
     ne, d, r, n = line.length.size, line.dimension, line.frames.dofs, line.ndof
     matrix, band = banded.room(line.size, 2 * n - 1)
     return MatrixRoom(

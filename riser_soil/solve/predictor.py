@@ -66,7 +66,9 @@ def _accepted(differences: Array, steps: Array, increments: Array, dt: float) ->
     """Differences (k, n) and sizes of the steps (k,) with a further one."""
     kept = min(differences.shape[0] + 1, STEPS)
     found, sizes = np.empty((kept, increments.size)), np.empty(kept)
-    found[0], sizes[0], span = increments / dt, dt, dt
+    sizes[0], span = dt, dt
+    for i in range(increments.size):
+        found[0, i] = increments[i] / dt
     for order in range(1, kept):
         span += steps[order - 1]
         sizes[order] = steps[order - 1]

@@ -5,6 +5,8 @@ Needed once at the start of a dynamic stage and, with contact, once a step (see 
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 from scipy.linalg import solveh_banded
 
@@ -15,6 +17,18 @@ from riser_soil.core.system import System
 
 MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
 MASSLESS = 1e-12  # of a node's largest mass
+
+
+class Mass(Protocol):
+    """Inverse of the lines' mass, see `RiserMass`."""
+
+    def accelerations(self, t: float, force: Array) -> Array: ...
+
+    def kinetic_energy(self, state: State) -> float: ...
+
+    def state(self) -> Saved: ...
+
+    def restore(self, saved: Saved) -> None: ...
 
 
 class RiserMass:
@@ -57,7 +71,7 @@ def _with_inertia(system: System) -> list[Part]:
 
 
 class _LineMass:
-    """The mass of one line. moving: see `_moving`; None until it is first asked for."""
+    """The mass of one line. moving: see `projectors`; None until it is first asked for."""
 
     def __init__(self, system: System, line: LineField) -> None:
         self.line, self._system, self._parts = line, system, _with_inertia(system)
@@ -72,7 +86,7 @@ class _LineMass:
 
     def _solve_weighed(self, blocks: Array, force: Array) -> Array:
         if self.moving is None:
-            self.moving = _moving(blocks, ~self.line.prescribed)
+            self.moving = projectors(blocks, ~self.line.prescribed)
         banded = _banded(_projected(blocks, self.moving), self.line.size)
         _add_nodal(banded, (blocks.max() or 1.0) * (np.eye(self.moving.shape[1]) - self.moving))
         nodal = force.reshape(len(self.moving), -1, 1)
@@ -86,7 +100,7 @@ class _LineMass:
         return values[self.line.name]
 
 
-def _moving(blocks: Array, free: BoolArray) -> Array:
+def projectors(blocks: Array, free: BoolArray) -> Array:
     """Projectors (nn, dofs, dofs) of the nodes onto what is free and has mass.
 
     A node without rotary inertia has none about its tangents where they agree. That axis need not be an axis of the

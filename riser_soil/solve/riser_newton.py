@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,7 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
 from riser_soil.riser.part_kernels import add_work
 from riser_soil.solve import riser_loop
+from riser_soil.solve.compiled_mass import CompiledMass
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, largest_at, told
 
@@ -46,6 +49,7 @@ class RiserNewton:
         assert isinstance(line, Line)
         self._line, most = line, settings.max_iterations
         self._riser = PackedRiser(line, [held for _, held in parts], system.prescribed, system.levers, most)
+        self._numbered, self._t = parts, math.nan
         self._renewed = [part for part, _ in parts if overrides(part, "renew_numbers")]
         kernels = [(part, type(held) in add_work.kernels) for part, held in parts]
         self._turning = [(part, kernel) for part, kernel in kernels if kernel or overrides(part, "work")]
@@ -53,8 +57,7 @@ class RiserNewton:
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError."""
         since = time.perf_counter()
-        for part in self._renewed:
-            part.renew_numbers(step.before.t, step.t)
+        self._bring(step.before.t, step.t)
         scheme = step.scheme
         self._riser.begin(self._guess(step), scheme.past(step.start), scheme.weights(step.dt), self._limits(step))
         outcome, taken = self._riser.solve()
@@ -68,6 +71,30 @@ class RiserNewton:
         if reason := self._line.inadmissible(state):
             raise NotConvergedError(reason)
         return Solution(state, self._found(), norms)
+
+    def _bring(self, start: float, end: float) -> None:
+        """Write what depends on the time into the parts' numbers, for a step between two times."""
+        for part in self._renewed:
+            part.renew_numbers(start, end)
+        self._t = end
+
+    def _bring_to(self, t: float) -> None:
+        if self._t != t:
+            self._bring(t, t)
+
+    @cached_property
+    def mass(self) -> CompiledMass:
+        """Inverse of the line's mass."""
+        bulk, inertial = (
+            [held for part, held in self._numbered if set(part.traits.groups) & set(groups)] for groups in ("IF", "I")
+        )
+        return CompiledMass(
+            self._line, bulk, inertial, self.system.prescribed, self.system.levers, self._bring_to
+        )
+
+    def bulk_forces(self, state: State) -> Forces:
+        """Forces of groups I and F at an accepted state, those of group E zero."""
+        return self.mass.bulk_forces(state)
 
     def turned_over(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
         """Energy stored at the end of the step solved last, and what each part turned over in it."""

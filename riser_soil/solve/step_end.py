@@ -12,7 +12,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
 from riser_soil.core.roles import MomentumCorrecting
 from riser_soil.core.system import System, total
-from riser_soil.solve.riser_mass import RiserMass
+from riser_soil.solve.riser_mass import Mass
 
 
 @dataclass(eq=False)
@@ -23,7 +23,7 @@ class CommittedStep:
     """
 
     system: System
-    mass: RiserMass | None
+    mass: Mass | None
     correcting: Sequence[MomentumCorrecting]
     solved: State
     forces: Forces

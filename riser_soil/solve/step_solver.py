@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from riser_soil.core.part import Energy, State, Work
+from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.system import System
 from riser_soil.solve.newton import Newton
+from riser_soil.solve.riser_mass import Mass
 from riser_soil.solve.solution import NewtonSettings, Solution, Step
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
 
@@ -24,6 +25,15 @@ class StepSolver(Protocol):
         """Energy stored at the end of the step solved last, from the accepted state `before`, and what each part turned
         over in it, those of one name together; collective.
         """
+        ...
+
+    @property
+    def mass(self) -> Mass:
+        """Inverse of the lines' mass."""
+        ...
+
+    def bulk_forces(self, state: State) -> Forces:
+        """Forces of groups I and F at an accepted state, those of group E zero; collective."""
         ...
 
     def require_stable(self, solution: Solution) -> None: ...

@@ -16,7 +16,6 @@ from riser_soil.errors import SolveError
 from riser_soil.solve.energy_gain import LARGEST, EnergyGain
 from riser_soil.solve.local_error import LocalError, committed_error
 from riser_soil.solve.predictor import Extrapolation
-from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.solution import NotConvergedError, Solution, Step
 from riser_soil.solve.step_control import Control
 from riser_soil.solve.step_end import CommittedStep
@@ -70,7 +69,7 @@ class TimeStepper:
         largest_gain: float = LARGEST,
     ) -> None:
         self.system, self.newton, self.scheme, self._largest_gain = system, newton, scheme, largest_gain
-        self._mass = RiserMass(system) if scheme.dynamic else None
+        self._mass = newton.mass if scheme.dynamic else None
         self._error: LocalError | None = None
         self.local_error = 0.0
         parts = system.model.parts
@@ -256,7 +255,7 @@ class TimeStepper:
     def _forces_after(self, step: AcceptedStep) -> Forces:
         """Bulk forces at the state just accepted, in its own axes: the step's, unless contact has changed the rates."""
         if not self.system.smooth:
-            return self.system.forces(self.before)
+            return self.newton.bulk_forces(self.before)
         forces, u = step.solution.forces, step.solution.state.u
         return Forces(*(self._in_new_axes(f, u) for f in (forces.inertia, forces.force, forces.end)))
 

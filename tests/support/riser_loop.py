@@ -8,15 +8,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
 from benchmarks.stage import TimedStage, last_stage
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Energy, Forces, State
-from riser_soil.core.system import Timer
+from riser_soil.core.part import Energy, Forces, Model, State
+from riser_soil.core.system import System, Timer
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.riser_loop import StopLimits
-from riser_soil.solve.riser_newton import RiserNewton
+from riser_soil.solve.riser_mass import RiserMass
+from riser_soil.solve.riser_newton import RiserNewton, riser_newton
+from riser_soil.solve.solution import NewtonSettings
 from tests.support import sample_water
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
@@ -111,6 +114,25 @@ def require_kernels(at: Sample, parts: list[Any]) -> None:
     for part, row in zip((part for part in parts if part.name in TURNING), rows, strict=True):
         turned = part.work(begun, state)
         np.testing.assert_allclose(row, [turned.dissipated, turned.external, turned.inertial, 0.0], rtol=1e-10)
+
+
+def require_mass(at: Sample, parts: list[Any]) -> None:
+    """Inverse of the mass, kinetic energy and bulk forces at an accepted state are those of the parts' methods."""
+    system, accepted = System(MPI.COMM_SELF, Model([at.line], parts), Timer.new()), at.state(3, size=0.0)
+    newton = riser_newton(system, NewtonSettings(1e-9, 20, 1e-6))
+    assert newton is not None
+    found, expected = newton.mass, RiserMass(system)
+    force = at.state(4).v
+    for _ in range(2):  # the second time projectors are known
+        accelerations = expected.accelerations(accepted.t, force)
+        scale = np.abs(accelerations).max()
+        np.testing.assert_allclose(found.accelerations(accepted.t, force), accelerations, rtol=0.0, atol=1e-10 * scale)
+    assert found.kinetic_energy(accepted) == pytest.approx(expected.kinetic_energy(accepted), rel=1e-12)
+    forces = system.forces(accepted, "IF")
+    for name, group in vars(newton.bulk_forces(accepted)).items():
+        scale = np.abs(forces.force).max()
+        np.testing.assert_allclose(group, getattr(forces, name), rtol=0.0, atol=1e-12 * scale)
+    system.destroy()
 
 
 def require_steps_of_snes(case: str) -> None:

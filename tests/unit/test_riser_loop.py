@@ -16,11 +16,25 @@ from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
 from riser_soil.solve import banded
 from riser_soil.solve.newton import Newton
-from tests.support.riser_loop import CASES, SCENES, require_kernels_of_parts, require_steps_of_snes, walked
+from tests.support.riser_loop import (
+    CASES,
+    SCENES,
+    all_parts,
+    require_kernels_of_parts,
+    require_mass,
+    require_steps_of_snes,
+    walked,
+)
+from tests.support.sample_line import sample
 
 
 def test_kernels_in_a_plane_are_those_of_the_parts() -> None:
     require_kernels_of_parts(2)
+
+
+def test_the_mass_in_a_plane_is_that_of_the_parts() -> None:
+    at = sample(2)
+    require_mass(at, all_parts(at))
 
 
 def test_steps_in_a_plane_are_those_of_snes() -> None:

@@ -6,7 +6,15 @@ import pytest
 
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.driven_stage import built, take
-from tests.support.riser_loop import CASES, IN_WATER, require_kernels, require_kernels_of_parts, require_steps_of_snes
+from tests.support.riser_loop import (
+    CASES,
+    IN_WATER,
+    all_parts,
+    require_kernels,
+    require_kernels_of_parts,
+    require_mass,
+    require_steps_of_snes,
+)
 from tests.support.sample_line import sample
 from tests.support.turned_bar import turned_bar
 
@@ -17,10 +25,17 @@ def test_kernels_in_space_are_those_of_the_parts() -> None:
     require_kernels_of_parts(3)
 
 
+def test_the_mass_in_space_is_that_of_the_parts() -> None:
+    at = sample(3)
+    require_mass(at, all_parts(at))
+
+
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_kernels_in_water_are_those_of_the_parts(dimension: int) -> None:
     at = sample(dimension)
-    require_kernels(at, [make(at) for make in IN_WATER])
+    parts = [make(at) for make in IN_WATER]
+    require_kernels(at, parts)
+    require_mass(at, [at.inertia(), *parts])
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -1,0 +1,47 @@
+"""Compiled functions that are called from compiled code, and from Python where somebody does so.
+
+numba makes two wrappers around each function that it compiles, one for Python and one for C, and compiles them with it,
+though most of the kernels are called from other kernels alone. They take a third of the time. Here a function is
+compiled without them, and once more with one for Python when it is first called from there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from numba.core.registry import CPUDispatcher
+
+from riser_soil.core.kernel_cache import KernelCache
+
+BARE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
+class Kernel(CPUDispatcher):
+    """A function compiled for compiled code; `called` is the one that Python calls."""
+
+    called: CPUDispatcher
+
+    def add_overload(self, cres: Any) -> None:
+        """Keep what has been compiled for some types under a key of its own, for it has no address for Python."""
+        key = object()
+        self.targetctx.insert_user_function(key, cres.fndesc, [cres.library])
+        self.overloads[tuple(cres.signature.args)] = cres._replace(entry_point=key)
+
+    def _compile_for_args(self, *args: Any, **named: Any) -> Any:
+        """numba asks for what Python is to call with arguments of new types."""
+        known = set(self.called.overloads)
+        found = self.called._compile_for_args(*args, **named)
+        for kinds in set(self.called.overloads) - known:
+            made = self.called.overloads[kinds]
+            self._insert([kind._code for kind in kinds], made.entry_point, made.objectmode)
+        return found
+
+
+def kernel(function: Callable[..., object], options: dict[str, Any]) -> Kernel:
+    """Compile a function when it is first called with arguments of new types; see `numba.njit` for the options."""
+    given = {"nopython": True, "boundscheck": None, **options}
+    made = Kernel(function, targetoptions={**given, **BARE})
+    made.called = CPUDispatcher(function, targetoptions={**given, "no_cfunc_wrapper": True})
+    made._cache, made.called._cache = KernelCache(function, "bare"), KernelCache(function)
+    return made

@@ -1,0 +1,195 @@
+"""What the compiled loop over a riser alone needs at an accepted configuration: bulk forces, kinetic energy, and the
+inverse of the mass. With contact, once a step; see `riser_mass` and `time_scheme`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.bound import Bound, in_turn
+from riser_soil.core.compiled import njit
+from riser_soil.core.packed import Packed
+from riser_soil.core.part import Forces, State
+from riser_soil.core.saved_state import Saved
+from riser_soil.riser.configuration import base_of, maps_for, place, put_maps, room_for
+from riser_soil.riser.line import Line
+from riser_soil.riser.part_kernels import LineWeights, add_energy, add_forces, add_tangent, bound, forces_of
+from riser_soil.solve import riser_loop as loop
+from riser_soil.solve.packed_riser import matrix_room
+from riser_soil.solve.riser_loop import Dofs, MatrixRoom, NewtonProgress, StepNumbers
+from riser_soil.solve.riser_mass import projectors
+
+Numbers = tuple[Any, ...]
+
+
+class MassNumbers(NamedTuple):
+    """levers (nn, ndof) [m] of moments; moving (nn, ndof, ndof): see `riser_mass.projectors`; whole (nn,): where they
+    change nothing.
+    """
+
+    levers: Array
+    moving: Array
+    whole: BoolArray
+
+
+class CompiledMass:
+    """A `Mass` of one line, by the kernels of its parts; and the bulk forces of an accepted state.
+
+    bulk, inertial: numbers of the parts with forces in groups I and F, and in I; prescribed, levers (size,): of the
+    line's dofs; bring: writes what depends on the time into the numbers.
+    """
+
+    def __init__(
+        self,
+        line: Line,
+        bulk: Sequence[Numbers],
+        inertial: Sequence[Numbers],
+        prescribed: BoolArray,
+        levers: Array,
+        bring: Callable[[float], None],
+    ) -> None:
+        self._line, self._bring, self._free = line, bring, ~prescribed
+        shape = line.nodes, line.ndof
+        base = base_of(line)
+        self._base = Packed(type(base)(*map(np.copy, base)))
+        self._forces, self._energy, self._known = forces_of(line), np.zeros(3), False
+        self._rates = np.zeros(shape), np.zeros(shape)
+        self._step, self._room = StepNumbers(*(np.zeros(shape) for _ in range(6))), matrix_room(line)
+        self._dofs = Dofs(np.zeros(shape, dtype=bool), np.ones(shape), *(np.zeros(shape) for _ in range(3)))
+        self._mass = MassNumbers(levers.reshape(shape), np.zeros((*shape, line.ndof)), np.zeros(line.nodes, dtype=bool))
+        self._bind_state(bulk, inertial)
+        self._bind_mass(inertial)
+
+    def _bind_state(self, bulk: Sequence[Numbers], inertial: Sequence[Numbers]) -> None:
+        """Bind the kernels of forces and kinetic energy in motion."""
+        at, still = room_for(self._line), np.zeros(self._step.u.shape)
+        here, forces, energy = map(Packed, (at, self._forces, self._energy))
+        moving = bound(place, at, self._base, *map(Packed, (still, *self._rates)))
+        each = [bound(add_forces, numbers, here, forces) for numbers in bulk]
+        self._find_forces = in_turn(moving, Bound(loop.clear, forces), *each, Bound(loop.collect, here, forces))
+        self._find_energy = in_turn(moving, *(bound(add_energy, numbers, here, energy) for numbers in inertial))
+
+    def _bind_mass(self, inertial: Sequence[Numbers]) -> None:
+        """Bind the kernels of the mass at rest."""
+        at, still = room_for(self._line), Packed(np.zeros(self._step.u.shape))
+        here, forces, room, dofs, mass = map(Packed, (at, self._forces, self._room, self._dofs, self._mass))
+        K, progress = Packed(self._room.K), Packed(NewtonProgress(np.zeros(1), np.zeros(2, dtype=np.int64)))
+        maps, weights = Packed(maps_for(self._line)._replace(shift_a=1.0)), Packed(LineWeights(1.0, 0.0))
+        self._find_matrices = in_turn(
+            bound(place, at, self._base, still, still, still),
+            *(bound(add_forces, numbers, here, forces) for numbers in inertial),  # they find the water there
+            bound(put_maps, at, maps),
+            Bound(loop.clear_tangent, room),
+            *(bound(add_tangent, numbers, here, maps, weights, K) for numbers in inertial),
+            Bound(weigh, room, mass),
+        )
+        self._solve = in_turn(
+            Bound(project, room, dofs, mass),
+            Bound(loop.fill, room, dofs),
+            Bound(loop.factorise, room, progress),
+            Bound(loop.improve, room, Packed(self._step), dofs),
+        )
+
+    def bulk_forces(self, state: State) -> Forces:
+        """Forces of groups I and F at an accepted state, those of group E left out."""
+        self._put(state)
+        self._find_forces()
+        forces = self._forces
+        return Forces(*(group.ravel().copy() for group in (forces.inertia, forces.force, forces.end)))
+
+    def kinetic_energy(self, state: State) -> float:
+        """Kinetic energy [J] at an accepted state."""
+        self._put(state)
+        self._energy[:] = 0.0
+        self._find_energy()
+        return float(self._energy[0])
+
+    def _put(self, state: State) -> None:
+        self._bring(state.t)
+        self._renew_base()
+        for kept, given in zip(self._rates, (state.v, state.a), strict=True):
+            kept.ravel()[:] = given
+
+    def _renew_base(self) -> None:
+        for kept, given in zip(self._base.value, base_of(self._line), strict=True):
+            kept[...] = given
+
+    def accelerations(self, t: float, force: Array) -> Array:
+        """a with M a = force, in the accepted configuration at time t."""
+        self._bring(t)
+        self._renew_base()
+        self._find_matrices()
+        if not self._known:
+            self._know(projectors(self._room.K, self._free))
+        self._step.u[...] = 0.0
+        np.negative(force, out=self._dofs.residual.ravel())
+        self._solve()
+        return self._step.u.ravel() / self._mass.levers.ravel()
+
+    def state(self) -> Saved:
+        """As of `RiserMass`."""
+        return {self._line.name: self._mass.moving.copy()} if self._known else {}
+
+    def restore(self, saved: Saved) -> None:
+        self._known = False
+        if self._line.name in saved:
+            self._know(saved[self._line.name])
+
+    def _know(self, moving: Array) -> None:
+        self._mass.moving[...], self._known = moving, True
+        self._mass.whole[...] = (moving == np.eye(moving.shape[1])).all(axis=(1, 2))
+
+
+@njit
+def weigh(room: MatrixRoom, mass: MassNumbers) -> None:
+    """Divide element matrices by the levers, so that all masses are in kg."""
+    K, levers, ndof = room.K, mass.levers, mass.levers.shape[1]
+    for e in range(K.shape[0]):
+        for row in range(2):
+            for i in range(ndof):
+                for j in range(ndof):
+                    K[e, row * ndof + i, j] /= levers[e + row, i] * levers[e, j]
+                    K[e, row * ndof + i, ndof + j] /= levers[e + row, i] * levers[e + 1, j]
+
+
+@njit
+def project(room: MatrixRoom, dofs: Dofs, mass: MassNumbers) -> None:
+    """Project element matrices and forces over the levers onto what moves; what does not gets the largest mass."""
+    K, ndof, largest = room.K, mass.levers.shape[1], 0.0
+    left, own = np.zeros((ndof, ndof)), np.zeros(ndof)
+    for e in range(K.shape[0]):
+        for i in range(2 * ndof):
+            for j in range(2 * ndof):
+                largest = max(largest, K[e, i, j])
+        for row in range(2):
+            for column in range(2):
+                block = K[e, row * ndof : (row + 1) * ndof, column * ndof : (column + 1) * ndof]
+                if not (mass.whole[e + row] and mass.whole[e + column]):
+                    _multiply(mass.moving[e + row], block, left)
+                    _multiply(left, mass.moving[e + column], block)
+    if largest == 0.0:
+        largest = 1.0
+    for n in range(dofs.residual.shape[0]):
+        e, first = max(n - 1, 0), ndof if n > 0 else 0
+        for i in range(ndof):
+            own[i] = dofs.residual[n, i] / mass.levers[n, i]
+        for i in range(ndof):
+            dofs.residual[n, i] = 0.0
+            for j in range(ndof):
+                dofs.residual[n, i] += mass.moving[n, i, j] * own[j]
+                K[e, first + i, first + j] += largest * ((1.0 if i == j else 0.0) - mass.moving[n, i, j])
+
+
+@njit
+def _multiply(left: Array, right: Array, out: Array) -> None:
+    """Write the product of two matrices, to another place."""
+    for i in range(left.shape[0]):
+        for j in range(right.shape[1]):
+            total = 0.0
+            for k in range(left.shape[1]):
+                total += left[i, k] * right[k, j]
+            out[i, j] = total
