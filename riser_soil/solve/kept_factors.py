@@ -1,13 +1,18 @@
-"""Kept factors: those of an earlier tangent are the preconditioner of GMRES on the present one.
+"""Kept factors: those of an earlier tangent are the preconditioner of Krylov iterations on the present one.
 
 From one iteration of Newton's method on soil to the next only what yields and what touches changes, and a solve with
 factors costs a small share of a factorisation, the less the larger the system. The factors are LDLᵀ of the tangent's
 upper triangle: half the work of LU, and exact where the tangent is symmetric. They are kept as long as that lowers the
-mean cost of the solves since they were made, their making included. No clock decides, but GMRES' iterations and MUMPS'
-own counts of its work, so that a run can be repeated to the last bit.
+mean cost of the solves since they were made, their making included. No clock decides, but the number of iterations and
+MUMPS' own counts of its work, so that a run can be repeated to the last bit.
+
+The iterations are generalised conjugate residuals (Eisenstat, Elman & Schultz, SIAM J. Numer. Anal. 20, 1983, from
+memory): those of GMRES, but in the norm that Newton's method judges by, with moments over the lever.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 from mpi4py import MPI
@@ -17,15 +22,19 @@ from riser_soil.core.factor_memory import Room
 from riser_soil.core.saved_state import Saved
 from riser_soil.solve.linear_solver import use_mumps
 
-FEWEST = 10  # iterations that GMRES may take in any case
+FEWEST = 10  # iterations that a solve may take in any case
 PER_ENTRY = 36.0  # operations of a factorisation that take as long as a solve for one entry of its factors: 32 to 40
+SOLVED = PETSc.KSP.ConvergedReason.CONVERGED_RTOL
+TOO_LONG = PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT
+BROKEN = PETSc.KSP.ConvergedReason.DIVERGED_BREAKDOWN
 
 
 class KeptFactors:
     """Linear solver of a system's tangents, one after the other; collective.
 
     symmetric: whether the tangents are. room: for fill-in; it grows where it was too little. factorisations,
-    iterations: how many there were, the latter of GMRES. worth: iterations that cost as much as a factorisation.
+    iterations: how many there were, the latter of the Krylov method. worth: iterations that cost as much as a
+    factorisation.
     """
 
     def __init__(self, comm: MPI.Intracomm, symmetric: bool, room: Room) -> None:
@@ -33,13 +42,14 @@ class KeptFactors:
         self.factorisations = self.iterations = 0
         self.worth = 0.0
         self._whole = False  # whether the factors are LU of all the tangent, as those of its upper triangle did not do
-        self._krylov: PETSc.KSP | None = None
+        self._factors: PETSc.PC | None = None
         self._factored: PETSc.Mat | None = None
         self._outgrown = False
         self.forget()
 
-    def serve(self, ksp: PETSc.KSP) -> None:
-        """Solve what this KSP is asked for, to its relative tolerance."""
+    def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
+        """Solve what this KSP is asked for, to its relative tolerance in the norm of residuals over the levers."""
+        self._levers = levers
         ksp.setType(PETSc.KSP.Type.PYTHON)
         ksp.setPythonContext(self)
         ksp.getPC().setType(PETSc.PC.Type.NONE)
@@ -47,7 +57,7 @@ class KeptFactors:
     def solve(self, ksp: PETSc.KSP, b: PETSc.Vec, x: PETSc.Vec) -> None:
         """With the kept factors, or where these don't do with new ones of the same kind, or of all the tangent."""
         matrix, _ = ksp.getOperators()
-        reason = -1 if self._stale else self._iterate(matrix, ksp.rtol, b, x)
+        reason = BROKEN if self._stale else self._iterate(matrix, ksp.rtol, b, x)
         if reason < 0:
             reason = self._solve_anew(matrix, ksp.rtol, b, x)
         if reason < 0 and not (self._whole or self._symmetric):
@@ -61,17 +71,16 @@ class KeptFactors:
         return self._iterate(matrix, tolerance, b, x)
 
     def _iterate(self, matrix: PETSc.Mat, tolerance: float, b: PETSc.Vec, x: PETSc.Vec) -> int:
-        """PETSc's reason to end, below 0 without convergence. Factors are stale once a solve costs more than the mean.
-        """
-        assert self._krylov is not None
-        self._krylov.setOperators(matrix, self._factored)
-        self._krylov.setTolerances(rtol=tolerance, atol=0.0, max_it=self._most)
-        self._krylov.solve(b, x)
-        taken = self._krylov.getIterationNumber()
+        """Why it ended, below 0 without convergence. Factors are stale once a solve costs more than the mean."""
+        assert self._factors is not None
+        directions = _Directions(matrix, self._factors, self._levers)
+        reason = directions.descend(b, x, tolerance, self._most)
+        taken = directions.count
+        directions.destroy()
         self.iterations += taken
         self._spent, self._solves = self._spent + taken, self._solves + 1
         self._stale = taken * self._solves > self._spent
-        return int(self._krylov.reason)
+        return reason
 
     @property
     def _most(self) -> int:
@@ -79,42 +88,34 @@ class KeptFactors:
         return max(FEWEST, int(self.worth))
 
     def _factorise(self, matrix: PETSc.Mat) -> None:
-        """Those of a matrix whose pattern was factorised before reuse the symbolic factorisation."""
+        """A matrix whose pattern was factorised before reuses the symbolic factorisation."""
         if self._factored is None or self._outgrown:
             self.forget()
             self._keep(matrix.copy())
         else:
             matrix.copy(self._factored, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
-        krylov = self._set_up(matrix)
-        while self._room.grows_after(krylov.getPC()):
+        assert self._factors is not None
+        self._factors.setUp()
+        while self._room.grows_after(self._factors):
             self.forget()
             self._keep(matrix.copy())
-            krylov = self._set_up(matrix)
+            self._factors.setUp()
         self._weigh()
         self.factorisations += 1
 
-    def _set_up(self, matrix: PETSc.Mat) -> PETSc.KSP:
-        assert self._krylov is not None
-        self._krylov.setOperators(matrix, self._factored)
-        self._krylov.setUp()
-        return self._krylov
-
     def _keep(self, factored: PETSc.Mat) -> None:
-        """Become the solver with the factors of a matrix, once they are made."""
+        """Get ready for the factors of a matrix, which are made when they are first needed."""
         self._factored, self._outgrown = factored, False
-        self._krylov = PETSc.KSP().create(self._comm)
-        self._krylov.setType(PETSc.KSP.Type.GMRES)
-        self._krylov.setPCSide(PETSc.PC.Side.RIGHT)
-        self._krylov.setOperators(factored)
-        use_mumps(self._krylov.getPC(), "lu" if self._whole else "cholesky", self._room.controls)
+        self._factors = PETSc.PC().create(self._comm)
+        self._factors.setOperators(factored)
+        use_mumps(self._factors, "lu" if self._whole else "cholesky", self._room.controls)
 
     def _weigh(self) -> None:
-        assert self._krylov is not None
-        factors = self._krylov.getPC().getFactorMatrix()
-        entries = factors.getMumpsInfog(29)
+        assert self._factors is not None
+        made = self._factors.getFactorMatrix()
+        entries = made.getMumpsInfog(29)
         entries = entries if entries >= 0 else -1_000_000 * entries  # MUMPS counts many in millions
-        self.worth = factors.getMumpsRinfog(3) / (PER_ENTRY * max(entries, 1))
-        self._krylov.setGMRESRestart(self._most)
+        self.worth = made.getMumpsRinfog(3) / (PER_ENTRY * max(entries, 1))
 
     def renew(self) -> None:
         """Expect a matrix of another pattern; the factors are kept."""
@@ -122,10 +123,10 @@ class KeptFactors:
 
     def forget(self) -> None:
         """Drop the factors."""
-        for thing in (self._krylov, self._factored):
+        for thing in (self._factors, self._factored):
             if thing is not None:
                 thing.destroy()
-        self._krylov = self._factored = None
+        self._factors = self._factored = None
         self._spent, self._solves, self._stale = 0.0, 0, True
 
     def state(self) -> Saved:
@@ -147,5 +148,57 @@ class KeptFactors:
         self._keep(PETSc.Mat().createAIJ((rows, rows), csr=csr, comm=self._comm))
         self.worth, self._spent, self._solves = (saved[name].item() for name in ("worth", "spent", "solves"))
         self._outgrown, self._stale = bool(saved["outgrown"]), False
-        assert self._krylov is not None
-        self._krylov.setGMRESRestart(self._most)
+
+
+class _Directions:
+    """Steps z of a solve with what A z over the levers is, orthonormal."""
+
+    def __init__(self, matrix: PETSc.Mat, factors: PETSc.PC, levers: PETSc.Vec) -> None:
+        self._matrix, self._factors, self._levers = matrix, factors, levers
+        self._pairs = list[tuple[PETSc.Vec, PETSc.Vec]]()
+
+    @property
+    def count(self) -> int:
+        return len(self._pairs)
+
+    def descend(self, b: PETSc.Vec, x: PETSc.Vec, tolerance: float, most: int) -> int:
+        """From x = 0 until a share of b over the levers is left, and why it ended."""
+        x.set(0.0)
+        rest, whole = b.copy(), b.duplicate()
+        rest.pointwiseDivide(b, self._levers)
+        target = tolerance * rest.norm()
+        reason = SOLVED
+        while rest.norm() > target and reason == SOLVED:
+            whole.pointwiseMult(rest, self._levers)
+            reason = self._add(whole) if self.count < most else TOO_LONG
+            if reason == SOLVED:
+                z, q = self._pairs[-1]
+                part = q.dot(rest)
+                x.axpy(part, z)
+                rest.axpy(-part, q)
+        rest.destroy()
+        whole.destroy()
+        return int(reason)
+
+    def _add(self, residual: PETSc.Vec) -> int:
+        """The step that the factors give for a residual, without what the others have done."""
+        z, q = residual.duplicate(), residual.duplicate()
+        self._pairs.append((z, q))
+        self._factors.apply(residual, z)
+        self._matrix.mult(z, q)
+        q.pointwiseDivide(q, self._levers)
+        for before, product in self._pairs[:-1]:
+            part = product.dot(q)
+            z.axpy(-part, before)
+            q.axpy(-part, product)
+        size = q.norm()
+        if not (math.isfinite(size) and size > 0.0):
+            return int(BROKEN)
+        z.scale(1.0 / size)
+        q.scale(1.0 / size)
+        return int(SOLVED)
+
+    def destroy(self) -> None:
+        for pair in self._pairs:
+            for vector in pair:
+                vector.destroy()

@@ -75,7 +75,7 @@ class Newton:
             snes.getKSP().setType(PETSc.KSP.Type.PREONLY)
             factorise_directly(snes.getKSP().getPC(), self.system, self._room)
         else:
-            self.kept.serve(snes.getKSP())
+            self.kept.serve(snes.getKSP(), self._levers)
         snes.setOptionsPrefix(PREFIX)
         with defaults({"snes_linesearch_type": "basic"}):
             snes.setFromOptions()

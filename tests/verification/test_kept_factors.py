@@ -53,9 +53,9 @@ def taken(law: str, linear: str) -> Steps:
 
     usual = KeptFactors.serve
 
-    def serve(self: KeptFactors, ksp: object) -> None:
+    def serve(self: KeptFactors, *given: object) -> None:
         kept.append(self)
-        usual(self, ksp)
+        usual(self, *given)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(KeptFactors, "serve", serve)
