@@ -138,8 +138,9 @@ class CondensedTop:
 class CondensedSoil:
     """Part "soil" over a `CondensedTop`, see the module's text; in group E, as the whole soil is.
 
-    outgrown: a force has acted on dofs that were not reached, or many more are reached than bear one. It stands behind
-    all parts that load the soil, as it looks at what these have added to the residual.
+    outgrown: in the residual evaluated last a force acts on dofs that are not reached, or many more are reached than
+    bear one; what a line search has tried on its way there does not count. It stands behind all parts that load the
+    soil, as it looks at what these have added to the residual.
     """
 
     name = "soil"
@@ -151,6 +152,7 @@ class CondensedSoil:
         self._undisturbed = gathered(self._owners)
         self._loaded: Array = np.zeros(top.size)
         self._wanted: BoolArray = np.zeros(len(top.points), dtype=bool)
+        self._met: IntArray = np.empty(0, dtype=np.int64)
         self._recovered = True
 
     def blocks(self) -> dict[str, MatrixBlock]:
@@ -159,7 +161,7 @@ class CondensedSoil:
 
     def residual(self, state: State, forces: Forces) -> None:
         own = self.top.own(forces.end)
-        self._wanted[self.top.beside[own[self.top.beside] != 0.0] // 3] = True
+        self._met = np.unique(self.top.beside[own[self.top.beside] != 0.0] // 3)
         own[self.top.reached.dofs] += self.top.forces(state)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
@@ -190,13 +192,14 @@ class CondensedSoil:
 
     @property
     def outgrown(self) -> bool:
-        reached, wanted = self.top.reached.nodes, np.count_nonzero(self._wanted)
-        return self._spare(len(reached)) or wanted > np.count_nonzero(self._wanted[reached])
+        return self._met.size > 0 or self._spare(len(self.top.reached.nodes))
 
     def rebuild(self, state: State) -> None:
         """Reach all that bears a force or has met one in the step so far, and what was reached as long as that is not
         much more.
         """
+        self._wanted[self._met] = True
+        self._met = np.empty(0, dtype=np.int64)
         wanted = np.flatnonzero(self._wanted)
         both = np.union1d(wanted, self.top.reached.nodes)
         self.top.reach(wanted if self._spare(len(both)) else both)

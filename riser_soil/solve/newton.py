@@ -51,6 +51,7 @@ class Newton:
         self.iterations, self.rests = 0, False
         self._state: State | None = None
         self._room, self._has_more_room = Room(), False
+        self._known: State | None = None  # whose forces are known
         self._make_vectors()
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
         keeps = keeps_factors(system, settings.linear)
@@ -150,7 +151,7 @@ class Newton:
     def _balance(self, u: Array) -> tuple[State, Array]:
         """State of the increments u, those of the prescribed dofs included, and its residual."""
         state = State(self._step.t, u, self._still.v, self._still.a)
-        self._forces = self.system.forces(state)
+        self._forces, self._known = self.system.forces(state), state
         return state, self._step.scheme.combine(self._forces, self._past)
 
     def _iterate(self) -> str:
@@ -289,7 +290,8 @@ class Newton:
 
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
         self._trial(x)
-        self._forces = self.system.forces(self._balanced)
+        if self._balanced is not self._known:
+            self._forces, self._known = self.system.forces(self._balanced), self._balanced
         residual = self._step.scheme.combine(self._forces, self._past)
         self.system.numbering.add_to_global(residual, f)
 

@@ -13,7 +13,7 @@ from riser_soil.assembly import Assembly
 from riser_soil.assembly.condensation import why_whole
 from riser_soil.checks.check import describe
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import State
+from riser_soil.core.part import Forces, State
 from riser_soil.core.roles import owners
 from riser_soil.core.saved_state import gathered, restore_all
 from riser_soil.core.system import System, Timer
@@ -124,6 +124,19 @@ def test_its_energy_is_that_of_the_soil_recovered() -> None:
     stored = soil.energy(State.at_rest(0.0, soil.field.size))
     assert condensed.energy(rest).strain == pytest.approx(stored.strain, rel=1e-9)
     assert stored.strain > 0.0
+
+
+def test_a_force_beside_counts_as_long_as_it_is_there() -> None:
+    """One that was met on a way that the line search has not taken does not."""
+    condensed = first_step("surface").assembly.condensed
+    assert condensed is not None
+    size = first_step("surface").assembly.size
+    pressed, rest = Forces.zeros(size), State.at_rest(0.0, size)
+    condensed.top.own(pressed.end)[condensed.top.beside[5]] = 1.0
+    condensed.residual(rest, pressed)
+    assert condensed.outgrown
+    condensed.residual(rest, Forces.zeros(size))
+    assert not condensed.outgrown
 
 
 @cache
