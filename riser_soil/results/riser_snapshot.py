@@ -22,6 +22,7 @@ from riser_soil.riser.section_forces import (
     section_forces,
     viscous_residual,
 )
+from riser_soil.riser.trial import Trial
 from riser_soil.solve.time_stepper import TimeStepper
 
 
@@ -29,8 +30,8 @@ def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
     """The riser at the accepted state; on the rank that holds it."""
     line, state = assembly.line, stepper.now
     parts = acting_on(line, stepper.system.model.parts)
-    residual = element_residual(line, parts, state)
-    inside = section_forces(line, assembly.elements, state, residual, viscous_residual(line, parts, state))
+    residual, viscous = _residuals(assembly, stepper)
+    inside = section_forces(line, assembly.elements, state, residual, viscous)
     start, end = end_reactions(line, state, residual, nodal_residual(line, parts, state))
     tangent, position = line.trial(state).turn.tangent @ line.basis.T, line.positions3(state)
     most_used, tightest = _tightest_bend(assembly, inside)
@@ -58,9 +59,20 @@ def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
 
 def elastic_residual(assembly: Assembly, stepper: TimeStepper) -> Array:
     """Of the elements (ne, 2 ndof), less what follows from strain rates."""
+    residual, viscous = _residuals(assembly, stepper)
+    return residual - viscous
+
+
+def _residuals(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array]:
+    """Of the elements (ne, 2 ndof), the whole and the share that follows from strain rates; computed once a state."""
     line, state = assembly.line, stepper.now
     parts = acting_on(line, stepper.system.model.parts)
-    return element_residual(line, parts, state) - viscous_residual(line, parts, state)
+
+    def compute(_: Trial) -> tuple[Array, Array]:
+        return element_residual(line, parts, state), viscous_residual(line, parts, state)
+
+    found: tuple[Array, Array] = line.trial(state).once("residuals of elements", compute)
+    return found
 
 
 def _bend_utilisation(assembly: Assembly, curvature: Array) -> Array:
