@@ -32,7 +32,7 @@ STEPS = 16
 class Walk:
     """Some steps of a stage: Newton iterations, processor time of one [s].
 
-    yielded: share of the soil's points with plastic strain. factorisations, krylov: of kept factors. alone: processor
+    yielded: share of the soil's points with plastic strain. factorisations, krylov: iterations of kept factors. alone: processor
     time of one factorisation [s].
     """
 
@@ -53,7 +53,7 @@ def report(meshes: tuple[tuple[float, float, float], ...] = QUICK) -> None:
             print(
                 f"{law}, {kept.unknowns} unknowns, {100.0 * kept.yielded:.0f} % yielded: "
                 f"an iteration {1e3 * kept.seconds:.0f} ms kept ({kept.iterations} iterations, "
-                f"{kept.factorisations} factorisations, {kept.krylov / kept.iterations:.1f} of GMRES each), "
+                f"{kept.factorisations} factorisations, {kept.krylov / kept.iterations:.1f} Krylov each), "
                 f"{1e3 * direct.seconds:.0f} ms direct ({direct.iterations}), LDL^T {1e3 * direct.alone:.0f} ms; "
                 f"kept/direct {kept.seconds / direct.seconds:.2f}, kept/LDL^T {kept.seconds / direct.alone:.2f}",
                 flush=True,
