@@ -2,7 +2,7 @@
 
 import argparse
 
-from benchmarks import adaptive, condensed, coupled, impact, length, riser_only, tank, twins, waves
+from benchmarks import adaptive, condensed, coupled, impact, length, plastic, riser_only, tank, twins, waves
 
 argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__).parse_args()
 riser_only.report()
@@ -10,6 +10,7 @@ length.report()
 twins.report()
 coupled.report()
 condensed.report()
+plastic.report()
 adaptive.report()
 impact.report()
 tank.report()

@@ -32,8 +32,8 @@ STEPS = 16
 class Walk:
     """Some steps of a stage: Newton iterations, processor time of one [s].
 
-    yielded: share of the soil's points with plastic strain. factorisations, krylov: of kept factors. alone: processor
-    time of one factorisation [s].
+    yielded: share of the soil's points with plastic strain. factorisations, krylov: how many there were, the latter
+    iterations with kept factors. alone: processor time of one factorisation [s].
     """
 
     unknowns: int
@@ -50,11 +50,11 @@ def report(meshes: tuple[tuple[float, float, float], ...] = QUICK) -> None:
     for law, overrides in LAWS.items():
         for mesh in meshes:
             kept, direct = (_walked((overrides, _meshed(mesh), f"solver.linear={how}")) for how in ("kept", "direct"))
+            made = f"{kept.factorisations} factorisations, {kept.krylov / kept.iterations:.1f} Krylov iterations each"
             print(
                 f"{law}, {kept.unknowns} unknowns, {100.0 * kept.yielded:.0f} % yielded: "
-                f"an iteration {1e3 * kept.seconds:.0f} ms kept ({kept.iterations} iterations, "
-                f"{kept.factorisations} factorisations, {kept.krylov / kept.iterations:.1f} of GMRES each), "
-                f"{1e3 * direct.seconds:.0f} ms direct ({direct.iterations}), LDL^T {1e3 * direct.alone:.0f} ms; "
+                f"an iteration {1e3 * kept.seconds:.0f} ms kept (of {kept.iterations}; {made}), "
+                f"{1e3 * direct.seconds:.0f} ms direct (of {direct.iterations}), LDL^T {1e3 * direct.alone:.0f} ms; "
                 f"kept/direct {kept.seconds / direct.seconds:.2f}, kept/LDL^T {kept.seconds / direct.alone:.2f}",
                 flush=True,
             )

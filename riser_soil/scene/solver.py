@@ -47,6 +47,6 @@ class Solver(BaseModel):
     linear: Literal["auto", "kept", "direct"] = Field(
         default="auto",
         description="how the linear systems of riser and soil are solved, with the same results to the tolerance; "
-        "direct: each is factorised; kept: by GMRES with the factors of an earlier one, which are made anew where that "
+        "direct: each is factorised; kept: by iterations with the factors of an earlier one, made anew where that "
         "is cheaper; auto: kept from 4000 unknowns on",
     )

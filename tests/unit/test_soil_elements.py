@@ -124,6 +124,14 @@ def test_residual_has_no_memory(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
+def test_tangent_has_no_memory(kind: str) -> None:
+    """Cells that yielded at one state and not at the next, and the other way round."""
+    soil = clay_block(kind)
+    for state in (moved(soil, 5e-3), State.at_rest(1.0, soil.field.size), moved(soil, 1e-3, seed=7)):
+        assert abs(assemble(soil, state) - assemble(clay_block(kind), state)).max() == 0.0
+
+
+@pytest.mark.parametrize("kind", KINDS)
 def test_elastic_residual_is_the_gradient_of_the_energy(kind: str) -> None:
     soil = Soil(distorted(small_block(kind)), ELASTIC, level=0.0, unit_weight=5.0e3, start="unstressed")
     state, direction = moved(soil, 1e-3), moved(soil, 1.0, seed=3).u
