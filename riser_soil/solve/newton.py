@@ -236,7 +236,11 @@ class Newton:
             )
 
     def unstable_modes(self, state: State, forces: Forces | None = None, doubtful: bool = False) -> int:
-        """Negative pivots at a static state; its forces may be known. doubtful: with those that may be. Collective."""
+        """Negative pivots at a static state; its forces may be known. doubtful: with those that may be. Without factors
+        there are none, and nothing is judged. Collective.
+        """
+        if self._iterative is not None:
+            return 0
         scale = self._scale(self.system.forces(state) if forces is None else forces)
         negative = unstable_modes(self.system, state, STATIC, scale, doubtful)
         while self._outgrown():

@@ -7,11 +7,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 from typer.testing import CliRunner
 
 from riser_soil.__main__ import app
+from riser_soil.assembly import build
+from riser_soil.core.part import State
+from riser_soil.core.system import System, Timer
 from riser_soil.results import Run
-from riser_soil.solve import iterative_solver
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.solve import iterative_solver, stability
+from riser_soil.stages import LayingCounter, run_stage
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.on_ranks import mpirun
 
@@ -53,3 +59,15 @@ def test_iterations_that_do_not_converge_are_told(tmp_path: Path, monkeypatch: p
     done = CliRunner().invoke(app, ["run", str(tmp_path / "scene.yaml"), "-o", str(tmp_path / "out")])
     assert done.exit_code == 3
     assert "the iterative linear solver has not converged in 2 iterations: " in done.stderr
+
+
+@pytest.mark.parametrize(("linear", "judged"), [("direct", True), ("iterative", False)])
+def test_nothing_is_factorised_to_judge_stability(
+    linear: str, judged: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    counted: list[System] = []
+    monkeypatch.setattr(stability, "negative_pivots", lambda system: counted.append(system) or 0)
+    assembly = build(scene_from_mapping(on_clay(linear)), MPI.COMM_SELF)
+    start = State.at_rest(0.0, assembly.size)
+    run_stage(assembly, assembly.scene.stages[0], start, LayingCounter(), Timer.new())
+    assert any(len(system.model.fields) > 1 for system in counted) == judged
