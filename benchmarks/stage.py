@@ -25,12 +25,13 @@ from riser_soil.stages import LayingCounter, lay, run_stage, settings_of, steps_
 class TimedStage:
     """One stage's system and time stepper; `iterations` and `seconds` of all its Newton solves."""
 
-    def __init__(self, assembly: Assembly, stage: Stage, before: State, clock: Timer) -> None:
+    def __init__(
+        self, assembly: Assembly, stage: Stage, before: State, clock: Timer, linear_start: bool = False
+    ) -> None:
         self.assembly, self.stage = assembly, stage
-        solver = assembly.scene.solver
         self.system = System(assembly.comm, assembly.begin(stage), clock)
-        settings = settings_of(assembly)
-        self.newton = solver_of(self.system, scheme_of(stage), settings, solver.newton == "compiled")
+        settings = replace(settings_of(assembly), linear_start=linear_start)
+        self.newton = solver_of(self.system, scheme_of(stage), settings, assembly.scene.solver.newton == "compiled")
         self.stepper = TimeStepper(self.system, self.newton, scheme_of(stage), replace(before, t=0.0))
         self.control = steps_of(assembly, stage, self.stepper)
         self.iterations, self.seconds = 0, 0.0

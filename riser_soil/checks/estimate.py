@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 # an unknown of the riser, all that a cell has for one entry of its matrix (mesh, value, place, matrix entry, tangent,
 # histories), a time at which output is due, an element in a wave component.
 PROCESS, SOIL_PROCESS, PER_RISER_DOF, PER_CELL_ENTRY, PER_STOP, PER_WAVE = 0.24e9, 0.14e9, 2e3, 55.0, 150.0, 150.0
+PER_UNKNOWN = 1.5e3  # bytes of multigrid and of GMRES' vectors
 WITHIN = 1.3  # memory is, times or over this, what it is foretold to be
 
 # Parts whose tangents are not symmetric, so that the soil's factor is twice as large.
@@ -110,7 +111,9 @@ def soil_memory(ranks: int, cells: float, entries: int, factor: float) -> float:
 
 
 def soil_factor(scene: Scene, soil: SoilScene, unknowns: float) -> float:
-    """Bytes of the factorisation of soil with so many unknowns."""
+    """Bytes of the factorisation of soil with so many unknowns, or of what takes its place."""
+    if scene.solver.linear == "iterative" and not _condensed(scene, soil):
+        return PER_UNKNOWN * unknowns
     return factor_memory(_sides(scene, soil), unknowns, _condensed(scene, soil) or _symmetric(scene, soil))
 
 

@@ -17,7 +17,7 @@ _REMEDIES = {
     "riser.segments": "take longer elements",
     "output.interval": "take a longer interval",
     "water.waves.jonswap.components": "take fewer components or longer elements",
-    "soil.mesh": "take larger cells or a smaller block",
+    "soil.mesh": "take larger cells or a smaller block, or solver: {linear: iterative}",
 }
 _UNITS = ((365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "h"), (60.0, "min"), (0.0, "s"))
 

@@ -15,7 +15,7 @@ IN_PERCENT = 14  # MUMPS' control of it
 TOO_LITTLE_ROOM = (-8, -9, -14, -15, -17, -20)  # INFOG(1): work arrays and buffers that are sized by it
 WITHOUT_MEMORY = (-7, -13, -19, -22)  # INFOG(1): memory that was refused, or beyond a limit that is set
 PER_ENTRY = 8.0  # bytes
-REMEDY = "take larger cells or a smaller block (soil.mesh, soil.block), more ranks on other machines, or more memory"
+REMEDY = "take larger cells or a smaller block (soil.mesh, soil.block), solver: {linear: iterative}, or more memory"
 
 
 class Room:

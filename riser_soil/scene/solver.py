@@ -44,9 +44,10 @@ class Solver(BaseModel):
         description="how linear elastic soil is solved, with the same results; condensed: once, to the part of its "
         "surface that the riser reaches; whole: all of it in each iteration; auto: condensed where that is cheaper",
     )
-    linear: Literal["auto", "kept", "direct"] = Field(
+    linear: Literal["auto", "kept", "direct", "iterative"] = Field(
         default="auto",
         description="how the linear systems of riser and soil are solved, with the same results to the tolerance; "
         "direct: each is factorised; kept: by iterations with the factors of an earlier one, made anew where that "
-        "is cheaper; auto: kept from 4000 unknowns on",
+        "is cheaper; iterative: by GMRES with multigrid on the soil, for soil that is too large to be factorised; "
+        "auto: kept from 4000 unknowns on",
     )

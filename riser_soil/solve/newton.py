@@ -19,6 +19,7 @@ from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
 from riser_soil.solve.bordered_band import SingularError
 from riser_soil.solve.failed_step import place_of_largest, reason_name
+from riser_soil.solve.iterative_solver import IterativeSolver, complaint_of, solid_of
 from riser_soil.solve.kept_factors import KeptFactors
 from riser_soil.solve.line_search import step_length
 from riser_soil.solve.linear_solver import PREFIX, complaint, defaults, factorise_directly, keeps_factors
@@ -52,9 +53,11 @@ class Newton:
         self._state: State | None = None
         self._room, self._has_more_room = Room(), False
         self._known: State | None = None  # whose forces are known
+        solid = solid_of(system) if settings.linear == "iterative" else None
+        self._iterative = IterativeSolver(system, solid) if solid is not None else None
         self._make_vectors()
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
-        keeps = keeps_factors(system, settings.linear)
+        keeps = solid is None and keeps_factors(system, settings.linear)
         self.kept = KeptFactors(system.comm, system.symmetric, self._room) if keeps else None
         self._snes = self._create()
 
@@ -72,11 +75,13 @@ class Newton:
         snes.setTolerances(max_it=self.settings.max_iterations)
         if self.settings.line_search:
             snes.setLineSearchPreCheck(self._shorten)
-        if self.kept is None:
+        if self._iterative is not None:
+            self._iterative.serve(snes.getKSP())
+        elif self.kept is not None:
+            self.kept.serve(snes.getKSP(), self._levers)
+        else:
             snes.getKSP().setType(PETSc.KSP.Type.PREONLY)
             factorise_directly(snes.getKSP().getPC(), self.system, self._room)
-        else:
-            self.kept.serve(snes.getKSP(), self._levers)
         snes.setOptionsPrefix(PREFIX)
         with defaults({"snes_linesearch_type": "basic"}):
             snes.setFromOptions()
@@ -188,11 +193,14 @@ class Newton:
         self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
         if not complained and not unsolved():
             return ""
-        failure = self._reason(NOT_SOLVED, complained)
-        if self.kept is None:
-            self._has_more_room = self._room.grows_after(self._snes.getKSP().getPC())
-        else:
+        why = "" if self._iterative is None else complaint_of(self._snes.getKSP())
+        failure = self._reason(NOT_SOLVED, complained or why)
+        if self._iterative is not None:
+            self._iterative.forget()
+        elif self.kept is not None:
             self.kept.forget()
+        else:
+            self._has_more_room = self._room.grows_after(self._snes.getKSP().getPC())
         self._snes.destroy()
         self._snes = self._create()
         return failure
@@ -229,7 +237,11 @@ class Newton:
             )
 
     def unstable_modes(self, state: State, forces: Forces | None = None, doubtful: bool = False) -> int:
-        """Negative pivots at a static state; its forces may be known. doubtful: with those that may be. Collective."""
+        """Negative pivots at a static state; its forces may be known. doubtful: with those that may be. Without factors
+        there are none, and nothing is judged. Collective.
+        """
+        if self._iterative is not None:
+            return 0
         scale = self._scale(self.system.forces(state) if forces is None else forces)
         negative = unstable_modes(self.system, state, STATIC, scale, doubtful)
         while self._outgrown():
@@ -430,5 +442,7 @@ class Newton:
             self.kept.forget()
 
     def _release(self) -> None:
+        if self._iterative is not None:
+            self._iterative.forget()
         for thing in (self._snes, self._x, self._f, self._levers):
             thing.destroy()

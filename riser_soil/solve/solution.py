@@ -47,7 +47,8 @@ class NewtonSettings:
     corners, and an equilibrium may be far away. least_iterations: before a residual counts as small.
     line_search: shorten steps that lead far beyond the least energy, see `line_search`. linear_start: begin a static
     step with the linear response to it, instead of the guess. linear: "direct" factorises each tangent, "kept" keeps
-    factors as preconditioners, "auto" does so in large systems, see `kept_factors`.
+    factors as preconditioners, see `kept_factors`, "iterative" does without those of the soil, see `iterative_solver`,
+    "auto" keeps factors in large systems.
     """
 
     tolerance: float
@@ -57,7 +58,7 @@ class NewtonSettings:
     least_iterations: int = 0
     line_search: bool = False
     linear_start: bool = False
-    linear: Literal["auto", "kept", "direct"] = "auto"
+    linear: Literal["auto", "kept", "direct", "iterative"] = "auto"
 
 
 @dataclass(frozen=True, eq=False)

@@ -100,7 +100,7 @@ def test_newton_comes_back_from_beyond_the_limit_with_it_alone(line_search: bool
     assert LIMIT * np.tanh(stretch / YIELDS_AT) == pytest.approx([-3.0, -2.0, -1.0], rel=1e-8)
 
 
-def test_forces_of_a_full_step_are_evaluated_once() -> None:
+def test_forces_of_a_full_step_are_evaluated_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """By the line search, which tries it, and not again by Newton's method: a linear chain takes one step and two."""
     chain = Chain(np.arange(4.0), prescribed=True)
     system, z = System(MPI.COMM_SELF, Model([chain], [Springs(chain, 1.0, 20.0, weight=2.0)]), Timer.new()), np.zeros(4)
@@ -110,7 +110,7 @@ def test_forces_of_a_full_step_are_evaluated_once() -> None:
         evaluated.append(state)
         return forces(state)
 
-    system.forces = counted  # type: ignore[method-assign]
+    monkeypatch.setattr(system, "forces", counted)
     newton = Newton(system, NewtonSettings(1e-10, 20, 1e-12, line_search=True))
     found = newton.solve(Step(Static(), State(0.0, z, z.copy(), z.copy()), 1.0, 1.0, None, z.copy()))
     assert found.iterations == 1

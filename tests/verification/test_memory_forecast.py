@@ -18,6 +18,10 @@ SHORT = ("stages.1.duration=0.2", "solver.tolerance=1e-4")
 MESHES = {
     "small": (),
     "middling": ("soil.mesh={kind: hex, size_at_riser: {along: 0.5, across: 0.05, strip: 0.15}, size_far: 0.5}",),
+    "middling, by iterations": (
+        "soil.mesh={kind: hex, size_at_riser: {along: 0.5, across: 0.05, strip: 0.15}, size_far: 0.5}",
+        "solver.linear=iterative",
+    ),
     "of tetrahedra": ("soil.mesh={kind: tet, size_at_riser: 0.2, size_far: 1.0}",),
 }
 
@@ -33,7 +37,7 @@ def peak(overrides: tuple[str, ...], folder: Path) -> float:
     return 1024.0 * used.ru_maxrss
 
 
-LONG = [pytest.param(name, marks=pytest.mark.verify) for name in ("middling", "of tetrahedra")]
+LONG = [pytest.param(name, marks=pytest.mark.verify) for name in MESHES if name != "small"]
 
 
 @pytest.mark.parametrize("mesh", ["small", *LONG])

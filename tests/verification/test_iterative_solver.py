@@ -1,0 +1,78 @@
+"""The iterative linear solver: the same states as the direct one, on any number of ranks; it says where it fails."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from typer.testing import CliRunner
+
+from riser_soil.__main__ import app
+from riser_soil.assembly import build
+from riser_soil.core.part import State
+from riser_soil.core.system import System, Timer
+from riser_soil.results import Run
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.solve import iterative_solver, stability
+from riser_soil.stages import LayingCounter, run_stage
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.on_ranks import mpirun
+
+COMPARED = ("position", "effective_tension", "bending_moment", "contact_force", "end_force")
+
+
+def on_clay(linear: str) -> Mapping:
+    """In a plane: in space the riser may get out of the way to either side."""
+    scene = touchdown(LAY, heave(0.2), su=400.0, tolerance=1e-9)
+    scene["solver"] |= {"linear": linear}
+    return scene
+
+
+def ran(scene: Mapping, folder: Path, ranks: int = 1) -> Run:
+    folder.mkdir()
+    (folder / "scene.yaml").write_text(json.dumps(scene), encoding="utf-8")
+    done = mpirun(ranks, "-m", "riser_soil", "run", "scene.yaml", "-o", "out", folder=folder)
+    assert done.returncode == 0, done.stderr
+    return Run(folder / "out")
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_states_are_those_of_the_direct_solver(ranks: int, tmp_path: Path) -> None:
+    """Clay that yields, touched by the riser, at rest and in motion."""
+    direct = ran(on_clay("direct"), tmp_path / "direct")
+    iterative = ran(on_clay("iterative"), tmp_path / "iterative", ranks)
+    for name in COMPARED:
+        scale = np.nanmax(np.abs(direct[name]))
+        np.testing.assert_allclose(iterative[name], direct[name], rtol=0.0, atol=1e-6 * scale, err_msg=name)
+    assert direct["contact_force"].max() > 0.0
+    assert direct.soil_frame().fields["equivalent_plastic_strain"].max() > 0.0
+
+
+def test_iterations_that_do_not_converge_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(iterative_solver, "MOST_ITERATIONS", 2)
+    scene = on_clay("iterative")
+    scene["solver"] |= {"min_load_step": 1.0}
+    (tmp_path / "scene.yaml").write_text(json.dumps(scene), encoding="utf-8")
+    done = CliRunner().invoke(app, ["run", str(tmp_path / "scene.yaml"), "-o", str(tmp_path / "out")])
+    assert done.exit_code == 3
+    assert "the iterative linear solver has not converged in 2 iterations: " in done.stderr
+
+
+@pytest.mark.parametrize(("linear", "judged"), [("direct", True), ("iterative", False)])
+def test_nothing_is_factorised_to_judge_stability(
+    linear: str, judged: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    counted: list[System] = []
+
+    def none(system: System) -> int:
+        counted.append(system)
+        return 0
+
+    monkeypatch.setattr(stability, "negative_pivots", none)
+    assembly = build(scene_from_mapping(on_clay(linear)), MPI.COMM_SELF)
+    start = State.at_rest(0.0, assembly.size)
+    run_stage(assembly, assembly.scene.stages[0], start, LayingCounter(), Timer.new())
+    assert any(len(system.model.fields) > 1 for system in counted) == judged
