@@ -15,6 +15,7 @@ from riser_soil.core.factor_memory import Room
 from riser_soil.core.system import Timer
 from riser_soil.soil.law import PLASTIC_STRAIN
 from riser_soil.soil.soil import Soil
+from riser_soil.solve.kept_factors import KeptFactors
 from riser_soil.solve.linear_solver import use_mumps
 from riser_soil.solve.newton import Newton
 
@@ -70,10 +71,10 @@ def _walked(overrides: tuple[str, ...]) -> Walk:
     """The first steps of the demo's dynamic stage."""
     stage = last_stage(SCENE, overrides, Timer.new())
     assert isinstance(stage.newton, Newton)
-    kept, began = stage.newton.kept, time.process_time()
+    kept, began = stage.newton.linear, time.process_time()
     stage.walk(STEPS)
     seconds = (time.process_time() - began) / stage.iterations
-    made = (kept.factorisations, kept.iterations) if kept is not None else (stage.iterations, 0)
+    made = (kept.factorisations, kept.iterations) if isinstance(kept, KeptFactors) else (stage.iterations, 0)
     unknowns, alone = stage.system.numbering.free, _factorisation_seconds(stage.system.matrix.mat)
     walk = Walk(unknowns, _yielded(stage), stage.iterations, seconds, *made, alone)
     stage.destroy()

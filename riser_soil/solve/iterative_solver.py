@@ -8,7 +8,7 @@ rigid motions; the riser once more. Memory and work of a cycle grow in proportio
 
 from __future__ import annotations
 
-from typing import Protocol, cast
+from typing import ClassVar, Protocol, cast
 
 import numpy as np
 from mpi4py import MPI
@@ -16,6 +16,7 @@ from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Field, local
+from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.solve.linear_solver import PREFIX, defaults
 
@@ -38,12 +39,15 @@ def solid_of(system: System) -> Solid | None:
 class IterativeSolver:
     """Linear solver of a system with a solid, and the context of its preconditioner; collective."""
 
+    factorises: ClassVar[bool] = False
+    to_tolerance: ClassVar[bool] = False
+
     def __init__(self, system: System, solid: Solid) -> None:
         self._system, self._solid = system, solid
         self._corrections: list[_Correction] = []
 
-    def serve(self, ksp: PETSc.KSP) -> None:
-        """Solve what this KSP is asked for, to its relative tolerance."""
+    def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
+        """Solve what this KSP is asked for, to a relative tolerance."""
         ksp.setType(PETSc.KSP.Type.GMRES)
         ksp.setPCSide(PETSc.PC.Side.RIGHT)
         ksp.setTolerances(rtol=TOLERANCE, atol=0.0, max_it=MOST_ITERATIONS)
@@ -99,6 +103,22 @@ class IterativeSolver:
         soil.matrix.setNearNullSpace(_rigid_motions(self._solid.points[mine // 3], mine % 3, soil.matrix))
         return soil
 
+    def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
+        """How far the iterations came that did not converge."""
+        self.forget()
+        return (
+            f"the iterative linear solver has not converged in {ksp.getIterationNumber()} iterations: a residual of "
+            f"{ksp.getResidualNorm():.3g} is left; take solver: {{linear: direct}}, or cells that are less stretched"
+        ), False
+
+    def renew(self) -> None:
+        self.forget()
+
+    def state(self) -> Saved:
+        return {}
+
+    def restore(self, saved: Saved) -> None: ...
+
     def forget(self) -> None:
         """Drop all that belongs to the present matrix."""
         for correction in self._corrections[:2]:
@@ -152,11 +172,3 @@ def _rigid_motions(points: Array, axis: IntArray, matrix: PETSc.Mat) -> PETSc.Nu
         vector.normalize()
         found.append(vector)
     return PETSc.NullSpace().create(vectors=found, comm=matrix.comm)
-
-
-def complaint_of(ksp: PETSc.KSP) -> str:
-    """How far the iterations came that did not converge."""
-    return (
-        f"the iterative linear solver has not converged in {ksp.getIterationNumber()} iterations: a residual of "
-        f"{ksp.getResidualNorm():.3g} is left; take solver: {{linear: direct}}, or cells that are less stretched"
-    )

@@ -13,6 +13,7 @@ memory): those of GMRES, but in the norm that Newton's method judges by, with mo
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 import numpy as np
 from mpi4py import MPI
@@ -36,6 +37,9 @@ class KeptFactors:
     iterations: how many there were, the latter of the Krylov method. worth: iterations that cost as much as a
     factorisation.
     """
+
+    factorises: ClassVar[bool] = True
+    to_tolerance: ClassVar[bool] = True
 
     def __init__(self, comm: MPI.Intracomm, symmetric: bool, room: Room) -> None:
         self._comm, self._symmetric, self._room = comm, symmetric, room
@@ -116,6 +120,10 @@ class KeptFactors:
         entries = made.getMumpsInfog(29)
         entries = entries if entries >= 0 else -1_000_000 * entries  # MUMPS counts many in millions
         self.worth = made.getMumpsRinfog(3) / (PER_ENTRY * max(entries, 1))
+
+    def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
+        self.forget()
+        return "", False
 
     def renew(self) -> None:
         """Expect a matrix of another pattern; the factors are kept."""

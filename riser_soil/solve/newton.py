@@ -12,17 +12,15 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.factor_memory import Room
 from riser_soil.core.part import Energy, Forces, State, Work, local
 from riser_soil.core.roles import Adaptive, with_role
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
 from riser_soil.solve.bordered_band import SingularError
 from riser_soil.solve.failed_step import place_of_largest, reason_name
-from riser_soil.solve.iterative_solver import IterativeSolver, complaint_of, solid_of
-from riser_soil.solve.kept_factors import KeptFactors
 from riser_soil.solve.line_search import step_length
-from riser_soil.solve.linear_solver import PREFIX, complaint, defaults, factorise_directly, keeps_factors
+from riser_soil.solve.linear_solver import PREFIX, complaint, defaults
+from riser_soil.solve.linear_systems import linear_systems
 from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.round_off import ROUND_OFF, stays
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError, told
@@ -51,14 +49,11 @@ class Newton:
         self.system, self.settings = system, settings
         self.iterations, self.rests = 0, False
         self._state: State | None = None
-        self._room, self._has_more_room = Room(), False
         self._known: State | None = None  # whose forces are known
-        solid = solid_of(system) if settings.linear == "iterative" else None
-        self._iterative = IterativeSolver(system, solid) if solid is not None else None
+        self._try_again = False
         self._make_vectors()
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
-        keeps = solid is None and keeps_factors(system, settings.linear)
-        self.kept = KeptFactors(system.comm, system.symmetric, self._room) if keeps else None
+        self.linear = linear_systems(system, settings.linear)
         self._snes = self._create()
 
     def _make_vectors(self) -> None:
@@ -75,13 +70,7 @@ class Newton:
         snes.setTolerances(max_it=self.settings.max_iterations)
         if self.settings.line_search:
             snes.setLineSearchPreCheck(self._shorten)
-        if self._iterative is not None:
-            self._iterative.serve(snes.getKSP())
-        elif self.kept is not None:
-            self.kept.serve(snes.getKSP(), self._levers)
-        else:
-            snes.getKSP().setType(PETSc.KSP.Type.PREONLY)
-            factorise_directly(snes.getKSP().getPC(), self.system, self._room)
+        self.linear.serve(snes.getKSP(), self._levers)
         snes.setOptionsPrefix(PREFIX)
         with defaults({"snes_linesearch_type": "basic"}):
             snes.setFromOptions()
@@ -131,7 +120,7 @@ class Newton:
         self._norms.append(self._norm())
         self._first = 1
         while failure := self._failing(self._respond, lambda: self._snes.getKSP().reason < 0):
-            if not self._has_more_room:
+            if not self._try_again:
                 raise NotConvergedError(failure)
         self._x.scale(-1.0)
 
@@ -165,7 +154,7 @@ class Newton:
         """
         while True:
             failure = self._run()
-            if not (failure and self._has_more_room):
+            if not (failure and self._try_again):
                 if failure or self._snes.reason != OUTGROWN:
                     self.iterations += self._taken
                     return failure
@@ -180,10 +169,10 @@ class Newton:
 
     def _failing(self, solve: Callable[[], None], unsolved: Callable[[], bool]) -> str:
         """Call a solver; why its linear systems could not be solved, else "". No factors outlive a failed
-        factorisation: MUMPS would refuse all that comes after it. Where they had too little room, the next get more.
+        factorisation: MUMPS would refuse all that comes after it.
         """
         began, counted, complained = time.perf_counter(), self.system.clock.total, ""
-        self._has_more_room = False
+        self._try_again = False
         try:
             solve()
         except (PETSc.Error, SingularError) as err:
@@ -193,14 +182,8 @@ class Newton:
         self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
         if not complained and not unsolved():
             return ""
-        why = "" if self._iterative is None else complaint_of(self._snes.getKSP())
+        why, self._try_again = self.linear.failed(self._snes.getKSP())
         failure = self._reason(NOT_SOLVED, complained or why)
-        if self._iterative is not None:
-            self._iterative.forget()
-        elif self.kept is not None:
-            self.kept.forget()
-        else:
-            self._has_more_room = self._room.grows_after(self._snes.getKSP().getPC())
         self._snes.destroy()
         self._snes = self._create()
         return failure
@@ -240,7 +223,7 @@ class Newton:
         """Negative pivots at a static state; its forces may be known. doubtful: with those that may be. Without factors
         there are none, and nothing is judged. Collective.
         """
-        if self._iterative is not None:
+        if not self.linear.factorises:
             return 0
         scale = self._scale(self.system.forces(state) if forces is None else forces)
         negative = unstable_modes(self.system, state, STATIC, scale, doubtful)
@@ -261,8 +244,7 @@ class Newton:
         if not self._adaptive:
             return
         self._release()
-        if self.kept is not None:
-            self.kept.renew()
+        self.linear.renew()
         self.system.renew_pattern()
         self._make_vectors()
         if self._state is not None:
@@ -385,7 +367,7 @@ class Newton:
 
     def _next_tangent(self) -> int:
         """Assemble that of the next iteration, if there is one with a tangent of its own; whether it has a place."""
-        if self.kept is not None:
+        if self.linear.to_tolerance:
             self._snes.getKSP().setTolerances(rtol=self._linear_tolerance())
         if self._taken >= self.settings.max_iterations or self._reusable():
             return ITERATING
@@ -394,7 +376,7 @@ class Newton:
         return OUTGROWN if self._outgrown() else ITERATING
 
     def _linear_tolerance(self) -> float:
-        """Share of the residual that the next linear system may leave, where factors are kept.
+        """Share of the residual that the next linear system may leave.
 
         A fall by a factor f promises a next one by f² (Eisenstat & Walker, SIAM J. Sci. Comput. 17, 1996, choice 2,
         from memory); what is left stays below that, or below Newton's tolerance.
@@ -429,20 +411,16 @@ class Newton:
         return np.asarray(self._f.array_r / self._levers.array_r)
 
     def state(self) -> Saved:
-        """The factors that are kept."""
-        return {} if self.kept is None else under("kept", self.kept.state())
+        """What is kept of linear systems."""
+        return under("linear", self.linear.state())
 
     def restore(self, saved: Saved) -> None:
-        if self.kept is not None:
-            self.kept.restore(within(saved, "kept"))
+        self.linear.restore(within(saved, "linear"))
 
     def destroy(self) -> None:
         self._release()
-        if self.kept is not None:
-            self.kept.forget()
+        self.linear.forget()
 
     def _release(self) -> None:
-        if self._iterative is not None:
-            self._iterative.forget()
         for thing in (self._snes, self._x, self._f, self._levers):
             thing.destroy()

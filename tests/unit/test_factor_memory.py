@@ -17,7 +17,7 @@ from riser_soil.core.factor_memory import MOST_ROOM, ROOM, Room
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.solve import linear_solver, newton
+from riser_soil.solve import linear_solver, linear_systems
 from riser_soil.stages import LayingCounter, run_stage
 from tests.support.coupled_scenes import LAY, Mapping, touchdown
 
@@ -38,7 +38,7 @@ def laid() -> Array:
     return assembly.soil.field.total.copy()
 
 
-@pytest.mark.parametrize("place", [newton, linear_solver])
+@pytest.mark.parametrize("place", [linear_systems, linear_solver])
 def test_too_little_room_grows_and_the_step_is_the_same(place: object, monkeypatch: pytest.MonkeyPatch) -> None:
     """Room below nothing is less than what MUMPS has foretold."""
     expected, rooms = laid(), []
