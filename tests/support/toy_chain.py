@@ -119,9 +119,10 @@ class Springs:
     def residual(self, state: State, forces: Forces) -> None:
         e = self._stretch(state)
         f = self.k * e + self.cubic * e**3
-        forces.force[:-1] -= f
-        forces.force[1:] += f
-        forces.force += self.weight
+        on_chain = forces.force[self.chain.offset : self.chain.offset + self.chain.size]
+        on_chain[:-1] -= f
+        on_chain[1:] += f
+        on_chain += self.weight
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         k = self.k + 3.0 * self.cubic * self._stretch(state) ** 2

@@ -4,11 +4,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
+from mpi4py import MPI
 from petsc4py import PETSc
 
+from riser_soil.core.part import Model, State
+from riser_soil.core.system import System, Timer
 from riser_soil.solve.linear_solver import complaint
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Step
+from riser_soil.solve.time_scheme import Static
 from tests.support.on_ranks import mpirun
+from tests.support.toy_chain import Chain, Springs
 
 SCRIPT = '''
 import sys
@@ -75,3 +83,16 @@ def test_other_errors_are_no_complaint_of_the_linear_solver(code: int) -> None:
 
 def test_a_complaint_without_words_is_one() -> None:
     assert complaint(PETSc.Error(76)).startswith("the linear solver failed (MUMPS")
+
+
+def test_a_dense_border_without_stiffness_fails_and_is_told() -> None:
+    """A chain held by springs, and a place that nothing holds; a second time, too."""
+    chain, loose, z = Chain(np.arange(4.0), prescribed=True), Chain(np.zeros(1)), np.zeros(5)
+    loose.name = loose.space = "loose"
+    system = System(MPI.COMM_SELF, Model([chain], [Springs(chain, 1.0, 20.0, weight=2.0)], [loose]), Timer.new())
+    newton = Newton(system, NewtonSettings(1e-10, 20, 1e-12))
+    for _ in range(2):
+        with pytest.raises(NotConvergedError, match="matrix is singular"):
+            newton.solve(Step(Static(), State(0.0, z, z.copy(), z.copy()), 1.0, 1.0, None, z.copy()))
+    newton.destroy()
+    system.destroy()
