@@ -81,7 +81,7 @@ def seabed_numbers(
     found = Found(touches, position, normal, penetration, force, slope, stored, after)
     element = stations.element_room(ng, 2 * line.ndof, fixed(d))
     room = found, element, np.zeros(d), np.zeros((d, d))
-    return SeabedNumbers(at, share, radius, memory.copy(), frame_of(line), ground, law.numbers, law.reach, *room)
+    return SeabedNumbers(at, share, radius, memory.copy(), frame_of(line), ground, law.numbers, float(law.reach), *room)
 
 
 @add_forces.of(SeabedNumbers)
