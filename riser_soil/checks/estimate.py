@@ -111,10 +111,13 @@ def soil_memory(ranks: int, cells: float, entries: int, factor: float) -> float:
 
 
 def soil_factor(scene: Scene, soil: SoilScene, unknowns: float) -> float:
-    """Bytes of the factorisation of soil with so many unknowns, or of what takes its place."""
+    """Bytes of the factorisation of soil with so many unknowns, or of what takes its place; factors that are kept are
+    those of the upper triangle.
+    """
     if scene.solver.linear == "iterative" and not _condensed(scene, soil):
         return PER_UNKNOWN * unknowns
-    return factor_memory(_sides(scene, soil), unknowns, _condensed(scene, soil) or _symmetric(scene, soil))
+    halved = scene.solver.linear != "direct" or _condensed(scene, soil) or _symmetric(scene, soil)
+    return factor_memory(_sides(scene, soil), unknowns, halved)
 
 
 def _condensed(scene: Scene, soil: SoilScene) -> bool:
