@@ -100,11 +100,11 @@ def _by_facet(elements: IntArray, facets: IntArray, count: int) -> tuple[IntArra
     """The m pairs, facet by facet of those that are in any: their elements (m,), in the order given; the facets (k,);
     where the elements of each begin (k + 1,).
     """
-    begin = np.zeros(count + 1, np.int64)
+    counts = np.zeros(count + 1, np.int64)
     for f in facets:
-        begin[f + 1] += 1
-    paired = np.flatnonzero(begin[1:])
-    begin = np.cumsum(begin)
+        counts[f + 1] += 1
+    paired = np.flatnonzero(counts[1:])
+    begin = np.cumsum(counts)
     first, order, at = np.append(begin[paired], len(facets)), np.empty_like(elements), begin[:-1].copy()
     for k, f in enumerate(facets):
         order[at[f]] = elements[k]
