@@ -57,9 +57,10 @@ fuzz: setup ## 600 mutated scenes, each in a process with limits: how they end; 
 bench: setup ## seconds by part of the demo, Newton iterations against the bare work in them, waves against plain sums, energy of an impact by scheme
 	$(PYTHON) -m benchmarks
 
-bench-peers: setup ## what the same answers cost by CableDyn, Exudyn and MoorDyn: docs/peers.md; half an hour
+bench-peers: setup ## what the same answers cost by CableDyn, Exudyn, MoorDyn and CalculiX: docs/peers.md; an hour
 	@scripts/peers.sh
 	$(PYTHON) -m benchmarks.peers --page
+	$(PYTHON) -m benchmarks.peers.clay --page
 
 parts: setup ## what each part of a scene costs: docs/parts.md
 	$(PYTHON) -m benchmarks.parts --page
