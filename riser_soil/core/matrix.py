@@ -6,6 +6,7 @@ own first and sends what belongs to others in one exchange; PETSc's own sums, bl
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
@@ -63,7 +64,7 @@ class Matrix:
             if filled is None:
                 _add_at(self._data, self._places[key], values.reshape(-1))
                 continue
-            each = self._places[key].reshape(len(values), -1)
+            each = self._places[key].reshape(len(values), math.prod(values.shape[1:]))
             for block in np.flatnonzero(filled):
                 _add_at(self._data, each[block], values[block].reshape(-1))
         if self._exchange is not None:

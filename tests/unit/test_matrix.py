@@ -58,6 +58,18 @@ def test_of_a_batch_with_marks_the_filled_blocks_add_up_and_are_cleared() -> Non
     numbering.destroy()
 
 
+def test_a_batch_with_marks_may_be_empty() -> None:
+    chain = Chain(np.arange(4.0), prescribed=True)
+    numbering = Numbering(MPI.COMM_SELF, [chain])
+    none = MatrixBlock(np.zeros((0, 2), dtype=np.int64), np.zeros((0, 2), dtype=np.int64), np.zeros(0, dtype=bool))
+    matrix = Matrix(numbering, {"pairs": none}, symmetric=True)
+    matrix.clear()
+    matrix.assemble()
+    assert matrix.mat.norm() == 0.0
+    matrix.destroy()
+    numbering.destroy()
+
+
 def test_magnitudes_are_sums_of_absolute_values_over_the_blocks() -> None:
     """Where the blocks' own entries cancel one another, too; of absent dofs nothing, of prescribed ones their size."""
     chain = Chain(np.arange(4.0), prescribed=True)
