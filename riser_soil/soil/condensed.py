@@ -45,7 +45,7 @@ class Reached:
         return np.asarray(0.5 * (inverse + inverse.T))
 
 
-class Answer(NamedTuple):
+class SurfaceAnswer(NamedTuple):
     """What the soil does at a state: forces (na,) on the reached dofs that hold the top there [N], displacement (np, 3)
     of the whole top since the geostatic start [m].
     """
@@ -71,7 +71,7 @@ class CondensedTop:
         self.size, self.offset = top.size, 0
         self.owned: BoolArray = np.ones(top.size, dtype=bool)
         self._held, self._soil = top.prescribed, soil
-        self._seen = IdentityCache[State, Answer](latest=2, first=1)
+        self._seen = IdentityCache[State, SurfaceAnswer](latest=2, first=1)
         self.reach(np.empty(0, dtype=np.int64))
 
     @cached_property
@@ -101,17 +101,17 @@ class CondensedTop:
         """Of the whole top (np, 3) since the geostatic start [m]."""
         return self._at(state).displacement
 
-    def _at(self, state: State) -> Answer:
+    def _at(self, state: State) -> SurfaceAnswer:
         """Kept for the first state of a step and the last two."""
         return self._seen.made_of(state, self._answer)
 
-    def _answer(self, state: State) -> Answer:
+    def _answer(self, state: State) -> SurfaceAnswer:
         at = self.reached.dofs
         moved = self.committed.ravel()[at] + self.own(state.u)[at]
         forces = np.asarray(self.reached.stiffness @ moved)
         out = self.reached.compliance @ forces
         out[at] = moved
-        return Answer(forces, out.reshape(-1, 3))
+        return SurfaceAnswer(forces, out.reshape(-1, 3))
 
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
         for values in (u, v, a):

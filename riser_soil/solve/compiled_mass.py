@@ -1,5 +1,6 @@
-"""What the compiled loop over a riser alone needs at an accepted configuration: bulk forces, kinetic energy, and the
-inverse of the mass. With contact, once a step; see `riser_mass` and `time_scheme`.
+"""Bulk forces, kinetic energy and the inverse of the mass for the compiled loop over a riser alone.
+
+With contact they are asked for once a step, at the accepted configuration; see `riser_mass` and `time_scheme`.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ class MassNumbers(NamedTuple):
 
 
 class CompiledMass:
-    """A `Mass` of one line, by the kernels of its parts; and the bulk forces of an accepted state.
+    """A `InverseMass` of one line, by the kernels of its parts; and the bulk forces of an accepted state.
 
     bulk, inertial: numbers of the parts with forces in groups I and F, and in I; prescribed, levers (size,): of the
     line's dofs; bring: writes what depends on the time into the numbers.

@@ -1,5 +1,6 @@
-"""Linear solver: PETSc's banded LU where a serial system is a chain, the one of `bordered_band` where it is a chain on
-few other dofs that all couple, MUMPS otherwise.
+"""Linear solver: PETSc's banded LU where a serial system is a chain, MUMPS otherwise.
+
+The one of `bordered_band` solves a chain on few other dofs that all couple.
 """
 
 from __future__ import annotations

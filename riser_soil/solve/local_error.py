@@ -28,7 +28,7 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
-from riser_soil.solve.riser_mass import Mass
+from riser_soil.solve.riser_mass import InverseMass
 from riser_soil.solve.solution import Solution
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
 
@@ -40,7 +40,7 @@ SAME = 1e-9  # of a step: two steps that differ by round-off
 class LocalError:
     """Local error of the steps of a stage, in the displacements of the riser [m]; collective."""
 
-    def __init__(self, system: System, scheme: Scheme, mass: Mass) -> None:
+    def __init__(self, system: System, scheme: Scheme, mass: InverseMass) -> None:
         self._system, self._scheme, self._mass = system, scheme, mass
         self._jerk: Array | None = None
         self._dt = 0.0

@@ -328,11 +328,11 @@ class Newton:
     @property
     def _least_iterations(self) -> int:
         """A motion that continues by its first guess alone would keep its errors."""
-        return max(self.settings.least_iterations, int(self._weights.inertia > 0.0))
+        return max(self.settings.least_iterations, int(self._starts_near))
 
     @property
     def _starts_near(self) -> bool:
-        """Whether a tangent holds for the next iteration, too: in time steps without contact."""
+        """Whether the guess continues a smooth motion: time steps without contact."""
         return self.system.smooth and self._weights.inertia > 0.0
 
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:

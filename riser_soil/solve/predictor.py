@@ -20,11 +20,14 @@ class Extrapolation:
     sums.
 
     The first difference is the mean rate of the last step [1/s], the second half its change [1/s2]. Beyond them only
-    terms that fall fast are taken: those of what is rough, such as short waves in the riser, a gust or an impact,
-    don't.
+    terms that fall fast are taken: those of what is rough, such as short waves in the riser or a gust, don't.
+
+    smooth: whether changes go on at all. An impact ends what went before: with contact the last rate alone is the
+    better guess.
     """
 
-    def __init__(self, size: int) -> None:
+    def __init__(self, size: int, smooth: bool) -> None:
+        self._most = STEPS if smooth else 1
         self._differences: Array = np.zeros((0, size))
         self._steps: Array = np.zeros(0)
 
@@ -35,7 +38,7 @@ class Extrapolation:
 
     def accept(self, increments: Array, dt: float) -> None:
         """Continue from a step of dt that has been taken."""
-        self._differences, self._steps = _accepted(self._differences, self._steps, increments, dt)
+        self._differences, self._steps = _accepted(self._differences, self._steps, increments, dt, self._most)
 
     def state(self) -> Saved:
         return {"differences": self._differences, "steps": self._steps}
@@ -62,9 +65,9 @@ def _extrapolated(differences: Array, steps: Array, dt: float) -> Array:
 
 
 @njit
-def _accepted(differences: Array, steps: Array, increments: Array, dt: float) -> tuple[Array, Array]:
-    """Differences (k, n) and sizes of the steps (k,) with a further one."""
-    kept = min(differences.shape[0] + 1, STEPS)
+def _accepted(differences: Array, steps: Array, increments: Array, dt: float, most: int) -> tuple[Array, Array]:
+    """Differences (k, n) and sizes of the steps (k,) with a further one, at most so many."""
+    kept = min(differences.shape[0] + 1, most)
     found, sizes = np.empty((kept, increments.size)), np.empty(kept)
     sizes[0], span = dt, dt
     for i in range(increments.size):

@@ -19,7 +19,7 @@ MASS_ONLY = Weights(inertia=1.0, force=0.0, shift_v=0.0, shift_a=1.0)
 MASSLESS = 1e-12  # of a node's largest mass
 
 
-class Mass(Protocol):
+class InverseMass(Protocol):
     """Inverse of the lines' mass, see `RiserMass`."""
 
     def accelerations(self, t: float, force: Array) -> Array: ...

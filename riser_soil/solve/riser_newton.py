@@ -115,14 +115,14 @@ class RiserNewton:
         return state
 
     def _limits(self, step: Step) -> riser_loop.StopLimits:
-        """As in `Newton`: without contact a tangent can be reused, and no time step is its first guess alone."""
-        system, settings = self.system, self.settings
+        """As in `Newton`: without contact the guess continues a smooth motion, whose tangent can be reused."""
+        system, settings, smooth = self.system, self.settings, self.system.smooth
         return riser_loop.StopLimits(
             settings.tolerance,
             settings.floor,
-            settings.reuse if system.smooth else 0.0,
+            settings.reuse if smooth else 0.0,
             settings.max_iterations,
-            max(settings.least_iterations, 1),
+            max(settings.least_iterations, int(smooth)),
             self.rests or bool(np.any(step.guess[~system.prescribed])),
         )
 

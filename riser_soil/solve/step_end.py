@@ -12,7 +12,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
 from riser_soil.core.roles import MomentumCorrecting
 from riser_soil.core.system import System, total
-from riser_soil.solve.riser_mass import Mass
+from riser_soil.solve.riser_mass import InverseMass
 
 
 @dataclass(eq=False)
@@ -23,7 +23,7 @@ class CommittedStep:
     """
 
     system: System
-    mass: Mass | None
+    mass: InverseMass | None
     correcting: Sequence[MomentumCorrecting]
     solved: State
     forces: Forces

@@ -7,7 +7,7 @@ from typing import Protocol
 from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.system import System
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.riser_mass import Mass
+from riser_soil.solve.riser_mass import InverseMass
 from riser_soil.solve.solution import NewtonSettings, Solution, Step
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
 
@@ -28,7 +28,7 @@ class StepSolver(Protocol):
         ...
 
     @property
-    def mass(self) -> Mass:
+    def mass(self) -> InverseMass:
         """Inverse of the lines' mass."""
         ...
 

@@ -96,7 +96,7 @@ class TimeStepper:
         self._past = self._new_predictor()
 
     def _new_predictor(self) -> Extrapolation:
-        return Extrapolation(self.system.numbering.size)
+        return Extrapolation(self.system.numbering.size, smooth=self.system.smooth)
 
     def _start_rates(self, before: State) -> None:
         """Accelerations in balance with the forces at the start of a dynamic stage; prescribed rates."""

@@ -104,12 +104,12 @@ def test_level_ground_asks_for_no_more_than_the_arithmetic(tmp_path: Path) -> No
     assert not SLOW_TO_IMPORT & set(ran("over springs", tmp_path)["modules"])
 
 
-#: Packages of the formulas that a stage in motion calls, by scene.
+#: Packages of the formulas that a stage in motion calls, by scene; in the compiled loop the seabed is numbers alone.
 AT_WORK = {
     "hanging, heaved": {"riser", "motion"},
     "and damped": {"riser", "motion"},
     "in water": {"riser", "motion", "sea"},
-    "on springs": {"riser", "motion", "sea", "seabed", "contact"},
+    "on springs": {"riser", "motion", "sea", "contact"},
     "on elastic soil": {"riser", "motion", "sea", "seabed", "contact", "soil"},
 }
 
