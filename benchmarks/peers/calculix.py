@@ -129,7 +129,7 @@ def _top(block: Block) -> list[tuple[int, int]]:
 
 
 def _numbered(rows: Array | IntArray, first: int) -> str:
-    return "\n".join(", ".join([str(first + n), *(f"{x:.12g}" for x in row)]) for n, row in enumerate(rows.tolist()))
+    return "\n".join(", ".join([str(first + n), *(f"{x:.12g}" for x in row)]) for n, row in enumerate(rows))
 
 
 def run(block: Block, stiffness: float, element: str, folder: Path) -> Pressed:
