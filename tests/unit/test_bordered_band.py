@@ -11,6 +11,7 @@ from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
 from riser_soil.solve.bordered_band import BorderedBand, SingularError, bandwidth
+from riser_soil.solve.linear_solver import complaint
 
 
 def matrix(chain: int, border: int, band: int, touched: slice) -> Array:
@@ -69,9 +70,17 @@ def test_a_singular_matrix_is_told(row: int) -> None:
     entries = matrix(30, 7, 3, slice(10, 15))
     entries[row] = 0.0
     pc, mat = solver(entries, 30)
-    with pytest.raises(SingularError):
+    with pytest.raises((SingularError, PETSc.Error)) as failure:
         pc.setUp()
+    assert complaint(failure.value) == "the linear solver failed (the matrix is singular)"
     mat.destroy()
+
+
+def test_a_singular_matrix_is_told_where_petsc_makes_an_error_of_its_own() -> None:
+    err = PETSc.Error(-1)
+    err.__cause__ = SingularError()
+    assert complaint(err) == "the linear solver failed (the matrix is singular)"
+
 
 
 LEFT_OVER = """

@@ -42,10 +42,8 @@ def peak(overrides: tuple[str, ...], folder: Path) -> float:
     return 1024.0 * float(done.stdout)
 
 
-LONG = [pytest.param(name, marks=pytest.mark.verify) for name in MESHES if name != "small"]
-
-
-@pytest.mark.parametrize("mesh", ["small", *LONG])
+@pytest.mark.verify
+@pytest.mark.parametrize("mesh", MESHES)
 def test_memory_is_foretold_within_thirty_per_cent(mesh: str, tmp_path: Path) -> None:
     """The second of two runs, as the first may compile kernels."""
     overrides = SHORT + MESHES[mesh]

@@ -135,7 +135,7 @@ def assert_same_summary(other: Any, one: Any, place: str = "summary") -> None:
         assert other == one, place
 
 
-@pytest.mark.parametrize("ranks", [2, 4])
+@pytest.mark.parametrize("ranks", [2, pytest.param(4, marks=pytest.mark.verify)])
 @pytest.mark.parametrize("name", ["hex", "tet", "riser"])
 def test_small_scenes_agree_on_several_ranks(name: str, ranks: int) -> None:
     assert_same(name, ranks)
