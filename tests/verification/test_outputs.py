@@ -217,12 +217,15 @@ def test_memory_stays_flat_over_500_steps(name: str, tmp_path: Path) -> None:
     """Resident memory grows by less than 4 MB from step 100 to step 600; the states of 500 coupled steps kept would
     be 7 MB. Results are recorded every tenth step: those of every step would wait in memory for their turn on disk. So
     does the energy balance of the steps, which makes a step of some 2 MB somewhere on the way, once. Contact at nodes:
-    the work arrays of surface contact are as large as what touches, and new largest ones hide what is kept.
+    the work arrays of surface contact are as large as what touches, and new largest ones hide what is kept. Of two
+    runs the second counts: the first may compile a kernel on the way, which takes some MB, too.
     """
     scene = touchdown(LAY, heave(60.0), su=1000.0) | {"output": {"interval": 1.0}, "contact": {"method": "node"}}
     if name == "riser":
         del scene["soil"]
-    megabytes = resident_memory(scene, tmp_path)
+    for time in ("first", "again"):
+        (tmp_path / time).mkdir()
+        megabytes = resident_memory(scene, tmp_path / time)
     heaved = megabytes[-600:]
     assert len(megabytes) == 600 + (LAID_IN if name == "coupled" else 1)
     assert heaved[-1] - heaved[99] < 4.0
