@@ -18,8 +18,7 @@ from scipy.interpolate import CubicSpline
 from benchmarks.peers.case import GRAVITY, WATER, Case, Record, Surge
 from demos.compute import timed
 from riser_soil.assembly import build
-from riser_soil.assembly.graded_segments import graded
-from riser_soil.checks.element_proposal import asked_lengths
+from riser_soil.checks.element_proposal import asked_lengths, segments_for
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 
@@ -86,10 +85,10 @@ def _graded(scene: dict[str, Any], elements: int) -> list[dict[str, Any]]:
     coarse, fine = 1e3, 1e-3  # times the proposed lengths
     for _ in range(HALVINGS):
         middle = math.sqrt(coarse * fine)
-        found = graded(checked.riser.segments, arc, middle * lengths)
+        found = segments_for(checked, arc, middle * lengths)
         enough = sum(segment.element_count for segment in found) > elements
         coarse, fine = (coarse, middle) if enough else (middle, fine)
-    return [segment.model_dump(mode="json") for segment in graded(checked.riser.segments, arc, coarse * lengths)]
+    return [segment.model_dump(mode="json") for segment in segments_for(checked, arc, coarse * lengths)]
 
 
 def _motion(case: Case) -> dict[str, Any]:

@@ -62,18 +62,18 @@ def _boundary_layers(assembly: Assembly) -> Iterator[tuple[str, int]]:
 def _long_in_the_bend(assembly: Assembly) -> Iterator[str]:
     """Elements whose cubic shape misses the catenary's.
 
-    It is off by L^4 k''/384, k being the curvature, and the tension T makes a moment of that. With
-    k = w H/T^2 and T^2 = H^2 + V^2, dV/ds = w, k'' = 2 w^3 H (3 V^2 - H^2)/T^6.
+    It is off by L^4 k''/384, k being the curvature, and the tension T makes a moment of that.
     """
     if assembly.catenary is None:
         return
+    from riser_soil.riser.catenary import bend_of_curvature, curvature
+
     line, H, T = assembly.line, assembly.catenary.H, assembly.catenary.tension
     w = np.abs(assembly.elements.weight)
     middle = 0.5 * (T[1:] + T[:-1])
-    second = 2.0 * w**3 * H * np.abs(3.0 * middle**2 - 4.0 * H**2) / middle**6
     bends = np.logical_and(_hanging(assembly), assembly.elements.bends)
-    error = bends * middle * line.length**4 * second / 384.0
-    moment = _stiffness(assembly) * w * H / np.minimum(T[1:], T[:-1]) ** 2
+    error = bends * middle * line.length**4 * bend_of_curvature(w, H, middle) / 384.0
+    moment = _stiffness(assembly) * curvature(w, H, np.minimum(T[1:], T[:-1]))
     share = error / float((bends * moment).max(initial=np.finfo(float).tiny))
     e = int(share.argmax())
     if share[e] > MOMENT_ERROR:

@@ -10,7 +10,6 @@ from mpi4py import MPI
 
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.condensation import why_whole
-from riser_soil.checks.element_proposal import proposal
 from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_factor, soil_memory
 from riser_soil.checks.inventory import built, left_out, unknowns
 from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tell, tight, too_long
@@ -49,6 +48,8 @@ def _parts(assembly: Assembly) -> Iterator[str]:
 
 
 def _unknowns(assembly: Assembly) -> Iterator[str]:
+    from riser_soil.checks.element_proposal import proposal
+
     line = assembly.line
     yield (
         f"riser: {line.length.size} elements of {line.length.min():.4g} to {line.length.max():.4g} m, "

@@ -13,7 +13,7 @@ from riser_soil.assembly.shape import catenary_between, resting_level
 from riser_soil.assembly.touchdown_forecast import extreme_places
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.errors import SceneError
-from riser_soil.riser.catenary import Catenary
+from riser_soil.riser.catenary import Catenary, bend_of_curvature, curvature
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.riser import Segment, Support
 from riser_soil.scene.scene import Scene
@@ -30,7 +30,7 @@ def proposal(assembly: Assembly) -> str:
     asked, given = asked_lengths(assembly), assembly.scene.riser.segments
     if asked is None:
         return ""
-    segments = _graded(assembly.scene, *asked)
+    segments = segments_for(assembly.scene, *asked)
     few, many = (sum(segment.element_count for segment in each) for each in (segments, given))
     if many < MANY * few and _excess(assembly.line.arc, *asked) < LONG:
         return ""
@@ -41,14 +41,10 @@ def proposal(assembly: Assembly) -> str:
     return "\n".join([head, *(f"  - {_told(segment)}" for segment in segments)])
 
 
-def proposed(assembly: Assembly) -> tuple[Segment, ...] | None:
-    """Segments of graded elements; None where the riser is no cable between two places, or soil has a say."""
-    asked = asked_lengths(assembly)
-    return None if asked is None else _graded(assembly.scene, *asked)
-
-
 def asked_lengths(assembly: Assembly) -> tuple[Array, Array] | None:
-    """Arc lengths (n,) [m] and the lengths (n,) [m] of elements there, at most; None where there is no proposal."""
+    """Arc lengths (n,) [m] and the lengths (n,) [m] of elements there, at most; None where the riser is no cable
+    between two places, or soil has a say.
+    """
     scene = assembly.scene
     supported = all(isinstance(end, Support) for end in (scene.riser.start, scene.riser.end))
     if assembly.catenary is None or scene.soil is not None or not supported:
@@ -63,7 +59,8 @@ def asked_lengths(assembly: Assembly) -> tuple[Array, Array] | None:
     return growing(elements.arc, np.minimum(np.append(lengths, np.inf), np.insert(lengths, 0, np.inf)))
 
 
-def _graded(scene: Scene, arc: Array, lengths: Array) -> tuple[Segment, ...]:
+def segments_for(scene: Scene, arc: Array, lengths: Array) -> tuple[Segment, ...]:
+    """The riser's segments with elements of lengths (n,) [m] at arc lengths (n,) [m], at most."""
     return graded([part for segment in broken(scene) for part in segment], arc, lengths)
 
 
@@ -86,7 +83,8 @@ def _lengths(scene: Scene, elements: Elements, shapes: Sequence[Catenary]) -> Ar
     EI = np.maximum(elements.EI_y, elements.EI_z) * elements.bends
     hanging = [_hangs(scene, elements, shape) for shape in shapes]
     pairs = list(zip(shapes, hanging, strict=True))
-    moment = max(float((EI * _curvature(elements, *pair)).max()) for pair in pairs)
+    w = np.abs(elements.weight)
+    moment = max(float((EI * hangs * curvature(w, shape.H, _tension(shape))).max()) for shape, hangs in pairs)
     of_bend = np.min([_of_bend(elements, shape, hangs, moment) for shape, hangs in pairs], axis=0)
     tension = np.max([_tension(shape) for shape in shapes], axis=0)
     of_layer = np.where(_layers(scene, hanging) & (EI > 0.0), OF_LAYER * np.sqrt(EI / tension), np.inf)
@@ -104,15 +102,10 @@ def _tension(shape: Catenary) -> Array:
     return 0.5 * (shape.tension[1:] + shape.tension[:-1])
 
 
-def _curvature(elements: Elements, shape: Catenary, hangs: BoolArray) -> Array:
-    """Of the cable, w H/T^2 (ne,) [1/m]."""
-    return hangs * np.abs(elements.weight) * shape.H / _tension(shape) ** 2
-
-
 def _of_bend(elements: Elements, shape: Catenary, hangs: BoolArray, moment: float) -> Array:
     """Lengths (ne,) [m] at which an element misses T L^4 k''/384, see `bending_plausibility`, and no more."""
-    T, H, w = _tension(shape), shape.H, np.abs(elements.weight)
-    second = hangs * elements.bends * 2.0 * w**3 * H * np.abs(3.0 * T**2 - 4.0 * H**2) / T**6
+    T = _tension(shape)
+    second = hangs * elements.bends * bend_of_curvature(np.abs(elements.weight), shape.H, T)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(second > 0.0, (384.0 * SHARE * moment / T / second) ** 0.25, np.inf)
 

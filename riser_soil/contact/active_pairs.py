@@ -7,7 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from riser_soil.contact.cylinder_gap import FORMS, NearPoints
+from riser_soil.contact.cylinder_gap import FORMS
+from riser_soil.contact.near_points import NearPoints
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 

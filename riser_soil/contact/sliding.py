@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.cylinder_gap import THINNEST, Axis, NearPoints, Surface, combined
 from riser_soil.contact.facets import fill_shape
+from riser_soil.contact.near_points import THINNEST, Axis, NearPoints, Surface, combined
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser import hermite

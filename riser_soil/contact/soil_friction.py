@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.contact.active_pairs import add_products, add_rows
 from riser_soil.contact.coulomb import traction
-from riser_soil.contact.cylinder_gap import Axis, Surface
+from riser_soil.contact.near_points import Axis, Surface
 from riser_soil.contact.point_memory import PointMemory
 from riser_soil.contact.sliding import Slide, slide
 from riser_soil.contact.surface_contact import SurfaceContact, SurfaceState

@@ -8,11 +8,12 @@ import numpy as np
 
 from riser_soil.contact.active_pairs import ActivePairs, add_rows, in_dofs, paired
 from riser_soil.contact.candidates import CandidatePairs, touching_boxes
-from riser_soil.contact.cylinder_gap import Axis, NearPoints, Surface, boxes, gap_forms, near_points
+from riser_soil.contact.cylinder_gap import gap_forms
 from riser_soil.contact.detection import add_blocks, add_shares
 from riser_soil.contact.gap import heights
 from riser_soil.contact.integration_points import divisions
 from riser_soil.contact.law import Penalty
+from riser_soil.contact.near_points import Axis, NearPoints, Surface, boxes, near_points
 from riser_soil.contact.point_memory import PointMemory
 from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
 from riser_soil.contact.suction import SuctionLaw

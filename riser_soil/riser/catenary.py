@@ -103,3 +103,15 @@ def _in_space(
     position[-1] = end
     curve = from_nodes(position, force / tension[:, None])
     return Catenary(curve, tension, found.H, slack)
+
+
+def curvature(w: Array, H: float, T: Array) -> Array:
+    """Of a cable of a weight w >= 0 [N/m] where its tension is T [N]: k = w H/T^2 [1/m]."""
+    return np.asarray(w * H / T**2)
+
+
+def bend_of_curvature(w: Array, H: float, T: Array) -> Array:
+    """Size of its second derivative along the cable [1/m3]: with T^2 = H^2 + V^2 and dV/ds = w,
+    k'' = 2 w^3 H (3 V^2 - H^2)/T^6.
+    """
+    return np.asarray(2.0 * w**3 * H * np.abs(3.0 * T**2 - 4.0 * H**2) / T**6)

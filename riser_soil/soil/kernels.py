@@ -92,10 +92,10 @@ def renew_stiffness(full: Array, volume: Array, weights: Array, moduli: Array, k
 
 @njit
 def _same(a: Array, b: Array) -> bool:
-    same = True
-    for x, y in zip(a.ravel(), b.ravel()):  # noqa: B905
-        same &= x == y
-    return same
+    x, y, k = a.ravel(), b.ravel(), 0
+    while k < x.size and x[k] == y[k]:
+        k += 1
+    return k == x.size
 
 
 @njit

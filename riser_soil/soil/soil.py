@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -58,7 +59,6 @@ class Soil:
         depth = np.maximum(level - self._gradients.points[..., 2], 0.0).ravel()
         weight = LayeredWeight((), (unit_weight,)) if isinstance(unit_weight, int | float) else unit_weight
         initial = _geostatic(weight.stress(depth), K0) if start == "geostatic" else np.zeros((depth.size, 6))
-        self._stiffness = _Stiffness.unknown(self._gradients)
         self.law = law(depth, initial)
         self.traits = Traits("E", self.law.symmetric, roles=(Stateful,))
         self._check_start(initial, depth, K0)
@@ -73,6 +73,11 @@ class Soil:
     def residual(self, state: State, forces: Forces) -> None:
         _, found = self._answer(state)
         self.field.own(forces.end)[:] += self._internal(found.stress) - self._load
+
+    @cached_property
+    def _stiffness(self) -> _Stiffness:
+        """There from the first tangent on."""
+        return _Stiffness.unknown(self._gradients)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         _, found = self._answer(state)

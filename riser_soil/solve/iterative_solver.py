@@ -16,9 +16,8 @@ from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Field, local
-from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
-from riser_soil.solve.linear_solver import PREFIX, defaults
+from riser_soil.solve.linear_solver import PREFIX, LinearSystems, defaults
 
 TOLERANCE, MOST_ITERATIONS, RESTART = 1e-4, 500, 100  # share of the residual that may be left
 MULTIGRID = {"soil_pc_gamg_reuse_interpolation": "true"}  # of the first tangent, for all of its pattern
@@ -36,11 +35,10 @@ def solid_of(system: System) -> Solid | None:
     return cast(Solid, found[0]) if found else None
 
 
-class IterativeSolver:
+class IterativeSolver(LinearSystems):
     """Linear solver of a system with a solid, and the context of its preconditioner; collective."""
 
     factorises: ClassVar[bool] = False
-    to_tolerance: ClassVar[bool] = False
 
     def __init__(self, system: System, solid: Solid) -> None:
         self._system, self._solid = system, solid
@@ -110,14 +108,6 @@ class IterativeSolver:
             f"the iterative linear solver has not converged in {ksp.getIterationNumber()} iterations: a residual of "
             f"{ksp.getResidualNorm():.3g} is left; take solver: {{linear: direct}}, or cells that are less stretched"
         ), False
-
-    def renew(self) -> None:
-        self.forget()
-
-    def state(self) -> Saved:
-        return {}
-
-    def restore(self, saved: Saved) -> None: ...
 
     def forget(self) -> None:
         """Drop all that belongs to the present matrix."""

@@ -21,7 +21,7 @@ from petsc4py import PETSc
 
 from riser_soil.core.factor_memory import Room
 from riser_soil.core.saved_state import Saved
-from riser_soil.solve.linear_solver import use_mumps
+from riser_soil.solve.linear_solver import LinearSystems, use_mumps
 
 FEWEST = 10  # iterations that a solve may take in any case
 PER_ENTRY = 36.0  # operations of a factorisation that take as long as a solve for one entry of its factors: 32 to 40
@@ -30,7 +30,7 @@ TOO_LONG = PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT
 BROKEN = PETSc.KSP.ConvergedReason.DIVERGED_BREAKDOWN
 
 
-class KeptFactors:
+class KeptFactors(LinearSystems):
     """Linear solver of a system's tangents, one after the other; collective.
 
     symmetric: whether the tangents are. room: for fill-in; it grows where it was too little. factorisations,
@@ -38,7 +38,6 @@ class KeptFactors:
     factorisation.
     """
 
-    factorises: ClassVar[bool] = True
     to_tolerance: ClassVar[bool] = True
 
     def __init__(self, comm: MPI.Intracomm, symmetric: bool, room: Room) -> None:
@@ -120,10 +119,6 @@ class KeptFactors:
         entries = made.getMumpsInfog(29)
         entries = entries if entries >= 0 else -1_000_000 * entries  # MUMPS counts many in millions
         self.worth = made.getMumpsRinfog(3) / (PER_ENTRY * max(entries, 1))
-
-    def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
-        self.forget()
-        return "", False
 
     def renew(self) -> None:
         """Expect a matrix of another pattern; the factors are kept."""

@@ -8,11 +8,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from typing import ClassVar
 
 import numpy as np
 from petsc4py import PETSc
 
 from riser_soil.core.factor_memory import Room
+from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.solve.bordered_band import WIDEST, BorderedBand, SingularError, bandwidth
 
@@ -22,6 +24,39 @@ COUNTING = {13: 1, 24: 1}
 IN_LIBRARY = 76  # PETSc's code of an error in another library, here MUMPS
 LARGE = 4000  # unknowns from which on kept factors are cheaper than new ones
 NO_PIVOT = 1e-200  # whatever the units; by PETSc's default the stiffness of a riser a fingernail long is none
+
+
+class LinearSystems:
+    """How one system after the other is solved; collective.
+
+    factorises: whether pivots may be counted, too. to_tolerance: whether each is solved as exactly as the KSP is told.
+    """
+
+    factorises: ClassVar[bool] = True
+    to_tolerance: ClassVar[bool] = False
+
+    def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
+        """Solve what this KSP is asked for; by the levers [m] moments count as forces."""
+        raise NotImplementedError
+
+    def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
+        """Drop what a failed solution has left; what to say of it, and whether another try may do."""
+        self.forget()
+        return "", False
+
+    def renew(self) -> None:
+        """Expect a matrix of another pattern."""
+        self.forget()
+
+    def forget(self) -> None:
+        """Drop all that is kept."""
+
+    def state(self) -> Saved:
+        """What is kept, for a run that is to go on."""
+        return {}
+
+    def restore(self, saved: Saved) -> None:
+        """Go on with that."""
 
 
 @contextmanager

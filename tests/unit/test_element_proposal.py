@@ -15,7 +15,7 @@ from riser_soil.accuracy.headlines import headlines
 from riser_soil.assembly import build
 from riser_soil.assembly.graded_segments import FEWEST
 from riser_soil.checks.check import describe
-from riser_soil.checks.element_proposal import SHARE, proposal, proposed
+from riser_soil.checks.element_proposal import SHARE, asked_lengths, proposal, segments_for
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.riser import Segment
 from riser_soil.scene.scene import Scene
@@ -25,7 +25,8 @@ FIRST = ROOT / "demos/first_scene.yaml"
 
 
 def of(scene: Scene) -> tuple[Segment, ...] | None:
-    return proposed(build(scene, MPI.COMM_SELF))
+    asked = asked_lengths(build(scene, MPI.COMM_SELF))
+    return None if asked is None else segments_for(scene, *asked)
 
 
 def cut(scene: Scene, segments: tuple[Segment, ...]) -> Scene:
@@ -85,10 +86,10 @@ def ends(segment: Segment) -> tuple[float, float]:
 
 def test_elements_as_proposed_need_no_word() -> None:
     scene = read_scene(FIRST)
-    assembly = build(scene, MPI.COMM_SELF)
-    segments = proposed(assembly)
+    segments = of(scene)
     assert segments is not None
-    assert proposal(assembly).startswith("elements graded as the riser's bend asks for, for 1% of the largest moment")
+    told = proposal(build(scene, MPI.COMM_SELF))
+    assert told.startswith("elements graded as the riser's bend asks for, for 1% of the largest moment")
     assert not proposal(build(cut(scene, segments), MPI.COMM_SELF))
 
 

@@ -18,25 +18,10 @@ def _four_times(x: float) -> float:
     return doubled
 
 
-def test_what_kernels_alone_call_is_not_compiled_for_python() -> None:
+def test_what_kernels_alone_call_is_compiled_for_python_when_it_calls_it() -> None:
     assert _four_times(1.5) == 6.0
     assert not _twice.called.overloads
     assert not _four_times.overloads
     assert _four_times.called.overloads
-
-
-@njit
-def _half(x: float) -> float:
-    return 0.5 * x
-
-
-@njit
-def _quarter(x: float) -> float:
-    halved: float = _half(_half(x))
-    return halved
-
-
-def test_python_may_call_what_kernels_call() -> None:
-    assert _quarter(6.0) == 1.5
-    assert [_half(6.0), _half(8), _half(6.0)] == [3.0, 4.0, 3.0]
-    np.testing.assert_array_equal(_half(np.array([1.0, 2.0])), [0.5, 1.0])
+    assert [_twice(6.0), _twice(8), _twice(6.0)] == [12.0, 16.0, 12.0]
+    np.testing.assert_array_equal(_twice(np.array([1.0, 2.0])), [2.0, 4.0])
