@@ -20,7 +20,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test lint verify stress fuzz bench bench-peers parts bars asked quality verify-fresh docker pins clean
+.PHONY: help setup demo demos test lint verify stress fuzz bench bench-peers parts bars asked quality verify-fresh docs docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -76,6 +76,9 @@ quality: stress bars asked parts ## those four and a study of the first scene: d
 
 verify-fresh: ## both commands of the README on bare Debians 12 and 13 made for it (needs root and debootstrap)
 	@set -e; for suite in $(SUITES); do FRESH_SUITE=$$suite scripts/verify_fresh.sh; done
+
+docs: setup ## a site of all pages, with search: build/site
+	@scripts/site.sh
 
 docker: ## the image riser_soil, on Debian 12 or on BASE=debian:trixie
 	$(DOCKER) build$(if $(BASE), --build-arg BASE=$(BASE)) -t riser_soil -f docker/Dockerfile .
