@@ -13,5 +13,5 @@ def test_site_builds_without_a_warning_and_needs_no_network(tmp_path: Path) -> N
     done = subprocess.run([ROOT / "scripts/site.sh", "--site-dir", tmp_path], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     home = (tmp_path / "index.html").read_text(encoding="utf-8")
-    assert re.findall(r'<(?:script|img)[^>]* src="(?:https?:)?//[^"]*"|<link rel="stylesheet" href="http[^"]*"', home) == []
+    assert re.findall(r'<(?:script|img)[^>]* src="(?:https?:)?//|<link rel="stylesheet" href="http', home) == []
     assert "doc-heading" in (tmp_path / "docs/api/index.html").read_text(encoding="utf-8")
