@@ -227,10 +227,14 @@ class LineField(Field, Protocol):
     """A field of translations (nn, d) and rotations along a line; it may turn as a whole.
 
     lever: arm [m] by which moments are converted to forces in norms, so that nothing depends on the unit of length.
+    turns_axes: whether the axes of its rotation dofs turn with the line, from step to step.
     """
 
     @property
     def lever(self) -> float: ...
+
+    @property
+    def turns_axes(self) -> bool: ...
 
     @property
     def translation_dofs(self) -> IntArray:

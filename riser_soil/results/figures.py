@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -36,19 +38,26 @@ _FIGURES = outputs.figures(_ORDER)
 # Left out where nothing is known of what they need, or they are not wanted.
 _SOMETIMES = frozenset(figure.name for output, figure in _FIGURES if output.needs)
 _SIZE = sum(figure.size for _, figure in _FIGURES)
+_OUTPUTS = [(output.name, output.get) for output in outputs.of_instant() if output.figures]
+_FIRST = itertools.accumulate((figure.size for _, figure in _FIGURES), initial=0)
+# Of each figure: its output, where it stands in a packed vector, how it follows from the output's value.
+_PLACES: list[tuple[str, int | slice, Callable[[Any], Any]]] = [
+    (output.name, first if figure.size == 1 else slice(first, first + figure.size), figure.of)
+    for (output, figure), first in zip(_FIGURES, _FIRST, strict=False)
+]
 
 
 def pack(seen: Instant) -> Array:
     """All figures of one instant as one vector, in the order of the summary; nan for what is not known."""
-    values, vector, first = _values(seen), np.empty(_SIZE), 0
-    for output, figure in _FIGURES:
-        vector[first : first + figure.size] = _figure(figure, values[output.name])
-        first += figure.size
+    values, vector = _values(seen), np.full(_SIZE, np.nan)
+    for name, at, of in _PLACES:
+        if (value := values[name]) is not None:
+            vector[at] = of(value)
     return vector
 
 
 def _values(seen: Instant) -> dict[str, Any]:
-    return {output.name: output.get(seen) for output in outputs.of_instant() if output.figures}
+    return {name: get(seen) for name, get in _OUTPUTS}
 
 
 def _figure(figure: Figure, value: Any) -> Any:

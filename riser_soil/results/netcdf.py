@@ -115,6 +115,7 @@ class SeriesFile:
         self._of_step = HEALTH | dict(ledger or {})
         wanted = {name: v for name, v in SERIES.items() if name not in left_out}
         self._variables = {name: v for name, v in wanted.items() if sections or "section" not in v.dims} | self._of_step
+        self._of_instant = [name for name in self._variables if name in SERIES]
         self._sizes = {"arc": arc.size, "component": 3, "section": sections, "offset": len(offsets)}
         self._offsets = np.array(offsets)
         self._rows: defaultdict[str, list[object]] = defaultdict(list)
@@ -128,7 +129,7 @@ class SeriesFile:
     def record(self, values: Mapping[str, object]) -> None:
         """Adds one output time. values: by the names of SERIES except `stage`; those left out are ignored."""
         row = dict(values, stage=len(self._stages) - 1)
-        for name in self._variables.keys() & SERIES.keys():
+        for name in self._of_instant:
             self._rows[name].append(_kept(row[name]))
 
     def step(self, values: Mapping[str, object]) -> None:

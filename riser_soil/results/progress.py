@@ -49,6 +49,8 @@ class Progress:
 
     def update(self, t: float, time_step: float, newton_iterations: int) -> None:
         """t: s since the stage began (static: load factor); time_step: of the step just accepted."""
+        if self._bar.disable:
+            return
         label = "load" if self._kind == "static" else "t"
         unit = "" if self._kind == "static" else " s"
         state = f"{label} {t:.4g}{unit}  step {time_step:.3g}{unit}  Newton {newton_iterations}"

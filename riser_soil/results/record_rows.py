@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
+from functools import cache
 from typing import Any
 
 from riser_soil.core import outputs
@@ -13,9 +14,14 @@ from riser_soil.results.xdmf import Frame
 
 def series_row(stamp: float, seen: Instant, fields: Collection[str]) -> dict[str, Any]:
     """By the names of netcdf.SERIES, but for choices that are not among the fields."""
-    wanted = (output for output in outputs.of_instant() if output.where != "summary")
-    values = {output.name: output.get(seen) for output in wanted if output.name in fields or not output.chosen}
-    return {"time": stamp, **values}
+    return {"time": stamp} | {name: get(seen) for name, get in _wanted(tuple(fields))}
+
+
+@cache
+def _wanted(fields: tuple[str, ...]) -> list[tuple[str, Callable[[Instant], Any]]]:
+    """Names of what is recorded, and how each follows from what is seen."""
+    recorded = (output for output in outputs.of_instant() if output.where != "summary")
+    return [(output.name, output.get) for output in recorded if output.name in fields or not output.chosen]
 
 
 def step_row(step: StepRecord) -> dict[str, float]:

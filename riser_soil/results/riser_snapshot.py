@@ -12,7 +12,7 @@ from riser_soil.core.part import State
 from riser_soil.core.snapshot import LargestAlong, RiserSnapshot
 from riser_soil.riser import bending_peaks
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import acting_on
+from riser_soil.riser.line_part import acting_on, overrides
 from riser_soil.riser.section_forces import (
     SectionForces,
     at_most,
@@ -60,18 +60,21 @@ def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
 def elastic_residual(assembly: Assembly, stepper: TimeStepper) -> Array:
     """Of the elements (ne, 2 ndof), less what follows from strain rates."""
     residual, viscous = _residuals(assembly, stepper)
-    return residual - viscous
+    return residual if viscous is None else residual - viscous
 
 
-def _residuals(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array]:
-    """Of the elements (ne, 2 ndof), the whole and the share that follows from strain rates; computed once a state."""
+def _residuals(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array | None]:
+    """Of the elements (ne, 2 ndof), the whole and the share that follows from strain rates, if any; computed once a
+    state.
+    """
     line, state = assembly.line, stepper.now
     parts = acting_on(line, stepper.system.model.parts)
 
-    def compute(_: Trial) -> tuple[Array, Array]:
-        return element_residual(line, parts, state), viscous_residual(line, parts, state)
+    def compute(_: Trial) -> tuple[Array, Array | None]:
+        damped = [part for part in parts if overrides(part, "viscous_forces")]
+        return element_residual(line, parts, state), viscous_residual(line, damped, state) if damped else None
 
-    found: tuple[Array, Array] = line.trial(state).once("residuals of elements", compute)
+    found: tuple[Array, Array | None] = line.trial(state).once("residuals of elements", compute)
     return found
 
 
@@ -89,7 +92,9 @@ def _largest(line: Line, values: Array, slopes: Array) -> LargestAlong:
 
 def _beside(at_nodes: Array) -> Array:
     """What nodes have (nn,), at the elements' ends (ne, 2)."""
-    return np.stack([at_nodes[:-1], at_nodes[1:]], axis=1)
+    both = np.empty((at_nodes.size - 1, 2))
+    both[:, 0], both[:, 1] = at_nodes[:-1], at_nodes[1:]
+    return both
 
 
 def _tightest_bend(assembly: Assembly, inside: SectionForces) -> tuple[LargestAlong, float]:

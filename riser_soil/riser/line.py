@@ -19,7 +19,7 @@ from riser_soil.core.saved_state import Saved, under, values_of, within
 from riser_soil.errors import SceneError
 from riser_soil.riser import hermite
 from riser_soil.riser.directors import Frames
-from riser_soil.riser.ends import End, SupportRotation
+from riser_soil.riser.ends import End, Motion, SupportRotation
 from riser_soil.riser.free_turns import free_turns, unit_lengths
 from riser_soil.riser.planar_directors import PlanarFrames
 from riser_soil.riser.spatial_directors import SpatialFrames
@@ -87,6 +87,7 @@ class Line:
         self._supports = self._bases = {node: unturned.at(node).copy() for node in (0, self.arc.size - 1)}
         self.offset = 0
         self._left: Trial | None = None
+        self._moved_ends: dict[int, tuple[Motion, float, Array, tuple[Array, Array, Array]]] = {}
         self._trials = IdentityCache[State, Trial](first=1, latest=2)
         self._number()
         self.prescribe_spin(prescribe_spin)
@@ -214,6 +215,11 @@ class Line:
         turn = self.frames.turn(u[:, self.dimension :])
         return Trial(state, x, chord, turn, (self.nodal(state.v), self.nodal(state.a)))
 
+    @property
+    def turns_axes(self) -> bool:
+        """In space the rotation dofs are about body axes; in a plane about its normal."""
+        return self.dimension == 3
+
     def in_new_axes(self, conjugate: Array, increments: Array) -> Array:
         """Forces (size,) conjugate to the increments, as those of the step after these increments have them."""
         out = conjugate.copy().reshape(self.nodes, self.ndof)
@@ -278,7 +284,7 @@ class Line:
         moved = self.nodal(predicted)[:, : self.dimension]
         for node, end in self._ends:
             if end.prescribed and end.motion is not None:
-                moved += self._reach[node] * (self._to(end.motion(guess.t)[0], node) - moved[node])
+                moved += self._reach[node] * (self._moved_end(node, guess.t)[0] - moved[node])
         return predicted
 
     @cached_property
@@ -287,9 +293,18 @@ class Line:
         along = (self.arc / self.arc[-1])[:, None]
         return {0: (1.0 - along) ** 3, self.nodes - 1: along**3}
 
-    def _to(self, position: Array, node: int) -> Array:
-        """Increment (d,) that brings a node to a position (3,) in global axes."""
-        return np.asarray((position - self.origin) @ self.basis - self.x[node])
+    def _moved_end(self, node: int, t: float) -> tuple[Array, Array, Array]:
+        """Increment, velocity and acceleration (d,) by which an end's motion moves its node; kept until the next time
+        or commit.
+        """
+        motion, kept = (self.end if node else self.start).motion, self._moved_ends.get(node)
+        assert motion is not None
+        if kept is None or kept[0] is not motion or kept[1] != t or kept[2] is not self.x:
+            position, velocity, acceleration = motion(t)
+            to = np.asarray((position - self.origin) @ self.basis - self.x[node])
+            moved = to, velocity @ self.basis, acceleration @ self.basis
+            kept = self._moved_ends[node] = motion, t, self.x, moved
+        return kept[3]
 
     def free_turns(self, state: State) -> Array:
         """Rigid motions (k, size) that the supports leave free, see `free_turns`."""
@@ -330,9 +345,7 @@ class Line:
         for node, end in self._ends:
             if end.prescribed and end.motion is not None:
                 at = slice(node * self.ndof, node * self.ndof + self.dimension)
-                position, velocity, acceleration = end.motion(t)
-                u[at] = self._to(position, node)
-                v[at], a[at] = velocity @ self.basis, acceleration @ self.basis
+                u[at], v[at], a[at] = self._moved_end(node, t)
             if end.rotation_fixed and end.turning is not None:
                 self._turn(node, end.turning(t), self.support(node, t), (u, v, a))
 

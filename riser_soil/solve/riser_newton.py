@@ -49,7 +49,7 @@ class RiserNewton:
         assert isinstance(line, Line)
         self._line, most = line, settings.max_iterations
         self._riser = PackedRiser(line, [held for _, held in parts], system.prescribed, system.levers, most)
-        self._numbered, self._t = parts, math.nan
+        self._numbered, self._t, self._free = parts, math.nan, np.flatnonzero(~system.prescribed)
         self._renewed = [part for part, _ in parts if overrides(part, "renew_numbers")]
         kernels = [(part, type(held) in add_work.kernels) for part, held in parts]
         self._turning = [(part, kernel) for part, kernel in kernels if kernel or overrides(part, "work")]
@@ -116,14 +116,14 @@ class RiserNewton:
 
     def _limits(self, step: Step) -> riser_loop.StopLimits:
         """As in `Newton`: without contact the guess continues a smooth motion, whose tangent can be reused."""
-        system, settings, smooth = self.system, self.settings, self.system.smooth
+        settings, smooth = self.settings, self.system.smooth
         return riser_loop.StopLimits(
             settings.tolerance,
             settings.floor,
             settings.reuse if smooth else 0.0,
             settings.max_iterations,
             max(settings.least_iterations, int(smooth)),
-            self.rests or bool(np.any(step.guess[~system.prescribed])),
+            self.rests or bool(step.guess[self._free].any()),
         )
 
     def _found(self) -> Forces:

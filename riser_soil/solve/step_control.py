@@ -72,7 +72,8 @@ class StepControl:
 
     @property
     def dt(self) -> float:
-        return self.target - self._time(self._at)
+        """Of the nominal size, not the difference of two times: with its round-off no step would be like the last."""
+        return self._nominal(self._at) * self._stride / 2**self._levels
 
     def rejection(self, error: float) -> str:
         return ""
@@ -100,8 +101,13 @@ class StepControl:
     def _stride(self) -> int:
         return int(2 ** (self._levels - self._level))
 
+    def _nominal(self, ticks: int) -> float:
+        """Size of the nominal step in which a tick lies."""
+        last = ticks >= self._last - 2**self._levels
+        return self.end - ticks // 2**self._levels * self.step if last else self.step
+
     def _time(self, ticks: int) -> float:
+        if ticks >= self._last:
+            return self.end
         whole, rest = divmod(ticks, 2**self._levels)
-        begun = whole * self.step
-        ending = self.end if ticks >= self._last - 2**self._levels else begun + self.step
-        return self.end if ticks >= self._last else begun + rest / 2**self._levels * (ending - begun)
+        return whole * self.step + rest / 2**self._levels * self._nominal(ticks)

@@ -20,6 +20,7 @@ from typing import Protocol
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 from riser_soil.core.part import Forces, State, Weights
 from riser_soil.solve.step_end import CommittedStep
 
@@ -169,9 +170,7 @@ class GeneralizedAlpha:
         )
 
     def trial(self, before: State, t: float, dt: float, u: Array) -> State:
-        a = (u - dt * before.v) / (self.beta * dt**2) - (0.5 / self.beta - 1.0) * before.a
-        v = before.v + dt * ((1.0 - self.gamma) * before.a + self.gamma * a)
-        return State(t, u, v, a)
+        return State(t, u, *_rates(u, before.v, before.a, dt, self.beta, self.gamma))
 
     def balanced_at(self, before: State, end: State, dt: float) -> State:
         return end
@@ -200,6 +199,16 @@ class GeneralizedAlpha:
             return end.state, end.state
         bulk = self.split_contact(end.state, end.contact, end.dt)
         return bulk, State(bulk.t, bulk.u, bulk.v, bulk.a + end.contact)
+
+
+@njit
+def _rates(u: Array, v: Array, a: Array, dt: float, beta: float, gamma: float) -> tuple[Array, Array]:
+    """Newmark's velocities and accelerations after the increments u, from those before them."""
+    then, change = np.empty(u.size), np.empty(u.size)
+    for i in range(u.size):
+        change[i] = (u[i] - dt * v[i]) / (beta * dt**2) - (0.5 / beta - 1.0) * a[i]
+        then[i] = v[i] + dt * ((1.0 - gamma) * a[i] + gamma * change[i])
+    return then, change
 
 
 @dataclass(frozen=True)

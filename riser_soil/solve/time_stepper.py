@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from mpi4py import MPI
@@ -42,11 +43,11 @@ class AcceptedStep:
     turned: dict[str, Work]
     braking: float
 
-    @property
+    @cached_property
     def dissipated(self) -> float:
         return sum(work.dissipated for work in self.turned.values())
 
-    @property
+    @cached_property
     def work(self) -> float:
         return sum(work.external for work in self.turned.values())
 
@@ -260,8 +261,9 @@ class TimeStepper:
         return Forces(*(self._in_new_axes(f, u) for f in (forces.inertia, forces.force, forces.end)))
 
     def _in_new_axes(self, conjugate: Array, increments: Array) -> Array:
-        out = conjugate.copy()
-        for line in self.system.model.lines:
+        turned = [line for line in self.system.model.lines if line.turns_axes]
+        out = conjugate.copy() if turned else conjugate
+        for line in turned:
             at = local(line)
             out[at] = line.in_new_axes(conjugate[at], increments[at])
         return out

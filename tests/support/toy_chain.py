@@ -23,6 +23,7 @@ class Chain:
         self.prescribed[0] = prescribed
 
     lever = 1.0
+    turns_axes = False
 
     def predict(self, guess: State) -> Array:
         return guess.u

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from riser_soil.core.snapshot import Ledger, StepStatistics
+from riser_soil.results.course import SHARE
 from riser_soil.results.doubtful_extremes import AT, JUDGED
 from riser_soil.results.figures import places_of
 from riser_soil.results.indicators import ImpactLoss, StageIndicators
-from riser_soil.results.time_resolution import SHARE, TimeResolution
+from riser_soil.results.time_resolution import TimeResolution
 
 SIZE = int(AT.max()) + 1
 TENSION = places_of("end.effective_tension").start
