@@ -11,7 +11,7 @@ from matplotlib.ticker import FuncFormatter
 from benchmarks.peers.judge import Judged, front
 from riser_soil.plots.curves import save, sheet
 
-MARKERS = "osD^v*"
+MARKERS = "osPD^v*"
 
 
 def draw(cases: Mapping[str, Mapping[str, Sequence[Judged]]], least: Mapping[str, float], png: Path) -> None:
