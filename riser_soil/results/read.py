@@ -6,7 +6,7 @@ import json
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
 import h5py
@@ -18,6 +18,9 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import ResultsError
 from riser_soil.results import folder as run_folder
 from riser_soil.results.growing_file import reading
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,10 +34,11 @@ class SoilFrame:
 
 
 class Run:
-    """One run's results as numpy arrays, SI units.
+    """One run's results, finished or not, in SI units.
 
-    `run["effective_tension"]` is a variable of results.nc, first axis time (nt); `run.arc` (nn,) m;
-    `run.summary` is summary.json. Raises ResultsError when the folder holds no run, or a name is not in it.
+    `run.dataset` is results.nc with names and units, `run["effective_tension"]` one of its variables as numpy array,
+    first axis time (nt); `run.arc` (nn,) m; `run.summary` is summary.json. Raises ResultsError when the folder holds no
+    run, or a name is not in it.
     """
 
     def __init__(self, folder: Path | str) -> None:
@@ -50,6 +54,19 @@ class Run:
             stored = file[name]
             values: Array = (stored.asstr() if h5py.check_string_dtype(stored.dtype) else stored)[...]
         return values
+
+    @property
+    def dataset(self) -> xr.Dataset:
+        """results.nc as it is now, in memory: axes `time` [s], `arc` [m], `component` (x, y, z), `step`, of which each
+        variable has some; `stage_name` tells the stages, blanks as underscores; `attrs` have units and signs.
+        """
+        from riser_soil.results.dataset import load
+
+        path = self.folder / run_folder.SERIES
+        try:
+            return load(path)
+        except (OSError, ValueError) as err:
+            raise ResultsError(f"{path}: cannot be read: {err}") from err
 
     @cached_property
     def summary(self) -> dict[str, Any]:
