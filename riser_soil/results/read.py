@@ -7,16 +7,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from xml.etree import ElementTree
 
 import h5py
-import numpy as np
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import ResultsError
 from riser_soil.results import folder as run_folder
+from riser_soil.results import vtkhdf
 from riser_soil.results.growing_file import reading
 
 if TYPE_CHECKING:
@@ -47,7 +46,7 @@ class Run:
             raise ResultsError(f"{self.folder}: is not the folder of a run: no {run_folder.SERIES}")
 
     def __getitem__(self, name: str) -> Array:
-        with self._open_series() as file:
+        with self._open(run_folder.SERIES) as file:
             if name not in file:
                 known = ", ".join(sorted(file))
                 raise ResultsError(f"{self.folder}: results.nc has no {name}; it has {known}")
@@ -111,35 +110,21 @@ class Run:
     @cached_property
     def soil_times(self) -> Array:
         """(nf,) s, times of the soil's frames."""
-        return np.array([float(grid.find("Time").get("Value")) for grid in self._soil_grids])
+        if not self.has_soil:
+            raise ResultsError(f"{self.folder}: has no soil: no {run_folder.SOIL_NUMBERS}")
+        with self._open(run_folder.SOIL_NUMBERS) as store:
+            return vtkhdf.times(store)
 
     def soil_frame(self, index: int = -1) -> SoilFrame:
         """One frame of the soil, by default the last."""
-        if not self._soil_grids:
-            raise ResultsError(f"{self.folder}: soil.xdmf holds no frame yet")
-        grid = self._soil_grids[index]
-        fields = {item.get("Name"): self._heavy(item) for item in grid.findall("Attribute")}
-        points, cells = (self._heavy(grid.find(name)) for name in ("Geometry", "Topology"))
-        return SoilFrame(float(self.soil_times[index]), points, cells, fields)
+        if not self.soil_times.size:
+            raise ResultsError(f"{self.folder}: {run_folder.SOIL_NUMBERS} holds no frame yet")
+        number = range(self.soil_times.size)[index]
+        with self._open(run_folder.SOIL_NUMBERS) as store:
+            return SoilFrame(float(self.soil_times[number]), *vtkhdf.mesh(store), vtkhdf.values_at(store, number))
 
-    @cached_property
-    def _soil_grids(self) -> list[Any]:
-        path = self.folder / run_folder.SOIL_XDMF
-        if self.has_soil and not path.exists():
-            return []  # it comes with the first frame
-        try:
-            return ElementTree.parse(path).findall("Domain/Grid/Grid")
-        except (OSError, ElementTree.ParseError) as err:
-            raise ResultsError(f"{path}: cannot be read: {err}") from err
-
-    def _heavy(self, element: Any) -> Any:
-        """The array in the HDF5 file that the element's data item names."""
-        file, where = element.find("DataItem").text.strip().split(":")
-        with reading(self.folder / file) as store:
-            return store[where][...]
-
-    def _open_series(self) -> h5py.File:
-        path = self.folder / run_folder.SERIES
+    def _open(self, name: str) -> h5py.File:
+        path = self.folder / name
         try:
             return reading(path)
         except OSError as err:
