@@ -7,8 +7,8 @@ from contextlib import redirect_stdout
 from pathlib import Path
 
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
+from riser_soil.whole_run import run
 
 
 def compute(scene: Path, folder: Path, *overrides: str) -> Run:

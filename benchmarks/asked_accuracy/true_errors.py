@@ -17,8 +17,8 @@ from riser_soil.accuracy.headlines import headlines
 from riser_soil.core import compiled
 from riser_soil.errors import SolveError
 from riser_soil.results.folder import SUMMARY
-from riser_soil.run import run
 from riser_soil.scene.scene import Scene
+from riser_soil.whole_run import run
 
 ACCURACY, ON_SOIL = 0.01, 0.1  # asked; where there is soil
 CERTAIN = 0.3  # of the accuracy: what a reference may be off to be judged by

@@ -14,8 +14,8 @@ from demos.page import publish, table
 from riser_soil.plots import picture
 from riser_soil.results import Run
 from riser_soil.results.secant_stiffness import secant_stiffness
-from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
+from riser_soil.whole_run import run
 
 HERE = Path(__file__).parent
 PAGE, PICTURES = HERE / "README.md", HERE.parents[1] / "docs"

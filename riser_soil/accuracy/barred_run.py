@@ -18,8 +18,8 @@ from riser_soil.interruption import handling_signals
 from riser_soil.results.folder import SUMMARY, FolderLock, write_atomically
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.summary import plain_json
-from riser_soil.run import run
 from riser_soil.scene.scene import Scene
+from riser_soil.whole_run import run
 
 LEFT = "while its error bars were computed; {} has the whole run, without them"
 

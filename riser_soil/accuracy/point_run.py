@@ -15,8 +15,8 @@ from pathlib import Path
 from riser_soil.accuracy.study_points import COST
 from riser_soil.core import compiled
 from riser_soil.errors import Interruption, RiserSoilError
-from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
+from riser_soil.whole_run import run
 
 
 def main(file: Path, folder: Path) -> int:

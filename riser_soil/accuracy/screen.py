@@ -14,7 +14,7 @@ def print_bars(
     bars: list[ErrorBar], share: float, console: Console | None = None, what: str = "error bars"
 ) -> None:
     """share: of the run's seconds that companions, or `what` else, took in addition."""
-    console = console or Console()
+    console = console or Console(force_jupyter=False)
     for stage, of_stage in groupby(bars, key=lambda bar: bar.headline.stage):
         console.print(_table(stage, list(of_stage)))
     for reason in sorted({bar.reason for bar in bars if bar.reason}):

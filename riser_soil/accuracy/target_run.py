@@ -24,8 +24,8 @@ from riser_soil.errors import AccuracyError, Interruption, MeshError, SceneError
 from riser_soil.interruption import handling_signals
 from riser_soil.results.ownership import refuse_together
 from riser_soil.results.peaks import RunPeaks
-from riser_soil.run import run
 from riser_soil.scene.scene import Scene
+from riser_soil.whole_run import run
 
 RUNS = 3  # at most that are to reach the accuracy
 SOUGHT = "while a setting for the accuracy was sought; nothing was written"

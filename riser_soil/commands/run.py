@@ -41,15 +41,10 @@ def run(
             raise SceneError("--restart: not supported yet; run the scene from its beginning")
         checked = read(scene, overrides)
         folder = result_folder(scene, checked, output, force)
-        if checked.accuracy is not None:
-            from riser_soil.accuracy.target_run import run_to_accuracy as compute
-        elif error_bars or checked.error_bars:
-            from riser_soil.accuracy.barred_run import run_with_error_bars as compute
-        else:
-            from riser_soil.run import run as compute
+        from riser_soil.accuracy.chosen_run import run_as_asked
 
         with placed(scene, overrides):
-            compute(checked, folder, force)
+            run_as_asked(checked, folder, force, error_bars)
 
 
 def check(scene: SceneFile, overrides: Overrides = None) -> None:

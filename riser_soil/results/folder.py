@@ -17,9 +17,12 @@ SUMMARY = "summary.json"
 SERIES = "results.nc"
 RISER_XDMF = "riser.xdmf"
 SOIL_XDMF = "soil.xdmf"
-RISER_NUMBERS = "riser.h5"
-SOIL_NUMBERS = "soil.h5"
-NAMES = (SUMMARY, SERIES, RISER_XDMF, RISER_NUMBERS, SOIL_XDMF, SOIL_NUMBERS, SCENE)
+RISER_NUMBERS = "riser.vtkhdf"
+SOIL_NUMBERS = "soil.vtkhdf"
+FORMER_RISER_NUMBERS = "riser.h5"  # of earlier versions, as the next one
+FORMER_SOIL_NUMBERS = "soil.h5"
+FORMER = (FORMER_RISER_NUMBERS, FORMER_SOIL_NUMBERS)
+NAMES = (SUMMARY, SERIES, RISER_XDMF, RISER_NUMBERS, SOIL_XDMF, SOIL_NUMBERS, *FORMER, SCENE)
 _WORKSHOP = ".riser_soil"  # in the run's folder, while it is written: drafts of its files, and the lock
 _LOCK = "lock"
 

@@ -17,6 +17,8 @@ import h5py
 
 from riser_soil.errors import SceneError, WriteError
 from riser_soil.results.folder import (
+    FORMER_RISER_NUMBERS,
+    FORMER_SOIL_NUMBERS,
     NAMES,
     RISER_NUMBERS,
     RISER_XDMF,
@@ -113,8 +115,9 @@ def _own_scene(path: Path) -> bool:
 
 
 def _of_earlier_version(folder: Path) -> bool:
-    own = all((folder / name).is_file() and _OWN[name](folder / name) for name in (SUMMARY, SERIES, RISER_NUMBERS))
-    return own and not _tells(folder / RISER_NUMBERS, lambda file: "source" in file.attrs)
+    names = SUMMARY, SERIES, FORMER_RISER_NUMBERS
+    own = all((folder / name).is_file() and _OWN[name](folder / name) for name in names)
+    return own and not _tells(folder / FORMER_RISER_NUMBERS, lambda file: "source" in file.attrs)
 
 
 def _own_summary(path: Path) -> bool:
@@ -155,5 +158,7 @@ _OWN: dict[str, Callable[[Path], bool]] = {
     RISER_NUMBERS: _own_numbers,
     SOIL_XDMF: _own_xdmf,
     SOIL_NUMBERS: _own_numbers,
+    FORMER_RISER_NUMBERS: _own_numbers,
+    FORMER_SOIL_NUMBERS: _own_numbers,
     SCENE: _own_scene,
 }

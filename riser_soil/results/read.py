@@ -6,18 +6,20 @@ import json
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
-from xml.etree import ElementTree
+from typing import TYPE_CHECKING, Any
 
 import h5py
-import numpy as np
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import ResultsError
 from riser_soil.results import folder as run_folder
+from riser_soil.results import vtkhdf
 from riser_soil.results.growing_file import reading
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,10 +33,11 @@ class SoilFrame:
 
 
 class Run:
-    """One run's results as numpy arrays, SI units.
+    """One run's results, finished or not, in SI units.
 
-    `run["effective_tension"]` is a variable of results.nc, first axis time (nt); `run.arc` (nn,) m;
-    `run.summary` is summary.json. Raises ResultsError when the folder holds no run, or a name is not in it.
+    `run.dataset` is results.nc with names and units, `run["effective_tension"]` one of its variables as numpy array,
+    first axis time (nt); `run.arc` (nn,) m; `run.summary` is summary.json. Raises ResultsError when the folder holds no
+    run, or a name is not in it.
     """
 
     def __init__(self, folder: Path | str) -> None:
@@ -43,13 +46,26 @@ class Run:
             raise ResultsError(f"{self.folder}: is not the folder of a run: no {run_folder.SERIES}")
 
     def __getitem__(self, name: str) -> Array:
-        with self._open_series() as file:
+        with self._open(run_folder.SERIES) as file:
             if name not in file:
                 known = ", ".join(sorted(file))
                 raise ResultsError(f"{self.folder}: results.nc has no {name}; it has {known}")
             stored = file[name]
             values: Array = (stored.asstr() if h5py.check_string_dtype(stored.dtype) else stored)[...]
         return values
+
+    @property
+    def dataset(self) -> xr.Dataset:
+        """results.nc as it is now, in memory: axes `time` [s], `arc` [m], `component` (x, y, z), `step`, of which each
+        variable has some; `stage_name` tells the stages, blanks as underscores; `attrs` have units and signs.
+        """
+        from riser_soil.results.dataset import load
+
+        path = self.folder / run_folder.SERIES
+        try:
+            return load(path)
+        except (OSError, ValueError) as err:
+            raise ResultsError(f"{path}: cannot be read: {err}") from err
 
     @cached_property
     def summary(self) -> dict[str, Any]:
@@ -94,35 +110,21 @@ class Run:
     @cached_property
     def soil_times(self) -> Array:
         """(nf,) s, times of the soil's frames."""
-        return np.array([float(grid.find("Time").get("Value")) for grid in self._soil_grids])
+        if not self.has_soil:
+            raise ResultsError(f"{self.folder}: has no soil: no {run_folder.SOIL_NUMBERS}")
+        with self._open(run_folder.SOIL_NUMBERS) as store:
+            return vtkhdf.times(store)
 
     def soil_frame(self, index: int = -1) -> SoilFrame:
         """One frame of the soil, by default the last."""
-        if not self._soil_grids:
-            raise ResultsError(f"{self.folder}: soil.xdmf holds no frame yet")
-        grid = self._soil_grids[index]
-        fields = {item.get("Name"): self._heavy(item) for item in grid.findall("Attribute")}
-        points, cells = (self._heavy(grid.find(name)) for name in ("Geometry", "Topology"))
-        return SoilFrame(float(self.soil_times[index]), points, cells, fields)
+        if not self.soil_times.size:
+            raise ResultsError(f"{self.folder}: {run_folder.SOIL_NUMBERS} holds no frame yet")
+        number = range(self.soil_times.size)[index]
+        with self._open(run_folder.SOIL_NUMBERS) as store:
+            return SoilFrame(float(self.soil_times[number]), *vtkhdf.mesh(store), vtkhdf.values_at(store, number))
 
-    @cached_property
-    def _soil_grids(self) -> list[Any]:
-        path = self.folder / run_folder.SOIL_XDMF
-        if self.has_soil and not path.exists():
-            return []  # it comes with the first frame
-        try:
-            return ElementTree.parse(path).findall("Domain/Grid/Grid")
-        except (OSError, ElementTree.ParseError) as err:
-            raise ResultsError(f"{path}: cannot be read: {err}") from err
-
-    def _heavy(self, element: Any) -> Any:
-        """The array in the HDF5 file that the element's data item names."""
-        file, where = element.find("DataItem").text.strip().split(":")
-        with reading(self.folder / file) as store:
-            return store[where][...]
-
-    def _open_series(self) -> h5py.File:
-        path = self.folder / run_folder.SERIES
+    def _open(self, name: str) -> h5py.File:
+        path = self.folder / name
         try:
             return reading(path)
         except OSError as err:

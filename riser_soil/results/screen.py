@@ -37,7 +37,7 @@ def print_summary(summary: dict[str, Any], console: Console | None = None) -> No
 
     summary: what goes into summary.json.
     """
-    console = console or Console()
+    console = console or Console(force_jupyter=False)
     for stage in summary["stages"]:
         if stage["final"] is not None:
             console.print(_table(_stage_title(stage), _stage_rows(stage)))

@@ -1,12 +1,14 @@
-"""XDMF time series for ParaView and VTK: numbers in HDF5, structure in XML, readable at any moment.
+"""Time series for ParaView and VTK, readable at any moment: numbers in a VTKHDF file, which opens by itself, and
+beside it XDMF that refers to the same numbers.
 
-One temporal collection of uniform grids. The numbers are written to the HDF5 file before the XML that refers to them,
-so that the XML never refers to missing data.
+The XDMF is one temporal collection of uniform grids. The numbers are written before the XML that refers to them, so
+that the XML never refers to missing data.
 """
 
 from __future__ import annotations
 
 import io
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
@@ -15,6 +17,7 @@ import h5py
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.results import vtkhdf
 from riser_soil.results.growing_file import GrowingFile, appending
 from riser_soil.results.ownership import PROGRAM, XDMF_HEAD
 
@@ -36,7 +39,7 @@ class Frame:
 
 
 class XdmfFile:
-    """Writer of PATH.xdmf and the HDF5 file of the same name beside it. The former comes with the first frame: VTK's
+    """Writer of PATH.xdmf and the VTKHDF file of the same name beside it. The former comes with the first frame: VTK's
     reader, and ParaView with it, dies of a collection without any.
 
     cells: (nc, k) point numbers in VTK's order: k = 4, 8 or 10; or (1, np) with `polyline`.
@@ -46,18 +49,19 @@ class XdmfFile:
     def __init__(
         self, path: Path, name: str, cells: IntArray, points: Array | None = None, *, polyline: bool = False
     ) -> None:
-        heavy = path.with_suffix(".h5")
+        heavy = path.with_suffix(".vtkhdf")
         self._heavy_name = heavy.name
         self._frames = 0
         self._waiting: list[Frame] = []
         content = io.BytesIO()
         with h5py.File(content, "w") as store:
             store.attrs["source"] = PROGRAM
-            item = self._store(store, "cells", np.asarray(cells, dtype=np.int64))
-            self._points = None if points is None else self._store(store, "points", points)
+            vtkhdf.lay_out(store, cells, points, polyline)
         self._heavy = GrowingFile(heavy, content.getvalue())
         kind = _polyline_of(cells) if polyline else f'TopologyType="{_CELLS[cells.shape[1]]}"'
+        item = self._item("Lines/Connectivity" if polyline else "Connectivity", (cells.size,), "Int")
         self._topology = f'<Topology {kind} NumberOfElements="{len(cells)}">{item}</Topology>'
+        self._points = None if points is None else self._item("Points", points.shape)
         self._path, self._head = path, XDMF_HEAD.format(name=quoteattr(name))
         self._text: GrowingFile | None = None
 
@@ -83,12 +87,12 @@ class XdmfFile:
             self._text.close()
 
     def _grid(self, store: h5py.File, number: int, frame: Frame) -> str:
-        group = f"frame_{number:06d}"
-        values = frame.on_points | frame.on_cells
-        items = {name: self._store(store, f"{group}/{name}", v) for name, v in values.items()}
+        vtkhdf.append(store, frame.time, frame.on_points, frame.on_cells, frame.geometry)
+        items = {name: self._part(f"PointData/{name}", number, v.shape) for name, v in frame.on_points.items()}
+        items |= {name: self._part(f"CellData/{name}", number, v.shape) for name, v in frame.on_cells.items()}
         points = self._points if frame.geometry is None else items[frame.geometry]
         lines = [
-            f'<Grid Name="{group}" GridType="Uniform">',
+            f'<Grid Name="frame_{number:06d}" GridType="Uniform">',
             f'<Time Value="{float(frame.time)!r}"/>',
             self._topology,
             f'<Geometry GeometryType="XYZ">{points}</Geometry>',
@@ -97,13 +101,21 @@ class XdmfFile:
         lines += [_attribute(name, "Cell", v, items[name]) for name, v in frame.on_cells.items()]
         return "".join(f"   {line}\n" for line in [*lines, "</Grid>"])
 
-    def _store(self, store: h5py.File, where: str, values: Array | IntArray) -> str:
-        store[where] = values
-        dims = " ".join(str(n) for n in values.shape)
-        number = "Int" if values.dtype.kind == "i" else "Float"
+    def _item(self, where: str, shape: Sequence[int], number: str = "Float") -> str:
+        """A whole array of the VTKHDF file, as large as it is now."""
         return (
-            f'<DataItem Dimensions="{dims}" NumberType="{number}" Precision="8" Format="HDF">'
-            f"{self._heavy_name}:/{where}</DataItem>"
+            f'<DataItem Dimensions="{_words(shape)}" NumberType="{number}" Precision="8" Format="HDF">'
+            f"{self._heavy_name}:/{vtkhdf.ROOT}/{where}</DataItem>"
+        )
+
+    def _part(self, where: str, number: int, shape: Sequence[int]) -> str:
+        """The rows of one instant: where they begin, in steps of one, how many."""
+        rows, row = shape[0], shape[1:]
+        begin, step = (number * rows, *(0 for _ in row)), (1 for _ in shape)
+        return (
+            f'<DataItem ItemType="HyperSlab" Dimensions="{_words(shape)}">'
+            f'<DataItem Dimensions="3 {len(shape)}" Format="XML">{_words((*begin, *step, *shape))}</DataItem>'
+            f"{self._item(where, ((number + 1) * rows, *row))}</DataItem>"
         )
 
     def _append(self, grids: str) -> None:
@@ -119,6 +131,10 @@ class XdmfFile:
 def polyline(nodes: int) -> IntArray:
     """Connectivity (1, nodes) of one line through all points in their order."""
     return np.arange(nodes, dtype=np.int64)[None, :]
+
+
+def _words(numbers: Iterable[int]) -> str:
+    return " ".join(map(str, numbers))
 
 
 def _polyline_of(cells: IntArray) -> str:

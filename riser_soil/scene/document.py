@@ -23,7 +23,10 @@ _MOST_LETTERS = 2_000_000  # beside long lists of numbers: some 20 s for the YAM
 
 @dataclass
 class Document:
-    """Plain data (dict, list, str, int, float, bool, None) and where each value was written."""
+    """Plain data (dict, list, str, int, float, bool, None) and where each value was written.
+
+    overrides: by the path of a value that was replaced, what replaced it, as messages name it.
+    """
 
     name: str
     data: Any
@@ -34,7 +37,7 @@ class Document:
         """Sorting number and text of the place of a value, or of the nearest value around it."""
         for n in range(len(path), -1, -1):
             if path[:n] in self.overrides:
-                return 0, f"--set {self.overrides[path[:n]]}"
+                return 0, self.overrides[path[:n]]
             if path[:n] in self.lines:
                 return self.lines[path[:n]], f"{self.name}:{self.lines[path[:n]]}"
         return 1, self.name

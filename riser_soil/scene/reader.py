@@ -24,26 +24,32 @@ def read_scene(file: str | Path, overrides: Sequence[str] = ()) -> Scene:
     path = Path(file)
     document = parse(read_text(path), str(file))
     override(document, overrides)
-    return _checked(document, path.parent)
+    return checked(document, path.parent)
 
 
 def scene_from_mapping(data: dict[str, Any], folder: Path = Path()) -> Scene:
     """A scene from plain data as a file would give it; relative file names are sought in `folder`."""
-    return _checked(Document("scene", data), folder)
+    return checked(Document("scene", data), folder)
 
 
 def with_place(message: str, file: str | Path, overrides: Sequence[str] = ()) -> str:
+    """`with_place_in` the document of a file with `path=value` overrides."""
+    document = parse(read_text(Path(file)), str(file))
+    override(document, overrides)
+    return with_place_in(document, message)
+
+
+def with_place_in(document: Document, message: str) -> str:
     """A message that begins with a path of the scene, as the parts write it, after the place of that path."""
     words = re.split(r"[^\w.]", message, maxsplit=1)[0].split(".")
     if words[0] not in Scene.model_fields:
         return message
-    document = parse(read_text(Path(file)), str(file))
-    override(document, overrides)
     _, place = document.where(tuple(int(word) if word.isdecimal() else word for word in words))
     return f"{place}: {message}"
 
 
-def _checked(document: Document, folder: Path) -> Scene:
+def checked(document: Document, folder: Path) -> Scene:
+    """The scene of a document; files that it names are sought in the folder."""
     data, unsupported = not_yet.taken_out(document.data)
     try:
         scene = Scene.model_validate(data, context={"folder": folder})

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from riser_soil.errors import RiserSoilError
-from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
 from riser_soil.stress.limited_process import Job
+from riser_soil.whole_run import run
 
 
 def running(names: Sequence[str]) -> Job:

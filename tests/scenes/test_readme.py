@@ -62,9 +62,9 @@ def test_command(done: dict[str, subprocess.CompletedProcess[str]], command: str
 
 
 def test_commands_leave_what_they_promise(done: object, newcomer: Path) -> None:
-    promised = ["scene.yaml", "summary.json", "results.nc", "riser.xdmf", "riser.h5"]
+    promised = ["scene.yaml", "summary.json", "results.nc", "riser.xdmf", "riser.vtkhdf"]
     assert sorted(p.name for p in (newcomer / "results/first").iterdir()) == sorted(promised)
-    assert {"soil.xdmf", "soil.h5"} < {p.name for p in (newcomer / "results/two_ranks").iterdir()}
+    assert {"soil.xdmf", "soil.vtkhdf"} < {p.name for p in (newcomer / "results/two_ranks").iterdir()}
     assert json.loads((newcomer / "scene.schema.json").read_text())["title"] == "Scene"
     assert (newcomer / "results/first.png").read_bytes().startswith(b"\x89PNG")
 

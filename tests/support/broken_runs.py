@@ -22,7 +22,7 @@ ENDLESS = ("--set", "stages.1.duration=1e4", "--set", "output.interval=0.1")
 # disk every tenth of a second, so that what fits does not hang on how many a fast machine gathers in a second.
 ON_A_SMALL_DISK = """
 import resource, sys
-import riser_soil.run
+import riser_soil.whole_run
 from riser_soil.__main__ import main
 from riser_soil.results import record
 

@@ -1,4 +1,4 @@
-"""Stages of a scene taken as riser_soil.run takes them, but without files, every step open to a test's eyes."""
+"""Stages of a scene taken as riser_soil.whole_run takes them, but without files, every step open to a test's eyes."""
 
 from __future__ import annotations
 

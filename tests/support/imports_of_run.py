@@ -10,8 +10,8 @@ from pathlib import Path
 def main(scene: str, folder: Path) -> None:
     from numba.core import event
 
-    from riser_soil.run import run
     from riser_soil.scene.reader import read_scene
+    from riser_soil.whole_run import run
 
     with event.install_recorder("numba:compile") as compiled:
         run(read_scene(scene), folder / "results", force=True)

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage
+from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 

@@ -1,4 +1,6 @@
-"""What VTK's own reader finds in XDMF files: python vtk_reading.py FILE.xdmf FILE.npz, or --times FILE.xdmf ...
+"""What VTK's own readers find in XDMF files: python vtk_reading.py FILE.xdmf FILE.npz, or --times FILE.xdmf ...
+
+The reader of VTKHDF finds the same in the file of that name beside it, or this ends with an error.
 
 A script, not a module to import: VTK aborts in a process that has imported dolfinx before it.
 """
@@ -6,6 +8,7 @@ A script, not a module to import: VTK aborts in a process that has imported dolf
 import json
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -41,34 +44,79 @@ def times_by_vtk(paths: list[Path]) -> list[list[float]]:
 
 
 def tell_times(*paths: str) -> None:
-    import pyvista as pv
-
     found = []
     for path in paths:
-        reader = pv.XdmfReader(path)
-        times = list(reader.time_values)
-        for time in times[-1:]:
-            reader.set_active_time_value(time)
-            assert reader.read().n_points > 0
+        times = times_in(path)
+        same_times(path, times)
+        for number in (len(times) - 1,) if times else ():
+            same(look(path, number), look(beside(path), number))
         found.append(times)
     print(json.dumps(found))
 
 
 def main(path: str, found: str) -> None:
+    times = times_in(path)
+    same_times(path, times)
+    arrays: Frame = {"times": np.array(times)}
+    for number in range(len(times)):
+        frame = look(path, number)
+        same(frame, look(beside(path), number))
+        arrays |= {f"{number}/{name}": values for name, values in frame.items()}
+    np.savez(found, **arrays)
+
+
+def beside(path: str) -> str:
+    return str(Path(path).with_suffix(".vtkhdf"))
+
+
+def same_times(path: str, times: list[float]) -> None:
+    """VTK's reader of VTKHDF tells no time where there is one alone."""
+    assert times_in(beside(path)) == (times if len(times) > 1 else [])
+
+
+def same(frame: Frame, other: Frame) -> None:
+    assert frame.keys() == other.keys(), (frame.keys(), other.keys())
+    for name, values in frame.items():
+        np.testing.assert_array_equal(other[name], values, err_msg=name)
+
+
+def times_in(path: str) -> list[float]:
+    from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+
+    reader = reader_of(path)
+    reader.UpdateInformation()
+    return list(reader.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS()) or ())
+
+
+def look(path: str, number: int) -> Frame:
+    """A frame, as a reader that has seen none before it finds it."""
     import pyvista as pv
 
-    reader = pv.XdmfReader(path)
-    arrays: Frame = {"times": np.array(reader.time_values)}
-    for number, time in enumerate(reader.time_values):
-        reader.set_active_time_value(time)
-        grid = reader.read()
-        sizes = grid.compute_cell_sizes(length=False, area=False)
-        arrays[f"{number}/points"] = grid.points
-        arrays[f"{number}/cell_types"] = np.array([int(cell.type) for cell in grid.cell])
-        arrays[f"{number}/volumes"] = sizes.cell_data["Volume"]
-        for kind, data in (("point", grid.point_data), ("cell", grid.cell_data)):
-            arrays.update({f"{number}/{kind}:{name}": np.asarray(data[name]) for name in data})
-    np.savez(found, **arrays)
+    reader = reader_of(path)
+    reader.UpdateInformation()
+    times = times_in(path)
+    reader.UpdateTimeStep(times[number] if times else 0.0)
+    grid = pv.wrap(reader.GetOutputDataObject(0))
+    sizes = grid.compute_cell_sizes(length=False, area=False)
+    assert grid.n_points > 0
+    return dict(told(grid, sizes))
+
+
+def told(grid: Any, sizes: Any) -> Iterator[tuple[str, Any]]:
+    yield "points", grid.points
+    yield "cell_types", np.array([int(grid.GetCellType(cell)) for cell in range(grid.n_cells)])
+    yield "volumes", sizes.cell_data["Volume"]
+    for kind, data in (("point", grid.point_data), ("cell", grid.cell_data)):
+        yield from ((f"{kind}:{name}", np.asarray(data[name])) for name in data)
+
+
+def reader_of(path: str) -> Any:
+    from vtkmodules.vtkIOHDF import vtkHDFReader
+    from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
+
+    reader = vtkXdmfReader() if path.endswith(".xdmf") else vtkHDFReader()
+    reader.SetFileName(path)
+    return reader
 
 
 if __name__ == "__main__":

@@ -12,9 +12,9 @@ from riser_soil.contact.contact import RiserContact
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import System
-from riser_soil.run import run
 from riser_soil.scene.scene import Scene
 from riser_soil.solve.time_stepper import AcceptedStep
+from riser_soil.whole_run import run
 from tests.support.driven_stage import before_commit
 
 

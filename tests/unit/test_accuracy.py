@@ -20,11 +20,11 @@ from riser_soil.accuracy.search import trial
 from riser_soil.accuracy.target_run import run_to_accuracy
 from riser_soil.commands.app import app
 from riser_soil.errors import AccuracyError, Interruption, SceneError, SolveError
-from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.schema import schema_text
 from riser_soil.scene.stages import DynamicStage
+from riser_soil.whole_run import run
 from tests.support.on_ranks import mpirun
 
 

@@ -55,7 +55,7 @@ def invoke(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Invoke:
 
     def call(*arguments: str, failure: BaseException | None = None) -> tuple[Result, Calls]:
         calls = Calls(failure)
-        monkeypatch.setitem(sys.modules, "riser_soil.run", SimpleNamespace(run=calls.run))
+        monkeypatch.setitem(sys.modules, "riser_soil.whole_run", SimpleNamespace(run=calls.run))
         monkeypatch.setitem(sys.modules, "riser_soil.checks.check", SimpleNamespace(describe=calls.describe))
         return CliRunner().invoke(app, list(arguments)), calls
 

@@ -30,7 +30,7 @@ def compute(scene, folder, force):
     MPI.COMM_WORLD.Barrier()
 
 endings._PATIENCE = 2.0
-sys.modules["riser_soil.run"] = SimpleNamespace(run=compute)
+sys.modules["riser_soil.whole_run"] = SimpleNamespace(run=compute)
 sys.argv = ["riser-soil", "run", {str(SCENE)!r}]
 main()
 """

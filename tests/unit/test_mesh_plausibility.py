@@ -10,8 +10,8 @@ import pytest
 
 from riser_soil.checks.mesh_plausibility import mesh_warnings, missed, told_resolution
 from riser_soil.results.plausibility import NEAR_STRESS
-from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.whole_run import run
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import built
 

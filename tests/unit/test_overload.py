@@ -15,11 +15,11 @@ from riser_soil.checks.overload import over_a_length, overload, surface_bearing
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
-from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.seabed.bearing import Strength, strip_capacity
 from riser_soil.seabed.law import NormalLaw
 from riser_soil.stages import run_stage
+from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping, touchdown
 from tests.support.driven_stage import Watcher, built
 from tests.support.riser_scenes import prescribed, riser_scene, static

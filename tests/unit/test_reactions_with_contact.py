@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.whole_run import run
 
 PIPE = {"outer_diameter": 0.2, "mass": 50.0, "EA": 1e7, "EI": 2e4}
 NEWMARK = {"newmark": {"beta": 0.25, "gamma": 0.5}}

@@ -142,7 +142,7 @@ def test_an_unfinished_run_is_overwritten_and_its_soil_goes(tmp_path: Path) -> N
     assert sorted(p.name for p in tmp_path.iterdir()) == [
         "notes.txt",
         "results.nc",
-        "riser.h5",
+        "riser.vtkhdf",
         "riser.xdmf",
         "scene.yaml",
         "summary.json",

@@ -13,7 +13,7 @@ import h5py
 import pytest
 
 from riser_soil.errors import SceneError, WriteError
-from riser_soil.results.folder import NAMES, FolderLock
+from riser_soil.results.folder import FORMER, NAMES, FolderLock
 from riser_soil.results.ownership import prepare, refuse, sealed
 from tests.support.recorded_run import a_recorder, block, record, step
 
@@ -30,7 +30,7 @@ def test_nothing_that_others_have_written_is_replaced(name: str, force: bool, tm
     assert (tmp_path / name).read_text() == "title: mine\n"
 
 
-@pytest.mark.parametrize("name", ["results.nc", "riser.h5", "soil.h5"])
+@pytest.mark.parametrize("name", ["results.nc", "riser.vtkhdf", "soil.vtkhdf", "riser.h5", "soil.h5"])
 def test_another_program_s_hdf5_file_stays(name: str, tmp_path: Path) -> None:
     with h5py.File(tmp_path / name, "w") as file:
         file["numbers"] = [1.0]
@@ -53,7 +53,7 @@ def test_links_and_folders_stay(name: str, tmp_path: Path) -> None:
 def test_all_that_a_run_leaves_is_its_own(tmp_path: Path) -> None:
     for _ in range(2):
         record(tmp_path, mesh=block(4, 3, 2), duration=0.2, force=True)
-    assert {p.name for p in tmp_path.iterdir()} == set(NAMES)
+    assert {p.name for p in tmp_path.iterdir()} == {*NAMES} - {*FORMER}
 
 
 def test_a_scene_that_was_edited_in_the_folder_stays(tmp_path: Path) -> None:
@@ -79,8 +79,8 @@ def test_a_folder_of_an_earlier_version_is_known(tmp_path: Path) -> None:
     (tmp_path / "scene.yaml").write_text(text.split("\n", 1)[1])
     with pytest.raises(SceneError, match=r"scene\.yaml"):
         refuse(tmp_path, force=True)
-    with h5py.File(tmp_path / "riser.h5", "r+") as numbers:
-        del numbers.attrs["source"]
+    with h5py.File(tmp_path / "riser.h5", "w") as numbers:
+        numbers["cells"] = [[0, 1]]
     written = (tmp_path / "results.nc").stat().st_mtime
     os.utime(tmp_path / "scene.yaml", (written - 1.0, written - 1.0))
     refuse(tmp_path, force=True)

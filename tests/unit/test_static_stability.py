@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.whole_run import run
 
 PIPE = {"EA": 1e7, "EI": 1e3, "submerged_weight": 100.0}
 EULER = np.pi**2 * 1e3 / 10.0**2

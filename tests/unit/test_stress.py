@@ -13,7 +13,6 @@ from pathlib import Path
 import pytest
 
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
 from riser_soil.stress.answers import Answer, between, near
@@ -21,6 +20,7 @@ from riser_soil.stress.bounds import bounds
 from riser_soil.stress.extremes import BASE, extremes
 from riser_soil.stress.limited_process import Ending, Limits, ended
 from riser_soil.stress.outcome import BROKEN, LONG, PASSED, TOLD, WRONG, outcome
+from riser_soil.whole_run import run
 from tests.support.on_ranks import ROOT, environment
 from tests.support.riser_scenes import prescribed, riser_scene, static
 

@@ -12,13 +12,13 @@ from riser_soil.core.part import Forces, LineField, Model, Part, State
 from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solution import NewtonSettings
 from riser_soil.solve.step_control import StepControl
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Midpoint, Scheme
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
+from riser_soil.whole_run import run
 from tests.support.toy_chain import Chain, Floor, Inertia, Springs
 
 AVERAGE = GeneralizedAlpha.newmark()

@@ -1,12 +1,14 @@
-"""XDMF files, read back by VTK's own reader."""
+"""XDMF and VTKHDF files, read back by VTK's own readers: `read_by_vtk` holds what both find against each other."""
 
 from pathlib import Path
 from xml.etree import ElementTree
 
+import h5py
 import numpy as np
 import pytest
 
 from riser_soil.core.arrays import IntArray
+from riser_soil.results import vtkhdf
 from riser_soil.results.xdmf import Frame, XdmfFile, polyline
 from tests.support.recorded_run import block, record
 from tests.support.vtk_reading import read_by_vtk
@@ -78,7 +80,7 @@ def test_frames_are_readable_after_each_flush_and_not_before(tmp_path: Path) -> 
     assert frames_in(tmp_path / "riser.xdmf") == 1
     file.flush()
     assert len(read_by_vtk(tmp_path / "riser.xdmf")[1]) == frames_in(tmp_path / "riser.xdmf") == 2
-    assert sorted(p.name for p in tmp_path.iterdir() if p.is_file()) == ["riser.h5", "riser.xdmf"]
+    assert sorted(p.name for p in tmp_path.iterdir() if p.is_file()) == ["riser.vtkhdf", "riser.xdmf"]
 
 
 def test_frames_are_copies(tmp_path: Path) -> None:
@@ -101,3 +103,23 @@ def test_riser_and_soil_share_one_time_axis_and_have_the_names_that_paraview_sho
     assert {f"point:{name}" for name in names} <= set(riser[-1])
     fields = {"mean_effective_stress", "von_mises_stress", "strength_used", "equivalent_plastic_strain"}
     assert {key for key in soil[-1] if ":" in key} == {"point:displacement", *(f"cell:{name}" for name in fields)}
+
+
+def test_vtkhdf_is_cut_back_and_goes_on(tmp_path: Path) -> None:
+    """Instants that were taken away leave nothing, and others take their place."""
+    points, cells = np.random.default_rng(2).uniform(size=(8, 3)), np.arange(8)[None, :]
+    with h5py.File(tmp_path / "soil.vtkhdf", "w") as store:
+        vtkhdf.lay_out(store, cells, points, polyline=False)
+        for time in (0.0, 1.0, 9.0, 2.0):
+            if time == 2.0:
+                vtkhdf.cut_back(store, 2)
+            on_cells = {"stress": np.array([time]), "p": np.array([3.0])}
+            vtkhdf.append(store, time, {"displacement": points + time}, on_cells)
+        assert vtkhdf.times(store).tolist() == [0.0, 1.0, 2.0]
+        np.testing.assert_array_equal(vtkhdf.mesh(store)[1], cells)
+        found = vtkhdf.values_at(store, 2)
+        np.testing.assert_array_equal(found["displacement"], points + 2.0)
+        assert (found["stress"].tolist(), found["p"].tolist()) == ([2.0], [3.0])
+        steps = store[vtkhdf.ROOT]["Steps"]
+        assert steps["PointDataOffsets"]["displacement"][...].tolist() == [0, 8, 16]
+        assert {len(rows) for rows in steps.values() if isinstance(rows, h5py.Dataset)} == {3}

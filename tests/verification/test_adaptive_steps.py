@@ -10,8 +10,8 @@ import pytest
 from benchmarks import adaptive
 from riser_soil.errors import SolveError
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
+from riser_soil.whole_run import run
 from tests.support.riser_scenes import AVERAGE, dynamic, prescribed, riser_scene, stage_histories
 
 CATENARY = Path(__file__).parents[1] / "scenes/catenary.yaml"

@@ -17,12 +17,12 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.buckling import _largest, stabilising_drag
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solution import NewtonSettings
 from riser_soil.solve.time_scheme import Static
+from riser_soil.whole_run import run
 from tests.support.buckling_scenes import ALONG, SLANTING, blade, column, frame
 from tests.support.coupled_scenes import Mapping
 from tests.support.on_ranks import mpirun
@@ -165,7 +165,7 @@ def test_two_ranks_take_the_same_branch(tmp_path: Path) -> None:
         folder = tmp_path / str(ranks)
         script = (
             "from pathlib import Path\n"
-            "from riser_soil.run import run\n"
+            "from riser_soil.whole_run import run\n"
             "from riser_soil.scene.reader import scene_from_mapping\n"
             "from tests.support.buckling_scenes import blade\n"
             f"run(scene_from_mapping(blade(20, 3.0)), Path({str(folder)!r}))\n"

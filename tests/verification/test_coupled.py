@@ -19,10 +19,10 @@ from riser_soil.core.part import State, Weights
 from riser_soil.core.system import System, total
 from riser_soil.results import Run
 from riser_soil.riser.catenary import catenary
-from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep
 from riser_soil.stages import LAID_IN
+from riser_soil.whole_run import run
 from tests.support.coupled_scenes import DEMO, LAY, Mapping, touchdown
 from tests.support.driven_stage import built, take
 from tests.support.watched_run import WatchedRun

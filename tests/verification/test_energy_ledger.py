@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import dynamic, in_waves, prescribed, riser_scene, static
 

@@ -20,7 +20,7 @@ from tests.support.vtk_reading import read_by_vtk
 
 RANKS = pytest.mark.parametrize("ranks", [1, 2])
 FAILED, REFUSED = 3, 2
-FILES = {"scene.yaml", "summary.json", "results.nc", "riser.xdmf", "riser.h5", "soil.xdmf", "soil.h5"}
+FILES = {"scene.yaml", "summary.json", "results.nc", "riser.xdmf", "riser.vtkhdf", "soil.xdmf", "soil.vtkhdf"}
 
 
 def command(folder: Path, ranks: int, scene: Mapping, *options: str) -> subprocess.CompletedProcess[str]:

@@ -9,9 +9,9 @@ import pytest
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.stages import run_stage
+from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import built
 from tests.support.falling_on_soil import CLAY, ELASTIC, END, FALL, MIDDLE, falling

@@ -12,9 +12,9 @@ import pytest
 from riser_soil.assembly.scales import FORCE_FLOOR
 from riser_soil.core.arrays import Array
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
+from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.flexible_riser import elastica_H, guess, properties
 from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static

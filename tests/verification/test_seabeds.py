@@ -11,9 +11,9 @@ import pytest
 from riser_soil.core.snapshot import RiserSnapshot
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
 from riser_soil.seabed.laws import LAWS
+from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import distance, prescribed, riser_scene, stage_histories, static
 

@@ -14,11 +14,11 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import Stage
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import LAID_IN, run_stage
+from riser_soil.whole_run import run
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import Watcher, built, take
 from tests.support.falling_on_soil import CLAY, ELASTIC, MIDDLE, D, falling

@@ -14,9 +14,9 @@ from riser_soil.checks.ground_plausibility import ground_warnings
 from riser_soil.checks.mesh_plausibility import LIKE_CONTACT
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.core.system import System
-from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep
+from riser_soil.whole_run import run
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import FirstStep, built, take
 from tests.support.pushed_pipe import INDENTATION, NU, D, E, Pushed, slice_of_soil

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
+from riser_soil.whole_run import run
 
 SCENE = Path(__file__).parents[1] / "scenes/tank.yaml"
 HUB, RADIUS, AMPLITUDE, PERIOD = np.array([28.0, 0.0, 17.0]), 2.0, np.radians(20.0), 10.0

@@ -13,8 +13,8 @@ from riser_soil.contact.touchdown import ContactInterval
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
 from riser_soil.results.touchdown_zone import joined
-from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.whole_run import run
 from tests.support.coupled_scenes import LAY, Mapping, touchdown
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 

@@ -10,8 +10,8 @@ import pytest
 
 from riser_soil.core.snapshot import RiserSnapshot
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
 

@@ -1,0 +1,138 @@
+"""VTKHDF layout of the pictures' HDF5 files: VTK 9.3, ParaView 5.12 and later ones open them by themselves, with times.
+
+One group, VTKHDF: points, cells, values on both, and for each instant where its own begin. Values of all instants stand
+one after the other, a chunk for each, so that a frame costs the same however many there are. What all instants share is
+stored once: a mesh that stays, a line's cells; offsets that are the same for several values are links to one array.
+Source: VTK's file formats, "VTKHDF File Format", version 2.0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import h5py
+import numpy as np
+
+from riser_soil.core.arrays import Array, IntArray
+
+ROOT = "VTKHDF"
+_TYPES = {4: 10, 8: 12, 10: 24}  # tetrahedron, hexahedron, second-order tetrahedron, by their points
+_KINDS_OF_LINES = ("Vertices", "Lines", "Polygons", "Strips")
+_STEPS_IN_CHUNK = 128
+
+
+def lay_out(store: h5py.File, cells: IntArray, points: Array | None, polyline: bool) -> None:
+    """A mesh without any instant. cells: (nc, k), or one line (1, np); points: (np, 3) m, None where they move."""
+    root = store.create_group(ROOT)
+    root.attrs["Version"] = np.array([2, 0])
+    root.attrs["Type"] = np.bytes_("PolyData" if polyline else "UnstructuredGrid")
+    root["NumberOfPoints"] = np.array([cells.max() + 1 if points is None else len(points)])
+    if points is not None:
+        root["Points"] = points
+    kinds = _KINDS_OF_LINES if polyline else ("",)
+    for kind in kinds:
+        _add_cells(root.create_group(kind) if kind else root, cells if kind in ("", "Lines") else cells[:0])
+    if not polyline:
+        root["Types"] = np.full(len(cells), _TYPES[cells.shape[1]], dtype=np.uint8)
+    steps = root.create_group("Steps")
+    steps.attrs["NSteps"] = 0
+    _make_growing(steps, "Values", (), "f8", _STEPS_IN_CHUNK)
+    for name in ("PartOffsets", "NumberOfParts", "PointOffsets"):
+        _make_growing(steps, name, (), "i8", _STEPS_IN_CHUNK)
+    for name in ("CellOffsets", "ConnectivityIdOffsets"):
+        _make_growing(steps, name, (len(kinds),), "i8", _STEPS_IN_CHUNK)
+    for kind in ("Point", "Cell"):
+        root.create_group(f"{kind}Data")
+        steps.create_group(f"{kind}DataOffsets")
+
+
+def append(
+    store: h5py.File,
+    time: float,
+    on_points: Mapping[str, Array],
+    on_cells: Mapping[str, Array],
+    geometry: str | None = None,
+) -> None:
+    """One instant, with the same names as those before. geometry: of the values on points that are the points."""
+    root = store[ROOT]
+    steps = root["Steps"]
+    number = int(steps.attrs["NSteps"])
+    for kind, values in {"Point": on_points, "Cell": on_cells}.items():
+        _append_values(root[f"{kind}Data"], steps[f"{kind}DataOffsets"], number, values)
+    if geometry is not None and "Points" not in root:
+        root["Points"] = root["PointData"][geometry]
+    moved = number * int(root["NumberOfPoints"][0]) if geometry is not None else 0
+    for name, value in {"Values": time, "PartOffsets": 0, "NumberOfParts": 1, "PointOffsets": moved}.items():
+        _extend(steps[name], [value])
+    for name in ("CellOffsets", "ConnectivityIdOffsets"):
+        _extend(steps[name], np.zeros((1, steps[name].shape[1]), dtype=np.int64))
+    steps.attrs["NSteps"] = number + 1
+
+
+def cut_back(store: h5py.File, frames: int) -> None:
+    """Take the instants after the first `frames` away."""
+    root = store[ROOT]
+    steps = root["Steps"]
+    for kind in ("Point", "Cell"):
+        for values in root[f"{kind}Data"].values():
+            values.resize(frames * values.chunks[0], axis=0)
+        for offsets in steps[f"{kind}DataOffsets"].values():
+            offsets.resize(frames, axis=0)
+    for steps_of in steps.values():
+        if isinstance(steps_of, h5py.Dataset):
+            steps_of.resize(frames, axis=0)
+    steps.attrs["NSteps"] = frames
+
+
+def times(store: h5py.File) -> Array:
+    """(nf,) s."""
+    found: Array = store[ROOT]["Steps"]["Values"][...]
+    return found
+
+
+def mesh(store: h5py.File) -> tuple[Array, IntArray]:
+    """Points (np, 3) [m] and cells (nc, k) of a mesh that stays."""
+    root = store[ROOT]
+    return root["Points"][...], root["Connectivity"][...].reshape(int(root["NumberOfCells"][0]), -1)
+
+
+def values_at(store: h5py.File, number: int) -> dict[str, Array]:
+    """Values on points and cells of one instant, by their names."""
+    found = {}
+    for kind in ("Point", "Cell"):
+        for name, values in store[ROOT][f"{kind}Data"].items():
+            rows = values.chunks[0]
+            found[name] = values[number * rows : (number + 1) * rows]
+    return found
+
+
+def _add_cells(group: h5py.Group, cells: IntArray) -> None:
+    count, points = cells.shape
+    group["NumberOfCells"] = np.array([count])
+    group["NumberOfConnectivityIds"] = np.array([cells.size])
+    group["Connectivity"] = np.ascontiguousarray(cells, dtype=np.int64).ravel()
+    group["Offsets"] = points * np.arange(count + 1, dtype=np.int64)
+
+
+def _append_values(data: h5py.Group, offsets: h5py.Group, number: int, values: Mapping[str, Array]) -> None:
+    for name, array in values.items():
+        if name not in data:
+            _make_growing(data, name, array.shape[1:], array.dtype, len(array))
+            if len(offsets):
+                offsets[name] = offsets[next(iter(offsets))]
+            else:
+                _make_growing(offsets, name, (), "i8", _STEPS_IN_CHUNK)
+        _extend(data[name], array)
+    if values:
+        name, array = next(iter(values.items()))
+        _extend(offsets[name], [number * len(array)])
+
+
+def _make_growing(group: h5py.Group, name: str, row: tuple[int, ...], dtype: object, rows: int) -> None:
+    group.create_dataset(name, (0, *row), dtype, maxshape=(None, *row), chunks=(rows, *row))
+
+
+def _extend(dataset: h5py.Dataset, rows: object) -> None:
+    known, new = dataset.shape[0], np.asarray(rows)
+    dataset.resize(known + len(new), axis=0)
+    dataset[known:] = new
