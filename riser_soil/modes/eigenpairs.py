@@ -1,0 +1,97 @@
+"""Lowest eigenpairs of K φ = ω² M φ, by SciPy's shift-invert Lanczos method (ARPACK) on MUMPS' factors.
+
+M may be singular, as soil has no mass. Modes are normalised by φᵀ M φ = 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import NamedTuple
+
+import numpy as np
+from petsc4py import PETSc
+from scipy.sparse import csr_array
+from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
+
+from riser_soil.core.arrays import Array
+from riser_soil.errors import SolveError
+from riser_soil.solve.linear_solver import use_mumps
+
+SPARE = 10  # modes beyond those asked for, on which the part of K that is not symmetric is tried, too
+SEED = 1  # of the vector that the search begins with
+ROUND_OFF = 1e-12  # of the largest entry: a matrix that misses symmetry by less is symmetric
+
+
+class Eigenpairs(NamedTuple):
+    """Lowest n: squares of the angular frequencies (n,) [rad2/s2], modes (n, free).
+
+    asymmetry: largest share by which the part of K that is not symmetric would change one of the frequencies.
+    """
+
+    squares: Array
+    modes: Array
+    asymmetry: float
+
+
+def lowest(K: csr_array, M: csr_array, count: int, shift: float) -> Eigenpairs:
+    """The modes of the symmetric part of K whose squares lie next to the shift [rad2/s2], in their order; fewer than
+    `count` where fewer dofs have mass. SolveError where they aren't found.
+    """
+    symmetric = csr_array(0.5 * (K + K.T))
+    wanted = min(count + SPARE, np.count_nonzero(M.diagonal()), K.shape[0] - 1)
+    if wanted < 1:
+        raise SolveError("no modes: fewer than two unknowns are free to move, or none of them has mass; refine the riser")
+    with _inverse(csr_array(symmetric - shift * M)) as inverse:
+        begin = inverse @ (M @ np.random.default_rng(SEED).standard_normal(K.shape[0]))
+        try:
+            squares, modes = eigsh(symmetric, wanted, M, sigma=shift, OPinv=inverse, v0=begin)
+        except ArpackError as err:
+            raise SolveError(f"modes were not found: {err}; ask for another --count") from err
+    there = np.argsort(squares)
+    there = there[_finite(squares[there], shift)]
+    squares, modes = squares[there], modes[:, there].T
+    return Eigenpairs(squares[:count], modes[:count], _asymmetry(K, squares, modes)[:count].max(initial=0.0))
+
+
+def _finite(squares: Array, shift: float) -> Array:
+    """Which are modes of what has mass: what has none answers with squares beyond round-off."""
+    return np.abs(squares - shift) < 1.0 / ROUND_OFF * np.abs(squares - shift).min()
+
+
+def _asymmetry(K: csr_array, squares: Array, modes: Array) -> Array:
+    """Shares (n,) by which frequencies differ from those of K itself, reduced to the modes."""
+    skew = csr_array(0.5 * (K - K.T))
+    if abs(skew).max() <= ROUND_OFF * abs(K).max():
+        return np.zeros(len(squares))
+    changed = np.sort_complex(np.linalg.eigvals(np.diag(squares) + modes @ (skew @ modes.T)))
+    size = np.sqrt(np.maximum(np.abs(squares), ROUND_OFF * np.abs(squares).max()))
+    return np.asarray(np.abs(np.sqrt(changed) - np.sqrt(squares.astype(complex))) / size)
+
+
+@contextmanager
+def _inverse(A: csr_array) -> Iterator[LinearOperator]:
+    """The inverse of a symmetric matrix, as long as the block lasts."""
+    made = PETSc.Mat().createAIJ(A.shape, csr=_as_petsc(A), comm=PETSc.COMM_SELF)
+    pc = PETSc.PC().create(PETSc.COMM_SELF)
+    x, y = made.createVecs()
+    pc.setOperators(made)
+    use_mumps(pc, "lu", {})
+
+    def solved(b: Array) -> Array:
+        x.array_w[:] = b.ravel()
+        pc.apply(x, y)
+        return np.array(y.array_r)
+
+    try:
+        pc.setUp()
+        yield LinearOperator(A.shape, solved, dtype=float)
+    except PETSc.Error as err:
+        raise SolveError(f"the stiffness of the riser at rest could not be factorised: {err}") from err
+    finally:
+        for thing in (pc, x, y, made):
+            thing.destroy()
+
+
+def _as_petsc(A: csr_array) -> tuple[Array, Array, Array]:
+    return A.indptr.astype(PETSc.IntType), A.indices.astype(PETSc.IntType), A.data
