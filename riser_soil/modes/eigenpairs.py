@@ -1,6 +1,8 @@
-"""Lowest eigenpairs of K φ = ω² M φ, by SciPy's shift-invert Lanczos method (ARPACK) on MUMPS' factors.
+"""Lowest eigenpairs of K φ = ω² M φ, with factors of K - σ M by MUMPS and SciPy's solvers for the rest.
 
-M may be singular, as soil has no mass. Modes are normalised by φᵀ M φ = 1.
+M may be singular, as soil has no mass: what has none follows what has. Where few dofs have mass, the flexibility
+between them makes a small dense problem, else the pairs are found by the shift-invert Lanczos method (ARPACK). Modes
+are normalised by φᵀ M φ = 1.
 """
 
 from __future__ import annotations
@@ -11,14 +13,16 @@ from typing import NamedTuple
 
 import numpy as np
 from petsc4py import PETSc
+from scipy.linalg import eigh
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import SolveError
 from riser_soil.solve.linear_solver import use_mumps
 
 SPARE = 10  # modes beyond those asked for, on which the part of K that is not symmetric is tried, too
+FEW = 300  # dofs with mass, up to which the problem is a dense one
 SEED = 1  # of the vector that the search begins with
 ROUND_OFF = 1e-12  # of the largest entry: a matrix that misses symmetry by less is symmetric
 
@@ -35,28 +39,44 @@ class Eigenpairs(NamedTuple):
 
 
 def lowest(K: csr_array, M: csr_array, count: int, shift: float) -> Eigenpairs:
-    """The modes of the symmetric part of K whose squares lie next to the shift [rad2/s2], in their order; fewer than
-    `count` where fewer dofs have mass. SolveError where they aren't found.
+    """The modes of the symmetric part of K with the lowest squares, in their order; fewer than `count` where fewer dofs
+    have mass. shift: below all squares [rad2/s2]. SolveError where they aren't found.
     """
     symmetric = csr_array(0.5 * (K + K.T))
-    wanted = min(count + SPARE, np.count_nonzero(M.diagonal()), K.shape[0] - 1)
-    if wanted < 1:
-        raise SolveError("no modes: fewer than two unknowns are free to move, or none of them has mass; refine the riser")
     with _inverse(csr_array(symmetric - shift * M)) as inverse:
-        begin = inverse @ (M @ np.random.default_rng(SEED).standard_normal(K.shape[0]))
-        try:
-            squares, modes = eigsh(symmetric, wanted, M, sigma=shift, OPinv=inverse, v0=begin)
-        except ArpackError as err:
-            raise SolveError(f"modes were not found: {err}; ask for another --count") from err
-    there = np.argsort(squares)
-    there = there[_finite(squares[there], shift)]
-    squares, modes = squares[there], modes[:, there].T
-    return Eigenpairs(squares[:count], modes[:count], _asymmetry(K, squares, modes)[:count].max(initial=0.0))
+        massive = np.flatnonzero(M.diagonal())
+        few = massive.size <= FEW
+        shares, modes = _dense(inverse, M, massive) if few else _lanczos(inverse, symmetric, M, count + SPARE, shift)
+    squares = shift + 1.0 / shares
+    order = np.argsort(squares)[: count + SPARE]
+    squares, modes = squares[order], modes[order]
+    return Eigenpairs(squares[:count], modes[:count], float(_asymmetry(K, squares, modes)[:count].max()))
 
 
-def _finite(squares: Array, shift: float) -> Array:
-    """Which are modes of what has mass: what has none answers with squares beyond round-off."""
-    return np.abs(squares - shift) < 1.0 / ROUND_OFF * np.abs(squares - shift).min()
+def _dense(inverse: LinearOperator, M: csr_array, massive: IntArray) -> tuple[Array, Array]:
+    """All 1/(ω² - σ) (n,) and modes (n, free): those of Lᵀ G L, with G the flexibility between what has mass, M = L Lᵀ.
+    """
+    masses, axes = eigh(M[massive][:, massive].toarray())
+    there = masses > ROUND_OFF * masses.max(initial=0.0)
+    if not there.any():
+        raise SolveError("no modes: nothing that is free to move has mass; refine the riser, or give it mass")
+    root = np.zeros((M.shape[0], np.count_nonzero(there)))
+    root[massive] = axes[:, there] * np.sqrt(masses[there])
+    answer = inverse @ root
+    shares, combined = eigh(root.T @ answer)
+    return shares, (answer @ combined / shares).T
+
+
+def _lanczos(
+    inverse: LinearOperator, K: csr_array, M: csr_array, count: int, shift: float
+) -> tuple[Array, Array]:
+    """The same of the pairs nearest to the shift."""
+    begin = inverse @ (M @ np.random.default_rng(SEED).standard_normal(K.shape[0]))
+    try:
+        squares, modes = eigsh(K, count, M, sigma=shift, OPinv=inverse, v0=begin)
+    except ArpackError as err:
+        raise SolveError(f"modes were not found: {err}; ask for fewer, --count") from err
+    return 1.0 / (squares - shift), modes.T
 
 
 def _asymmetry(K: csr_array, squares: Array, modes: Array) -> Array:

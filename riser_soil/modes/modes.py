@@ -28,10 +28,10 @@ class Modes(NamedTuple):
     """Modes of small vibrations about rest, the lowest first; n modes, nn nodes.
 
     frequency (n,) [Hz]. arc (nn,) [m], position (nn, 3) [m] at rest, global axes. shape (n, nn, 3): displacement of the
-    axis, global axes, and twist (n, nn) [rad/m]: rotation about the pipe's axis, both for a largest displacement of 1 of
-    the axis or, where the pipe twists, of its surface. share (n, 4): of the squared displacement along the riser, by
-    DIRECTIONS: across the pipe in the vertical plane from start to end, across it out of this plane, along it, and of the
-    pipe's surface as it twists. asymmetry: see `Eigenpairs`. stage: name of the static stage.
+    axis, global axes, and twist (n, nn) [rad/m]: rotation about the pipe's axis, both for a largest displacement of 1
+    of the axis or, where the pipe twists, of its surface. share (n, 4): of the squared displacement along the riser, by
+    DIRECTIONS: across the pipe in the vertical plane from start to end, across it out of this plane, along it, and of
+    the pipe's surface as it twists. asymmetry: see `Eigenpairs`. stage: name of the static stage.
     """
 
     frequency: Array
@@ -58,9 +58,9 @@ def modes_of(scene: Scene, count: int = 10, stage: str | None = None) -> Modes:
     """The lowest modes of a scene's riser at the end of a static stage, by default the last before a dynamic one.
 
     Without damping. Stiffness is the tangent at rest: of the riser with its loads, of contact as it touches there, of
-    the soil; friction sticks. Mass is that of the riser, what is in it and on it, and the added mass of still water; soil
-    has none. Raises SceneError or what a run would; SolveError where the riser is unstable at rest, or its tangent far
-    from symmetric.
+    the soil; friction sticks. Mass is that of the riser, what is in it and on it, and the added mass of still water;
+    soil has none. Raises SceneError or what a run would; SolveError where the riser is unstable at rest, or its tangent
+    far from symmetric.
     """
     rest = at_rest(scene, stage)
     least = NEAR_ZERO * GRAVITY / float(rest.assembly.line.arc[-1])
@@ -77,8 +77,8 @@ def _require_sound(found: Eigenpairs, least: float) -> None:
         )
     if found.asymmetry > MOST_ASYMMETRY:
         raise SolveError(
-            f"the tangent at rest is not symmetric, as of drag in a current or loads that turn with the riser: frequencies "
-            f"would change by {found.asymmetry:.2g} of them, more than {MOST_ASYMMETRY:g}; leave out such loads"
+            f"the tangent at rest is not symmetric, as with drag in a current or moments in space: frequencies would "
+            f"change by {found.asymmetry:.2g} of them, more than {MOST_ASYMMETRY:g}; leave out such loads"
         )
 
 

@@ -40,8 +40,8 @@ def table(modes: Modes, asked: int) -> list[str]:
         lines.append(f"no more than {len(modes.frequency)} were found: the riser has so few unknowns with mass")
     if modes.asymmetry > 0.0:
         lines.append(
-            f"the tangent's symmetric part is taken; the rest would change these frequencies by {modes.asymmetry:.1g} of "
-            "them at most"
+            "the tangent's symmetric part is taken; the rest would change these frequencies by at most "
+            f"{modes.asymmetry:.1g} of them"
         )
     return lines
 
@@ -95,5 +95,8 @@ def dataset(modes: Modes) -> xarray.Dataset:
     return found
 
 
-def _named(dims: tuple[str, ...], values: Array, units: str, long_name: str) -> tuple[tuple[str, ...], Array, dict[str, str]]:
+Named = tuple[tuple[str, ...], Array, dict[str, str]]
+
+
+def _named(dims: tuple[str, ...], values: Array, units: str, long_name: str) -> Named:
     return dims, values, {"units": units, "long_name": long_name}

@@ -27,8 +27,8 @@ MOVING = DynamicStage(name="small vibrations", kind="dynamic", duration=1.0, tim
 
 
 class RiserAtRest(NamedTuple):
-    """Equilibrium at the end of a static stage. stiffness, mass (free, free): by the increments of the free dofs, of all
-    fields; rows (size,): row of each entry of a local array, -1 where prescribed.
+    """Equilibrium at the end of a static stage. stiffness, mass (free, free): by the increments of the free dofs, of
+    all fields; rows (size,): row of each entry of a local array, -1 where prescribed.
     """
 
     assembly: Assembly
