@@ -10,6 +10,7 @@ from riser_soil.commands.ground import calibrate, material
 from riser_soil.commands.modes import modes
 from riser_soil.commands.results import film, stiffness
 from riser_soil.commands.run import check, run, schema
+from riser_soil.commands.statistics import statistics
 from riser_soil.commands.stress import stress
 
 app = typer.Typer(
@@ -20,7 +21,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, check, study, stress, modes, material, calibrate, schema, stiffness, film):
+for command in (run, check, study, stress, modes, material, calibrate, schema, statistics, stiffness, film):
     app.command()(command)
 
 
