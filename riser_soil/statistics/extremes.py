@@ -1,8 +1,8 @@
 """Extreme values: the most probable maximum by Rayleigh's, Weibull's and Gumbel's distributions, with confidence.
 
 A Gaussian process of standard deviation s has in N cycles the most probable maximum s √(2 ln N) above its mean, its
-peaks following Rayleigh's distribution (Longuet-Higgins, Journal of Marine Research 11, 1952). Weibull's is fitted to the
-peaks where the process is not Gaussian; in N of them the value exceeded once is λ (ln N)^(1/c). Gumbel's is that of
+peaks following Rayleigh's distribution (Longuet-Higgins, Journal of Marine Research 11, 1952). Weibull's is fitted to
+the peaks where the process is not Gaussian; in N of them the value exceeded once is λ (ln N)^(1/c). Gumbel's is that of
 maxima of blocks or runs; over a time D times as long as theirs its mode goes up by β ln D. Fits are those of maximum
 likelihood.
 

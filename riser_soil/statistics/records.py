@@ -10,7 +10,7 @@ import numpy as np
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError
-from riser_soil.results.cycles import beginning, dynamic_stage
+from riser_soil.results.cycles import SLACK, beginning, dynamic_stage
 from riser_soil.results.read import Run
 
 FEWEST = 20  # records that statistics take
@@ -105,6 +105,6 @@ def _component(values: Array, component: str) -> Array:
 def _even(sampled: _Sampled, step: float) -> Array:
     """Values (n, m) at multiples of the step, linear between records."""
     time, values = sampled
-    count = int(np.floor((time[-1] - time[0]) / step + 0.5)) + 1
-    at = np.linspace(time[0], time[-1], count)
+    count = int(np.floor((time[-1] - time[0]) / step + SLACK)) + 1
+    at = time[0] + step * np.arange(count)
     return np.stack([np.interp(at, time, column) for column in values.T], axis=1)
