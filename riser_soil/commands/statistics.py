@@ -11,6 +11,7 @@ from riser_soil.errors import ResultsError
 
 if TYPE_CHECKING:
     from riser_soil.results.read import Run
+    from riser_soil.statistics.report import Place
 
 
 def statistics(
@@ -87,7 +88,7 @@ def _arcs(runs: "list[Run]", arc: list[float], at: list[str]) -> list[float] | N
     return found or None
 
 
-def _draw(png: Path, places: "list") -> None:  # type: ignore[type-arg]
+def _draw(png: Path, places: "list[Place]") -> None:
     from riser_soil.plots.extreme_values import MOST, draw_statistics
     from riser_soil.results.whole_file import written_whole
 

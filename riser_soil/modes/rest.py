@@ -55,6 +55,8 @@ def at_rest(scene: Scene, stage: str | None = None) -> RiserAtRest:
             before = run_stage(assembly, each, before, LayingCounter(), clock)
     for friction in assembly.frictions:
         friction.stick()
+    if assembly.soil is not None:
+        assembly.soil.unload()
     return _linearised(assembly, stages[-1], clock)
 
 

@@ -62,7 +62,7 @@ class PlaceStatistics:
     def _cycles(self) -> Cycles:
         found = [cycles(self.wanted.sign * x, self.step, self.wanted.sign * self.mean) for x in self.runs]
         peaks = np.concatenate([each.peaks for each in found])
-        return Cycles(sum(each.count for each in found), sum(each.time for each in found), peaks)
+        return Cycles(sum(each.number for each in found), sum(each.time for each in found), peaks)
 
     @property
     def period(self) -> float:

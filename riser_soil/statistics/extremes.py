@@ -41,18 +41,18 @@ UNKNOWN = Interval(np.nan, np.nan, np.nan)
 
 
 class LocationScale(NamedTuple):
-    """A fit of Gumbel's distribution of largest (`left` False) or smallest values to `count` samples."""
+    """A fit of Gumbel's distribution of largest (`left` False) or smallest values to samples."""
 
     location: float
     scale: float
-    count: int
+    samples: int
     left: bool = False
 
     def at(self, k: float, confidence: float) -> Interval:
         """μ + k β, within its limits."""
         if not np.isfinite(self.scale):
             return UNKNOWN
-        location, scale = _draws(_fewer(self.count), self.left).T
+        location, scale = _draws(_fewer(self.samples), self.left).T
         pivot = (location + k * scale - k) / scale
         beyond = 0.5 * (1.0 - confidence)
         low, high = np.quantile(pivot, [1.0 - beyond, beyond])
@@ -64,7 +64,8 @@ def fit_gumbel(maxima: Array, left: bool = False) -> LocationScale:
     """To largest values, or smallest ones; nan for fewer than three, or all of one value."""
     if len(maxima) < FEWEST or np.ptp(maxima) <= SAME * np.abs(maxima).max():
         return LocationScale(np.nan, np.nan, len(maxima), left)
-    return LocationScale(*map(float, _family(left).fit(maxima)), len(maxima), left)
+    location, scale = _family(left).fit(maxima)
+    return LocationScale(float(location), float(scale), len(maxima), left)
 
 
 class Weibull(NamedTuple):

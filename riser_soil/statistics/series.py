@@ -46,14 +46,14 @@ def up_crossings(x: Array, level: float) -> IntArray:
 class Cycles(NamedTuple):
     """Number of whole cycles between up-crossings, the time that they take [s], and the largest value in each."""
 
-    count: int
+    number: int
     time: float
     peaks: Array
 
     @property
     def period(self) -> float:
         """Mean zero up-crossing period [s]; nan without a cycle."""
-        return self.time / self.count if self.count else np.nan
+        return self.time / self.number if self.number else np.nan
 
 
 def cycles(x: Array, step: float, level: float) -> Cycles:

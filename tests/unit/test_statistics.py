@@ -55,7 +55,7 @@ def test_sine() -> None:
 def test_crossings_and_peaks_of_a_broken_line() -> None:
     """Up through zero at 0.5, 2.75 and 6.5 steps; largest in between 1 and 3, what comes after the last left out."""
     found = cycles(np.array([-1.0, 1.0, -3.0, 1.0, 3.0, -2.0, -1.0, 1.0, 5.0]), 2.0, 0.0)
-    assert found.count == 2
+    assert found.number == 2
     assert found.time == pytest.approx(2.0 * (6.5 - 0.5))
     assert found.period == pytest.approx(6.0)
     assert found.peaks.tolist() == [1.0, 3.0]
@@ -161,7 +161,8 @@ def test_records_of_places_and_components(tmp_path: Path) -> None:
     run = Run(run_of(tmp_path / "run", x))
     between = records_of([run], "effective_tension", [5.0, 20.0])
     assert between.values[0] == pytest.approx(x[:, None] * [1.5, 3.0])
-    assert (between.units, between.step) == ("N", pytest.approx(STEP))
+    assert between.units == "N"
+    assert between.step == pytest.approx(STEP)
     assert records_of([run], "effective_tension", None).arc.tolist() == [0.0, 10.0, 20.0]
     assert records_of([run], "end_force.z", None).values[0][:, 0] == pytest.approx(4.0 * x)
     assert records_of([run], "end_force.size", [5.0]).values[0][:, 0] == pytest.approx(5.0 * x)
