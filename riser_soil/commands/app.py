@@ -7,8 +7,10 @@ import typer
 from riser_soil import __version__
 from riser_soil.commands.accuracy import study
 from riser_soil.commands.ground import calibrate, material
+from riser_soil.commands.modes import modes
 from riser_soil.commands.results import film, stiffness
 from riser_soil.commands.run import check, run, schema
+from riser_soil.commands.statistics import statistics
 from riser_soil.commands.stress import stress
 
 app = typer.Typer(
@@ -19,7 +21,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, check, study, stress, material, calibrate, schema, stiffness, film):
+for command in (run, check, study, stress, modes, material, calibrate, schema, statistics, stiffness, film):
     app.command()(command)
 
 

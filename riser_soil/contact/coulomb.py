@@ -32,6 +32,13 @@ def traction(elastic: Array, N: Array, mu: Array) -> tuple[Array, Array, Array]:
     return t.reshape(elastic.shape), by_elastic.reshape(*elastic.shape, r), by_N.reshape(elastic.shape)
 
 
+def stuck(elastic: Array, N: Array) -> tuple[Array, Array, Array]:
+    """As `traction` where nothing slides, however large t* is: of small motions about rest. None where nothing presses.
+    """
+    presses = (N > 0.0)[..., None]
+    return elastic * presses, np.eye(elastic.shape[-1]) * presses[..., None], np.zeros_like(elastic)
+
+
 @njit
 def _tractions(elastic: Array, N: Array, mu: Array, t: Array, by_elastic: Array, by_N: Array) -> None:
     r = mu.size

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.contact import friction_stations, seabed_stations
-from riser_soil.contact.coulomb import traction
+from riser_soil.contact.coulomb import stuck, traction
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.contact.seabed_loop import FrictionNumbers
 from riser_soil.contact.station_forces import StationForces
@@ -58,6 +58,12 @@ class CoulombFriction(LinePart):
         self._begun: FrictionState | None = None
         self._forces = StationForces(self.line, contact.at)
         self._slid: Array = np.zeros(contact.share.shape)
+        self._sticks = False
+
+    def stick(self) -> None:
+        """From now on nothing slides, as in small vibrations about rest."""
+        self._sticks = True
+        self.line.forget()
 
     def evaluate(self, trial: Trial) -> FrictionTraction:
         """Tractions of the elements that touch."""
@@ -68,7 +74,8 @@ class CoulombFriction(LinePart):
         found = self.contact.evaluate(trial)
         touching, begun, k = found.touching, self._friction_state(trial), self._stiffness
         elastic = friction_stations.elastic_guesses(touching.elements, tuple(begun), k, found.position)
-        tractions = traction(elastic, np.maximum(touching.force, 0.0), self._mu)
+        N = np.maximum(touching.force, 0.0)
+        tractions = stuck(elastic, N) if self._sticks else traction(elastic, N, self._mu)
         pressing = touching.force, touching.slope, touching.normal
         resistance = friction_stations.resistances(touching.elements, begun.along, k, tractions, pressing)
         return FrictionTraction(touching.elements, *resistance)

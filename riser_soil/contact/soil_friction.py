@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from riser_soil.contact.active_pairs import add_products, add_rows
-from riser_soil.contact.coulomb import traction
+from riser_soil.contact.coulomb import stuck, traction
 from riser_soil.contact.near_points import Axis, Surface
 from riser_soil.contact.point_memory import PointMemory
 from riser_soil.contact.sliding import Slide, slide
@@ -52,6 +52,12 @@ class SoilFriction(LinePart):
         self._memory = PointMemory(np.zeros(AREA + 1))
         self._begun: tuple[Axis, Surface] | None = None
         self._slid: Array = np.zeros(self.line.nodes)
+        self._sticks = False
+
+    def stick(self) -> None:
+        """From now on nothing slides, as in small vibrations about rest."""
+        self._sticks = True
+        self.line.forget()
 
     def blocks(self) -> dict[str, MatrixBlock]:
         """Those of contact."""
@@ -68,12 +74,15 @@ class SoilFriction(LinePart):
         moved = slide(pressed.points, self._start(state), now, self.line.basis)
         before = self._memory.at(pressed.points.number)[:, :AREA]
         elastic = before - self._stiffness * moved.moved
-        t, _, _ = traction(_along(moved.along, elastic), self._pressure(found), self._mu)
+        t, _, _ = self._return(_along(moved.along, elastic), self._pressure(found))
         on_riser = np.einsum("nri,nr->ni", moved.along, t)
         gradient = np.zeros_like(pressed.gradient)
         by_z = np.einsum("ni,niz->nz", pressed.points.area[:, None] * on_riser, moved.by_z)
         add_rows(gradient, pressed.pair, -np.ones(len(by_z)), by_z)
         return SlidingState(found, moved, elastic, on_riser, by_z, gradient)
+
+    def _return(self, elastic: Array, pressure: Array) -> tuple[Array, Array, Array]:
+        return stuck(elastic, pressure) if self._sticks else traction(elastic, pressure, self._mu)
 
     def _pressure(self, found: SurfaceState) -> Array:
         """Pressure (n,) of the points [Pa], 0 where they pull."""
@@ -113,7 +122,7 @@ class SoilFriction(LinePart):
         """Derivative (n, 3, nz) of the traction."""
         moved, pressed, k = sliding.moved, sliding.found.pressed, self._stiffness
         at, by_place = _along(moved.along, sliding.elastic), pressed.forms[:, 3]
-        t, by_elastic, by_N = traction(at, self._pressure(sliding.found), self._mu)
+        t, by_elastic, by_N = self._return(at, self._pressure(sliding.found))
         elastic = -k * np.einsum("nri,niz->nrz", moved.along, moved.by_z)
         turned = _along(moved.along_by_s, sliding.elastic) - k * _along(moved.along, moved.moved_by_s)
         elastic += turned[:, :, None] * by_place[:, None]

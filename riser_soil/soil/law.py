@@ -49,6 +49,16 @@ class Formula(Protocol):
         """Whether the tangent is symmetric."""
         ...
 
+    @property
+    def bulk(self) -> Array:
+        """Elastic bulk modulus (n,) [Pa], with `shear` that of soil that is unloaded."""
+        ...
+
+    @property
+    def shear(self) -> Array:
+        """Elastic shear modulus (n,) [Pa]."""
+        ...
+
     def start(self) -> Array:
         """History (n, nh) of undisturbed soil, under its initial stress."""
         ...

@@ -74,6 +74,14 @@ class LayeredFormula:
     def symmetric(self) -> bool:
         return all(formula.symmetric for formula in self.formulas)
 
+    @property
+    def bulk(self) -> Array:
+        return self._at_points([formula.bulk for formula in self.formulas])
+
+    @property
+    def shear(self) -> Array:
+        return self._at_points([formula.shear for formula in self.formulas])
+
     @cached_property
     def _own(self) -> list[IntArray]:
         """Where each formula's columns stand."""
@@ -96,7 +104,12 @@ class LayeredFormula:
         return found
 
     def overstress(self, stress: Array) -> Array:
+        found = zip(self.places, self.formulas, strict=True)
+        return self._at_points([formula.overstress(stress[at]) for at, formula in found])
+
+    def _at_points(self, of_layers: list[Array]) -> Array:
+        """Numbers of each layer's points, at all points (n,)."""
         out = np.empty(self.size)
-        for at, formula in zip(self.places, self.formulas, strict=True):
-            out[at] = formula.overstress(stress[at])
+        for at, values in zip(self.places, of_layers, strict=True):
+            out[at] = values
         return out

@@ -70,6 +70,14 @@ class RemouldedClay:
     def symmetric(self) -> bool:
         return self.clay.symmetric
 
+    @property
+    def bulk(self) -> Array:
+        return self.clay.bulk
+
+    @property
+    def shear(self) -> Array:
+        return self.clay.shear
+
     def start(self) -> Array:
         return self.clay.start()
 

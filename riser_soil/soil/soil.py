@@ -64,6 +64,7 @@ class Soil:
         self._check_start(initial, depth, K0)
         self._initial, self._found = initial, _at_rest(self.law, initial)
         self._answers = IdentityCache[State, tuple[Array, StressUpdate]]()
+        self._unloads = False
         self._load = self._internal(initial) if start == "geostatic" else self._weight(weight.at(depth))
 
     def blocks(self) -> dict[str, MatrixBlock]:
@@ -74,6 +75,10 @@ class Soil:
         _, found = self._answer(state)
         self.field.own(forces.end)[:] += self._internal(found.stress) - self._load
 
+    def unload(self) -> None:
+        """From now on the tangent is that of unloading, which is elastic, as in small vibrations about rest."""
+        self._unloads = True
+
     @cached_property
     def _stiffness(self) -> _Stiffness:
         """There from the first tangent on."""
@@ -81,7 +86,8 @@ class Soil:
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         _, found = self._answer(state)
-        g, moduli = self._gradients, found.tangent.reshape(*self._shape, 6, 6)
+        by_strain = mandel.stiffness(self.law.bulk, self.law.shear) if self._unloads else found.tangent
+        g, moduli = self._gradients, by_strain.reshape(*self._shape, 6, 6)
         kernels.renew_stiffness(g.full, g.volume, g.weights, moduli, *self._stiffness)
         values["soil"] += self._stiffness.matrices
 

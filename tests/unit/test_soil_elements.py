@@ -215,3 +215,19 @@ def test_plastic_flow_of_cyclic_clay_takes_work_in_every_step(law: SoilLaw) -> N
         soil.field.commit(state)
     assert abs(own[0]) < 1e-6 * max(own)
     assert min(own[1:]) > 0.0
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_tangent_of_unloading_is_that_of_undisturbed_soil(kind: str) -> None:
+    """However far the soil has yielded; that of a step that goes on is softer."""
+    soil, rest = clay_block(kind), State.at_rest(1.0, small_block(kind).nodes.points.size)
+    undisturbed = assemble(soil, rest)
+    for _ in range(2):
+        state = sheared(soil, 0.02)
+        soil.commit(state)
+        soil.field.commit(state)
+    on = assemble(soil, sheared(soil, 0.001))
+    soil.unload()
+    unloading = assemble(soil, rest)
+    assert abs(unloading - undisturbed).max() < 1e-12 * abs(undisturbed).max()
+    assert abs(on - undisturbed).max() > 0.01 * abs(undisturbed).max()

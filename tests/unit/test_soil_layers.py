@@ -17,6 +17,7 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.soil_law import law_of, weight_of
+from riser_soil.soil import mandel
 from riser_soil.soil.block import BlockSpec
 from riser_soil.soil.grading import landing
 from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid, silent_gmsh
@@ -70,6 +71,15 @@ def test_each_point_answers_by_the_law_of_its_layer() -> None:
         np.testing.assert_array_equal(second.history[i : i + 1, own], two.history)
         assert not np.delete(second.history[i], own).any()
         np.testing.assert_array_equal(law.overstress(second.stress)[i : i + 1], alone.overstress(two.stress))
+
+
+def test_soil_that_is_unloaded_answers_by_its_elastic_moduli() -> None:
+    """In the first of a way back, however far it has yielded."""
+    law, strain = layered(), random_strain(len(DEPTH))
+    yielded = law.update(strain, law.start())
+    assert not np.allclose(law.update(1e-7 * strain, yielded.history).tangent, mandel.stiffness(law.bulk, law.shear))
+    back = law.update(-1e-7 * strain, yielded.history)
+    np.testing.assert_allclose(back.tangent, mandel.stiffness(law.bulk, law.shear), rtol=1e-9, atol=1e-3)
 
 
 def test_columns_are_named_once_and_plastic_strain_is_common() -> None:

@@ -1,0 +1,100 @@
+"""The command about outputs in time: riser-soil statistics."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from riser_soil.commands.arguments import StageName, positive
+from riser_soil.commands.endings import expected_errors
+from riser_soil.errors import ResultsError
+
+if TYPE_CHECKING:
+    from riser_soil.results.read import Run
+    from riser_soil.statistics.report import Place
+
+
+def statistics(
+    folders: Annotated[list[Path], typer.Argument(metavar="RUN...", help="folders of runs, one for each seed")],
+    of: Annotated[
+        list[str],
+        typer.Option("--of", metavar="OUTPUT", help="e.g. effective_tension, end_force.x; may be repeated"),
+    ],
+    arc: Annotated[
+        list[float] | None,
+        typer.Option("--arc", metavar="S", help="arc length [m]; may be repeated; by default all nodes"),
+    ] = None,
+    at: Annotated[
+        list[str] | None, typer.Option("--at", metavar="END", help="start or end of the riser; may be repeated")
+    ] = None,
+    stage: StageName = None,
+    since: Annotated[float, typer.Option("--since", help="seconds of the stage that are cut off, its transient")] = 0.0,
+    duration: Annotated[float, typer.Option("--duration", help="time that extremes are foretold for [s]")] = 10800.0,
+    block: Annotated[
+        float | None, typer.Option("--block", help="blocks whose extremes Gumbel's fit takes [s]; by default runs")
+    ] = None,
+    minima: Annotated[bool, typer.Option("--minima", help="smallest values in the place of largest ones")] = False,
+    above: Annotated[
+        list[float] | None,
+        typer.Option("--above", metavar="LEVEL", help="tell how often a level is passed; may be repeated"),
+    ] = None,
+    confidence: Annotated[float, typer.Option("--confidence", help="of the fits' intervals")] = 0.95,
+    segment: Annotated[
+        float | None,
+        typer.Option("--segment", help="pieces that spectra are averaged over [s]; by default an eighth of a run"),
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FILE", help="table as .csv, or with spectra as .json")
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option("--plot", metavar="FILE", help="picture of spectra and extremes, .png")
+    ] = None,
+) -> None:
+    """Statistics of outputs in time: deviation, period, spectra, most probable extremes by three distributions."""
+    with expected_errors():
+        from riser_soil.results.read import Run
+        from riser_soil.statistics.analysis import Wanted, statistics_of
+        from riser_soil.statistics.records import records_of
+        from riser_soil.statistics.report import Place, exceedance_table, refuse_ending, table, write
+
+        for name, value in {"duration": duration, "block": block, "segment": segment}.items():
+            positive(name, value)
+        if not 0.0 < confidence < 1.0:
+            raise ResultsError(f"--confidence {confidence:g}: must lie between 0 and 1")
+        refuse_ending(output)
+        runs, wanted = [Run(folder) for folder in folders], Wanted(duration, block, minima, confidence, segment)
+        arcs = _arcs(runs, arc or [], at or [])
+        places = [
+            Place(records, float(where), found)
+            for records in (records_of(runs, name, arcs, stage, since) for name in of)
+            for where, found in zip(records.arc, statistics_of(records, wanted), strict=True)
+        ]
+        levels = above or []
+        told = [*table(places, wanted), *exceedance_table(places, levels, wanted)]
+        if output is not None:
+            write(output, places, levels, wanted)
+        if plot is not None:
+            _draw(plot, places)
+        typer.echo("\n".join(told))
+
+
+def _arcs(runs: "list[Run]", arc: list[float], at: list[str]) -> list[float] | None:
+    """Arc lengths asked for, None for all nodes."""
+    ends = {"start": 0, "end": -1}
+    wrong = [name for name in at if name not in ends]
+    if wrong:
+        raise ResultsError(f"--at {wrong[0]}: must be start or end; other places are given by --arc")
+    found = [*arc, *(float(runs[0].arc[ends[name]]) for name in at)]
+    return found or None
+
+
+def _draw(png: Path, places: "list[Place]") -> None:
+    from riser_soil.plots.extreme_values import MOST, draw_statistics
+    from riser_soil.results.whole_file import written_whole
+
+    if png.suffix != ".png":
+        raise ResultsError(f"{png}: a picture is a .png file; change its ending")
+    if len(places) > MOST:
+        raise ResultsError(f"--plot {png}: {len(places)} places are more than {MOST} that a picture takes; give --arc")
+    with written_whole(png) as part:
+        draw_statistics(part, [(place.words, place.records.units, place.found) for place in places])

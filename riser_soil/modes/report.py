@@ -1,0 +1,102 @@
+"""What `riser-soil modes` tells and leaves: a table, modes.nc, and where it is asked for modes.png."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import xarray
+
+from riser_soil.core.arrays import Array
+from riser_soil.errors import SceneError
+from riser_soil.modes.modes import DIRECTIONS, Modes
+from riser_soil.results.whole_file import refuse_file, written_together
+
+NUMBERS, PICTURE = "modes.nc", "modes.png"
+FILES = (NUMBERS, PICTURE)
+
+
+def refuse_folder(folder: Path, force: bool) -> None:
+    """SceneError for a folder with modes, unless by force."""
+    refuse_file(folder)
+    there = [name for name in FILES if (folder / name).exists()]
+    if there and not force:
+        raise SceneError(f"{folder / there[0]}: is there already; choose another folder (-o) or add --force")
+
+
+def table(modes: Modes, asked: int) -> list[str]:
+    """A line for each mode, and what to know of them all."""
+    shares = " ".join(f"{words:>12}" for words in DIRECTIONS)
+    lines = [
+        f'natural frequencies of the riser at rest after stage "{modes.stage}", without damping; shares of the squared '
+        "displacement:",
+        f"{'mode':>4} {'f [Hz]':>12} {'T [s]':>10}  {'direction':<12} {shares}",
+    ]
+    rows = zip(modes.frequency, modes.period, modes.direction, modes.share, strict=True)
+    for n, (f, T, direction, share) in enumerate(rows, 1):
+        told = " ".join(f"{100.0 * part:10.1f} %" for part in share)
+        lines.append(f"{n:4d} {f:12.6g} {T:10.4g}  {direction:<12} {told}")
+    if len(modes.frequency) < asked:
+        lines.append(f"no more than {len(modes.frequency)} were found: the riser has so few unknowns with mass")
+    if modes.asymmetry > 0.0:
+        lines.append(
+            "the tangent's symmetric part is taken; the rest would change these frequencies by at most "
+            f"{modes.asymmetry:.1g} of them"
+        )
+    return lines
+
+
+def write_folder(folder: Path, modes: Modes, plot: bool) -> None:
+    """All files together, none of them by halves."""
+    with written_together(folder, FILES if plot else (NUMBERS,)) as made:
+        dataset(modes).to_netcdf(made / NUMBERS, engine="h5netcdf")
+        if plot:
+            from riser_soil.plots.mode_shapes import draw_modes
+
+            draw_modes(made / PICTURE, modes.arc, modes.position, modes.shape, titles(modes))
+
+
+def titles(modes: Modes) -> list[str]:
+    rows = zip(modes.frequency, modes.period, modes.direction, strict=True)
+    return [f"mode {n}: {f:.4g} Hz, {T:.4g} s, {direction}" for n, (f, T, direction) in enumerate(rows, 1)]
+
+
+def dataset(modes: Modes) -> xarray.Dataset:
+    """As modes.nc has it: units, signs and places with each variable."""
+    found = xarray.Dataset(
+        {
+            "frequency": _named(("mode",), modes.frequency, "Hz", "natural frequency, without damping"),
+            "period": _named(("mode",), modes.period, "s", "natural period"),
+            "shape": _named(
+                ("mode", "arc", "component"), modes.shape, "1",
+                "displacement of the riser's axis over the mode's largest displacement; global axes, z up",
+            ),
+            "twist": _named(
+                ("mode", "arc"), modes.twist, "rad m-1",
+                "rotation about the pipe's axis over the mode's largest displacement; right-hand rule, towards the end",
+            ),
+            "share": _named(
+                ("mode", "direction"), modes.share, "1",
+                "share of the squared displacement along the riser: across it in the vertical plane from start to end, "
+                "across it out of this plane, along it, of its surface in twist",
+            ),
+            "position": _named(
+                ("arc", "component"), modes.position, "m", "position of the riser's axis at rest; global axes, z up"
+            ),
+        },
+        {
+            "mode": np.arange(1, len(modes.frequency) + 1),
+            "arc": _named(("arc",), modes.arc, "m", "unstressed arc length from the start"),
+            "component": ["x", "y", "z"],
+            "direction": list(DIRECTIONS),
+        },
+    )  # fmt: skip
+    found.attrs = {"stage": modes.stage, "asymmetry": modes.asymmetry, "Conventions": "CF-1.11"}
+    return found
+
+
+Named = tuple[tuple[str, ...], Array, dict[str, str]]
+
+
+def _named(dims: tuple[str, ...], values: Array, units: str, long_name: str) -> Named:
+    return dims, values, {"units": units, "long_name": long_name}

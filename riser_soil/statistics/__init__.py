@@ -1,0 +1,1 @@
+"""Statistics of a run's outputs in time: `riser-soil statistics`."""

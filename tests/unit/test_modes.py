@@ -1,0 +1,281 @@
+"""Natural frequencies and shapes of risers at rest, against closed forms."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+from ruamel.yaml import YAML
+from scipy.optimize import brentq
+from scipy.sparse import csr_array, diags, eye
+from scipy.special import jn_zeros
+from typer.testing import CliRunner
+
+from riser_soil.__main__ import app
+from riser_soil.errors import SceneError, SolveError
+from riser_soil.modes.eigenpairs import FEW, lowest
+from riser_soil.modes.modes import Modes, modes_of
+from riser_soil.scene.reader import scene_from_mapping
+from tests.support.coupled_scenes import Mapping
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
+
+LENGTH, EA, EI, MASS, TENSION = 30.0, 1.0e9, 5.0e5, 80.0, 4.0e4
+BEAM: Mapping = {"EA": EA, "EI": EI, "GJ": EI, "mass": MASS, "outer_diameter": 0.3}
+WATER, CA = 1025.0, 0.8
+G = 9.81
+
+
+def found(scene: Mapping, count: int, **more: Any) -> Modes:
+    return modes_of(scene_from_mapping(scene), count, **more)
+
+
+def of_direction(modes: Modes, direction: str) -> Any:
+    """Frequencies of the modes in one direction [Hz]."""
+    return modes.frequency[[each == direction for each in modes.direction]]
+
+
+def stretched(elements: int = 20, dimension: int = 2, pipe: Mapping = BEAM, **more: Any) -> Mapping:
+    """A riser between two hinges, stretched to its tension."""
+    strain = TENSION / pipe["EA"]
+    return riser_scene(
+        static("stretch", move={"end": [LENGTH * (1.0 + strain), 0.0, 0.0]}),
+        pipe=pipe,
+        length=LENGTH,
+        elements=elements,
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(LENGTH, 0.0, 0.0),
+        dimension=dimension,
+        solver={"tolerance": 1e-9},
+        **more,
+    )
+
+
+def tensioned_beam(n: Any, added: float = 0.0, EI: float = EI) -> Any:
+    """Frequencies of the stretched, hinged beam [Hz]; added mass [kg/m of the stretched pipe]."""
+    stretch = 1.0 + TENSION / EA
+    k = np.asarray(n) * np.pi / (LENGTH * stretch)
+    return np.sqrt((k**4 * EI + k**2 * TENSION) / (MASS / stretch + added)) / (2.0 * np.pi)
+
+
+def test_beam_under_tension() -> None:
+    modes = found(stretched(), 4)
+    assert modes.frequency == pytest.approx(tensioned_beam([1, 2, 3, 4]), rel=1e-4)
+    assert modes.asymmetry < 1e-9
+    assert modes.stage == "stretch"
+
+
+def test_shapes_are_sines_of_height_one_across_the_pipe() -> None:
+    modes = found(stretched(), 3)
+    for n, shape in enumerate(modes.shape, 1):
+        sine = np.sin(n * np.pi * modes.arc / LENGTH)
+        assert np.abs(shape[:, 2]) == pytest.approx(np.abs(sine), abs=1e-4)
+        assert np.abs(shape[:, :2]).max() < 1e-9
+    assert modes.share[:, 0] == pytest.approx(np.ones(3))
+    assert modes.direction == ["in plane"] * 3
+
+
+def test_error_falls_by_the_fourth_power_of_the_elements() -> None:
+    errors = [found(stretched(elements), 3).frequency[2] / tensioned_beam(3) - 1.0 for elements in (6, 12)]
+    assert errors[0] > 0.0
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.3)
+
+
+def test_taut_string_in_water_moves_its_added_mass() -> None:
+    """In space, in pairs: in and out of the plane."""
+    pipe = BEAM | {"EI": 1.0, "GJ": 1.0e6, "added_mass": {"normal": CA}}
+    modes = found(stretched(dimension=3, pipe=pipe, water={"density": WATER}), 4)
+    added = CA * WATER * np.pi * 0.3**2 / 4.0
+    assert modes.frequency == pytest.approx(np.repeat(tensioned_beam([1, 2], added, EI=1.0), 2), rel=1e-4)
+    assert modes.share[:, :2].sum(axis=1) == pytest.approx(np.ones(4))
+
+
+K_GROUND = 5.0e4
+PRESSED = 0.15 - MASS * G / K_GROUND  # height of the axis where springs bear the weight
+
+
+def lying(*stages: Mapping, pipe: Mapping = BEAM, **more: Any) -> Mapping:
+    """A riser on springs, its ends brought to as deep as its weight presses it: straight and without tension."""
+    down = {"start": [0.0, 0.0, PRESSED], "end": [LENGTH, 0.0, PRESSED]}
+    return riser_scene(
+        static("lie", move=down),
+        *stages,
+        pipe=pipe,
+        length=LENGTH,
+        elements=20,
+        start=prescribed(0.0, 0.0, 0.15),
+        end=prescribed(LENGTH, 0.0, 0.15),
+        gravity=G,
+        seabed={"kind": "spring", "stiffness": K_GROUND},
+        solver={"tolerance": 1e-10},
+        **more,
+    )
+
+
+def test_riser_on_springs_is_a_beam_on_an_elastic_foundation() -> None:
+    modes = found(lying(), 4)
+    expected = np.sqrt((EI * (np.arange(1, 5) * np.pi / LENGTH) ** 4 + K_GROUND) / MASS) / (2.0 * np.pi)
+    assert modes.frequency == pytest.approx(expected, rel=1e-4)
+
+
+def test_friction_sticks() -> None:
+    """Along the seabed a riser that has slid as it was laid moves on the stiffness of friction, mu w/mobilisation."""
+    soft, mu, mobilisation = 4.0e4, 0.5, 0.1
+    slid = static("slide", move={"start": [0.5, 0.0, PRESSED], "end": [LENGTH + 0.5, 0.0, PRESSED]})
+    friction = {"axial": mu, "lateral": mu, "mobilisation": mobilisation}
+    modes = found(lying(slid, pipe=BEAM | {"EA": soft}, contact={"friction": friction}), 8)
+    stiffness = soft * (np.arange(1, 4) * np.pi / LENGTH) ** 2 + mu * MASS * G / mobilisation
+    assert of_direction(modes, "axial")[:3] == pytest.approx(np.sqrt(stiffness / MASS) / (2.0 * np.pi), rel=3e-3)
+
+
+def test_chain_that_hangs_in_water_swings_as_bessels_function() -> None:
+    """Out of plane and in plane alike: (j/2) sqrt(w/((m + m_a) L)), w its weight in water."""
+    volume = np.pi * 0.3**2 / 4.0
+    pipe = BEAM | {"EI": 1.0, "GJ": 1.0e6, "added_mass": {"normal": CA}}
+    hanging = riser_scene(
+        static("hang"),
+        pipe=pipe,
+        length=LENGTH,
+        elements=40,
+        start=prescribed(0.0, 0.0, LENGTH),
+        end="free",
+        gravity=G,
+        water={"density": WATER / 2.0},
+        riser={"initial": {"points": [[0.0, 0.0, LENGTH], [0.0, 0.0, 0.0]]}},
+        dimension=3,
+    )
+    modes = found(hanging, 4)
+    w, m = (MASS - WATER / 2.0 * volume) * G, MASS + CA * WATER / 2.0 * volume
+    expected = jn_zeros(0, 2) / (4.0 * np.pi) * np.sqrt(w / (m * LENGTH))
+    assert modes.frequency == pytest.approx(np.repeat(expected, 2), rel=1e-3)
+
+
+def cable(span: float, tension: float, EA: float) -> Mapping:
+    """A shallow cable between two hinges of one height; its length is that of the elastic parabola."""
+    w = MASS * G
+    sag = w * span**2 / (8.0 * tension)
+    length = span * (1.0 + 8.0 / 3.0 * (sag / span) ** 2)
+    return riser_scene(
+        static("hang"),
+        pipe=BEAM | {"EA": EA, "EI": 1.0, "GJ": 1.0e6},
+        length=length / (1.0 + tension / EA),
+        elements=40,
+        start=prescribed(0.0, 0.0, 0.0),
+        end=prescribed(span, 0.0, 0.0),
+        gravity=G,
+        dimension=3,
+        riser={"initial": "catenary"},
+    )
+
+
+def test_shallow_cable_has_irvines_frequencies() -> None:
+    """Out of plane and antisymmetric in plane those of the taut string, symmetric ones by its parameter lambda2."""
+    span, H, stiff = 100.0, 1.0e6, 1.0e9
+    ratio = MASS * G * span / H
+    parameter = ratio**2 * stiff / H / (1.0 + ratio**2 / 8.0)
+
+    def balance(x: float) -> float:
+        return float(np.tan(x) - x + 4.0 / parameter * x**3)
+
+    string = np.sqrt(H / MASS) / (2.0 * span)
+    symmetric = 2.0 / np.pi * brentq(balance, np.pi / 2.0 + 1e-6, 3.0 * np.pi / 2.0 - 1e-6)
+    modes = found(cable(span, H, stiff), 6)
+    assert of_direction(modes, "out of plane")[:3] == pytest.approx(string * np.arange(1, 4), rel=1e-3)
+    assert np.sort(of_direction(modes, "in plane"))[:2] == pytest.approx(
+        np.sort([2.0 * string, symmetric * string]), rel=1e-3
+    )
+
+
+def test_what_is_not_symmetric_is_told_by_the_frequencies() -> None:
+    """Squares of [[2, a], [-a, 3]] are (5 +- sqrt(1 - 4 a2))/2; those of the symmetric part are 2 and 3."""
+    a = 0.3
+    K = csr_array([[2.0, a, 0.0], [-a, 3.0, 0.0], [0.0, 0.0, 1e6]])
+    pairs = lowest(K, csr_array(np.eye(3)), 2, -1e-6)
+    exact = (5.0 + np.array([-1.0, 1.0]) * np.sqrt(1.0 - 4.0 * a**2)) / 2.0
+    assert pairs.squares == pytest.approx([2.0, 3.0])
+    assert pairs.asymmetry == pytest.approx(np.abs(np.sqrt(exact / [2.0, 3.0]) - 1.0).max())
+
+
+def test_what_has_no_mass_follows() -> None:
+    """A mass on two springs in series, in whose middle there is none."""
+    k = np.array([3.0, 6.0])
+    K = csr_array([[k[1], -k[1], 0.0], [-k[1], k.sum(), 0.0], [0.0, 0.0, 50.0]])
+    M = csr_array(np.diag([2.0, 0.0, 1.0]))
+    pairs = lowest(K, M, 2, -1e-6)
+    assert pairs.squares == pytest.approx([1.0 / (1.0 / k).sum() / 2.0, 50.0])
+
+
+def test_sparse_and_dense_problems_have_the_same_modes() -> None:
+    """A chain of masses on springs: 2 sin(pi k/(2 (n + 1))), as many masses as either way takes, and two more."""
+    for n in (FEW - 1, FEW + 1):
+        K = csr_array(diags([-1.0, 2.0, -1.0], [-1, 0, 1], shape=(n, n)))
+        pairs = lowest(K, csr_array(eye(n)), 5, -1e-9)
+        assert np.sqrt(pairs.squares) == pytest.approx(2.0 * np.sin(np.pi * np.arange(1, 6) / (2.0 * (n + 1))))
+        assert pairs.modes @ pairs.modes.T == pytest.approx(np.eye(5), abs=1e-9)
+        assert np.abs(K @ pairs.modes[2] - pairs.squares[2] * pairs.modes[2]).max() < 1e-9
+
+
+def moment_at_the_tip(moment: float) -> Mapping:
+    """A cantilever in space, whose tip is turned about an axis that stays: its tangent is not symmetric."""
+    return riser_scene(
+        static("twist", loads=[{"at": "end", "moment": [moment, 0.0, 0.0]}]),
+        pipe=BEAM | {"GJ": 1.0e9},
+        length=LENGTH,
+        elements=6,
+        start=prescribed(0.0, 0.0, 0.0, rotation="fixed"),
+        end="free",
+        dimension=3,
+    )
+
+
+def test_a_tangent_far_from_symmetric_is_refused() -> None:
+    assert 0.0 < found(moment_at_the_tip(1.0e2), 2).asymmetry < 1e-3
+    with pytest.raises(SolveError, match=r"the tangent at rest is not symmetric.* more than 0\.01; leave out"):
+        found(moment_at_the_tip(1.0e4), 2)
+
+
+def test_command_leaves_shapes_and_a_picture(tmp_path: Path) -> None:
+    folder = tmp_path / "modes"
+    with (tmp_path / "beam.yaml").open("w", encoding="utf-8") as file:
+        YAML(typ="safe").dump(stretched(6), file)
+    call = ["modes", str(tmp_path / "beam.yaml"), "--count", "3", "--plot", "-o", str(folder)]
+    done = CliRunner().invoke(app, call)
+    assert done.exit_code == 0, done.output
+    assert f"{tensioned_beam(1):.3f}" in done.output
+    with xarray.open_dataset(folder / "modes.nc", engine="h5netcdf") as stored:
+        assert stored["frequency"].attrs["units"] == "Hz"
+        assert stored["shape"].sel(mode=2, component="z").values[3] == pytest.approx(0.0, abs=1e-9)
+        assert float(abs(stored["shape"].sel(component="z")).max()) == pytest.approx(1.0)
+    assert (folder / "modes.png").read_bytes().startswith(b"\x89PNG")
+    again = CliRunner().invoke(app, call)
+    assert again.exit_code == 2
+    assert again.output == f"{folder}/modes.nc: is there already; choose another folder (-o) or add --force\n"
+
+
+@pytest.mark.parametrize(
+    ("stages", "name", "told"),
+    [
+        ([dynamic(1.0, 0.1)], None, "stages: modes are those of a riser at rest; begin with a static stage"),
+        ([static("lay")], "hang", '--stage "hang": the scene has no such stage; it has lay'),
+        (
+            [static("lay"), dynamic(1.0, 0.1), static("rest")],
+            "rest",
+            '--stage "rest": a riser at rest is that after static stages alone; name one of the first',
+        ),
+    ],
+)
+def test_only_static_stages_have_modes(stages: list[Mapping], name: str | None, told: str) -> None:
+    with pytest.raises(SceneError) as refused:
+        found(stretched(6) | {"stages": stages}, 2, stage=name)
+    assert str(refused.value) == told
+
+
+def test_first_static_stage_may_be_asked_for() -> None:
+    """Before it is stretched the beam has no tension."""
+    scene = stretched()
+    slack = scene | {"stages": [static("lie"), *scene["stages"]]}
+    alone = (np.pi / LENGTH) ** 2 * np.sqrt(EI / MASS) / (2.0 * np.pi)
+    assert found(slack, 1, stage="lie").frequency[0] == pytest.approx(alone, rel=1e-4)
+    assert found(slack, 1).frequency[0] == pytest.approx(tensioned_beam(1), rel=1e-4)
