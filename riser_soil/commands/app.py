@@ -6,6 +6,7 @@ import typer
 
 from riser_soil import __version__
 from riser_soil.commands.accuracy import study
+from riser_soil.commands.cases import cases
 from riser_soil.commands.ground import calibrate, material
 from riser_soil.commands.results import film, stiffness
 from riser_soil.commands.run import check, run, schema
@@ -19,7 +20,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, check, study, stress, material, calibrate, schema, stiffness, film):
+for command in (run, check, cases, study, stress, material, calibrate, schema, stiffness, film):
     app.command()(command)
 
 

@@ -30,7 +30,7 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("stages", "plots"),
     ("run", "material", "calibration"),
     ("accuracy",),
-    ("stress",),
+    ("stress", "cases"),
     ("commands",),
     ("__main__",),
 ]
@@ -47,6 +47,8 @@ ONLY_IN = {  # what costs time to import, or may be absent, and where it is need
     "numba": "riser_soil.core",
     "scipy.optimize": "riser_soil.calibration",
     "scipy.stats": "riser_soil.calibration",
+    "distributed": "riser_soil.cases",
+    "dask": "riser_soil.cases",
 }
 
 
