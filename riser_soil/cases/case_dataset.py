@@ -11,7 +11,7 @@ import numpy as np
 import xarray
 
 from riser_soil import __version__
-from riser_soil.cases.case_tables import CaseTable
+from riser_soil.cases.case_table import CaseTable
 
 
 def dataset(table: CaseTable) -> xarray.Dataset:
@@ -23,7 +23,7 @@ def dataset(table: CaseTable) -> xarray.Dataset:
     variables: dict[str, Any] = {
         "status": ("case", np.array([o.status for o in outcomes], "i4"), {"long_name": "exit status; 0 is done"}),
         "reason": ("case", _texts([o.reason for o in outcomes]), {"long_name": "why a case failed"}),
-        "seconds": ("case", [o.seconds for o in outcomes], {"units": "s", "long_name": "from a case's start to its end"}),
+        "seconds": ("case", [o.seconds for o in outcomes], {"units": "s", "long_name": "from its start to its end"}),
     }
     for path in table.paths:
         given = _given([case.values.get(path) for case in table.cases])

@@ -6,13 +6,22 @@ import re
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, Discriminator, Field, Tag, ValidationError, ValidationInfo
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationError,
+    ValidationInfo,
+)
 from pydantic_core import PydanticCustomError
 
 from riser_soil.core.quantities import FROZEN, Instant, Text
 from riser_soil.errors import SceneError
 from riser_soil.scene.columns import lines_of
-from riser_soil.scene.document import Document, parse, read_text
+from riser_soil.scene.document import parse, read_text
 from riser_soil.scene.explain import problems_in
 from riser_soil.scene.files import NamedFile, wrong_file
 from riser_soil.scene.reader import error_of
@@ -55,7 +64,7 @@ def _rows(given: Any, info: ValidationInfo) -> Any:
     file = (Path((info.context or {}).get("folder", ".")) / given).absolute()
     lines = list(lines_of(file))
     if len(lines) < 2:
-        raise wrong_file(f"{file}: must have a line with name and paths of the scene, and a row for each case; complete it")
+        raise wrong_file(f"{file}: must have a line of paths of the scene, and a row for each case; complete it")
     (at, paths), *rows = lines
     if len(set(paths)) < len(paths) or not all(paths):
         raise wrong_file(f"{file}:{at}: every column needs a path of its own; correct the first line")
@@ -65,7 +74,7 @@ def _rows(given: Any, info: ValidationInfo) -> Any:
 def _row(place: str, paths: list[str], cells: list[str]) -> dict[str, Any]:
     """An empty cell leaves the base scene's value."""
     if len(cells) != len(paths):
-        raise wrong_file(f"{place}: the row has {len(cells)} values, but the first line {len(paths)} columns; complete it")
+        raise wrong_file(f"{place}: the row has {len(cells)} values for {len(paths)} columns; complete it")
     try:
         values = {path: parse(cell, place).data for path, cell in zip(paths, cells, strict=True) if cell}
     except SceneError as err:
@@ -105,7 +114,8 @@ class Cases(BaseModel):
     base: NamedFile = Field(description="scene file of all cases")
     values: Overrides = Field(default={}, alias="set", description="values that all cases have in place of the base's")
     table: Annotated[tuple[Row, ...], BeforeValidator(_rows)] = Field(
-        default=(), description="cases one by one, [{name: …, set: {path: value}}, …], or a CSV file with a column a path"
+        default=(),
+        description="cases one by one, [{name: …, set: {path: value}}, …], or a CSV file with a column for each path",
     )
     product: dict[str, _Axis] = Field(
         default={},

@@ -20,6 +20,7 @@ from riser_soil.results.folder import SCENE, is_finished
 
 CASES, ATTEMPTS = "cases", ".attempts"
 CASE, SAID = "case.json", "said.txt"  # what became of it, and what the run said
+TABLE, EXTREMES, DATA, PLOT = FILES = ("cases.csv", "extremes.csv", "cases.nc", "cases.png")  # of all cases
 
 
 @dataclass(frozen=True)

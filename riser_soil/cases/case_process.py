@@ -11,9 +11,7 @@ import os
 import signal
 import sys
 
-from riser_soil.__main__ import main
-
-_PR_SET_PDEATHSIG = 1  # of Linux: prctl(2)
+_PR_SET_PDEATHSIG = 1  # of Linux: prctl(2); what it sets outlives execve(2)
 
 
 def die_with(worker: int) -> None:
@@ -30,5 +28,5 @@ if __name__ == "__main__":
     arguments.add_argument("folder", help="folder for its results")
     given = arguments.parse_args()
     die_with(given.worker)
-    sys.argv = ["riser-soil", "run", given.scene, "-o", given.folder, "--force"]
-    main()
+    run = [sys.executable, "-m", "riser_soil", "run", given.scene, "-o", given.folder, "--force"]
+    os.execv(sys.executable, run)

@@ -13,6 +13,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError
 from riser_soil.results.read import Run
 
+MEAN, DEVIATION = ", mean", ", standard deviation"
 _SIGNS = {"tension": "positive in tension", "contact force": "positive where the ground pushes"}
 
 
@@ -30,18 +31,23 @@ class CaseValue:
         return f"{self.stage}: {self.name}"
 
     @property
+    def in_time(self) -> bool:
+        """Whether it is of the statistics in time, and no extreme."""
+        return self.name.endswith((MEAN, DEVIATION))
+
+    @property
     def sign(self) -> str:
         """What its sign means; of a standard deviation or a magnitude nothing."""
-        if self.name.endswith("deviation"):
+        if self.name.endswith(DEVIATION):
             return ""
         return next((sign for word, sign in _SIGNS.items() if word in self.name), "")
 
 
 def case_values(folder: Path, since: float) -> list[CaseValue]:
-    """Of a run's folder. since: time of the last dynamic stage [s] from which on its records count in the statistics."""
+    """Of a run's folder. since: time of the last dynamic stage [s] from which on its records count in statistics."""
     run = Run(folder)
-    extremes = [CaseValue(each.stage, each.name, each.unit, each.value) for each in headlines(run.summary).values()]
-    return [*extremes, *_statistics(run, since)]
+    found = headlines(run.summary).values()
+    return [*(CaseValue(each.stage, each.name, each.unit, each.value) for each in found), *_statistics(run, since)]
 
 
 def _statistics(run: Run, since: float) -> Iterator[CaseValue]:
@@ -56,8 +62,8 @@ def _statistics(run: Run, since: float) -> Iterator[CaseValue]:
         values = series[seen]
         values = values[np.isfinite(values)]
         if values.size:
-            yield CaseValue(stages[number]["name"], f"{name}, mean", unit, float(values.mean()))
-            yield CaseValue(stages[number]["name"], f"{name}, standard deviation", unit, float(values.std()))
+            yield CaseValue(stages[number]["name"], name + MEAN, unit, float(values.mean()))
+            yield CaseValue(stages[number]["name"], name + DEVIATION, unit, float(values.std()))
 
 
 def _series(run: Run) -> Iterator[tuple[str, str, Array]]:

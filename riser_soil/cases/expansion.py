@@ -80,11 +80,15 @@ def named_cases(file: Path, told: Cases) -> list[Case]:
 
 def _refuse_twice(file: Path, rows: Sequence[Case], axes: Mapping[str, Any]) -> None:
     """Raises SceneError for a path that the table and the product set, or two keys of the product."""
-    of_groups = {name: {path for group in axis.values() for path in group} for name, axis in axes.items() if isinstance(axis, Mapping)}
-    set_by = [{path for row in rows for path in row.values}, *(of_groups.get(name, {name}) for name in axes)]
+    set_by = [{path for row in rows for path in row.values}, *(_paths(name, axis) for name, axis in axes.items())]
     for path, times in Counter(path for paths in set_by for path in paths).items():
         if times > 1:
-            raise SceneError(f"{file}: {path}: is set {times} times in one case; let one key of table and product set it")
+            raise SceneError(f"{file}: {path}: is set {times} times in one case; let one key alone set it")
+
+
+def _paths(name: str, axis: Any) -> set[str]:
+    """All that a key of the product sets."""
+    return {path for group in axis.values() for path in group} if isinstance(axis, Mapping) else {name}
 
 
 def _axis(path: str, values: Sequence[Any] | Mapping[str, Overrides], short: Mapping[str, str]) -> list[Case]:
@@ -102,12 +106,11 @@ def _name(values: Overrides, short: Mapping[str, str]) -> str:
 
 
 def _value_name(path: str, value: Any, number: int | None, short: Mapping[str, str]) -> str:
-    """`Hs6.5`, `kind_rigid`; of lists and mappings the number among the values: `position_2`."""
+    """`Hs=6.5`, `kind=rigid`; of lists and mappings the number among the values: `position_2`."""
     if isinstance(value, list | dict) and number is not None:
         return f"{short[path]}_{number}"
     text = f"{value:g}" if isinstance(value, float) and float(f"{value:g}") == value else str(value)
-    joint = "" if isinstance(value, int | float) and not isinstance(value, bool) else "_"
-    return short[path] + joint + re.sub(r"[^\w.+-]+", "_", text, flags=re.ASCII).strip("_")
+    return short[path] + "=" + re.sub(r"[^\w.+-]+", "_", text, flags=re.ASCII).strip("_")
 
 
 def _short_names(paths: Sequence[str]) -> dict[str, str]:

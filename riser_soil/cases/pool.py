@@ -19,7 +19,7 @@ from distributed.scheduler import KilledWorker
 
 from riser_soil.cases.case_folder import Outcome
 from riser_soil.cases.work import Task, run_case
-from riser_soil.errors import ResultsError, SceneError
+from riser_soil.errors import SceneError
 
 CONNECTING = "10s"
 KILLED = 128 + signal.SIGKILL

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from riser_soil import __version__
-from riser_soil.cases.case_folder import ATTEMPTS, CASE, CASES, Outcome, clear_attempts, found, place
+from riser_soil.cases.case_folder import ATTEMPTS, CASE, CASES, FILES, Outcome, clear_attempts, found, place
 from riser_soil.cases.case_progress import CaseProgress
-from riser_soil.cases.case_tables import FILES, CaseTable, case_table, write_tables
+from riser_soil.cases.case_table import CaseTable, case_table
 from riser_soil.cases.expansion import Case, read_cases
 from riser_soil.cases.work import Task
 from riser_soil.errors import Interruption, SceneError
@@ -47,7 +47,9 @@ def run_cases(
         says(f"{len(cases)} cases, {len(outcomes)} of them done already" if outcomes else f"{len(cases)} cases")
         outcomes |= _computed(todo, workers, len(cases), folder)
         table = case_table(f"Load cases of {file.name}", folder, cases, outcomes, told.statistics.since)
-        write_tables(table, folder)
+        from riser_soil.cases.case_files import write_files
+
+        write_files(table, folder)
     return table
 
 

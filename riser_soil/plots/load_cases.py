@@ -14,13 +14,13 @@ from matplotlib.ticker import MaxNLocator
 from riser_soil.core.arrays import Array
 from riser_soil.plots.curves import save, sheet
 
-NAMED = 24  # cases at most whose names stand below the panels, and not their numbers
+FEW = 40  # cases that are drawn as large points
 _SCALES = {"N": ("kN", 1e-3), "N.m": ("kN m", 1e-3)}
 
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """names of the cases; a quantity with its unit; its values (n,), nan where a case failed."""
+    """names of the cases; a quantity with its unit in SI; its values (n,), nan where a case failed."""
 
     names: Sequence[str]
     quantity: str
@@ -29,7 +29,7 @@ class Panel:
 
 
 def draw_load_cases(png: Path, title: str, panels: Sequence[Panel]) -> Path:
-    """Points by case, least and largest named; a cross at the lower edge where a case failed."""
+    """Points by the cases' numbers, largest and least named; a cross below where one failed or has none."""
     if not panels:
         return save(_empty(title), png)
     columns = min(2, len(panels))
@@ -39,7 +39,7 @@ def draw_load_cases(png: Path, title: str, panels: Sequence[Panel]) -> Path:
     for axes in places[len(panels) :]:
         axes.remove()
     for axes in places[max(0, len(panels) - columns) : len(panels)]:
-        _name_cases(axes, panels[0].names)
+        axes.set_xlabel("case, by its row in cases.csv")
     figure.suptitle(title, fontsize=10)
     return save(figure, png)
 
@@ -53,19 +53,14 @@ def _empty(title: str) -> Figure:
 def _draw(axes: Axes, panel: Panel) -> None:
     unit, scale = _SCALES.get(panel.unit, (panel.unit, 1.0))
     number, values = np.arange(1, len(panel.names) + 1), scale * panel.values
-    axes.plot(number, values, "o", markersize=4 if len(number) <= NAMED else 2.5)
+    axes.plot(number, values, "o", markersize=4 if len(number) <= FEW else 2.5)
     failed = number[np.isnan(values)]
-    axes.plot(failed, np.zeros(failed.size), "x", color="C3", transform=axes.get_xaxis_transform(), clip_on=False)
-    ends = [(word, int(place)) for word, place in (("largest", np.nanargmax(values)), ("least", np.nanargmin(values)))]
-    told = "; ".join(f"{word} {values[n]:.4g} in {panel.names[n]}" for word, n in ends)
-    axes.plot([number[n] for _, n in ends], [values[n] for _, n in ends], "o", color="k", fillstyle="none", markersize=8)
-    axes.set_title(told, fontsize=8, loc="left")
+    if failed.size:  # the layout fails where there is a line without points beyond the panel
+        axes.plot(failed, np.zeros(failed.size), "x", color="C3", transform=axes.get_xaxis_transform(), clip_on=False)
+    ends = [int(np.nanargmax(values)), int(np.nanargmin(values))]
+    told = (f"{word} {values[n]:.4g} in {panel.names[n]}" for word, n in zip(("largest", "least"), ends, strict=True))
+    axes.plot(number[ends], values[ends], "o", color="k", fillstyle="none", markersize=8)
+    axes.set_title("; ".join(told), fontsize=8, loc="left")
     axes.set_ylabel(f"{panel.quantity}\n[{unit}]", fontsize=8)
     axes.set_xlim(0.5, len(number) + 0.5)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-
-
-def _name_cases(axes: Axes, names: Sequence[str]) -> None:
-    axes.set_xlabel("case" + (", in the order of the table" if len(names) > NAMED else ""))
-    if len(names) <= NAMED:
-        axes.set_xticks(range(1, len(names) + 1), names, rotation=60, ha="right", fontsize=7)
