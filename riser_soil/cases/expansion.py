@@ -147,7 +147,7 @@ def _scene(document: Document, folder: Path, assignments: Sequence[str]) -> Scen
 def _key(scene: Scene, text: str) -> str:
     told = hashlib.sha256(f"{__version__}\n{text}".encode())
     for file in _files(scene.model_dump()):
-        told.update(_digest(file))
+        told.update(_digest(file, file.stat().st_mtime_ns))
     return told.hexdigest()
 
 
@@ -164,5 +164,5 @@ def _files(value: Any) -> Iterator[Path]:
 
 
 @cache
-def _digest(file: Path) -> bytes:
+def _digest(file: Path, modified: int) -> bytes:
     return hashlib.sha256(file.read_bytes()).digest()

@@ -63,13 +63,17 @@ def _computed(task: Task, wanted: Callable[[], bool]) -> Outcome:
     return outcome if stopped == NOT_WANTED else settle(made, folder, outcome)
 
 
+def command(made: Path) -> list[str]:
+    """What runs the scene in a folder and leaves its results there."""
+    module = "riser_soil.cases.case_process"
+    return [sys.executable, "-m", module, str(os.getpid()), str(made / SCENE), str(made)]
+
+
 def _started(made: Path) -> subprocess.Popen[bytes]:
     """In a session of its own: Ctrl-C in the terminal ends the worker, and that the run."""
-    module = "riser_soil.cases.case_process"
-    call = [sys.executable, "-m", module, str(os.getpid()), str(made / SCENE), str(made)]
     with (made / SAID).open("wb") as said:
         return subprocess.Popen(
-            call, env=environment_alone() | {"OMP_NUM_THREADS": "1"}, stdin=subprocess.DEVNULL, stdout=said,
+            command(made), env=environment_alone() | {"OMP_NUM_THREADS": "1"}, stdin=subprocess.DEVNULL, stdout=said,
             stderr=subprocess.STDOUT, start_new_session=True,
         )  # fmt: skip
 
