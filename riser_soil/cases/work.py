@@ -52,15 +52,19 @@ def _computed(task: Task, wanted: Callable[[], bool]) -> Outcome:
     made = attempt(folder, task["name"], task["scene"])
     process = _started(made)
     stopped = _watched(process, since + task["limit"] if task["limit"] else float("inf"), wanted)
-    status = process.returncode if process.returncode >= 0 else 128 - process.returncode
-    reason = ""
+    status, reason = stopped or _exit_status(process.returncode), ""
     if stopped == STOPPED_BY_LIMIT:
-        status, reason = stopped, f"took longer than the limit of {task['limit']:g} s"
+        reason = f"took longer than the limit of {task['limit']:g} s"
     elif status:
         reason = _last_words(process.returncode, made / SAID)
     seconds = time.monotonic() - since
     outcome = Outcome(task["name"], task["key"], status, reason, seconds, socket.gethostname())
     return outcome if stopped == NOT_WANTED else settle(made, folder, outcome)
+
+
+def _exit_status(returned: int) -> int:
+    """By the convention of shells."""
+    return returned if returned >= 0 else 128 - returned
 
 
 def command(made: Path) -> list[str]:

@@ -40,7 +40,7 @@ def telling(command: Callable[..., None]) -> Callable[..., None]:
     own = inspect.signature(command)
     kind = inspect.Parameter.KEYWORD_ONLY
     more = [inspect.Parameter(name, kind, default=d, annotation=a) for name, (a, d) in _OPTIONS.items()]
-    with_options.__signature__ = own.replace(parameters=[*own.parameters.values(), *more])
+    with_options.__signature__ = own.replace(parameters=[*own.parameters.values(), *more])  # type: ignore[attr-defined]
     with_options.__annotations__ = command.__annotations__ | {name: a for name, (a, _) in _OPTIONS.items()}
     return with_options
 
@@ -52,7 +52,7 @@ def _told(quiet: bool, log_file: Path | None) -> Iterator[None]:
         log = None if log_file is None or rank() > 0 else _Log(log_file)
     former = sys.stdout, sys.stderr
     streams = [_Lines(former[0], quiet and _warns, log), _Lines(former[1], quiet and _errs, log)]
-    sys.stdout, sys.stderr = streams  # type: ignore[assignment]
+    sys.stdout, sys.stderr = streams
     try:
         yield
     finally:
