@@ -11,6 +11,8 @@ from riser_soil.cases.expansion import Case, read_cases
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import read_scene
 from tests.support.case_files import SMALL, case_file
+from tests.support.on_ranks import ROOT
+from tests.support.pages import blocks
 
 
 def cases(folder: Path, text: str, *overrides: str) -> list[Case]:
@@ -87,6 +89,14 @@ def test_the_key_changes_with_what_the_results_hang_on(tmp_path: Path) -> None:
     assert key(f"table: [{{name: a, set: {{stages: {pull}, gravity: 9.8}}}}]") != first
     (tmp_path / "way.csv").write_text(way.format("0.2"), encoding="utf-8")
     assert key(f"table: [{{name: a, set: {{stages: {pull}}}}}]") != first
+
+
+def test_the_example_of_the_page_is_that_of_the_waves() -> None:
+    example = ROOT / "demos/waves/cases.yaml"
+    assert blocks(ROOT / "docs/cases.md", "yml") == [example.read_text(encoding="utf-8")]
+    told, found = read_cases(example)
+    assert (len(found), told.statistics.since) == (36, 52.0)
+    assert found[-1].name == "storm-direction_deg=195-seed=3-far"
 
 
 MISTAKES = [
