@@ -1,4 +1,4 @@
-"""Command line interface: riser-soil run | check | study | stress | material | calibrate | schema | stiffness | film.
+"""Command line interface: the commands of `riser_soil.commands.app`.
 
 Exit status 0 done, 2 bad input, 3 the solve failed, 4 the disk or standard output took no more, 128 + n for signal n.
 """

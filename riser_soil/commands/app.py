@@ -6,23 +6,26 @@ import typer
 
 from riser_soil import __version__
 from riser_soil.commands.accuracy import study
+from riser_soil.commands.cases import cases
 from riser_soil.commands.ground import calibrate, material
 from riser_soil.commands.modes import modes
 from riser_soil.commands.results import film, stiffness
 from riser_soil.commands.run import check, run, schema
 from riser_soil.commands.statistics import statistics
 from riser_soil.commands.stress import stress
+from riser_soil.commands.telling import telling
 
+PRINTING = (schema, statistics, stiffness)  # what they print is their result
 app = typer.Typer(
     help="Static and dynamic analysis of a riser on the seabed.",
     epilog="Exit status: 0 done, 2 bad input, 3 the solve failed, 4 the disk or standard output took no more, "
     "130 Ctrl-C, 143 SIGTERM (what was computed until then is kept).",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, check, study, stress, modes, material, calibrate, schema, statistics, stiffness, film):
-    app.command()(command)
+COMMANDS = (run, check, cases, study, stress, modes, material, calibrate, schema, statistics, stiffness, film)
+for command in COMMANDS:
+    app.command()(command if command in PRINTING else telling(command))
 
 
 def _print_version(wanted: bool) -> None:

@@ -50,7 +50,7 @@ class CsvColumns:
 def read_columns(file: Path, known: Known, required: tuple[str, ...]) -> CsvColumns:
     """Read a file that may have the known columns and must have the required ones; PydanticCustomError, with the file
     and its line, for what is wrong."""
-    lines = list(_lines(file))
+    lines = list(lines_of(file))
     if not lines:
         raise wrong_file(f"{file}: the file is empty; its first line must name the columns: {_header(known)}")
     names, units = _columns(file, lines[0], known)
@@ -63,8 +63,8 @@ def read_columns(file: Path, known: Known, required: tuple[str, ...]) -> CsvColu
     return CsvColumns(file, lines[0][0], values, tuple(number for number, _ in lines[1:]))
 
 
-def _lines(file: Path) -> Iterator[_Line]:
-    """Numbers and cells of the lines that count."""
+def lines_of(file: Path) -> Iterator[_Line]:
+    """Numbers and cells of the lines that count; PydanticCustomError where the file can't be read."""
     separator = ""
     for number, line in enumerate(_text(file).splitlines(), start=1):
         if line.strip() and not line.lstrip().startswith("#"):

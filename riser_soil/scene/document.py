@@ -60,16 +60,21 @@ def read_text(file: FilePath) -> str:
         ) from err
 
 
-def parse(text: str, name: str) -> Document:
-    """The document in a YAML text; SceneError with the line when the text is not plain YAML."""
+NEEDS = "the scene is empty; it needs line_types, riser and stages"
+
+
+def parse(text: str, name: str, needs: str = NEEDS) -> Document:
+    """The document in a YAML text; SceneError with the line when the text is not plain YAML, or with its needs when it
+    is empty.
+    """
     short, lists = cut_out(text)
     if len(short) > _MOST_LETTERS:
         what = f"{len(short)} letters beside lists of plain numbers, more than {_MOST_LETTERS}"
         raise SceneError(f"{name}: {what}; take tables from CSV files, or write [numbers] without comments")
     try:
         built = _Builder(YAML(typ="safe", pure=True), name, lists)
-        document = built.document(short)
-        return document if built.found_all else _Builder(YAML(typ="safe", pure=True), name, {}).document(text)
+        document = built.document(short, needs)
+        return document if built.found_all else _Builder(YAML(typ="safe", pure=True), name, {}).document(text, needs)
     except MarkedYAMLError as err:
         raise SceneError(_broken(err, name)) from err
     except YAMLError as err:
@@ -101,10 +106,10 @@ class _Builder:
         """Whether every long list was where the document has a list."""
         return len(self._found) == len(self._lists)
 
-    def document(self, text: str) -> Document:
+    def document(self, text: str, needs: str) -> Document:
         node = self._yaml.compose(text)
         if node is None:
-            raise SceneError(f"{self._out.name}: the scene is empty; it needs line_types, riser and stages")
+            raise SceneError(f"{self._out.name}: {needs}")
         self._out.lines[()] = node.start_mark.line + 1
         self._out.data = self._value(node, ())
         return self._out

@@ -4,11 +4,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from riser_soil.scene.language import KeyInfo, spot
 from riser_soil.scene.problem import NOTHING, Path, Problem, did_you_mean, hint, value_at
+from riser_soil.scene.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -18,6 +19,7 @@ class Failure:
     location: Path  # as the models give it, alternatives' tags included
     data: Any
     context: dict[str, Any]
+    root: type[BaseModel] = Scene
 
     @property
     def path(self) -> Path:
@@ -32,12 +34,12 @@ class Failure:
     @property
     def here(self) -> KeyInfo:
         """What the language says about the place."""
-        return spot(self.location)
+        return spot(self.location, self.root)
 
     @property
     def around(self) -> KeyInfo:
         """What the language says about the mapping or list that holds the place."""
-        return spot(self.location[:-1])
+        return spot(self.location[:-1], self.root)
 
     @property
     def correct(self) -> str:
@@ -51,11 +53,11 @@ class Failure:
 _Explain = Callable[[Failure], Problem]
 
 
-def problems_in(error: ValidationError, data: Any) -> list[Problem]:
-    """One problem per error; follow-up errors of another one are left out."""
+def problems_in(error: ValidationError, data: Any, root: type[BaseModel] = Scene) -> list[Problem]:
+    """One problem per error; follow-up errors of another one are left out. root: the model that was to be read."""
     details = [d for d in error.errors(include_url=False) if not _follows_from_items(d)]
     failures = [
-        Failure(d["loc"], data, {"type": d["type"], "text": d["msg"], **d.get("ctx", {})}) for d in details
+        Failure(d["loc"], data, {"type": d["type"], "text": d["msg"], **d.get("ctx", {})}, root) for d in details
     ]
     meant = {_meant(f) for f in failures if f.context["type"] == "extra_forbidden"}
     told = [f for f in failures if f.context["type"] != "missing" or f.path not in meant]

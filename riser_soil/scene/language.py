@@ -60,9 +60,9 @@ class KeyInfo:
         return KeyInfo(tuple(t for kind in values for t in _alternatives(kind)), self.description)
 
 
-def spot(location: tuple[str | int, ...]) -> KeyInfo:
-    """The place of the language at a location with or without tags."""
-    here = KeyInfo((Scene,), "the scene")
+def spot(location: tuple[str | int, ...], root: type[BaseModel] = Scene) -> KeyInfo:
+    """The place of the language, that of scenes by default, at a location with or without tags."""
+    here = KeyInfo((root,), f"the {root.__name__.lower()}")
     for item in location:
         here = here.under(item)
     return here

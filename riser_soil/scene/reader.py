@@ -21,10 +21,18 @@ _MOST_LINES = 20
 
 def read_scene(file: str | Path, overrides: Sequence[str] = ()) -> Scene:
     """The scene in a file, with `path=value` overrides; SceneError has one line per problem found."""
-    path = Path(file)
-    document = parse(read_text(path), str(file))
+    return scene_of(read_document(file), Path(file).parent, overrides)
+
+
+def read_document(file: str | Path) -> Document:
+    """The content of a scene file, as yet unchecked."""
+    return parse(read_text(Path(file)), str(file))
+
+
+def scene_of(document: Document, folder: Path, overrides: Sequence[str] = ()) -> Scene:
+    """The scene in a document, which is changed by the overrides; relative file names are sought in `folder`."""
     override(document, overrides)
-    return checked(document, path.parent)
+    return checked(document, folder)
 
 
 def scene_from_mapping(data: dict[str, Any], folder: Path = Path()) -> Scene:
@@ -34,7 +42,7 @@ def scene_from_mapping(data: dict[str, Any], folder: Path = Path()) -> Scene:
 
 def with_place(message: str, file: str | Path, overrides: Sequence[str] = ()) -> str:
     """`with_place_in` the document of a file with `path=value` overrides."""
-    document = parse(read_text(Path(file)), str(file))
+    document = read_document(file)
     override(document, overrides)
     return with_place_in(document, message)
 
@@ -55,10 +63,10 @@ def checked(document: Document, folder: Path) -> Scene:
         scene = Scene.model_validate(data, context={"folder": folder})
     except ValidationError as err:
         others = [p for p in problems_in(err, data) if not _beside(p, unsupported)]
-        raise _scene_error([*unsupported, *others], document) from err
+        raise error_of([*unsupported, *others], document) from err
     found = unsupported or conflicts(scene)
     if found:
-        raise _scene_error(found, document)
+        raise error_of(found, document)
     return scene
 
 
@@ -67,7 +75,8 @@ def _beside(problem: Problem, others: Iterable[Problem]) -> bool:
     return any(problem.path[: len(other.path) - 1] == other.path[:-1] for other in others)
 
 
-def _scene_error(problems: Sequence[Problem], document: Document) -> SceneError:
+def error_of(problems: Sequence[Problem], document: Document) -> SceneError:
+    """One line for each problem, with its place in the file."""
     placed = sorted((*document.where(problem.path), message(problem, document.data)) for problem in problems)
     lines = [f"{place}: {text}" for _, place, text in placed]
     more = len(lines) - _MOST_LINES

@@ -57,7 +57,7 @@ def records_of(
     if variable not in table:
         raise ResultsError(f"--of {name}: is none of the outputs in time; they are {', '.join(table)}")
     output = table[variable]
-    if output.vector != (component in (*COMPONENTS, SIZE)) or not output.vector and component:
+    if output.vector != (component in (*COMPONENTS, SIZE)) or (not output.vector and component):
         remedy = f"write {variable}.x, .y, .z or .size" if output.vector else f"write {variable}"
         raise ResultsError(f"--of {name}: {variable} is {'a vector' if output.vector else 'a number'}; {remedy}")
     places = _places(runs, arcs) if output.where == "nodes" else np.array([np.nan])

@@ -30,7 +30,7 @@ LAYERS: list[tuple[str, ...]] = [  # folders, and modules of the root, of one la
     ("stages", "plots"),
     ("whole_run", "material", "calibration", "modes"),
     ("accuracy",),
-    ("stress",),
+    ("stress", "cases"),
     ("api",),
     ("commands",),
     ("__main__",),
@@ -49,7 +49,9 @@ ONLY_IN: dict[str, str | tuple[str, ...]] = {  # what costs time to import, or m
     "scipy.optimize": "riser_soil.calibration",
     "scipy.stats": ("riser_soil.calibration", "riser_soil.statistics"),
     "scipy.signal": "riser_soil.statistics",
-    "xarray": "riser_soil.results",
+    "xarray": ("riser_soil.results", "riser_soil.cases", "riser_soil.modes"),
+    "distributed": "riser_soil.cases",
+    "dask": "riser_soil.cases",
 }
 
 

@@ -1,0 +1,61 @@
+"""Table of all cases: what became of each, and its values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from riser_soil.cases.case_folder import Outcome, place
+from riser_soil.cases.case_values import CaseValue, case_values
+from riser_soil.cases.expansion import Case
+from riser_soil.core.arrays import Array
+
+
+@dataclass(frozen=True, eq=False)
+class CaseTable:
+    """All cases in their order, what became of them, and the values of those that are done."""
+
+    title: str
+    cases: Sequence[Case]
+    outcomes: Mapping[str, Outcome]
+    values: Mapping[str, Mapping[str, CaseValue]]
+
+    @cached_property
+    def paths(self) -> list[str]:
+        """Of all values in which cases differ from the base scene."""
+        return list(dict.fromkeys(path for case in self.cases for path in case.values))
+
+    @cached_property
+    def quantities(self) -> dict[str, CaseValue]:
+        """Of all cases by their keys, each as the first case has it."""
+        found: dict[str, CaseValue] = {}
+        for values in self.values.values():
+            for key, value in values.items():
+                found.setdefault(key, value)
+        return found
+
+    @property
+    def failed(self) -> list[Outcome]:
+        return [self.outcomes[case.name] for case in self.cases if not self.outcomes[case.name].done]
+
+    def column(self, key: str) -> Array:
+        """A quantity's values (n,), nan in cases that failed or have none."""
+        return np.array([self._value(case.name, key) for case in self.cases])
+
+    def _value(self, name: str, key: str) -> float:
+        value = self.values.get(name, {}).get(key)
+        return math.nan if value is None else value.value
+
+
+def case_table(
+    title: str, folder: Path, cases: Sequence[Case], outcomes: Mapping[str, Outcome], since: float
+) -> CaseTable:
+    """From the results in the cases' folders. since: s, of the statistics."""
+    done = [case.name for case in cases if outcomes[case.name].done]
+    values = {name: {value.key: value for value in case_values(place(folder, name), since)} for name in done}
+    return CaseTable(title, cases, outcomes, values)

@@ -1,0 +1,86 @@
+"""Values of a finished case: headline quantities of all stages, mean and standard deviation in the last dynamic one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from riser_soil.accuracy.headlines import headlines
+from riser_soil.core.arrays import Array
+from riser_soil.errors import ResultsError
+from riser_soil.results.read import Run
+
+MEAN, DEVIATION = ", mean", ", standard deviation"
+_SIGNS = {"tension": "positive in tension", "contact force": "positive where the ground pushes"}
+
+
+@dataclass(frozen=True)
+class CaseValue:
+    """stage and name of a quantity, its unit (SI), and its value in one case."""
+
+    stage: str
+    name: str
+    unit: str
+    value: float
+
+    @property
+    def key(self) -> str:
+        return f"{self.stage}: {self.name}"
+
+    @property
+    def in_time(self) -> bool:
+        """Whether it is of the statistics in time, and no extreme."""
+        return self.name.endswith((MEAN, DEVIATION))
+
+    @property
+    def sign(self) -> str:
+        """What its sign means; of a standard deviation or a magnitude nothing."""
+        if self.name.endswith(DEVIATION):
+            return ""
+        return next((sign for word, sign in _SIGNS.items() if word in self.name), "")
+
+
+def case_values(folder: Path, since: float) -> list[CaseValue]:
+    """Of a run's folder. since: time of the last dynamic stage [s] from which on its records count in statistics."""
+    run = Run(folder)
+    found = headlines(run.summary).values()
+    return [*(CaseValue(each.stage, each.name, each.unit, each.value) for each in found), *_statistics(run, since)]
+
+
+def _statistics(run: Run, since: float) -> Iterator[CaseValue]:
+    """Mean and standard deviation of what is recorded; nan, where nothing touches, doesn't count."""
+    stages = run.summary["stages"]
+    number = max((n for n, stage in enumerate(stages) if stage["kind"] == "dynamic"), default=None)
+    if number is None:
+        return
+    begun = sum(stage["time"] for stage in stages[:number] if stage["kind"] == "dynamic")
+    seen = (run["stage"] == number) & (run.time >= begun + since)
+    for name, unit, series in _series(run):
+        values = series[seen]
+        values = values[np.isfinite(values)]
+        if values.size:
+            yield CaseValue(stages[number]["name"], name + MEAN, unit, float(values.mean()))
+            yield CaseValue(stages[number]["name"], name + DEVIATION, unit, float(values.std()))
+
+
+def _series(run: Run) -> Iterator[tuple[str, str, Array]]:
+    """Name, unit and records (nt,) of what a run may have recorded; moments are those at nodes."""
+    height = run["position"][-1][:, 2]
+    upper = 0 if height[0] > height[-1] else -1
+    for name, unit, variable, of in (
+        ("top tension", "N", "effective_tension", lambda T: T[:, upper]),
+        ("least effective tension", "N", "effective_tension", lambda T: T.min(axis=1)),
+        ("largest bending moment at nodes", "N.m", "bending_moment", lambda M: M.max(axis=1)),
+        ("touchdown arc", "m", "touchdown_arc", lambda arc: arc),
+        ("contact force", "N", "contact_force_sum", lambda F: F[:, 2]),
+    ):
+        try:
+            values = run[variable]
+        except ResultsError:  # not recorded
+            continue
+        yield name, unit, of(values)
+
+

@@ -1,0 +1,168 @@
+"""From a case file to its cases: rows and combinations, their names, overrides and checked scenes."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from riser_soil import __version__
+from riser_soil.cases.case_file import MOST_LETTERS, Cases, Overrides, is_name, read_case_file
+from riser_soil.errors import SceneError
+from riser_soil.scene.document import Document
+from riser_soil.scene.dump import dump_scene
+from riser_soil.scene.reader import read_document, scene_of
+from riser_soil.scene.scene import Scene
+
+MOST_CASES = 100_000
+MOST_LINES = 20
+
+
+@dataclass(frozen=True)
+class Case:
+    """A run to be had. values: by their paths, in what it differs from the base scene. scene: resolved, as text.
+
+    key: digest of its scene, the files that this names, and the program's version: what would give the same results.
+    """
+
+    name: str
+    values: Overrides
+    scene: str = ""
+    key: str = ""
+
+
+def read_cases(file: Path, overrides: Sequence[str] = ()) -> tuple[Cases, list[Case]]:
+    """The cases of a file, all scenes checked; overrides: of the base scene. SceneError has one line per problem."""
+    told = read_case_file(file)
+    document = read_document(told.base)
+    common = [*(_assignment(*item) for item in told.values.items()), *overrides]
+    cases, problems = [], dict[str, None]()
+    for case in named_cases(file, told):
+        try:
+            scene = _scene(document, told.base.parent, [*common, *(_assignment(*item) for item in case.values.items())])
+            text = dump_scene(scene)
+            cases.append(replace(case, scene=text, key=_key(scene, text)))
+        except SceneError as err:
+            problems |= dict.fromkeys(_placed(line, file, case) for line in str(err).splitlines())
+    if problems:
+        more = len(problems) - MOST_LINES
+        raise SceneError("\n".join([*list(problems)[:MOST_LINES], *([f"… and {more} more"] if more > 0 else [])]))
+    return told, cases
+
+
+def named_cases(file: Path, told: Cases) -> list[Case]:
+    """All combinations in their order, the last key of the product changing first; SceneError where names coincide."""
+    short = _short_names([*told.product, *(path for row in told.table for path in row.values)])
+    rows = [Case(row.name or _name(row.values, short), row.values) for row in told.table]
+    axes = [rows] if rows else []
+    axes += [_axis(path, values, short) for path, values in told.product.items()]
+    count = math.prod(len(axis) for axis in axes)
+    if count > MOST_CASES:
+        raise SceneError(f"{file}: {count} cases, more than {MOST_CASES}; divide them over several files")
+    cases = [_together(parts) for parts in product(*axes)]
+    _refuse_twice(file, rows, told.product)
+    for name, times in Counter(case.name for case in cases).items():
+        if times > 1:
+            raise SceneError(f"{file}: {times} cases would be named {name}; give rows and groups names of their own")
+        if not is_name(name):
+            raise SceneError(f"{file}: case {name}: more than {MOST_LETTERS} letters; give rows and groups short names")
+    return cases
+
+
+def _refuse_twice(file: Path, rows: Sequence[Case], axes: Mapping[str, Any]) -> None:
+    """Raises SceneError for a path that the table and the product set, or two keys of the product."""
+    set_by = [{path for row in rows for path in row.values}, *(_paths(name, axis) for name, axis in axes.items())]
+    for path, times in Counter(path for paths in set_by for path in paths).items():
+        if times > 1:
+            raise SceneError(f"{file}: {path}: is set {times} times in one case; let one key alone set it")
+
+
+def _paths(name: str, axis: Any) -> set[str]:
+    """All that a key of the product sets."""
+    return {path for group in axis.values() for path in group} if isinstance(axis, Mapping) else {name}
+
+
+def _axis(path: str, values: Sequence[Any] | Mapping[str, Overrides], short: Mapping[str, str]) -> list[Case]:
+    if isinstance(values, Mapping):
+        return [Case(name, group) for name, group in values.items()]
+    return [Case(_value_name(path, value, n, short), {path: value}) for n, value in enumerate(values, start=1)]
+
+
+def _together(parts: Sequence[Case]) -> Case:
+    return Case("-".join(part.name for part in parts), {path: v for part in parts for path, v in part.values.items()})
+
+
+def _name(values: Overrides, short: Mapping[str, str]) -> str:
+    return "-".join(_value_name(path, value, None, short) for path, value in values.items())
+
+
+def _value_name(path: str, value: Any, number: int | None, short: Mapping[str, str]) -> str:
+    """`Hs=6.5`, `kind=rigid`; of lists and mappings the number among the values: `position_2`."""
+    if isinstance(value, list | dict) and number is not None:
+        return f"{short[path]}_{number}"
+    text = f"{value:g}" if isinstance(value, float) and float(f"{value:g}") == value else str(value)
+    return short[path] + "=" + re.sub(r"[^\w.+-]+", "_", text, flags=re.ASCII).strip("_")
+
+
+def _short_names(paths: Sequence[str]) -> dict[str, str]:
+    """The last words of each path that tell it from the others; numbers of lists don't tell alone."""
+    unique = list(dict.fromkeys(paths))
+    found = {}
+    for path in unique:
+        words = path.split(".")
+        endings = (words[-n:] for n in range(1, len(words) + 1))
+        telling = (e for e in endings if not e[0].isdecimal() and sum(_ends(other, e) for other in unique) == 1)
+        found[path] = re.sub(r"[^\w]+", "_", "_".join(next(telling, words)), flags=re.ASCII)
+    return found
+
+
+def _ends(path: str, words: list[str]) -> bool:
+    return path.split(".")[-len(words) :] == words
+
+
+def _assignment(path: str, value: Any) -> str:
+    return f"{path}={json.dumps(value, ensure_ascii=False)}"
+
+
+def _placed(line: str, file: Path, case: Case) -> str:
+    """What an override is to blame for is told with its case; what the base scene is to blame for is told once."""
+    return f"{file}: case {case.name}: {line}" if line.startswith("--set") else line
+
+
+def _scene(document: Document, folder: Path, assignments: Sequence[str]) -> Scene:
+    """The resolved scene; its results have their place among the cases."""
+    scene = scene_of(deepcopy(document), folder, assignments)
+    return scene.model_copy(update={"output": scene.output.model_copy(update={"directory": None})})
+
+
+def _key(scene: Scene, text: str) -> str:
+    told = hashlib.sha256(f"{__version__}\n{text}".encode())
+    for file in _files(scene.model_dump()):
+        told.update(_digest(file, file.stat().st_mtime_ns))
+    return told.hexdigest()
+
+
+def _files(value: Any) -> Iterator[Path]:
+    """The files that a scene names."""
+    if isinstance(value, Path):
+        yield value
+    elif isinstance(value, Mapping):
+        for each in value.values():
+            yield from _files(each)
+    elif isinstance(value, list | tuple):
+        for each in value:
+            yield from _files(each)
+
+
+@cache
+def _digest(file: Path, modified: int) -> bytes:
+    return hashlib.sha256(file.read_bytes()).digest()

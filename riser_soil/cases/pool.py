@@ -1,0 +1,105 @@
+"""Workers for cases, by Dask's distributed scheduler: processes of this machine, or those of a scheduler elsewhere.
+
+A worker that dies is replaced, and the case that it had is done again; one whose worker dies time after time fails.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import signal
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+from uuid import uuid4
+
+import dask
+from distributed import Client, LocalCluster, as_completed, get_worker
+from distributed.scheduler import KilledWorker
+
+from riser_soil.cases.case_folder import Outcome
+from riser_soil.cases.work import Task, run_case
+from riser_soil.errors import SceneError
+
+CONNECTING = "10s"
+KILLED = 128 + signal.SIGKILL
+SETTINGS = {"distributed.scheduler.worker-saturation": 1.0}  # a worker gets a case when it is free for it
+
+
+def outcomes(tasks: Sequence[Task], jobs: int, scheduler: str | None) -> Iterator[Outcome]:
+    """What becomes of the cases, as they end. When the caller leaves, cases that run are stopped.
+
+    scheduler: address of a Dask scheduler, whose workers are taken; None: `jobs` worker processes on this machine.
+    """
+    with dask.config.set(SETTINGS), _client(jobs, scheduler) as client:
+        mark = uuid4().hex
+        futures = {client.submit(on_worker, t, key=f"{t['name']}-{mark}", pure=False): t for t in tasks}
+        try:
+            for future in as_completed(list(futures)):
+                yield _outcome(future, futures.pop(future))
+                future.release()
+        finally:
+            client.cancel(list(futures), force=True)
+
+
+def on_worker(task: Task) -> dict[str, Any]:
+    """`run_case` in a worker's thread, as long as somebody waits for it."""
+    worker = get_worker()
+    key = worker.get_current_task()
+
+    def wanted() -> bool:
+        known = worker.state.tasks.get(key)
+        return known is not None and known.state == "executing"
+
+    return run_case(task, wanted)
+
+
+def _outcome(future: Any, task: Task) -> Outcome:
+    try:
+        return Outcome.of(future.result())
+    except KilledWorker as err:
+        times = dask.config.get("distributed.scheduler.allowed-failures") + 1
+        reason = f"its worker died {times} times, the last time {err.last_worker.address}; is memory enough?"
+        return Outcome(task["name"], task["key"], KILLED, reason)
+
+
+@contextmanager
+def _client(jobs: int, scheduler: str | None) -> Iterator[Client]:
+    with _quiet_logs():
+        if scheduler is not None:
+            with _connected(scheduler) as client:
+                yield client
+            return
+        with (
+            LocalCluster(
+                n_workers=jobs, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None,
+                memory_limit=0, silence_logs=logging.CRITICAL,
+            ) as cluster,
+            Client(cluster) as client,
+        ):  # fmt: skip
+            yield client
+
+
+def _connected(address: str) -> Client:
+    try:
+        return Client(address, timeout=CONNECTING)
+    except (OSError, ValueError) as err:
+        told = " ".join(str(err).split())
+        raise SceneError(f"--scheduler {address}: nobody answers there ({told}); start one by: dask scheduler") from err
+
+
+@contextmanager
+def _quiet_logs() -> Iterator[None]:
+    """Dask tells of workers that come and go, which the table of cases tells as far as it matters."""
+    log = logging.getLogger("distributed")
+    former = log.level
+    log.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        log.setLevel(former)
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0))

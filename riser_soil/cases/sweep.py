@@ -1,0 +1,109 @@
+"""Load cases from their file to their table."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from riser_soil import __version__
+from riser_soil.cases.case_folder import ATTEMPTS, CASE, CASES, FILES, Outcome, clear_attempts, found, place
+from riser_soil.cases.case_progress import CaseProgress
+from riser_soil.cases.case_table import CaseTable, case_table
+from riser_soil.cases.expansion import Case, read_cases
+from riser_soil.cases.work import Task
+from riser_soil.errors import Interruption, SceneError
+from riser_soil.results.folder import FolderLock
+from riser_soil.results.ownership import sealed
+from riser_soil.results.whole_file import refuse_file, unusable
+
+
+@dataclass(frozen=True)
+class Workers:
+    """Who computes: `jobs` worker processes on this machine, or those of a Dask scheduler at an address.
+
+    limit: s that one case may take, from its start to its end; None: as long as it likes.
+    """
+
+    jobs: int = 1
+    scheduler: str | None = None
+    limit: float | None = None
+
+
+def run_cases(
+    file: Path, folder: Path, workers: Workers, overrides: Sequence[str] = (), says: Callable[[str], None] = print
+) -> CaseTable:
+    """Run the cases of a file that are not done yet, and leave their table in the folder.
+
+    overrides: of the base scene, beside those of the file. Cases that fail are rows with their reasons. Raises
+    SceneError before the first case is run; Interruption leaves what has ended, and a further call goes on.
+    """
+    told, cases = read_cases(file, overrides)
+    folder = folder.absolute()
+    with _held(folder, cases):
+        outcomes = {case.name: known for case in cases if (known := found(folder, case.name, case.key))}
+        todo = [_task(case, folder, workers.limit) for case in cases if case.name not in outcomes]
+        says(f"{len(cases)} cases, {len(outcomes)} of them done already" if outcomes else f"{len(cases)} cases")
+        outcomes |= _computed(todo, workers, len(cases), folder)
+        table = case_table(f"Load cases of {file.name}", folder, cases, outcomes, told.statistics.since)
+        from riser_soil.cases.case_files import write_files
+
+        write_files(table, folder)
+    return table
+
+
+def _computed(todo: Sequence[Task], workers: Workers, count: int, folder: Path) -> dict[str, Outcome]:
+    if not todo:
+        return {}
+    from riser_soil.cases.pool import outcomes
+
+    found = {}
+    with CaseProgress(count, count - len(todo)) as progress:
+        try:
+            for outcome in outcomes(todo, min(workers.jobs, len(todo)), workers.scheduler):
+                found[outcome.name] = outcome
+                progress.take(outcome)
+        except Interruption as end:
+            end.place = f"when {progress.ended} of {count} cases had ended; {folder} keeps them, call again to go on"
+            raise
+    return found
+
+
+def _task(case: Case, folder: Path, limit: float | None) -> Task:
+    task = {"name": case.name, "key": case.key, "scene": sealed(case.scene), "folder": str(folder)}
+    return task | {"limit": limit, "version": __version__}
+
+
+@contextmanager
+def _held(folder: Path, cases: Sequence[Case]) -> Iterator[None]:
+    """The folder for this call alone, without the tables of an earlier one and what its workers may have left."""
+    _refuse(folder, cases)
+    try:
+        lock = FolderLock(folder)
+    except OSError as err:
+        raise unusable(folder, err) from err
+    with lock:
+        try:
+            clear_attempts(folder)
+            (folder / CASES / ATTEMPTS).mkdir(parents=True)
+            for name in FILES:
+                (folder / name).unlink(missing_ok=True)
+        except OSError as err:
+            raise unusable(folder, err) from err
+        try:
+            yield
+        finally:
+            clear_attempts(folder)
+
+
+def _refuse(folder: Path, cases: Sequence[Case]) -> None:
+    """Only an empty folder, or one with cases, takes cases; of these only what was written as one is replaced."""
+    refuse_file(folder)
+    there = [entry.name for entry in folder.iterdir()] if folder.is_dir() else []
+    if there and CASES not in there:
+        raise SceneError(f"{folder}: holds something else than load cases, {min(there)}; choose another with -o FOLDER")
+    for case in cases:
+        at = place(folder, case.name)
+        if at.exists() and not (at / CASE).is_file():
+            raise SceneError(f"{at}: is no case's folder, and would be replaced; move it away, or choose another (-o)")

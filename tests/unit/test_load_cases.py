@@ -1,0 +1,302 @@
+"""Load cases without a solver: results take their places once, what is done is kept, failed cases are rows."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import re
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+from rich.console import Console
+from typer.testing import CliRunner
+
+from riser_soil import __version__
+from riser_soil.cases import case_files, pool, work
+from riser_soil.cases.case_folder import ATTEMPTS, CASES, Outcome, attempt, found, settle
+from riser_soil.cases.case_process import die_with
+from riser_soil.cases.case_progress import CaseProgress
+from riser_soil.cases.case_values import case_values
+from riser_soil.cases.work import NOT_WANTED, STOPPED_BY_LIMIT, Task, run_case
+from riser_soil.commands.app import app
+from riser_soil.results.read import Run
+from tests.support.case_files import SMALL, case_file
+from tests.support.recorded_run import WEIGHT, record
+
+SWEEP = "product: {line_types.pipe.EI: [100.0, 200.0], riser.end.position.0: [8.0, 9.0]}"
+NAMES = ["EI=100-position_0=8", "EI=100-position_0=9", "EI=200-position_0=8", "EI=200-position_0=9"]
+FINISHED = "import sys, shutil; shutil.copytree(sys.argv[1], sys.argv[2], dirs_exist_ok=True)"
+Fake = Callable[[str], None]
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A finished run's folder, but for its scene."""
+    folder = tmp_path_factory.mktemp("recorded")
+    record(folder, duration=7.0, interval=0.1)
+    (folder / "scene.yaml").unlink()
+    return folder
+
+
+@pytest.fixture
+def fake(monkeypatch: pytest.MonkeyPatch, recorded: Path) -> Fake:
+    """Puts a piece of Python in the place of `riser-soil run`; its arguments: a finished run, the case's folder."""
+
+    def put(code: str) -> None:
+        monkeypatch.setattr(work, "command", lambda made: [sys.executable, "-c", code, str(recorded), str(made)])
+
+    put(FINISHED)
+    return put
+
+
+@pytest.fixture
+def invoke(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., Any]:
+    """The command in a folder with sweep.yaml; its cases are computed in this process, one by one."""
+    monkeypatch.chdir(tmp_path)
+
+    def outcomes(tasks: Sequence[Task], jobs: int, scheduler: str | None) -> Iterator[Outcome]:
+        return (Outcome.of(run_case(task)) for task in tasks)
+
+    monkeypatch.setattr(pool, "outcomes", outcomes)
+    return lambda *options: CliRunner().invoke(app, ["cases", "sweep.yaml", *options])
+
+
+def a_task(folder: Path, **changes: Any) -> Task:
+    (folder / CASES / ATTEMPTS).mkdir(parents=True, exist_ok=True)
+    task = {"name": "a", "key": "1", "scene": SMALL, "folder": str(folder), "limit": None, "version": __version__}
+    return task | changes
+
+
+def rows(file: Path) -> list[dict[str, str]]:
+    with file.open(newline="", encoding="utf-8") as opened:
+        return list(csv.DictReader(opened))
+
+
+def test_results_take_their_place_when_the_run_has_ended(tmp_path: Path, fake: Fake) -> None:
+    outcome = Outcome.of(run_case(a_task(tmp_path)))
+    assert outcome.done
+    assert outcome.seconds > 0.0
+    assert (tmp_path / "cases/a/scene.yaml").read_text() == SMALL
+    assert found(tmp_path, "a", "1") == outcome
+    assert not list((tmp_path / CASES / ATTEMPTS).iterdir())
+
+
+def test_what_is_done_is_not_done_again(tmp_path: Path, fake: Fake) -> None:
+    first = run_case(a_task(tmp_path))
+    fake("import sys; sys.exit(1)")
+    assert run_case(a_task(tmp_path)) == first
+    assert run_case(a_task(tmp_path, key="2"))["status"] == 1
+    assert found(tmp_path, "a", "1") is None
+
+
+def test_the_first_of_two_attempts_that_finish_stays(tmp_path: Path, fake: Fake, recorded: Path) -> None:
+    """As where a worker that was given up is alive all the same; one that failed gives way."""
+    task = a_task(tmp_path)
+    run_case(task)
+    late, failed = attempt(tmp_path, "a", SMALL), attempt(tmp_path, "a", SMALL)
+    (late / "late").touch()
+    assert settle(late, tmp_path, Outcome("a", "1", 0, machine="late")).machine != "late"
+    assert settle(failed, tmp_path, Outcome("a", "1", 3)).done
+    assert not (tmp_path / "cases/a/late").exists()
+    assert settle(attempt(tmp_path, "a", SMALL), tmp_path, Outcome("a", "2", 3)).status == 3
+    fake(FINISHED)
+    assert run_case(task)["status"] == 0
+    assert [entry.name for entry in (tmp_path / CASES).iterdir() if entry.name != ATTEMPTS] == ["a"]
+    assert not list((tmp_path / CASES / ATTEMPTS).iterdir())
+
+
+@pytest.mark.parametrize(
+    ("code", "status", "reason"),
+    [
+        ("print('a'); print('no  convergence at arc 3 m'); raise SystemExit(3)", 3, "no convergence at arc 3 m"),
+        ("raise SystemExit(4)", 4, "ended with status 4"),
+        ("raise ZeroDivisionError('bug')", 1, "ZeroDivisionError: bug"),
+        ("import os; os.kill(os.getpid(), 9)", 137, "killed by SIGKILL, as where memory runs out"),
+        ("import os; os.abort()", 134, "killed by SIGABRT"),
+    ],
+)
+def test_a_run_that_fails_tells_why(tmp_path: Path, fake: Fake, code: str, status: int, reason: str) -> None:
+    fake(code)
+    outcome = Outcome.of(run_case(a_task(tmp_path)))
+    assert (outcome.status, outcome.reason) == (status, reason)
+    assert json.loads((tmp_path / "cases/a/case.json").read_text())["reason"] == reason
+
+
+def test_a_run_that_takes_too_long_is_stopped(tmp_path: Path, fake: Fake) -> None:
+    fake("import time; time.sleep(600)")
+    outcome = Outcome.of(run_case(a_task(tmp_path, limit=0.2)))
+    assert (outcome.status, outcome.reason) == (STOPPED_BY_LIMIT, "took longer than the limit of 0.2 s")
+
+
+def test_a_run_that_nobody_waits_for_is_stopped_and_leaves_nothing(tmp_path: Path, fake: Fake) -> None:
+    fake("import time; time.sleep(600)")
+    assert run_case(a_task(tmp_path), wanted=lambda: False)["status"] == NOT_WANTED
+    assert not (tmp_path / "cases/a").exists()
+
+
+def test_workers_tell_what_they_lack(tmp_path: Path) -> None:
+    other = run_case(a_task(tmp_path, version="0.0.1"))
+    assert other["status"] == 2
+    assert other["reason"].endswith(f"the worker has riser_soil {__version__}, not 0.0.1; install the same")
+    away = run_case(a_task(tmp_path) | {"folder": str(tmp_path / "elsewhere")})
+    assert away["status"] == 4
+    assert away["reason"].endswith("No such file or directory; workers need the folder shared")
+
+
+def test_a_run_ends_with_its_worker(tmp_path: Path) -> None:
+    """With the thread that began it; and one whose worker had ended before it could ask for that, by itself."""
+    module = "from riser_soil.cases.case_process import die_with\n"
+    begun: list[int] = []
+
+    def worker() -> None:
+        code = f"{module}import time\ndie_with({os.getpid()})\nopen('here', 'w').close()\ntime.sleep(600)"
+        begun.append(os.posix_spawn(sys.executable, [sys.executable, "-c", code], os.environ))
+        while not (tmp_path / "here").exists():
+            time.sleep(0.01)
+
+    former = Path.cwd()
+    os.chdir(tmp_path)
+    try:
+        thread = threading.Thread(target=worker)
+        thread.start()
+        thread.join()
+    finally:
+        os.chdir(former)
+    _, status = os.waitpid(begun[0], 0)
+    assert os.WTERMSIG(status) == 9
+    with pytest.raises(SystemExit) as left:
+        _in_child(lambda: die_with(1))
+    assert left.value.code == 137
+
+
+def _in_child(do: Callable[[], None]) -> None:
+    """In a forked process: the call would change this one for good."""
+    if (pid := os.fork()) == 0:
+        status = 0
+        try:
+            do()
+        except SystemExit as leave:
+            status = int(leave.code or 0)
+        finally:
+            os._exit(status)
+    raise SystemExit(os.WEXITSTATUS(os.waitpid(pid, 0)[1]))
+
+
+def test_values_of_a_run(recorded: Path) -> None:
+    """The recorded catenary: touchdown at 30 - 2 sin t, parameter 32 + sin t [m], recorded each 0.1 s of 7 s."""
+    t = np.arange(21, 71) * 0.1
+    values = {value.key: value for value in case_values(recorded, since=2.05)}
+    arc, a = 30.0 - 2.0 * np.sin(t), 32.0 + np.sin(t)
+    expected = {
+        "heave: touchdown arc": arc,
+        "heave: contact force": WEIGHT * arc,
+        "heave: least effective tension": WEIGHT * a,
+        "heave: top tension": WEIGHT * np.hypot(a, 148.0 - arc),
+    }
+    for key, series in expected.items():
+        assert values[f"{key}, mean"].value == pytest.approx(series.mean(), rel=1e-9)
+        assert values[f"{key}, standard deviation"].value == pytest.approx(series.std(), rel=1e-6)
+    assert values["heave: top tension, mean"].unit == "N"
+    assert values["heave: top tension, mean"].sign == "positive in tension"
+    assert values["heave: top tension, standard deviation"].sign == ""
+    assert values["heave: largest touchdown arc"].value == pytest.approx(Run(recorded)["touchdown_arc"].max())
+    assert "lay: touchdown arc, mean" not in values
+
+
+def test_tables_of_all_cases(tmp_path: Path, fake: Fake, invoke: Callable[..., Any]) -> None:
+    """One that fails is a row with its reason; the command says so, and its status is 3."""
+    case_file(tmp_path, SWEEP)
+    fake(f"import pathlib, sys\nif '=200-position_0=9' in sys.argv[2]: sys.exit('out of soil')\n{FINISHED}")
+    done = invoke()
+    assert done.exit_code == 3
+    assert done.stderr == "failed: EI=200-position_0=9; reasons are in sweep/cases.csv\n"
+    assert "4 of 4: EI=200-position_0=9: failed with status 1: out of soil" in done.stdout
+    assert "3 of 4 cases done; tables are in sweep" in done.stdout
+    table = rows(tmp_path / "sweep/cases.csv")
+    assert [(row["case"], row["line_types.pipe.EI"], row["status"], row["reason"]) for row in table] == [
+        (NAMES[0], "100.0", "0", ""),
+        (NAMES[1], "100.0", "0", ""),
+        (NAMES[2], "200.0", "0", ""),
+        (NAMES[3], "200.0", "1", "out of soil"),
+    ]
+    tension = max(Run(tmp_path / "sweep/cases" / NAMES[0])["effective_tension"][2:, -1])
+    assert [row["heave: top tension [N]"] for row in table] == [f"{tension:.8g}"] * 3 + [""]
+    extremes = {row["quantity"]: row for row in rows(tmp_path / "sweep/extremes.csv")}
+    assert extremes["heave: top tension"]["largest"] == f"{tension:.8g}"
+    assert (extremes["heave: top tension"]["in case"], extremes["heave: top tension"]["cases"]) == (NAMES[0], "3")
+    with xarray.open_dataset(tmp_path / "sweep/cases.nc", engine="h5netcdf") as found:
+        assert found["case"].values.tolist() == NAMES
+        assert found["set_line_types_pipe_EI"].values.tolist() == [100.0, 100.0, 200.0, 200.0]
+        assert found["status"].values.tolist() == [0, 0, 0, 1]
+        assert found["reason"].values.tolist() == ["", "", "", "out of soil"]
+        top = found["heave_top_tension"]
+        assert (top.attrs["units"], top.attrs["stage"], top.attrs["sign_convention"]) == (
+            "N", "heave", "positive in tension",
+        )  # fmt: skip
+        assert top.values == pytest.approx([tension] * 3 + [np.nan], nan_ok=True)
+    assert (tmp_path / "sweep/cases.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_second_call_does_what_failed_and_what_is_new(
+    tmp_path: Path, fake: Fake, invoke: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case_file(tmp_path, SWEEP)
+    monkeypatch.setattr(case_files, "draw_load_cases", lambda png, title, panels: png.touch())
+    fake(f"import pathlib, sys\nif '=200-position_0=9' in sys.argv[2]: sys.exit('out of soil')\n{FINISHED}")
+    assert invoke().exit_code == 3
+    fake(FINISHED)
+    again = invoke()
+    assert again.exit_code == 0
+    assert again.stdout.startswith("4 cases, 3 of them done already\n4 of 4: EI=200-position_0=9: done")
+    case_file(tmp_path, SWEEP.replace("[100.0, 200.0]", "[100.0, 300.0]"))
+    assert invoke().stdout.startswith("4 cases, 2 of them done already\n")
+    assert invoke("--set", "gravity=9.8").stdout.startswith("4 cases\n")
+
+
+@pytest.mark.parametrize(
+    ("there", "options", "says"),
+    [
+        ("sweep/mine", (), "sweep: holds something else than load cases, mine; choose another with -o FOLDER"),
+        ("sweep/cases/EI=100-position_0=8/mine", (), "is no case's folder, and would be replaced; move it away"),
+        ("sweep", (), "sweep: is a file, not a folder; choose another result folder with -o FOLDER"),
+        ("x", ("--jobs", "0"), "--jobs 0: must be 1 or more, and does not go with --scheduler"),
+        ("x", ("--jobs", "2", "--scheduler", "tcp://a:1"), "--jobs 2: must be 1 or more, and does not go with"),
+        ("x", ("--limit", "0"), "--limit 0: must be greater than 0"),
+        ("x", ("--set", "gravity=-1"), "--set gravity=-1: gravity: value -1: must be at least 0"),
+    ],
+)
+def test_bad_input_is_told_in_one_line(
+    tmp_path: Path, invoke: Callable[..., Any], there: str, options: tuple[str, ...], says: str
+) -> None:
+    case_file(tmp_path, SWEEP if "--set" not in options else "table: [{name: a, set: {title: x}}]")
+    (tmp_path / there).parent.mkdir(parents=True, exist_ok=True)
+    (tmp_path / there).touch()
+    before = sorted(tmp_path.rglob("*"))
+    done = invoke(*options)
+    assert done.exit_code == 2
+    (line,) = done.stderr.splitlines()
+    assert says in line
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_progress_is_a_bar_on_a_terminal_and_lines_elsewhere(
+    terminal: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    console = Console(force_terminal=terminal, stderr=True, width=80)
+    with CaseProgress(12, 9, console) as progress:
+        progress.take(Outcome("a", "", 0, seconds=1.5))
+        progress.take(Outcome("b", "", 3, "no convergence"))
+    out, err = capsys.readouterr()
+    assert "11 of 12: b: failed with status 3: no convergence" in out + err
+    assert ("10 of 12: a: done in 1.5 s" in out) is not terminal
+    assert bool(re.search(r"11/12\S* 1 failed", err)) is terminal
+    assert progress.ended == 11

@@ -1,0 +1,110 @@
+"""Load cases on a cluster of worker processes: none is lost and none done twice when a worker is killed."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import signal
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+from distributed import LocalCluster
+
+from tests.support.case_files import case_file
+from tests.support.case_sweeps import Watched, alive, sweep
+from tests.support.on_ranks import HANGS
+
+pytestmark = pytest.mark.verify
+
+MANY = [100.0 + 10.0 * n for n in range(20)], [round(8.0 + 0.1 * n, 1) for n in range(10)]
+FEW = [100.0, 200.0, 300.0], [8.0, 9.0]
+
+
+def product(EI: list[float], x: list[float]) -> str:
+    return f"product: {{line_types.pipe.EI: {json.dumps(EI)}, riser.end.position.0: {json.dumps(x)}}}"
+
+
+def rows(folder: Path) -> list[dict[str, str]]:
+    with (folder / "out" / "cases.csv").open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def names(EI: list[float], x: list[float]) -> list[str]:
+    return [f"EI={a:g}-position_0={b:g}" for a in EI for b in x]
+
+
+def test_two_hundred_cases_outlive_a_worker(tmp_path: Path) -> None:
+    """Two workers, one killed in mid-run: each case has one row and one folder, and only that worker's was begun twice.
+
+    The moment falls with the span, and the top tension hangs on it little: cases are not mixed up.
+    """
+    case_file(tmp_path, product(*MANY))
+    since = time.monotonic()
+    with sweep(tmp_path, "--jobs", "2") as job:
+        watched = Watched(job, tmp_path)
+        watched.until(lambda: len(watched.done) >= 40 and len(watched.runs()) == 2)
+        (run, worker), *_ = watched.runs().items()
+        os.kill(worker, signal.SIGKILL)
+        watched.until(lambda: not alive([run]))
+        watched.until(watched.ended)
+        out, err = job.process.communicate(timeout=HANGS)
+    assert job.process.returncode == 0, err
+    print(f"{len(rows(tmp_path))} cases in {time.monotonic() - since:.0f} s")
+    assert "200 of 200 cases done" in out
+    assert err == ""
+    assert [row["case"] for row in rows(tmp_path)] == names(*MANY)
+    assert {row["status"] for row in rows(tmp_path)} == {"0"}
+    assert sorted(watched.done) == sorted(names(*MANY))
+    assert not (tmp_path / "out" / "cases" / ".attempts").exists()
+    begun = [name.rpartition(".")[0] for name in watched.attempts]
+    assert len(begun) == 201
+    assert set(begun) == set(names(*MANY))
+    with xarray.open_dataset(tmp_path / "out" / "cases.nc", engine="h5netcdf") as found:
+        tension = found["hang_top_tension"].values.reshape(20, 10)
+        assert (np.diff(tension, axis=1) > 0.0).all()
+        assert (np.diff(tension, axis=0) < 0.0).all()
+
+
+def test_ctrl_c_stops_all_and_a_second_call_goes_on(tmp_path: Path) -> None:
+    case_file(tmp_path, product(*FEW))
+    with sweep(tmp_path, "--jobs", "2") as job:
+        watched = Watched(job, tmp_path)
+        watched.until(lambda: len(watched.done) >= 2 and len(watched.runs()) > 0)
+        job.process.send_signal(signal.SIGINT)
+        _, err = job.process.communicate(timeout=HANGS)
+        assert job.processes() == []
+    assert job.process.returncode == 130
+    (line,) = err.splitlines()
+    assert line.startswith("ended by SIGINT when ")
+    assert line.endswith("keeps them, call again to go on")
+    done = watched.done
+    assert 2 <= len(done) < 6
+    assert not list((tmp_path / "out").glob("*.csv"))
+    before = {name: (tmp_path / "out/cases" / name / "case.json").stat().st_mtime_ns for name in done}
+    with sweep(tmp_path, "--jobs", "2") as again:
+        out, err = again.process.communicate(timeout=HANGS)
+    assert (again.process.returncode, err) == (0, "")
+    assert f"6 cases, {len(done)} of them done already" in out
+    assert {name: (tmp_path / "out/cases" / name / "case.json").stat().st_mtime_ns for name in done} == before
+    assert [row["case"] for row in rows(tmp_path)] == names(*FEW)
+
+
+def test_workers_of_another_scheduler(tmp_path: Path) -> None:
+    """Its workers outlive the command, also one that is killed: then they stop the cases that nobody waits for."""
+    case_file(tmp_path, product(*FEW))
+    with LocalCluster(n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as cluster:
+        address = cluster.scheduler_address
+        with sweep(tmp_path, "--scheduler", address) as job:
+            watched = Watched(job, tmp_path)
+            watched.until(lambda: len(watched.done) >= 1)
+            job.process.kill()
+        with sweep(tmp_path, "--scheduler", address) as again:
+            _, err = again.process.communicate(timeout=HANGS)
+            assert (again.process.returncode, err) == (0, "")
+        assert len(cluster.scheduler_info["workers"]) == 2
+    assert [row["case"] for row in rows(tmp_path)] == names(*FEW)
+    assert {row["status"] for row in rows(tmp_path)} == {"0"}
