@@ -31,7 +31,7 @@ def invoke(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., Any
     monkeypatch.chdir(tmp_path)
     (tmp_path / "small.yaml").write_text(SMALL, encoding="utf-8")
 
-    def compute(scene: object, folder: Path, force: bool) -> None:
+    def compute(*given: object) -> None:
         print("this takes about 3 s")
         print("compiling kernels (once, about a minute)", file=sys.stderr)
         with Progress(enabled=True) as progress:
@@ -41,7 +41,7 @@ def invoke(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., Any
         Console().print("[red]top tension[/red] 3 kN")
         raise SolveError("no convergence at arc 3 m")
 
-    monkeypatch.setitem(sys.modules, "riser_soil.run", SimpleNamespace(run=compute))
+    monkeypatch.setitem(sys.modules, "riser_soil.accuracy.chosen_run", SimpleNamespace(run_as_asked=compute))
     return lambda *options: CliRunner().invoke(app, ["run", "small.yaml", *options])
 
 
