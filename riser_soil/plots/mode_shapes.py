@@ -17,7 +17,7 @@ UNSEEN = 1e-6  # of the largest displacement: a component that is left out
 
 
 def draw_modes(png: Path, arc: Array, position: Array, shape: Array, titles: Sequence[str]) -> Path:
-    """By the riser at rest and how it moves, side by side for each mode.
+    """By the riser at rest and how it moves, side by side for each mode; seen from above where it moves out of plane.
 
     arc (nn,), position (nn, 3) [m] at rest; shape (n, nn, 3): displacements, the largest 1.
     """
@@ -31,18 +31,23 @@ def draw_modes(png: Path, arc: Array, position: Array, shape: Array, titles: Seq
                 right.plot(arc, moved[:, component], f"C{component}", label=name)
         right.set_xlabel("arc length from the start [m]", fontsize=8)
         right.set_ylabel("displacement\nover the largest [-]", fontsize=8)
-        right.legend(fontsize=7, loc="upper right")
+        if right.lines:
+            right.legend(fontsize=7, loc="upper right")
     return save(figure, png)
 
 
 def _draw_view(axes: Axes, position: Array, moved: Array, horizontal: Array) -> None:
-    """In the vertical plane from start to end, the riser at rest and both extremes of the mode."""
+    """The riser at rest and both extremes of the mode, in the vertical plane from its start or from above."""
     extent = float(np.ptp(position, axis=0).max())
+    across = np.cross([0.0, 0.0, 1.0], horizontal)
+    above = np.abs(moved @ across).max() > np.abs(moved - np.outer(moved @ across, across)).max()
+    upwards = across if above else np.array([0.0, 0.0, 1.0])
+    origin = position[0] if above else position[0] * [1.0, 1.0, 0.0]
     for factor, style in ((0.0, "k-"), (LARGEST * extent, "C3-"), (-LARGEST * extent, "C3--")):
-        seen = position + factor * moved
-        axes.plot((seen - position[0]) @ horizontal, seen[:, 2], style, linewidth=0.9)
+        seen = position + factor * moved - origin
+        axes.plot(seen @ horizontal, seen @ upwards, style, linewidth=0.9)
     axes.set_xlabel("horizontal distance from the start [m]", fontsize=8)
-    axes.set_ylabel("z [m], upwards", fontsize=8)
+    axes.set_ylabel("from above:\nto the left [m]" if above else "z [m], upwards", fontsize=8)
 
 
 def _horizontal(position: Array) -> Array:

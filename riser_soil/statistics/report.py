@@ -37,9 +37,10 @@ def table(places: Sequence[Place], wanted: Wanted) -> list[str]:
     wide = max(len(place.words) for place in places)
     names = ("mean", "st. dev.", "least", "largest", "Tz [s]", "Rayleigh", "Weibull", "Gumbel")
     records, heads = places[0].records, [f"{name:>{10 if n < 6 else 32}}" for n, name in enumerate(names)]
+    runs = "1 run" if len(records.values) == 1 else f"{len(records.values)} runs"
     lines = [
-        f"{len(records.values)} runs, {records.duration:.6g} s together; most probable {most} value in "
-        f"{wanted.duration:g} s by three distributions, fits with {100.0 * wanted.confidence:g} % confidence",
+        f"{runs}, {records.duration:.6g} s in all; most probable {most} value in {wanted.duration:g} s by three "
+        f"distributions, fits with {100.0 * wanted.confidence:g} % confidence",
         f"{'':{wide}} {'unit':>5} " + " ".join(heads),
     ]
     for place in places:

@@ -19,7 +19,7 @@ from riser_soil.errors import SceneError, SolveError
 from riser_soil.modes.eigenpairs import FEW, lowest
 from riser_soil.modes.modes import Modes, modes_of
 from riser_soil.scene.reader import scene_from_mapping
-from tests.support.coupled_scenes import Mapping
+from tests.support.coupled_scenes import Mapping, touchdown
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene, static
 
 LENGTH, EA, EI, MASS, TENSION = 30.0, 1.0e9, 5.0e5, 80.0, 4.0e4
@@ -279,3 +279,16 @@ def test_first_static_stage_may_be_asked_for() -> None:
     alone = (np.pi / LENGTH) ** 2 * np.sqrt(EI / MASS) / (2.0 * np.pi)
     assert found(slack, 1, stage="lie").frequency[0] == pytest.approx(alone, rel=1e-4)
     assert found(slack, 1).frequency[0] == pytest.approx(tensioned_beam(1), rel=1e-4)
+
+
+@pytest.mark.verify
+def test_whole_and_condensed_soil_hold_a_riser_alike() -> None:
+    """Soil without mass follows the riser; stiffer soil makes higher frequencies."""
+    scene = touchdown()
+    scene["soil"]["law"] = {"kind": "linear-elastic", "E": 2.0e5, "nu": 0.45}
+    ways = ({"soil": way, "tolerance": 1e-9} for way in ("whole", "condensed"))
+    whole, condensed = (found(scene | {"solver": way}, 3) for way in ways)
+    assert whole.frequency == pytest.approx(condensed.frequency, rel=1e-6)
+    assert np.abs(whole.shape - condensed.shape).max() < 1e-4
+    scene["soil"]["law"]["E"] = 2.0e7
+    assert (found(scene, 3).frequency > 1.0001 * condensed.frequency).all()
