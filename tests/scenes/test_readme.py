@@ -158,6 +158,8 @@ def test_python(first: Run, newcomer: Path) -> None:
     ended = bash(".venv/bin/python read.py", newcomer)
     assert ended.returncode == 0, ended.stderr
     assert ended.stdout.splitlines() == [
+        "lowest natural period 11.59 s, in plane",
         "largest moment 3837 N.m at arc 36.5 m; stages ['hang', 'heave']",
         "k 21991 Pa at arc 25 m in the last cycle",
+        "mean 89.12 kN, deviation 8.19 kN",
     ]
