@@ -152,8 +152,8 @@ def test_clay_under_the_first_scene(newcomer: Path) -> None:
 
 
 def test_python(first: Run, newcomer: Path) -> None:
-    """The blocks one after the other, as one script."""
-    code = [block for page in PAGES for block in blocks(page, "python")]
+    """The blocks one after the other, as one script, but those of python.md, which test_api.py runs."""
+    code = [block for page in PAGES if page.name != "python.md" for block in blocks(page, "python")]
     (newcomer / "read.py").write_text("\n".join(code), encoding="utf-8")
     ended = bash(".venv/bin/python read.py", newcomer)
     assert ended.returncode == 0, ended.stderr
