@@ -52,9 +52,7 @@ def read_cases(file: Path, overrides: Sequence[str] = ()) -> tuple[Cases, list[C
             _put(own, told.values, f"{file}: set")
             override(own, overrides)
             _put(own, case.values, f"{file}: case {case.name}:")
-            scene = _scene(own, told.base.parent)
-            text = dump_scene(scene)
-            cases.append(replace(case, scene=text, key=_key(scene, text)))
+            cases.append(_resolved(case, own, told.base.parent))
         except SceneError as err:
             problems |= dict.fromkeys(str(err).splitlines())  # what is the base's to blame is told once
     if problems:
@@ -138,10 +136,12 @@ def _put(document: Document, values: Overrides, place: str) -> None:
         put(document, path, deepcopy(value), f"{place} {path}={shown(value)}")
 
 
-def _scene(document: Document, folder: Path) -> Scene:
-    """The resolved scene; its results have their place among the cases."""
+def _resolved(case: Case, document: Document, folder: Path) -> Case:
+    """The case with its scene; its results have their place among the cases, whatever the scene says."""
     scene = checked(document, folder)
-    return scene.model_copy(update={"output": scene.output.model_copy(update={"directory": None})})
+    scene = scene.model_copy(update={"output": scene.output.model_copy(update={"directory": None})})
+    text = dump_scene(scene)
+    return replace(case, scene=text, key=_key(scene, text))
 
 
 def _key(scene: Scene, text: str) -> str:
