@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import time
+from datetime import timedelta
 from types import TracebackType
 from typing import Self
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from riser_soil.cases.case_folder import Outcome
 
@@ -24,10 +26,11 @@ class CaseProgress:
         self._on_terminal = console.is_terminal
         self._bar = Progress(
             TextColumn("[bold]cases"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[failed]}"),
-            TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn(elapsed_when_finished=False),
+            TimeElapsedColumn(), TextColumn("{task.fields[left]}"),
             console=console, disable=not self._on_terminal, refresh_per_second=4,
         )  # fmt: skip
-        self._task = self._bar.add_task("", total=count, completed=known, failed="")
+        self._task = self._bar.add_task("", total=count, completed=known, failed="", left="")
+        self._known, self._begun = known, time.monotonic()
 
     def __enter__(self) -> Self:
         self._bar.start()
@@ -48,9 +51,15 @@ class CaseProgress:
         self._ended += 1
         self._failed += not outcome.done
         failed = f"{self._failed} failed" if self._failed else ""
-        self._bar.update(self._task, completed=self._ended, failed=failed)
+        self._bar.update(self._task, completed=self._ended, failed=failed, left=self._left())
         if not (outcome.done and self._on_terminal):
             print(f"{self._ended} of {self._count}: {outcome.name}: {_told(outcome)}", flush=True)
+
+
+    def _left(self) -> str:
+        """By the mean over this call: cases that run side by side end in bunches."""
+        seconds = (time.monotonic() - self._begun) / (self._ended - self._known) * (self._count - self._ended)
+        return f"{timedelta(seconds=round(seconds))} left"
 
 
 def _told(outcome: Outcome) -> str:

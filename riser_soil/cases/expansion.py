@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import math
 import re
 from collections import Counter
@@ -20,7 +19,9 @@ from riser_soil.cases.case_file import MOST_LETTERS, Cases, Overrides, is_name, 
 from riser_soil.errors import SceneError
 from riser_soil.scene.document import Document
 from riser_soil.scene.dump import dump_scene
-from riser_soil.scene.reader import read_document, scene_of
+from riser_soil.scene.overrides import override, put
+from riser_soil.scene.problem import shown
+from riser_soil.scene.reader import checked, read_document
 from riser_soil.scene.scene import Scene
 
 MOST_CASES = 100_000
@@ -44,15 +45,16 @@ def read_cases(file: Path, overrides: Sequence[str] = ()) -> tuple[Cases, list[C
     """The cases of a file, all scenes checked; overrides: of the base scene. SceneError has one line per problem."""
     told = read_case_file(file)
     document = read_document(told.base)
-    common = [*(_assignment(*item) for item in told.values.items()), *overrides]
     cases, problems = [], dict[str, None]()
     for case in named_cases(file, told):
         try:
-            scene = _scene(document, told.base.parent, [*common, *(_assignment(*item) for item in case.values.items())])
-            text = dump_scene(scene)
-            cases.append(replace(case, scene=text, key=_key(scene, text)))
+            own = deepcopy(document)
+            _put(own, told.values, f"{file}: set")
+            override(own, overrides)
+            _put(own, case.values, f"{file}: case {case.name}:")
+            cases.append(_resolved(case, own, told.base.parent))
         except SceneError as err:
-            problems |= dict.fromkeys(_placed(line, file, case) for line in str(err).splitlines())
+            problems |= dict.fromkeys(str(err).splitlines())  # what is the base's to blame is told once
     if problems:
         more = len(problems) - MOST_LINES
         raise SceneError("\n".join([*list(problems)[:MOST_LINES], *([f"… and {more} more"] if more > 0 else [])]))
@@ -129,19 +131,17 @@ def _ends(path: str, words: list[str]) -> bool:
     return path.split(".")[-len(words) :] == words
 
 
-def _assignment(path: str, value: Any) -> str:
-    return f"{path}={json.dumps(value, ensure_ascii=False)}"
+def _put(document: Document, values: Overrides, place: str) -> None:
+    for path, value in values.items():
+        put(document, path, deepcopy(value), f"{place} {path}={shown(value)}")
 
 
-def _placed(line: str, file: Path, case: Case) -> str:
-    """What an override is to blame for is told with its case; what the base scene is to blame for is told once."""
-    return f"{file}: case {case.name}: {line}" if line.startswith("--set") else line
-
-
-def _scene(document: Document, folder: Path, assignments: Sequence[str]) -> Scene:
-    """The resolved scene; its results have their place among the cases."""
-    scene = scene_of(deepcopy(document), folder, assignments)
-    return scene.model_copy(update={"output": scene.output.model_copy(update={"directory": None})})
+def _resolved(case: Case, document: Document, folder: Path) -> Case:
+    """The case with its scene; its results have their place among the cases, whatever the scene says."""
+    scene = checked(document, folder)
+    scene = scene.model_copy(update={"output": scene.output.model_copy(update={"directory": None})})
+    text = dump_scene(scene)
+    return replace(case, scene=text, key=_key(scene, text))
 
 
 def _key(scene: Scene, text: str) -> str:

@@ -9,7 +9,8 @@ import logging
 import os
 import signal
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from concurrent.futures import CancelledError
+from contextlib import contextmanager, suppress
 from typing import Any
 from uuid import uuid4
 
@@ -19,7 +20,7 @@ from distributed.scheduler import KilledWorker
 
 from riser_soil.cases.case_folder import Outcome
 from riser_soil.cases.work import Task, run_case
-from riser_soil.errors import SceneError
+from riser_soil.errors import SceneError, SolveError
 
 CONNECTING = "10s"
 KILLED = 128 + signal.SIGKILL
@@ -38,8 +39,13 @@ def outcomes(tasks: Sequence[Task], jobs: int, scheduler: str | None) -> Iterato
             for future in as_completed(list(futures)):
                 yield _outcome(future, futures.pop(future))
                 future.release()
+        except CancelledError as err:
+            raise SolveError(
+                f"--scheduler {scheduler}: does not answer any more; call again to go on: cases that are done are kept"
+            ) from err
         finally:
-            client.cancel(list(futures), force=True)
+            with suppress(OSError, CancelledError):  # of a scheduler that is lost
+                client.cancel(list(futures), force=True)
 
 
 def on_worker(task: Task) -> dict[str, Any]:
@@ -58,8 +64,7 @@ def _outcome(future: Any, task: Task) -> Outcome:
     try:
         return Outcome.of(future.result())
     except KilledWorker as err:
-        times = dask.config.get("distributed.scheduler.allowed-failures") + 1
-        reason = f"its worker died {times} times, the last time {err.last_worker.address}; is memory enough?"
+        reason = f"its worker died {err.allowed_failures + 1} times; is memory enough?"
         return Outcome(task["name"], task["key"], KILLED, reason)
 
 
@@ -91,13 +96,11 @@ def _connected(address: str) -> Client:
 @contextmanager
 def _quiet_logs() -> Iterator[None]:
     """Dask tells of workers that come and go, which the table of cases tells as far as it matters."""
-    log = logging.getLogger("distributed")
-    former = log.level
-    log.setLevel(logging.CRITICAL)
+    logging.disable(logging.CRITICAL)
     try:
         yield
     finally:
-        log.setLevel(former)
+        logging.disable(logging.NOTSET)
 
 
 def cores() -> int:

@@ -18,7 +18,7 @@ from typing import Any
 from riser_soil import __version__
 from riser_soil.cases.case_folder import SAID, Outcome, attempt, found, settle
 from riser_soil.core.own_process import environment_alone
-from riser_soil.errors import ResultsError
+from riser_soil.errors import ResultsError, WriteError
 from riser_soil.results.folder import SCENE
 
 Task = dict[str, Any]
@@ -39,7 +39,8 @@ def run_case(task: Task, wanted: Callable[[], bool] = lambda: True) -> dict[str,
     try:
         return _computed(task, wanted).as_dict()
     except OSError as err:
-        return _refused(task, f"{err.filename or task['folder']}: {err.strerror}; workers need the folder shared", 4)
+        remedy = "; workers need the folder shared" if isinstance(err, FileNotFoundError) else ""
+        return _refused(task, f"{err.filename or task['folder']}: {err.strerror}{remedy}", WriteError.exit_status)
 
 
 def _refused(task: Task, reason: str, status: int = ResultsError.exit_status) -> dict[str, Any]:

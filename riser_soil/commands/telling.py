@@ -37,7 +37,7 @@ def telling(command: Callable[..., None]) -> Callable[..., None]:
         with _told(quiet, log_file):
             command(**given)
 
-    own = inspect.signature(command)
+    own = inspect.signature(command, eval_str=True)
     kind = inspect.Parameter.KEYWORD_ONLY
     more = [inspect.Parameter(name, kind, default=d, annotation=a) for name, (a, d) in _OPTIONS.items()]
     with_options.__signature__ = own.replace(parameters=[*own.parameters.values(), *more])  # type: ignore[attr-defined]

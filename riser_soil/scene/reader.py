@@ -21,18 +21,14 @@ _MOST_LINES = 20
 
 def read_scene(file: str | Path, overrides: Sequence[str] = ()) -> Scene:
     """The scene in a file, with `path=value` overrides; SceneError has one line per problem found."""
-    return scene_of(read_document(file), Path(file).parent, overrides)
+    document = read_document(file)
+    override(document, overrides)
+    return checked(document, Path(file).parent)
 
 
 def read_document(file: str | Path) -> Document:
     """The content of a scene file, as yet unchecked."""
     return parse(read_text(Path(file)), str(file))
-
-
-def scene_of(document: Document, folder: Path, overrides: Sequence[str] = ()) -> Scene:
-    """The scene in a document, which is changed by the overrides; relative file names are sought in `folder`."""
-    override(document, overrides)
-    return checked(document, folder)
 
 
 def scene_from_mapping(data: dict[str, Any], folder: Path = Path()) -> Scene:

@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 from tests.support.on_ranks import HANGS, Job
@@ -37,6 +37,10 @@ class Watched:
             self.attempts |= {entry.split(".former")[0] for entry in _entries(place)}
             time.sleep(0.02)
 
+    def until_ended(self, process: int) -> None:
+        """Look until a process has ended, whether somebody has waited for it or not."""
+        self.until(lambda: not _read(process, "cmdline"))
+
     def ended(self) -> bool:
         return self._job.process.poll() is not None
 
@@ -49,11 +53,6 @@ class Watched:
         """Processes that run cases, each with its worker's."""
         of_case = (pid for pid in self._job.processes() if b"/.attempts/" in _read(pid, "cmdline"))
         return {pid: parent for pid in of_case if (parent := _parent(pid))}
-
-
-def alive(processes: Sequence[int]) -> list[int]:
-    """Those of the processes that have not ended; one that nobody has waited for has."""
-    return [pid for pid in processes if _read(pid, "cmdline")]
 
 
 def _entries(folder: Path) -> list[str]:

@@ -115,8 +115,8 @@ MISTAKES = [
         ": gravity: is set 2 times in one case; let one key alone set it",
     ),
     ("product: {gravity: [!!python/object/apply:os.system [ls]]}", ":2: product.gravity.0: tag tag:yaml.org,2002:"),
-    ("product: {gravity: [-1.0]}", ": case gravity=-1: --set gravity=-1.0: gravity: value -1.0: must be at least 0"),
-    ("product: {gravty: [9.0]}", ": case gravty=9: --set gravty=9.0: gravty: value 9.0: no such key here"),
+    ("product: {gravity: [-1.0]}", ": case gravity=-1: gravity=-1.0: gravity: value -1.0: must be at least 0"),
+    ("product: {gravty: [9.0]}", ": case gravty=9: gravty=9.0: gravty: value 9.0: no such key here"),
     (f"product: {{title: [{'x' * 120}]}}", "more than 100 letters; give rows and groups short names"),
     (f"product: {{a: {list(range(400))}, b: {list(range(400))}}}", ": 160000 cases, more than 100000; divide them"),
 ]

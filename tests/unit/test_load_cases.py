@@ -157,7 +157,7 @@ def test_a_run_ends_with_its_worker(tmp_path: Path) -> None:
     begun: list[int] = []
 
     def worker() -> None:
-        code = f"{module}import time\ndie_with({os.getpid()})\nopen('here', 'w').close()\ntime.sleep(600)"
+        code = f"{module}import time\ndie_with({os.getpid()})\nopen('here', 'w').close()\ntime.sleep(60)"
         begun.append(os.posix_spawn(sys.executable, [sys.executable, "-c", code], os.environ))
         while not (tmp_path / "here").exists():
             time.sleep(0.01)

@@ -15,7 +15,7 @@ import xarray
 from distributed import LocalCluster
 
 from tests.support.case_files import case_file
-from tests.support.case_sweeps import Watched, alive, sweep
+from tests.support.case_sweeps import Watched, sweep
 from tests.support.on_ranks import HANGS
 
 pytestmark = pytest.mark.verify
@@ -49,7 +49,7 @@ def test_two_hundred_cases_outlive_a_worker(tmp_path: Path) -> None:
         watched.until(lambda: len(watched.done) >= 40 and len(watched.runs()) == 2)
         (run, worker), *_ = watched.runs().items()
         os.kill(worker, signal.SIGKILL)
-        watched.until(lambda: not alive([run]))
+        watched.until_ended(run)
         watched.until(watched.ended)
         out, err = job.process.communicate(timeout=HANGS)
     assert job.process.returncode == 0, err
@@ -91,6 +91,36 @@ def test_ctrl_c_stops_all_and_a_second_call_goes_on(tmp_path: Path) -> None:
     assert f"6 cases, {len(done)} of them done already" in out
     assert {name: (tmp_path / "out/cases" / name / "case.json").stat().st_mtime_ns for name in done} == before
     assert [row["case"] for row in rows(tmp_path)] == names(*FEW)
+
+
+def test_a_case_that_kills_its_workers_is_a_row(tmp_path: Path) -> None:
+    case_file(tmp_path, product([100.0], [8.0]))
+    with sweep(tmp_path, "--jobs", "1") as job:
+        watched = Watched(job, tmp_path)
+        for _ in range(4):
+            watched.until(lambda: len(watched.runs()) == 1)
+            ((run, worker),) = watched.runs().items()
+            os.kill(worker, signal.SIGKILL)
+            watched.until_ended(run)
+        _, err = job.process.communicate(timeout=HANGS)
+    assert (job.process.returncode, err) == (3, "failed: EI=100-position_0=8; reasons are in out/cases.csv\n")
+    (row,) = rows(tmp_path)
+    assert (row["status"], row["reason"]) == ("137", "its worker died 4 times; is memory enough?")
+
+
+def test_a_scheduler_that_is_lost_is_told_in_one_line(tmp_path: Path) -> None:
+    case_file(tmp_path, product(*FEW))
+    with (
+        LocalCluster(n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as cluster,
+        sweep(tmp_path, "--scheduler", address := cluster.scheduler_address) as job,
+    ):
+        watched = Watched(job, tmp_path)
+        watched.until(lambda: len(watched.done) >= 1)
+        cluster.close()
+        _, err = job.process.communicate(timeout=HANGS)
+    assert (job.process.returncode, err) == (
+        3, f"--scheduler {address}: does not answer any more; call again to go on: cases that are done are kept\n"
+    )  # fmt: skip
 
 
 def test_workers_of_another_scheduler(tmp_path: Path) -> None:
