@@ -2,8 +2,8 @@
 
 Python calls a signal's handler between two of its own instructions, so its exception can be raised anywhere. A single
 process raises it at once, unless it is accepting or recording a step, or is to leave a checkpoint: that is the state
-after a step, so that the step in hand is taken first. Several ranks would deadlock if each left its own loop: they agree on
-the step after which all leave. A second signal takes effect at once.
+after a step, so that the step in hand is taken first. Several ranks would deadlock if each left its own loop: they
+agree on the step after which all leave. A second signal takes effect at once.
 """
 
 from __future__ import annotations
