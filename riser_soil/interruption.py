@@ -1,8 +1,9 @@
 """Signal handling: Ctrl-C and SIGTERM end a run between two steps, never within a record.
 
 Python calls a signal's handler between two of its own instructions, so its exception can be raised anywhere. A single
-process raises it at once, unless it is accepting or recording a step. Several ranks would deadlock if each left its
-own loop: they agree on the step after which all leave. A second signal takes effect at once.
+process raises it at once, unless it is accepting or recording a step, or is to leave a checkpoint: that is the state
+after a step, so that the step in hand is taken first. Several ranks would deadlock if each left its own loop: they
+agree on the step after which all leave. A second signal takes effect at once.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ class _Pending:
     def __init__(self) -> None:
         self.number = 0  # of the signal not yet obeyed; 0 for none
         self.busy = 0  # how many blocks forbid to leave now
-        self.agreeing = False  # whether all ranks are to leave at the same step
+        self.agreeing = False  # whether to leave between two steps alone, all ranks at the same one
         self.latest: Interruption | None = None
 
     def take(self, number: int, frame: FrameType | None = None) -> None:
@@ -139,11 +140,28 @@ def agreeing(comm: Any) -> Iterator[None]:
         _pending.agreeing = False
 
 
+def leave_between_steps() -> None:
+    """From now on, in an `agreeing` block, a process alone leaves at `check`, too."""
+    _pending.agreeing = True
+
+
 def check(comm: Any) -> None:
     """Raises Interruption on all ranks if one has received a signal; collective in an `agreeing` block, nothing alone.
     """
-    if _pending.agreeing:
-        number = max(comm.allgather(_pending.number))
-        if number:
-            _pending.number = number
-            _pending.tell(together=True)
+    if asked_to_end(comm):
+        end_together()
+
+
+def asked_to_end(comm: Any) -> bool:
+    """Whether a rank has received a signal, so that all are to `end_together`; collective as `check`."""
+    if not _pending.agreeing:
+        return False
+    number = max(comm.allgather(_pending.number)) if comm.size > 1 else _pending.number
+    if number:
+        _pending.number = number
+    return bool(number)
+
+
+def end_together() -> NoReturn:
+    """Raises the Interruption that `asked_to_end` has told of."""
+    _pending.tell(together=True)

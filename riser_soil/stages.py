@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol
 
+import numpy as np
+
 from riser_soil.assembly import Assembly
 from riser_soil.assembly.stage import scheme_of, times_to_hit
 from riser_soil.core.part import Model, State
@@ -14,7 +16,7 @@ from riser_soil.core.roles import Adaptive, owners, with_role
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all, within
 from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
-from riser_soil.interruption import check, uninterrupted
+from riser_soil.interruption import asked_to_end, end_together, uninterrupted
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.seating import seat
 from riser_soil.solve.automatic_steps import AutoSteps
@@ -33,8 +35,13 @@ MOST_RELAXED = 1  # times in a static stage on soil
 MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
 
 
-Checkpoint = Callable[[Callable[[], Saved]], None]
-"""Called between steps with a function that gives the saved state, from which the stage can be resumed."""
+class Checkpoint(Protocol):
+    """Called between steps with a function that gives the saved state, from which the stage can be resumed.
+
+    last: whether it is the stage's last step; leaving: whether the run ends here before its time.
+    """
+
+    def __call__(self, gather: Callable[[], Saved], last: bool, leaving: bool) -> None: ...
 
 
 class StageObserver(Stateful, Protocol):
@@ -75,7 +82,13 @@ class LayingCounter(StatelessObserver):
 
 
 def lay(assembly: Assembly, clock: Timer) -> tuple[State, LayingCounter | None]:
-    """Laying before all stages: move the end of a slack riser's initial shape to its prescribed position."""
+    """Before all stages: take up the end of another run; or move the end of a slack riser's initial shape to its
+    prescribed position.
+    """
+    if assembly.scene.initial is not None:
+        from riser_soil.results.end_of_run import take_up_end_of_run
+
+        return take_up_end_of_run(assembly), None
     rest, stage = State.at_rest(0.0, assembly.size), assembly.laying
     if stage is None:
         return rest, None
@@ -157,7 +170,8 @@ class StageRun:
     def state(self) -> Saved:
         """All that the stage is resumed from, see `saved_state`."""
         own: dict[str, Stateful] = {"assembly": self.assembly, "stepper": self.stepper}
-        return gathered(owners(self.stepper.system.model) | own | self.listeners)
+        kept = gathered(owners(self.stepper.system.model) | own | self.listeners)
+        return kept | {"relaxed": np.array(self.relaxed)}
 
     @property
     def listeners(self) -> dict[str, Stateful]:
@@ -174,7 +188,7 @@ def _begin_run(
             observer.begin_stage(stage, stepper)
         return StageRun(assembly, stage, stepper, steps_of(assembly, stage, stepper), observer)
     stepper = TimeStepper(system, newton, scheme_of(stage), within(begin, "stepper"))
-    run = StageRun(assembly, stage, stepper, steps_of(assembly, stage, stepper), observer)
+    run = StageRun(assembly, stage, stepper, steps_of(assembly, stage, stepper), observer, int(begin["relaxed"]))
     restore_all(run.listeners, begin)
     return run
 
@@ -196,9 +210,11 @@ def _walk(run: StageRun, checkpoint: Checkpoint | None) -> State:
         with uninterrupted():
             stepper.commit(step, control)
             run.observer.record(stepper, step, last=control.finished)
+        leaving = asked_to_end(run.assembly.comm)
         if checkpoint is not None:
-            checkpoint(run.state)
-        check(run.assembly.comm)
+            checkpoint(run.state, control.finished, leaving)
+        if leaving:
+            end_together()
     return stepper.before
 
 

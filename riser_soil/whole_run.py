@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 from mpi4py import MPI
@@ -11,32 +12,43 @@ from riser_soil.assembly import Assembly, build, sized
 from riser_soil.checks.check import resolution
 from riser_soil.checks.limits import size_that_fits, tell, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings
+from riser_soil.core.part import State
+from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import Timer
 from riser_soil.errors import Interruption, MemoryShortageError, SolveError
-from riser_soil.interruption import agreeing, handling_signals, uninterrupted, unmasked
+from riser_soil.interruption import agreeing, check, handling_signals, uninterrupted, unmasked
+from riser_soil.results.checkpoint import last_checkpoint
+from riser_soil.results.end_of_run import refuse_unfit
 from riser_soil.results.observer import Observer
 from riser_soil.results.ownership import refuse_together
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.scene import Scene
-from riser_soil.stages import lay, run_stage
+from riser_soil.scene.stages import Stage
+from riser_soil.stages import lay, resume_stage, run_stage
 
 
-def run(scene: Scene, folder: Path | str, force: bool = False, peaks: RunPeaks | None = None) -> None:
+def run(
+    scene: Scene, folder: Path | str, force: bool = False, peaks: RunPeaks | None = None, restart: bool = False
+) -> None:
     """Run a scene and leave its results in a folder; collective over all ranks.
 
-    force: overwrite a finished run. peaks: gathered on the way, where they are wanted. Raises SceneError or MeshError
-    before anything is computed. After SolveError, MemoryShortageError and Interruption (Ctrl-C, SIGTERM) the folder
-    keeps everything up to the last accepted step, after WriteError what went in; it is marked unfinished.
+    force: overwrite a finished run. peaks: gathered on the way, where they are wanted. restart: go on from the folder's
+    last checkpoint, or begin where there is none. Raises SceneError or MeshError before anything is computed. After
+    SolveError, MemoryShortageError and Interruption (Ctrl-C, SIGTERM) the folder keeps everything up to the last
+    accepted step, after WriteError what went in; it is marked unfinished.
     """
     folder = Path(folder)
     with handling_signals():
         comm, clock, since = MPI.COMM_WORLD, Timer.new(), time.perf_counter()
         refuse_together(folder, force, comm)
+        saved = last_checkpoint(folder, scene, peaks is not None, comm) if restart else None
         scene = sized(scene)
         size = size_that_fits(scene, folder, comm)
         tell(size, comm)
         of_size = [*tight(size, comm), *too_long(size)]
         assembly = build(scene, comm)
+        if saved is None:
+            refuse_unfit(assembly)
         clock.add("build", since)
         if comm.rank == 0:
             for told in resolution(assembly):
@@ -44,20 +56,38 @@ def run(scene: Scene, folder: Path | str, force: bool = False, peaks: RunPeaks |
         for warning in (*physical_warnings(assembly), *of_size):
             if comm.rank == 0:
                 print(f"warning: {warning}")
-        with agreeing(comm), Observer.open(assembly, clock, folder, force, peaks) as observer:
-            _take_all(assembly, observer, clock)
+        opened = Observer.open(assembly, clock, folder, force, peaks, goes_on=saved is not None)
+        with agreeing(comm), opened as observer:
+            _take_all(assembly, observer, clock, saved)
 
 
-def _take_all(assembly: Assembly, observer: Observer, clock: Timer) -> None:
+def _take_all(assembly: Assembly, observer: Observer, clock: Timer, saved: Saved | None) -> None:
+    stages: Sequence[Stage] = assembly.scene.stages
     try:
         with unmasked():
-            before, laid = lay(assembly, clock)
-            if laid is not None:
-                observer.laid(assembly.slack, laid.steps, laid.relaxations)
-            for stage in assembly.scene.stages:
-                before = run_stage(assembly, stage, before, observer, clock)
+            if saved is None:
+                before = _begin(assembly, observer, clock)
+            else:
+                stages, before = _go_on(assembly, observer, clock, saved)
+            for stage in stages:
+                before = run_stage(assembly, stage, before, observer, clock, observer.checkpoint)
         with uninterrupted():
             observer.finish()
+        check(assembly.comm)
     except (SolveError, MemoryShortageError, Interruption) as end:
         observer.record_last(end)
         raise
+
+
+def _begin(assembly: Assembly, observer: Observer, clock: Timer) -> State:
+    before, laid = lay(assembly, clock)
+    if laid is not None:
+        observer.laid(assembly.slack, laid.steps, laid.relaxations)
+    return before
+
+
+def _go_on(assembly: Assembly, observer: Observer, clock: Timer, saved: Saved) -> tuple[Sequence[Stage], State]:
+    """Take the stage that was saved to its end; those that are left, and the state that they begin with."""
+    stage, before = resume_stage(assembly, saved, observer, clock, observer.checkpoint)
+    stages = assembly.scene.stages
+    return stages[stages.index(stage) + 1 :], before

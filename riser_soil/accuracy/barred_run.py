@@ -24,11 +24,11 @@ from riser_soil.whole_run import run
 LEFT = "while its error bars were computed; {} has the whole run, without them"
 
 
-def run_with_error_bars(scene: Scene, folder: Path | str, force: bool = False) -> None:
+def run_with_error_bars(scene: Scene, folder: Path | str, force: bool = False, restart: bool = False) -> None:
     """As `run`, then tell the error bars; collective. What goes wrong with a companion leaves the run as it is."""
     folder, comm, peaks = Path(folder), MPI.COMM_WORLD, RunPeaks()
     began = time.perf_counter()
-    run(scene, folder, force, peaks)
+    run(scene, folder, force, peaks, restart)
     taken = time.perf_counter() - began
     bars = _bars(scene, folder, peaks, comm)
     if comm.rank == 0:

@@ -106,6 +106,11 @@ class Assembly:
         parts: tuple[Part | None, Part | None] = (self.condensed, self.soil if self.condensed is None else None)
         return [part for part in parts if part is not None]
 
+    @property
+    def lasting_parts(self) -> list[Part]:
+        """Those that act in all stages."""
+        return [*self.riser_parts, *self.contacts, *self.frictions, *self.soil_parts]
+
     def recovered_soil(self) -> Soil | None:
         """The whole soil as of the last accepted step, for results."""
         return self.soil if self.condensed is None else self.condensed.recover()
@@ -177,7 +182,7 @@ class Assembly:
     def laying(self) -> StaticStage | None:
         """The stage that lays a slack riser: it moves the end to its prescribed position before the scene's stages."""
         end = self.scene.riser.end
-        if self.slack == 0.0 or not isinstance(end, Support):
+        if self.slack == 0.0 or not isinstance(end, Support) or self.scene.initial is not None:
             return None
         return StaticStage(name="laying", kind="static", move=MovedEnds(end=end.position))
 
@@ -236,7 +241,7 @@ class Assembly:
     def is_laid_in(self, stage: Stage) -> bool:
         """Whether a static stage is the first, in which the riser is laid on the soil."""
         first = self.laying.name if self.laying is not None else self.scene.stages[0].name
-        return stage.kind == "static" and stage.name == first
+        return stage.kind == "static" and stage.name == first and self.scene.initial is None
 
 
 def sized(scene: Scene) -> Scene:

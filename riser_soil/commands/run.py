@@ -23,7 +23,9 @@ def run(
             "its ending, in the current folder",
         ),
     ] = None,
-    restart: Annotated[bool, typer.Option("--restart", help="not supported yet")] = False,
+    restart: Annotated[
+        bool, typer.Option("--restart", help="go on from the folder's last checkpoint; begin where there is none")
+    ] = False,
     force: Annotated[
         bool, typer.Option("--force", help="overwrite a finished run, which is refused otherwise")
     ] = False,
@@ -37,14 +39,14 @@ def run(
 ) -> None:
     """Compute a scene and leave its results in a folder."""
     with expected_errors():
-        if restart:
-            raise SceneError("--restart: not supported yet; run the scene from its beginning")
+        if restart and force:
+            raise SceneError("--restart and --force: one goes on with a run, the other overwrites it; leave one out")
         checked = read(scene, overrides)
         folder = result_folder(scene, checked, output, force)
         from riser_soil.accuracy.chosen_run import run_as_asked
 
         with placed(scene, overrides):
-            run_as_asked(checked, folder, force, error_bars)
+            run_as_asked(checked, folder, force, error_bars, restart)
 
 
 def check(scene: SceneFile, overrides: Overrides = None) -> None:

@@ -22,20 +22,35 @@ SOIL_NUMBERS = "soil.vtkhdf"
 FORMER_RISER_NUMBERS = "riser.h5"  # of earlier versions, as the next one
 FORMER_SOIL_NUMBERS = "soil.h5"
 FORMER = (FORMER_RISER_NUMBERS, FORMER_SOIL_NUMBERS)
-NAMES = (SUMMARY, SERIES, RISER_XDMF, RISER_NUMBERS, SOIL_XDMF, SOIL_NUMBERS, *FORMER, SCENE)
+CHECKPOINT = "checkpoint.npz"
+NAMES = (SUMMARY, SERIES, RISER_XDMF, RISER_NUMBERS, SOIL_XDMF, SOIL_NUMBERS, *FORMER, CHECKPOINT, SCENE)
 _WORKSHOP = ".riser_soil"  # in the run's folder, while it is written: drafts of its files, and the lock
 _LOCK = "lock"
 
 
-def write_atomically(path: Path, content: str | bytes) -> None:
-    """Replaces the file at once: a reader, or a kill, finds the old content or the new one."""
+def write_atomically(path: Path, content: str | bytes | memoryview, lasting: bool = False) -> None:
+    """Replaces the file at once: a reader, or a kill, finds the old content or the new one.
+
+    lasting: so does who comes after a power loss.
+    """
     draft = draft_of(path)
     try:
         draft.write_bytes(content.encode() if isinstance(content, str) else content)
+        if lasting:
+            synchronise(draft)
         draft.replace(path)
     except OSError as err:
         draft.unlink(missing_ok=True)
         raise OSError(err.errno, err.strerror, str(path)) from err
+
+
+def synchronise(path: Path) -> None:
+    """Brings a file, or the names in a folder, to the disk itself."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
 
 
 def draft_of(path: Path) -> Path:

@@ -17,23 +17,33 @@ from typing import BinaryIO
 
 import h5py
 
-from riser_soil.results.folder import draft_of, write_atomically
+from riser_soil.errors import ResultsError
+from riser_soil.results.folder import draft_of, synchronise, write_atomically
 
 _PAGE = 4096
 
 
 class GrowingFile:
-    """Owner of the file at `path`, which it makes anew with this content; `close` removes the second copy.
+    """Owner of the file at `path`, which it makes anew with this content, or takes over as it is; `close` removes the
+    second copy.
 
     A reader that holds an HDF5 file open, and so keeps HDF5's lock on it, is not disturbed: it keeps its copy, and the
     writer makes itself another. Raises OSError where the disk does; the file is then whole as before the update.
     """
 
-    def __init__(self, path: Path, content: bytes) -> None:
+    def __init__(self, path: Path, content: bytes | None) -> None:
         self.path = path
-        self.size = len(content)
         self._lacking: Mapping[int, bytes] | None = None  # of the second copy; None where there is no second copy
-        write_atomically(path, content)
+        self._lasting = False
+        if content is not None:
+            write_atomically(path, content)
+        self.size = path.stat().st_size
+
+    def outlast_power(self) -> None:
+        """From now on the file is whole after a power loss, too: an update is on the disk before it gets its name."""
+        if not self._lasting:
+            synchronise(self.path)
+        self._lasting = True
 
     def update(self, changes: Mapping[int, bytes], size: int) -> None:
         """changes: bytes by their offset; size: of the file after them."""
@@ -41,6 +51,8 @@ class GrowingFile:
         try:
             self._catch_up(draft)
             _write(draft, changes, size)
+            if self._lasting:
+                synchronise(draft)
             self._lacking = changes if _exchange(draft, self.path) else None
         except OSError as err:
             self._lacking = None
@@ -113,6 +125,11 @@ def reading(path: Path) -> h5py.File:
         return h5py.File(path, "r")
     except OSError:
         return h5py.File(path, "r", locking=False)
+
+
+def behind(path: Path) -> ResultsError:
+    """The error of a file that lacks what its run had written when it was saved."""
+    return ResultsError(f"{path}: lacks records made before the checkpoint beside it; run the scene from its beginning")
 
 
 class _MemoryFile:

@@ -22,7 +22,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.output import OutputQuantity
 from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.step_outputs import OF_STEP, TAKEN_OUT
-from riser_soil.results.growing_file import GrowingFile, appending
+from riser_soil.results.growing_file import GrowingFile, appending, behind
 
 _SPOKEN = {  # parts whose names don't tell what dissipates or works
     "morison": "drag and other forces of the water's motion",
@@ -97,7 +97,8 @@ class SeriesFile:
     """Writer of results.nc.
 
     arc: (nn,) m, arc lengths of the nodes. left_out: names of SERIES that are not wanted. ledger: of
-    `ledger_variables`. sections: number of those across the riser, offsets (m,) [m] in them.
+    `ledger_variables`. sections: number of those across the riser, offsets (m,) [m] in them. goes_on: with the file of
+    an earlier run, up to what is restored.
     Rows given to `record` and `step` live in memory until `flush`.
     """
 
@@ -111,6 +112,7 @@ class SeriesFile:
         ledger: Mapping[str, Variable] | None = None,
         sections: int = 0,
         offsets: Sequence[float] = (),
+        goes_on: bool = False,
     ) -> None:
         self._of_step = HEALTH | dict(ledger or {})
         wanted = {name: v for name, v in SERIES.items() if name not in left_out}
@@ -119,9 +121,10 @@ class SeriesFile:
         self._sizes = {"arc": arc.size, "component": 3, "section": sections, "offset": len(offsets)}
         self._offsets = np.array(offsets)
         self._rows: defaultdict[str, list[object]] = defaultdict(list)
-        self._steps = 0
+        self._records = self._steps = 0
         self._stages: list[str] = []
-        self._file = GrowingFile(path, self._layout(arc, title, version))
+        self._goes_on = goes_on
+        self._file = GrowingFile(path, None if goes_on else self._layout(arc, title, version))
 
     def begin_stage(self, name: str) -> None:
         self._stages.append(name)
@@ -129,6 +132,7 @@ class SeriesFile:
     def record(self, values: Mapping[str, object]) -> None:
         """Adds one output time. values: by the names of SERIES except `stage`; those left out are ignored."""
         row = dict(values, stage=len(self._stages) - 1)
+        self._records += 1
         for name in self._of_instant:
             self._rows[name].append(_kept(row[name]))
 
@@ -151,6 +155,10 @@ class SeriesFile:
     def close(self) -> None:
         self._file.close()
 
+    def outlast_power(self) -> None:
+        """From now on, see `GrowingFile`."""
+        self._file.outlast_power()
+
     def _layout(self, arc: Array, title: str, version: str) -> bytes:
         content = io.BytesIO()
         with h5netcdf.File(content, "w") as file:
@@ -171,11 +179,20 @@ class SeriesFile:
         return content.getvalue()
 
     def state(self) -> Saved:
-        """What tells the rows to come apart; rows themselves are the file's."""
-        return {"steps": np.array(self._steps), "stages": packed(self._stages)}
+        """What tells the rows to come apart, and their number; rows themselves are the file's."""
+        counts = {"records": np.array(self._records), "steps": np.array(self._steps)}
+        return counts | {"stages": packed(self._stages)}
 
     def restore(self, saved: Saved) -> None:
-        self._steps, self._stages = int(saved["steps"]), unpacked(saved["stages"])
+        """A file that goes on loses the rows that were written after those saved; ResultsError where it has fewer."""
+        self._records, self._steps = int(saved["records"]), int(saved["steps"])
+        self._stages = unpacked(saved["stages"])
+        if self._goes_on:
+            with appending(self._file) as file:
+                for name, variable in self._variables.items():
+                    _cut_back(file[name], self._steps if variable.dims[0] == "step" else self._records, self._file.path)
+                file.attrs["finished"] = np.int8(False)
+                _name_stages(file, self._stages)
 
 
 def _kept(value: object) -> object:
@@ -206,6 +223,12 @@ def _append(dataset: h5py.Dataset, rows: list[object]) -> None:
     known = dataset.shape[0]
     dataset.resize(known + len(rows), axis=0)
     dataset[known:] = np.asarray(rows)
+
+
+def _cut_back(dataset: h5py.Dataset, rows: int, path: Path) -> None:
+    if len(dataset) < rows:
+        raise behind(path)
+    dataset.resize(rows, axis=0)
 
 
 def _name_stages(file: h5py.File, names: list[str]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,18 +20,20 @@ from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import ContactSnapshot, Instant, RiserSnapshot, RunFacts, SoilSnapshot, StepStatistics
 from riser_soil.core.system import Timer
 from riser_soil.errors import Interruption, MemoryShortageError, RiserSoilError, SolveError
-from riser_soil.interruption import uninterrupted
+from riser_soil.interruption import leave_between_steps, uninterrupted
+from riser_soil.results.checkpoint import CheckpointSchedule, about
 from riser_soil.results.energy_ledger import EnergyLedger
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.plausibility import Plausibility
 from riser_soil.results.progress import Progress
-from riser_soil.results.record import Recorder
+from riser_soil.results.record import Keeping, Recorder
 from riser_soil.results.riser_snapshot import elastic_residual, riser_snapshot
 from riser_soil.results.schedule import Schedule
 from riser_soil.results.screen import print_summary
 from riser_soil.results.settlement_trough import count_of, offsets_of
 from riser_soil.results.touchdown_zone import TouchdownZone
 from riser_soil.scene.dump import dump_scene
+from riser_soil.scene.output import Checkpoint
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
@@ -57,21 +59,32 @@ class Observer:
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         self._zone = TouchdownZone(assembly, _known_fields(assembly))
         self._plausibility = Plausibility(assembly)
+        self._checkpoints = CheckpointSchedule(_asked(assembly), assembly.comm)
 
     @classmethod
     @contextmanager
     def open(
-        cls, assembly: Assembly, clock: Timer, folder: Path, force: bool, peaks: RunPeaks | None = None
+        cls,
+        assembly: Assembly,
+        clock: Timer,
+        folder: Path,
+        force: bool,
+        peaks: RunPeaks | None = None,
+        goes_on: bool = False,
     ) -> Iterator[Observer]:
-        """Take the run's folder over; collective. What was written stays when the block is left early."""
+        """Take the run's folder over; collective. What was written stays when the block is left early.
+
+        goes_on: with the files that are there, up to what is restored.
+        """
         mesh = assembly.soil.output_mesh() if assembly.soil is not None else None
         known = facts(assembly)
         with Progress(enabled=assembly.comm.rank == 0) as progress:
             recorder = None
             with _on_all_ranks(assembly.comm), uninterrupted():
                 if assembly.comm.rank == 0:
-                    text, fields = dump_scene(assembly.scene), _known_fields(assembly)
-                    recorder = Recorder.open(folder, known, assembly.line.arc, mesh, text, fields, force)
+                    text, fields, asked = dump_scene(assembly.scene), _known_fields(assembly), _asked(assembly)
+                    keeping = Keeping(goes_on, end=asked is not None and asked.keep)
+                    recorder = Recorder.open(folder, known, assembly.line.arc, mesh, text, fields, force, keeping)
             with recorder or nullcontext():
                 yield cls(assembly, clock, recorder, progress, peaks)
 
@@ -143,6 +156,22 @@ class Observer:
         stage = recorder.summary.stages[-1]
         stage.implausible, stage.indicators.bending = self._plausibility.warnings(), self._plausibility.bending()
 
+    def checkpoint(self, gather: Callable[[], Saved], last: bool, leaving: bool) -> None:
+        """After a step, recorded: write the state, where it is due; collective. See `stages.Checkpoint`."""
+        ends_run = last and self._stage is self._assembly.scene.stages[-1]
+        if _asked(self._assembly) is not None:
+            leave_between_steps()
+        if not self._checkpoints.due(last, ends_run, leaving):
+            return
+        since = time.perf_counter()
+        with uninterrupted():
+            shares = self._assembly.comm.gather(gather())
+            if self._recorder is not None:
+                assert shares is not None
+                self._recorder.checkpoint(about(self._assembly, self._stage.name if last else None), shares)
+        self._checkpoints.written()
+        self._clock.add("checkpoints", since)
+
     def record_last(self, end: SolveError | MemoryShortageError | Interruption) -> None:
         """The run ends before its time: write the last accepted step; collective where the ranks end together."""
         together = self._assembly.comm.size == 1 or not isinstance(end, Interruption) or end.together
@@ -202,12 +231,19 @@ class Observer:
         restore_all(self._owners, saved)
         self._relaxed = int(saved["relaxed"])
         self._show(self._stage)
+        if self._recorder is not None:
+            print(f"the run goes on {self._recorder.place}")
 
     @property
     def _owners(self) -> dict[str, Stateful]:
         told: dict[str, Stateful] = {} if self._recorder is None else {"recorder": self._recorder}
+        told |= {} if self._peaks is None else {"peaks": self._peaks}
         told |= {"schedule": self._schedule, "ledger": self._balance, "zone": self._zone}
         return told | {"plausibility": self._plausibility}
+
+
+def _asked(assembly: Assembly) -> Checkpoint | None:
+    return assembly.scene.output.checkpoint
 
 
 @contextmanager

@@ -16,7 +16,9 @@ from xml.sax.saxutils import quoteattr
 import h5py
 
 from riser_soil.errors import SceneError, WriteError
+from riser_soil.results.checkpoint_file import is_checkpoint
 from riser_soil.results.folder import (
+    CHECKPOINT,
     FORMER_RISER_NUMBERS,
     FORMER_SOIL_NUMBERS,
     NAMES,
@@ -77,11 +79,11 @@ def refuse_together(folder: Path, force: bool, comm: Any) -> None:
         raise failure
 
 
-def prepare(folder: Path, force: bool) -> FolderLock:
+def prepare(folder: Path, force: bool, goes_on: bool = False) -> FolderLock:
     """Makes the folder, or clears a previous run's files (and no others) out of it; returns its lock.
 
     The old summary goes first, so that a kill in between cannot leave a folder that looks finished. The scene stays
-    until there is another: it may be the one that is run.
+    until there is another: it may be the one that is run. goes_on: that run goes on, and its files stay.
     """
     refuse(folder, force)
     try:
@@ -89,7 +91,7 @@ def prepare(folder: Path, force: bool) -> FolderLock:
         lock.clear()
         for name in NAMES:
             _refuse_foreign(folder / name)
-        for name in NAMES:
+        for name in () if goes_on else NAMES:
             if name != SCENE:
                 (folder / name).unlink(missing_ok=True)
     except OSError as err:
@@ -160,5 +162,6 @@ _OWN: dict[str, Callable[[Path], bool]] = {
     SOIL_NUMBERS: _own_numbers,
     FORMER_RISER_NUMBERS: _own_numbers,
     FORMER_SOIL_NUMBERS: _own_numbers,
+    CHECKPOINT: is_checkpoint,
     SCENE: _own_scene,
 }

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, unpacked
 from riser_soil.core.snapshot import Instant, SoilMesh, SoilSnapshot
 from riser_soil.results.figures import Extremes, final_state, pack, places_of
 from riser_soil.results.soil_extremes import places, with_largest
@@ -55,14 +56,25 @@ class StagePeaks:
         self.name, self.kind = name, kind
         self.sampled, self.of_nodes, self.peaks, self.smooth = Extremes(), Extremes(), Extremes(), Extremes()
         self._seen: Instant | None = None
+        self._final: dict[str, Any] | None = None
+        self._latest = np.empty(0)
         self.soil: dict[str, Any] = {}
         self._t: list[float] = []
         self._last: list[Array] = []
 
     def update(self, t: float, seen: Instant) -> None:
         """Of the state that a dynamic stage begins with, and of every accepted step in turn; t: s or load factor."""
-        self.sampled.update(t, pack(seen))
-        peaked = pack_peaks(seen)
+        self._follow(t, pack(seen), pack_peaks(seen))
+        self._seen = seen
+
+    def begin(self, before: StagePeaks) -> None:
+        """With the end of the stage before."""
+        self._follow(0.0, before._latest, before._last[-1])
+        self._final = before.final
+
+    def _follow(self, t: float, sampled: Array, peaked: Array) -> None:
+        self._latest = sampled
+        self.sampled.update(t, sampled)
         for extremes in (self.of_nodes, self.peaks):
             extremes.update(t, peaked)
         self._t, self._last = [*self._t[-4:], t], [*self._last[-4:], peaked]
@@ -70,7 +82,13 @@ class StagePeaks:
             self.peaks.update(self._t[-2], vertex(np.array(self._t[-3:]), np.array(self._last[-3:])))
         if self.kind == "dynamic":
             self._follow_smoothly()
-        self._seen = seen
+
+    @property
+    def final(self) -> dict[str, Any] | None:
+        """As the summary tells it, of what was seen last."""
+        if self._seen is not None:
+            self._final, self._seen = final_state(self._seen), None
+        return self._final
 
     def _follow_smoothly(self) -> None:
         """The middle one of five steps without ringing; where there are none yet, or uneven ones, the last as it is."""
@@ -92,9 +110,9 @@ class StagePeaks:
 
     def told(self, which: str) -> dict[str, Any]:
         """As the summary tells the stage; which: sampled, of_nodes, peaks or smooth."""
-        if self._seen is None:
+        if self.final is None:
             return {"name": self.name, "kind": self.kind, "final": None}
-        final = final_state(self._seen)
+        final = dict(self.final)
         if which != "sampled":
             final[_TENSION] = {**final[_TENSION], "value": self._last[-1][places_of(_TENSION)].item()}
         extremes = self._smooth_to_the_end() if which == "smooth" else vars(self)[which]
@@ -103,6 +121,21 @@ class StagePeaks:
             "extremes": extremes.nested(),
         }  # fmt: skip
 
+    def state(self) -> Saved:
+        told = {"name": self.name, "kind": self.kind, "final": self.final, "soil": self.soil, "t": self._t}
+        vectors = {"latest": self._latest, "last": np.array(self._last)}
+        return gathered(self._extremes) | vectors | {"told": packed(told)}
+
+    def restore(self, saved: Saved) -> None:
+        told = unpacked(saved["told"])
+        self.name, self.kind, self._final, self.soil = (told[name] for name in ("name", "kind", "final", "soil"))
+        self._t, self._last, self._latest = told["t"], list(saved["last"]), saved["latest"]
+        restore_all(self._extremes, saved)
+
+    @property
+    def _extremes(self) -> dict[str, Stateful]:
+        return {name: vars(self)[name] for name in ("sampled", "of_nodes", "peaks", "smooth")}
+
 
 class RunPeaks:
     """The peaks of a run, stage by stage; fed on the rank that records. mesh: the soil's; None: not followed."""
@@ -110,22 +143,31 @@ class RunPeaks:
     def __init__(self, mesh: SoilMesh | None = None) -> None:
         self.stages: list[StagePeaks] = []
         self._places = None if mesh is None else places(mesh)
-        self._latest: Instant | None = None
 
     def begin_stage(self, name: str, kind: str) -> None:
         """A dynamic stage's extremes include the state that it begins with, where a stage came before it."""
         self.stages.append(StagePeaks(name, kind))
-        if kind == "dynamic" and self._latest is not None:
-            self.stages[-1].update(0.0, self._latest)
+        if kind == "dynamic" and len(self.stages) > 1:
+            self.stages[-1].begin(self.stages[-2])
 
     def record(self, t: float, seen: Instant, soil: SoilSnapshot | None = None) -> None:
         """soil: where it is recorded at this step."""
         stage = self.stages[-1]
         stage.update(t, seen)
-        self._latest = seen
         if soil is not None and self._places is not None:
             stage.soil = with_largest(stage.soil, self._places, t, soil)
 
     def told(self, which: str) -> dict[str, Any]:
         """The share of a summary that headline quantities are read from; which: sampled, of_nodes, peaks or smooth."""
         return {"stages": [stage.told(which) for stage in self.stages]}
+
+    def state(self) -> Saved:
+        return gathered(self._numbered)
+
+    def restore(self, saved: Saved) -> None:
+        self.stages = [StagePeaks("", "") for name in saved if name.count("/") == 1 and name.endswith("/told")]
+        restore_all(self._numbered, saved)
+
+    @property
+    def _numbered(self) -> dict[str, Stateful]:
+        return {str(n): stage for n, stage in enumerate(self.stages)}

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import shlex
 import time
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -28,6 +29,7 @@ from riser_soil.core.snapshot import (
 )
 from riser_soil.errors import SceneError, WriteError
 from riser_soil.results import folder as run_folder
+from riser_soil.results.checkpoint_file import About, write_checkpoint
 from riser_soil.results.figures import pack
 from riser_soil.results.folder import FolderLock
 from riser_soil.results.indicators import StageIndicators
@@ -42,8 +44,17 @@ from riser_soil.results.xdmf import Frame, XdmfFile, polyline
 
 # A killed run loses this much wall time of results [s]; more where flushing would take more than this share.
 _FLUSH_EVERY, _FLUSH_SHARE = 1.0, 0.05
+_LASTING_SHARE = 0.01  # of what waits for the disk itself, and is computed again after a checkpoint
 # What waits in memory for its turn on disk [bytes]: at most so much, whatever the share; about so much for each step.
 _MOST_WAITING, _STEP = 1 << 24, 2000
+
+
+@dataclass(frozen=True)
+class Keeping:
+    """goes_on: from the folder's checkpoint. end: whether a finished run keeps the state at its end as a checkpoint."""
+
+    goes_on: bool = False
+    end: bool = False
 
 
 @dataclass
@@ -71,20 +82,23 @@ class Recorder:
         arc: Array,
         soil_mesh: SoilMesh | None,
         fields: tuple[str, ...],
+        keeping: Keeping,
     ) -> None:
         self.summary = Summary(facts)
+        self._keeping = keeping
         self._lock, self._folder = lock, folder
         self._scales = facts.diameter, facts.weight, facts.contact_period
         self._arc = arc
         self._fields = fields
         left_out = outputs.left_out(fields)
         self._ledger = ledger_variables(facts.dissipating, facts.working)
-        made_of = facts.title, facts.version, left_out, self._ledger, facts.sections, facts.offsets
+        made_of = facts.title, facts.version, left_out, self._ledger, facts.sections, facts.offsets, keeping.goes_on
         self._series = SeriesFile(folder / run_folder.SERIES, arc, *made_of)
         self._riser_frames = XdmfFile(
-            folder / run_folder.RISER_XDMF, "riser", polyline(arc.size), polyline=True
+            folder / run_folder.RISER_XDMF, "riser", polyline(arc.size), polyline=True, goes_on=keeping.goes_on
         )
-        self._soil_frames = _soil_file(folder, soil_mesh)
+        self._soil_frames = _soil_file(folder, soil_mesh, keeping.goes_on)
+        self._lasting, self._resumable = False, keeping.goes_on
         self._soil_places = None if soil_mesh is None else places(soil_mesh)
         self._time = SimulatedTime()
         self.now = 0.0  # s of the run at the last step; in a static stage its load factor
@@ -104,19 +118,23 @@ class Recorder:
         scene_text: str,
         fields: tuple[str, ...] | None = None,
         force: bool = False,
+        keeping: Keeping | None = None,
     ) -> Self:
         """Takes the folder over, until it is closed, and lays the files out.
 
         arc: (nn,) m. scene_text: the resolved scene, kept as scene.yaml. fields: of `outputs.choices()`; None for all.
-        Raises SceneError for an unknown field and for a folder that the run may not have (see `ownership`).
+        Raises SceneError for an unknown field and for a folder that the run may not have (see `ownership`). A run that
+        goes on is to be restored next.
         """
         wanted = _check_fields(outputs.choices() if fields is None else fields)
-        lock = prepare(folder, force)
+        keeping = keeping or Keeping()
+        lock = prepare(folder, force, keeping.goes_on)
         try:
             with _told_when_full(folder):
                 run_folder.write_atomically(folder / run_folder.SCENE, sealed(scene_text))
-                recorder = cls(lock, folder, facts, arc, soil_mesh, wanted)
-                recorder.flush()
+                recorder = cls(lock, folder, facts, arc, soil_mesh, wanted, keeping)
+                if not keeping.goes_on:
+                    recorder.flush()
         except BaseException:
             lock.release()
             raise
@@ -130,9 +148,20 @@ class Recorder:
         stages = [stage for stage in self.summary.stages if stage.steps]
         if not stages:
             return f"before the first step; {self._folder} holds no results yet"
-        last = stages[-1]
-        time = f" at t = {last.time:.6g} s" if last.kind == "dynamic" else f" after {last.steps} load step(s)"
-        return f"in stage {last.name}{time}; {self._folder} has the results up to there, marked unfinished"
+        return f"{_place(stages[-1])}; {self._folder} has the results up to there, marked unfinished{self._way_on}"
+
+    @property
+    def place(self) -> str:
+        """Stage and time of the last accepted step."""
+        return _place(self.summary.stages[-1])
+
+    @property
+    def _way_on(self) -> str:
+        """How to go on from the last checkpoint."""
+        if not self._resumable:
+            return ""
+        folder, scene = shlex.quote(str(self._folder)), shlex.quote(str(self._folder / run_folder.SCENE))
+        return f"; go on with: riser-soil run {scene} -o {folder} --restart"
 
     def __enter__(self) -> Self:
         return self
@@ -212,14 +241,37 @@ class Recorder:
     def flush(self) -> None:
         """Writes all records so far to disk: the frames, the series that gives their number, the summary."""
         begun = time.monotonic()
-        with _told_when_full(self._folder, self._let_go):
+        with self._told_when_full():
             for frames in self._pictures:
                 frames.flush()
             self._series.flush(self.summary.finished)
-            self.summary.write(self._folder / run_folder.SUMMARY)
+            self.summary.write(self._folder / run_folder.SUMMARY, self._lasting)
         self._waiting = 0
-        now = time.monotonic()
-        self._next_flush = now + max(_FLUSH_EVERY, (now - begun) / _FLUSH_SHARE)
+        now, share = time.monotonic(), _LASTING_SHARE if self._lasting else _FLUSH_SHARE
+        self._next_flush = now + max(_FLUSH_EVERY, (now - begun) / share)
+
+    def checkpoint(self, about: About, shares: Sequence[Saved]) -> None:
+        """Keeps the run's state after the last accepted step. From the first one on, files outlast a power loss.
+
+        shares: of each rank. The files have all that belongs to that state before it is kept.
+        """
+        self._outlast_power()
+        self.flush()
+        with self._told_when_full():
+            write_checkpoint(self._folder / run_folder.CHECKPOINT, about, shares)
+        self._resumable = True
+
+    def _outlast_power(self) -> None:
+        if not self._lasting:
+            self._lasting = True
+            with self._told_when_full():
+                for frames in self._pictures:
+                    frames.outlast_power()
+                self._series.outlast_power()
+                run_folder.synchronise(self._folder / run_folder.SCENE)
+
+    def _told_when_full(self) -> AbstractContextManager[None]:
+        return _told_when_full(self._folder, self._let_go, self._way_on)
 
     def finish(self) -> None:
         """Marks the run finished; nothing may be added afterwards."""
@@ -234,6 +286,8 @@ class Recorder:
             if not self.summary.finished:
                 self.record_last()
             self.flush()
+            if self.summary.finished and not self._keeping.end:
+                (self._folder / run_folder.CHECKPOINT).unlink(missing_ok=True)
         finally:
             self._let_go()
 
@@ -296,17 +350,22 @@ class Recorder:
         return gathered(self._owners) | latest | {"now": np.array(self.now)}
 
     def restore(self, saved: Saved) -> None:
-        restore_all(self._owners, saved)
+        with self._told_when_full():
+            restore_all(self._owners, saved)
         self.now, self._latest = float(saved["now"]), saved.get("latest")
+        if self._keeping.goes_on:
+            self._outlast_power()
 
     @property
     def _owners(self) -> dict[str, Stateful]:
-        return {"summary": self.summary, "time": self._time, "series": self._series}
+        found: dict[str, Stateful] = {"summary": self.summary, "time": self._time, "series": self._series}
+        found["riser_frames"] = self._riser_frames
+        return found if self._soil_frames is None else found | {"soil_frames": self._soil_frames}
 
 
 @contextmanager
-def _told_when_full(folder: Path, then: Callable[[], None] | None = None) -> Iterator[None]:
-    """Raises WriteError for what the disk did not take, when `then` is done."""
+def _told_when_full(folder: Path, then: Callable[[], None] | None = None, way_on: str = "") -> Iterator[None]:
+    """Raises WriteError for what the disk did not take, when `then` is done. way_on: told behind it."""
     try:
         yield
     except OSError as err:
@@ -314,7 +373,7 @@ def _told_when_full(folder: Path, then: Callable[[], None] | None = None) -> Ite
             then()
         raise WriteError(
             f"{err.filename or folder}: cannot be written: {err.strerror or err}; the run ends here, and its files are "
-            "whole up to what went in before: make room, or choose another folder (-o)"
+            f"whole up to what went in before: make room, or choose another folder (-o){way_on}"
         ) from err
 
 
@@ -331,5 +390,12 @@ def _check_fields(fields: tuple[str, ...]) -> tuple[str, ...]:
     return fields
 
 
-def _soil_file(folder: Path, mesh: SoilMesh | None) -> XdmfFile | None:
-    return None if mesh is None else XdmfFile(folder / run_folder.SOIL_XDMF, "soil", mesh.cells, mesh.points)
+def _soil_file(folder: Path, mesh: SoilMesh | None, goes_on: bool) -> XdmfFile | None:
+    if mesh is None:
+        return None
+    return XdmfFile(folder / run_folder.SOIL_XDMF, "soil", mesh.cells, mesh.points, goes_on=goes_on)
+
+
+def _place(stage: StageTally) -> str:
+    time = f" at t = {stage.time:.6g} s" if stage.kind == "dynamic" else f" after {stage.steps} load step(s)"
+    return f"in stage {stage.name}{time}"

@@ -187,8 +187,8 @@ class Summary:
             **({"laying": self.laying} if self.laying is not None else {}),
         }
 
-    def write(self, path: Path) -> None:
-        write_atomically(path, json.dumps(plain_json(self.as_dict()), indent=2, allow_nan=False) + "\n")
+    def write(self, path: Path, lasting: bool = False) -> None:
+        write_atomically(path, json.dumps(plain_json(self.as_dict()), indent=2, allow_nan=False) + "\n", lasting)
 
     def state(self) -> Saved:
         stages = gathered({str(n): stage for n, stage in enumerate(self.stages)})

@@ -17,11 +17,13 @@ import h5py
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.saved_state import Saved
 from riser_soil.results import vtkhdf
-from riser_soil.results.growing_file import GrowingFile, appending
+from riser_soil.results.growing_file import GrowingFile, appending, behind
 from riser_soil.results.ownership import PROGRAM, XDMF_HEAD
 
 _CELLS = {4: "Tetrahedron", 8: "Hexahedron", 10: "Tetrahedron_10"}
+_GRID = '<Grid Name="frame_'
 _FOOT = "  </Grid>\n </Domain>\n</Xdmf>\n"
 
 
@@ -44,10 +46,18 @@ class XdmfFile:
 
     cells: (nc, k) point numbers in VTK's order: k = 4, 8 or 10; or (1, np) with `polyline`.
     points: (np, 3) m for a mesh that stays; None when each frame brings its own geometry.
+    goes_on: with the files of an earlier run, up to what is restored.
     """
 
     def __init__(
-        self, path: Path, name: str, cells: IntArray, points: Array | None = None, *, polyline: bool = False
+        self,
+        path: Path,
+        name: str,
+        cells: IntArray,
+        points: Array | None = None,
+        *,
+        polyline: bool = False,
+        goes_on: bool = False,
     ) -> None:
         heavy = path.with_suffix(".vtkhdf")
         self._heavy_name = heavy.name
@@ -57,13 +67,15 @@ class XdmfFile:
         with h5py.File(content, "w") as store:
             store.attrs["source"] = PROGRAM
             vtkhdf.lay_out(store, cells, points, polyline)
-        self._heavy = GrowingFile(heavy, content.getvalue())
+        self._heavy = GrowingFile(heavy, None if goes_on else content.getvalue())
         kind = _polyline_of(cells) if polyline else f'TopologyType="{_CELLS[cells.shape[1]]}"'
         item = self._item("Lines/Connectivity" if polyline else "Connectivity", (cells.size,), "Int")
         self._topology = f'<Topology {kind} NumberOfElements="{len(cells)}">{item}</Topology>'
         self._points = None if points is None else self._item("Points", points.shape)
         self._path, self._head = path, XDMF_HEAD.format(name=quoteattr(name))
-        self._text: GrowingFile | None = None
+        self._goes_on = goes_on
+        self._text = GrowingFile(path, None) if goes_on and path.exists() else None
+        self._lasting = False
 
     def add(self, frame: Frame) -> None:
         """Takes a copy of one frame, later than the ones before; it lives in memory until `flush`."""
@@ -86,13 +98,47 @@ class XdmfFile:
         if self._text is not None:
             self._text.close()
 
+    def outlast_power(self) -> None:
+        """From now on, see `GrowingFile`."""
+        self._lasting = True
+        for file in (self._heavy, self._text):
+            if file is not None:
+                file.outlast_power()
+
+    def state(self) -> Saved:
+        """The number of frames; frames themselves are the files'."""
+        return {"frames": np.array(self._frames + len(self._waiting))}
+
+    def restore(self, saved: Saved) -> None:
+        """Files that go on lose the frames that were written after those saved; ResultsError where they have fewer."""
+        self._frames = int(saved["frames"])
+        if self._goes_on:
+            self._cut_back_text()
+            with appending(self._heavy) as store:
+                if len(vtkhdf.times(store)) < self._frames:
+                    raise behind(self._heavy.path)
+                vtkhdf.cut_back(store, self._frames)
+
+    def _cut_back_text(self) -> None:
+        """The XML first, so that it never refers to missing data."""
+        content = b"" if self._text is None else self._path.read_bytes()
+        if content.count(_GRID.encode()) < self._frames:
+            raise behind(self._path)
+        at = content.find(f'   {_GRID}{self._frames:06d}"'.encode())
+        if self._text is not None and self._frames == 0:
+            self._text.close()
+            self._text = None
+            self._path.unlink()
+        elif self._text is not None and at >= 0:
+            self._text.update({at: _FOOT.encode()}, at + len(_FOOT))
+
     def _grid(self, store: h5py.File, number: int, frame: Frame) -> str:
         vtkhdf.append(store, frame.time, frame.on_points, frame.on_cells, frame.geometry)
         items = {name: self._part(f"PointData/{name}", number, v.shape) for name, v in frame.on_points.items()}
         items |= {name: self._part(f"CellData/{name}", number, v.shape) for name, v in frame.on_cells.items()}
         points = self._points if frame.geometry is None else items[frame.geometry]
         lines = [
-            f'<Grid Name="frame_{number:06d}" GridType="Uniform">',
+            f'{_GRID}{number:06d}" GridType="Uniform">',
             f'<Time Value="{float(frame.time)!r}"/>',
             self._topology,
             f'<Geometry GeometryType="XYZ">{points}</Geometry>',
@@ -123,6 +169,8 @@ class XdmfFile:
         added = (grids + _FOOT).encode()
         if self._text is None:
             self._text = GrowingFile(self._path, self._head.encode() + added)
+            if self._lasting:
+                self._text.outlast_power()
             return
         end = self._text.size - len(_FOOT)
         self._text.update({end: added}, end + len(added))

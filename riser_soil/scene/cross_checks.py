@@ -224,6 +224,13 @@ def _crosses(block: Block, a: Vector, b: Vector) -> bool:
     return low <= high
 
 
+def _error_bars_from_the_beginning(scene: Scene) -> Iterator[Problem]:
+    """Companions have another mesh than the run that the scene begins with."""
+    for name, wanted in (("accuracy", scene.accuracy is not None), ("error_bars", scene.error_bars)):
+        if wanted and scene.initial is not None:
+            yield Problem((name,), "coarser meshes can't begin with another run's end", f"leave out {name} or initial")
+
+
 def _sections_across_soil(scene: Scene) -> Iterator[Problem]:
     sections, length = scene.output.sections, scene.riser.length
     path: Path = ("output", "sections")
@@ -251,6 +258,7 @@ _CHECKS: tuple[_Check, ...] = (
     _initial_shape_meets_the_supports,
     _passes_over_block,
     _sections_across_soil,
+    _error_bars_from_the_beginning,
     feature_conflicts,
     water_conflicts,
     stage_conflicts,

@@ -19,5 +19,15 @@ def _found(file: Path, info: ValidationInfo) -> Path:
     return path
 
 
+def _found_folder(folder: Path, info: ValidationInfo) -> Path:
+    path = (Path((info.context or {}).get("folder", ".")) / folder).absolute()
+    if not path.is_dir():
+        raise wrong_file(f"there is no such folder as {path}; correct the name: it is sought beside the scene file")
+    return path
+
+
 NamedFile = Annotated[Path, AfterValidator(_found)]
 """A file that is there, by its absolute path; a relative name is sought beside the scene file."""
+
+NamedFolder = Annotated[Path, AfterValidator(_found_folder)]
+"""A folder that is there, likewise."""

@@ -32,6 +32,19 @@ class SettlementSections(BaseModel):
     )
 
 
+class Checkpoint(BaseModel):
+    """Checkpoints, from which a run goes on after it was interrupted, killed, or cut off from power or disk space."""
+
+    model_config = FROZEN
+
+    every: Time = Field(default=600.0, description="wall time between checkpoints [s]")
+    keep: Literal[True, False] = Field(
+        default=False,
+        description="whether a finished run keeps the state at its end, which another scene can begin with: "
+        "initial: {from: RUN}",
+    )
+
+
 class Output(BaseModel):
     """Intervals and fields of the result files."""
 
@@ -49,6 +62,10 @@ class Output(BaseModel):
     )
     sections: SettlementSections = Field(
         default=SettlementSections(), description="where settlement_across is recorded, with soil"
+    )
+    checkpoint: Checkpoint | None = Field(
+        default=Checkpoint(),
+        description="checkpoints, {every, keep}; every 600 s of wall time by default, none with null",
     )
     directory: Text | None = Field(
         default=None,

@@ -8,6 +8,7 @@ from pydantic import BaseModel, Field, model_validator
 from riser_soil.core.quantities import FROZEN, Gravity, Text
 from riser_soil.scene.accuracy import Accuracy, with_placeholders
 from riser_soil.scene.contact import Contact
+from riser_soil.scene.initial import Initial
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.output import Output
 from riser_soil.scene.riser import Riser
@@ -37,6 +38,9 @@ class Scene(BaseModel):
     soil: SoilScene | None = Field(default=None, description="continuum of soil under the touchdown zone")
     contact: Contact | None = Field(
         default=None, description="contact with seabed and soil; its defaults hold when there is one of them"
+    )
+    initial: Initial | None = Field(
+        default=None, description="{from: RUN}: begin with the end of a finished run, not with riser.initial"
     )
     stages: tuple[Stage, ...] = Field(min_length=1, description="what happens, one stage after the other")
     solver: Solver = Field(default=Solver(), description="settings of the nonlinear solver")

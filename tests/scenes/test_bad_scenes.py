@@ -186,8 +186,11 @@ def test_a_riser_with_a_free_end(assignment: str, tmp_path: Path) -> None:
     assert any(FREE_ENDS[assignment] in line for line in refused(tmp_path, scene, "--set", assignment))
 
 
-def test_restart_is_named_as_not_supported(tmp_path: Path) -> None:
-    assert "--restart: not supported yet" in refused(tmp_path, write(tmp_path, GOOD), "--restart")[0]
+def test_a_run_must_be_there_to_begin_with(tmp_path: Path) -> None:
+    (line,) = refused(tmp_path, write(tmp_path, GOOD), "--set", "initial={from: nowhere}")
+    assert "initial.from: value \"nowhere\": there is no such folder as" in line
+    (tmp_path / "empty").mkdir()
+    assert "holds no finished run" in refused(tmp_path, write(tmp_path, GOOD), "--set", "initial.from=empty")[0]
 
 
 def test_finished_run_is_not_overwritten(tmp_path: Path) -> None:

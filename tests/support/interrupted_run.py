@@ -33,7 +33,7 @@ class Kept:
     last: Saved = field(default_factory=dict)
     gather: Callable[[], Saved] | None = None
 
-    def keep(self, gather: Callable[[], Saved]) -> None:
+    def keep(self, gather: Callable[[], Saved], last: bool, leaving: bool) -> None:
         self.steps, self.gather = self.steps + 1, gather
         if self.steps in self.wanted:
             self.states[self.steps] = gather()

@@ -15,7 +15,7 @@ import typer
 
 from riser_soil.commands.endings import expected_errors
 from riser_soil.errors import Interruption
-from riser_soil.interruption import agreeing, check, handling_signals, uninterrupted
+from riser_soil.interruption import agreeing, asked_to_end, check, handling_signals, leave_between_steps, uninterrupted
 from riser_soil.results import Run
 from tests.support.on_ranks import environment
 
@@ -144,6 +144,18 @@ def test_the_second_signal_is_obeyed_at_once() -> None:
     assert not end.value.together
 
 
+def test_one_alone_may_leave_between_steps_too() -> None:
+    alone = SimpleNamespace(size=1)
+    with handling_signals(), agreeing(alone):
+        leave_between_steps()
+        check(alone)
+        signal.raise_signal(signal.SIGINT)
+        assert asked_to_end(alone)
+        with pytest.raises(Interruption) as end:
+            check(alone)
+    assert (end.value.number, end.value.together) == (signal.SIGINT, True)
+
+
 def test_alone_nobody_is_asked() -> None:
     with handling_signals(), agreeing(SimpleNamespace(size=1)):
         check(SimpleNamespace(size=1))
@@ -211,7 +223,9 @@ def test_an_interrupted_run_keeps_its_last_accepted_step(number: signal.Signals,
     done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 128 + number
     told = f"ended by {number.name} in stage heave at t = 1.3 s; {out} has the results up to there, marked unfinished"
-    assert done.stderr.splitlines()[-1] == told
+    way_on = f"; go on with: riser-soil run {out}/scene.yaml -o {out} --restart" if sent == BETWEEN else ""
+    assert done.stderr.splitlines()[-1] == told + way_on
+    assert (out / "checkpoint.npz").exists() == (sent == BETWEEN), "within a step there is no state to go on from"
     assert len(done.stderr.splitlines()) <= 2, "but for the announcement of kernels"
     run = Run(out)
     assert not run.finished

@@ -13,7 +13,7 @@ import h5py
 import pytest
 
 from riser_soil.errors import SceneError, WriteError
-from riser_soil.results.folder import FORMER, NAMES, FolderLock
+from riser_soil.results.folder import CHECKPOINT, FORMER, NAMES, FolderLock
 from riser_soil.results.ownership import prepare, refuse, sealed
 from tests.support.recorded_run import a_recorder, block, record, step
 
@@ -53,7 +53,7 @@ def test_links_and_folders_stay(name: str, tmp_path: Path) -> None:
 def test_all_that_a_run_leaves_is_its_own(tmp_path: Path) -> None:
     for _ in range(2):
         record(tmp_path, mesh=block(4, 3, 2), duration=0.2, force=True)
-    assert {p.name for p in tmp_path.iterdir()} == {*NAMES} - {*FORMER}
+    assert {p.name for p in tmp_path.iterdir()} == {*NAMES} - {*FORMER, CHECKPOINT}
 
 
 def test_a_scene_that_was_edited_in_the_folder_stays(tmp_path: Path) -> None:

@@ -1,0 +1,106 @@
+"""Checkpoints of a run: when they are due, what tells them apart, and the last one of a folder."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from riser_soil import __version__
+from riser_soil.assembly import Assembly, sized
+from riser_soil.core.saved_state import Saved
+from riser_soil.errors import RiserSoilError, SceneError
+from riser_soil.results.checkpoint_file import About, read_checkpoint
+from riser_soil.results.folder import CHECKPOINT
+from riser_soil.scene.identity import first_difference, identity_of
+from riser_soil.scene.output import Checkpoint
+from riser_soil.scene.scene import Scene
+
+MAY_DIFFER = (("output", "checkpoint"), ("output", "directory"), ("error_bars",))
+AT_END = 0.1  # of the time between checkpoints, after which there is one at a stage's end
+
+
+class CheckpointSchedule:
+    """Says after each step whether a checkpoint is due: by wall time, at the ends of stages, where the run is left.
+
+    asked: None for no checkpoints at all.
+    """
+
+    def __init__(self, asked: Checkpoint | None, comm: Any) -> None:
+        self._asked, self._comm = asked, comm
+        self.written()
+
+    def due(self, last: bool, ends_run: bool, leaving: bool) -> bool:
+        """Collective. last: of its stage; ends_run: of the run; leaving: before its time."""
+        if self._asked is None:
+            return False
+        if leaving or (ends_run and self._asked.keep):
+            return True
+        wait = AT_END * self._asked.every if last else self._asked.every
+        return bool(self._comm.bcast(not ends_run and time.monotonic() - self._last > wait))
+
+    def written(self) -> None:
+        """The time counts from now."""
+        self._last = time.monotonic()
+
+
+def about(assembly: Assembly, ended: str | None = None) -> About:
+    """What a checkpoint of a run is of. ended: name of the stage whose end it is the state at."""
+    return About(__version__, assembly.comm.size, identity_of(assembly.scene), ended)
+
+
+def last_checkpoint(folder: Path, scene: Scene, with_peaks: bool, comm: Any) -> Saved | None:
+    """This rank's state of the folder's run, from which it goes on; None where there is no checkpoint. Collective.
+
+    with_peaks: whether the run follows peaks, for its error bars. Raises SceneError where the run was another one,
+    ResultsError where the checkpoint can't be read.
+    """
+    saved = mine_of(comm, lambda: _shares(folder, scene, with_peaks, comm.size))
+    if saved is None and comm.rank == 0:
+        print(f"{folder}: has no checkpoint to go on from: the run begins")
+    return saved
+
+
+def mine_of(comm: Any, read: Callable[[], list[Saved] | None]) -> Saved | None:
+    """This rank's share of what the first one reads, or the error that it meets; collective."""
+    shares: list[Saved] | None = None
+    failure: RiserSoilError | None = None
+    if comm.rank == 0:
+        try:
+            shares = read()
+        except RiserSoilError as err:
+            failure = err
+    if failure := comm.bcast(failure):
+        raise failure
+    if not comm.bcast(shares is not None):
+        return None
+    mine: Saved = comm.scatter(shares)
+    return mine
+
+
+def _shares(folder: Path, scene: Scene, with_peaks: bool, ranks: int) -> list[Saved] | None:
+    path = folder / CHECKPOINT
+    if not path.exists():
+        return None
+    found = read_checkpoint(path)
+    _refuse_another(found.about, path, scene, ranks)
+    if with_peaks and not any(name.startswith("observer/peaks/") for name in found.shares[0]):
+        raise SceneError(
+            f"{path}: the run was begun without error bars, which follow it from its beginning; go on without "
+            "--error-bars"
+        )
+    return found.shares
+
+
+def _refuse_another(about: About, path: Path, scene: Scene, ranks: int) -> None:
+    """SceneError where a checkpoint is not of this version, number of ranks and scene."""
+    anew = "or leave out --restart, which begins anew"
+    if about.version != __version__:
+        raise SceneError(
+            f"{path}: was written by riser_soil {about.version}, and this is {__version__}; go on with that one, {anew}"
+        )
+    if about.ranks != ranks:
+        raise SceneError(f"{path}: was written on {about.ranks} rank(s), and these are {ranks}; take as many, {anew}")
+    if difference := first_difference(about.scene, identity_of(sized(scene)), MAY_DIFFER):
+        raise SceneError(f"{path}: the scene is another one: {difference}; take that scene, {anew}")

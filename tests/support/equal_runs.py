@@ -1,0 +1,91 @@
+"""Two runs' folders, file by file: what in them is not the same."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import xarray as xr
+
+TOLERANCE = 1e-12  # of the largest value of a variable
+PARTS = {"riser.vtkhdf": "riser.xdmf", "soil.vtkhdf": "soil.xdmf"}
+
+
+def unlike(one: Path, other: Path) -> list[str]:
+    """Names of what differs by more than TOLERANCE in two folders; times of the computer and checkpoints left out."""
+    return [*_series(one, other), *_frames(one, other), *_summaries(one, other)]
+
+
+def _series(one: Path, other: Path) -> Iterator[str]:
+    with xr.open_dataset(one / "results.nc") as a, xr.open_dataset(other / "results.nc") as b:
+        if a.attrs != b.attrs or set(a.variables) != set(b.variables):
+            yield "results.nc: attributes, variables"
+        for name in a.variables:
+            if not _near(a[name].values, b[name].values) or a[name].attrs.keys() != b[name].attrs.keys():
+                yield f"results.nc: {name} {a[name].shape} {b[name].shape}"
+
+
+def _frames(one: Path, other: Path) -> Iterator[str]:
+    for numbers, text in PARTS.items():
+        if (one / numbers).exists() != (other / numbers).exists():
+            yield numbers
+        if (one / numbers).exists():
+            with h5py.File(one / numbers) as a, h5py.File(other / numbers) as b:
+                arrays = ({name: item[()] for name, item in _datasets(file)} for file in (a, b))
+                yield from (f"{numbers}: {name}" for name in _differing(*arrays))
+            if not _same_text(*((folder / text).read_text() for folder in (one, other))):
+                yield text
+
+
+_TIME = re.compile(r'<Time Value="([^"]+)"/>')
+
+
+def _same_text(one: str, other: str) -> bool:
+    times = [np.array([float(t) for t in _TIME.findall(text)]) for text in (one, other)]
+    return _near(*times) and _TIME.sub("", one) == _TIME.sub("", other)
+
+
+def _datasets(group: h5py.Group, at: str = "") -> Iterator[tuple[str, h5py.Dataset]]:
+    for name, item in group.items():
+        if isinstance(item, h5py.Dataset):
+            yield f"{at}{name}", item
+        else:
+            yield from _datasets(item, f"{at}{name}/")
+
+
+def _summaries(one: Path, other: Path) -> Iterator[str]:
+    a, b = (json.loads((folder / "summary.json").read_text(encoding="utf-8")) for folder in (one, other))
+    a, b = ({name: value for name, value in told.items() if name != "seconds"} for told in (a, b))
+    yield from (f"summary.json: {name}" for name in _differing(dict(_leaves(a)), dict(_leaves(b))))
+
+
+def _leaves(value: Any, at: str = "") -> Iterator[tuple[str, Any]]:
+    if isinstance(value, dict):
+        for name, item in value.items():
+            yield from _leaves(item, f"{at}.{name}")
+    elif isinstance(value, list):
+        for n, item in enumerate(value):
+            yield from _leaves(item, f"{at}.{n}")
+    else:
+        yield at, value
+
+
+def _differing(one: dict[str, Any], other: dict[str, Any]) -> list[str]:
+    names = sorted(one.keys() | other.keys())
+    return [name for name in names if name not in one or name not in other or not _near(one[name], other[name])]
+
+
+def _near(one: Any, other: Any) -> bool:
+    a, b = np.asarray(one), np.asarray(other)
+    if a.shape != b.shape or a.dtype.kind != b.dtype.kind:
+        return False
+    if a.dtype.kind != "f":
+        return bool(np.all(a == b))
+    finite = np.isfinite(a)
+    scale = np.abs(a[finite]).max(initial=0.0)
+    return np.array_equal(finite, np.isfinite(b)) and bool(np.all(np.abs(a - b)[finite] <= TOLERANCE * scale))

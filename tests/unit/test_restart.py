@@ -1,0 +1,209 @@
+"""Runs that go on from their checkpoint, or begin with another run's end; what they refuse."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from riser_soil.__main__ import app
+from riser_soil.core.saved_state import packed, unpacked
+from riser_soil.errors import ResultsError, SceneError, WriteError
+from riser_soil.results import folder as run_folder
+from riser_soil.results import record
+from riser_soil.results.checkpoint import CheckpointSchedule
+from riser_soil.results.checkpoint_file import About, read_checkpoint, write_checkpoint
+from riser_soil.results.peaks import RunPeaks
+from riser_soil.scene.identity import first_difference, identity_of
+from riser_soil.scene.output import Checkpoint
+from riser_soil.scene.reader import read_scene
+from riser_soil.scene.scene import Scene
+from riser_soil.whole_run import run
+from tests.support.equal_runs import unlike
+from tests.support.left_run import leave_after
+
+ROOT = Path(__file__).parents[2]
+ALL_KINDS = (  # seabed with memory, friction, waves, steps found on the way
+    "stages.1.duration=0.6",
+    "stages.1.time_step=auto",
+    "output.interval=0.2",
+    "water.surface_level=95.0",
+    "water.waves={airy: {height: 2.0, period: 6.0}, ramp: 0.5}",
+)
+
+
+@cache
+def scene_of(*overrides: str) -> Scene:
+    return read_scene(ROOT / "tests/scenes/hysteretic.yaml", (*ALL_KINDS, *overrides))
+
+
+class Alone(NamedTuple):
+    """The run that nothing ended before its time."""
+
+    folder: Path
+    peaks: RunPeaks
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> Alone:
+    made = Alone(tmp_path_factory.mktemp("alone"), RunPeaks())
+    run(scene_of(), made.folder, peaks=made.peaks)
+    return made
+
+
+def test_a_run_left_twice_ends_as_if_it_had_not_been_left(alone: Alone, tmp_path: Path) -> None:
+    """Files, extremes, ledger; peaks, which error bars are told of."""
+    left, peaks = tmp_path / "left", RunPeaks()
+    assert not (alone.folder / "checkpoint.npz").exists()
+    end = leave_after(3, scene_of(), left, RunPeaks())
+    way_on = f"; go on with: riser-soil run {left}/scene.yaml -o {left} --restart"
+    assert end.place.startswith("in stage heave at t = ")
+    assert end.place.endswith(way_on)
+    assert len(unlike(alone.folder, left)) > 10, "otherwise nothing is compared"
+    leave_after(2, read_scene(left / "scene.yaml"), left, RunPeaks(), restart=True)
+    run(scene_of(), left, peaks=peaks, restart=True)
+    assert unlike(alone.folder, left) == []
+    assert json.dumps(peaks.told("smooth")) == json.dumps(alone.peaks.told("smooth"))
+    assert not (left / "checkpoint.npz").exists()
+
+
+def test_a_run_begins_with_another_ones_end(tmp_path: Path) -> None:
+    whole = scene_of("output.checkpoint.keep=true")
+    run(whole, tmp_path / "whole")
+    run(whole.model_copy(update={"stages": whole.stages[:1]}), tmp_path / "lay")
+    data = f"initial={{from: {tmp_path / 'lay'}}}"
+    heave = scene_of(data)
+    run(heave.model_copy(update={"stages": heave.stages[1:]}), tmp_path / "heave")
+    one, other = (json.loads((tmp_path / name / "summary.json").read_text())["stages"] for name in ("whole", "heave"))
+    assert one[1]["final"] == other[0]["final"]
+    assert one[1]["extremes"] == other[0]["extremes"]
+    assert one[1]["energy"] == other[0]["energy"]
+    stiffer = scene_of(data, "line_types.flexible.EI=6.0e4")
+    with pytest.raises(SceneError, match=r"line_types\.flexible\.EI was 50000\.0 and is 60000\.0"):
+        run(stiffer, tmp_path / "stiffer")
+    assert not (tmp_path / "stiffer").exists()
+    with pytest.raises(SceneError, match='its last stage, "heave", is dynamic'):
+        run(scene_of(f"initial={{from: {tmp_path / 'whole'}}}"), tmp_path / "from motion")
+
+
+@pytest.fixture
+def checkpoint(tmp_path: Path) -> Path:
+    """Of a run that has not begun."""
+    path = tmp_path / run_folder.CHECKPOINT
+    write_checkpoint(path, About("0.1.0", 1, identity_of(scene_of())), [{"stepper/before/u": np.arange(3.0)}])
+    return path
+
+
+def test_a_checkpoint_holds_what_was_written(checkpoint: Path) -> None:
+    found = read_checkpoint(checkpoint)
+    assert found.about.ranks == 1
+    np.testing.assert_array_equal(found.shares[0]["stepper/before/u"], np.arange(3.0))
+    assert sorted(path.name for path in checkpoint.parent.iterdir()) == [".riser_soil", "checkpoint.npz"]
+
+
+REFUSED = {
+    "line_types.flexible.EI=6.0e4": "line_types.flexible.EI was 50000.0 and is 60000.0",
+    "stages.1.duration=2.0": "stages.1.duration was 0.6 and is 2.0",
+    "stages.1.name=surge": "stages.1.name was \"heave\" and is \"surge\"",
+    "seabed={kind: spring, stiffness: 1.0e5}": 'seabed.kind was "hysteretic" and is "spring"',
+}
+
+
+@pytest.mark.parametrize("override", REFUSED)
+def test_a_checkpoint_of_another_scene_is_refused(override: str, checkpoint: Path) -> None:
+    with pytest.raises(SceneError) as refused:
+        run(scene_of(override.replace("\"", "")), checkpoint.parent, restart=True)
+    assert REFUSED[override] in str(refused.value)
+    assert checkpoint.exists()
+
+
+@pytest.mark.parametrize(
+    ("about", "says"),
+    [
+        ({"version": "0.0.9"}, "was written by riser_soil 0.0.9, and this is "),
+        ({"ranks": 4}, "was written on 4 rank(s), and these are 1; take as many"),
+        ({"format": 0}, "in format 0, and this one reads 1"),
+    ],
+)
+def test_a_checkpoint_of_another_kind_is_refused(about: dict[str, object], says: str, checkpoint: Path) -> None:
+    with np.load(checkpoint) as file:
+        arrays = dict(file)
+    arrays["about"] = packed(unpacked(arrays["about"]) | about)
+    np.savez(checkpoint, **arrays)
+    with pytest.raises((SceneError, ResultsError)) as refused:
+        run(scene_of(), checkpoint.parent, restart=True)
+    assert says in str(refused.value)
+
+
+def test_a_damaged_checkpoint_is_refused(checkpoint: Path) -> None:
+    content = bytearray(checkpoint.read_bytes())
+    content[content.index(np.arange(3.0).tobytes())] ^= 1
+    checkpoint.write_bytes(content)
+    with pytest.raises(ResultsError, match="is not a whole checkpoint"):
+        run(scene_of(), checkpoint.parent, restart=True)
+
+
+def test_error_bars_can_not_begin_on_the_way(checkpoint: Path) -> None:
+    with pytest.raises(SceneError, match="the run was begun without error bars"):
+        run(scene_of(), checkpoint.parent, peaks=RunPeaks(), restart=True)
+
+
+def test_results_that_lack_what_they_had_are_refused(tmp_path: Path) -> None:
+    """As another run's files that somebody has put beside the checkpoint."""
+    leave_after(3, scene_of(), tmp_path)
+    leave_after(1, scene_of(), tmp_path / "shorter")
+    (tmp_path / "shorter" / "results.nc").replace(tmp_path / "results.nc")
+    with pytest.raises(ResultsError, match="lacks records made before the checkpoint"):
+        run(scene_of(), tmp_path, restart=True)
+
+
+def test_a_full_disk_leaves_the_last_checkpoint(alone: Alone, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    often, usual, written = scene_of("output.checkpoint.every=1e-6"), record.write_checkpoint, 0
+
+    def full(*told: object) -> None:
+        nonlocal written
+        written += 1
+        if written == 3:
+            raise OSError(28, "No space left on device")
+        usual(*told)  # type: ignore[arg-type]
+
+    with monkeypatch.context() as patch:
+        patch.setattr(record, "write_checkpoint", full)
+        with pytest.raises(WriteError, match="go on with: riser-soil run"):
+            run(often, tmp_path)
+    run(scene_of(), tmp_path, restart=True)
+    assert unlike(alone.folder, tmp_path) == []
+
+
+def test_what_may_differ() -> None:
+    then = identity_of(scene_of())
+    assert first_difference(then, identity_of(scene_of("output.checkpoint=null")), [("output", "checkpoint")]) is None
+    changed = {"values": then["values"], "files": {"stages.1.motion.end.table": "a"}}
+    difference = first_difference(then, changed)
+    assert difference is not None
+    assert difference.key == "stages.1.motion.end.table"
+
+
+def test_checkpoints_are_due_by_time_at_ends_and_where_the_run_is_left() -> None:
+    from mpi4py import MPI
+
+    none = CheckpointSchedule(None, MPI.COMM_SELF)
+    assert not none.due(last=True, ends_run=True, leaving=True)
+    seldom = CheckpointSchedule(Checkpoint(every=1e4), MPI.COMM_SELF)
+    assert not seldom.due(last=True, ends_run=True, leaving=False)
+    assert seldom.due(last=False, ends_run=False, leaving=True)
+    often = CheckpointSchedule(Checkpoint(every=1e-9), MPI.COMM_SELF)
+    assert often.due(last=False, ends_run=False, leaving=False)
+    assert not often.due(last=True, ends_run=True, leaving=False)
+    assert CheckpointSchedule(Checkpoint(keep=True), MPI.COMM_SELF).due(last=True, ends_run=True, leaving=False)
+
+
+def test_one_either_goes_on_or_overwrites() -> None:
+    told = CliRunner().invoke(app, ["run", str(ROOT / "demos/first_scene.yaml"), "--restart", "--force"])
+    assert told.exit_code == 2
+    assert told.stderr == "--restart and --force: one goes on with a run, the other overwrites it; leave one out\n"
