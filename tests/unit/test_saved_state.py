@@ -109,7 +109,7 @@ def test_seconds_spent_before_count_too() -> None:
 
 def test_a_tally_comes_back_as_it_was() -> None:
     tally = StageTally("heave", "dynamic", tightest=TightestBend(0.5, 3.0, 10.0, 0.1), worst_residual=(0.2, 0.1))
-    tally.stressed = MostUsed(0.7, 2.0e8, 20.0, 0.2)
+    tally.pulled, tally.stressed = MostUsed(0.2, 1.0e5, 80.0, 0.1), MostUsed(0.7, 2.0e8, 20.0, 0.2)
     tally.implausible, tally.final = ("doubtful",), {"start": {"position": [0.0, 0.1, math.pi]}}
     again = StageTally("", "")
     again.restore(tally.state())

@@ -1,4 +1,4 @@
-"""Stress in a pipe's wall, against equilibrium, formulas written out by hand, and the largest found by looking around."""
+"""Stress in a pipe's wall, against equilibrium, formulas written out by hand, and what looking around finds."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_lame_s_tube() -> None:
 
 def test_von_mises_by_hand() -> None:
     """Outside, where bending pulls most: every number written out."""
-    A, I = np.pi * (b**2 - a**2), 0.25 * np.pi * (b**4 - a**4)  # noqa: E741 (the field's symbol)
+    A, I = np.pi * (b**2 - a**2), 0.25 * np.pi * (b**4 - a**4)
     axial = 9.0e5 / A + 5.0e4 * b / I
     hoop, radial = (2.0 * 34.5e6 * a**2 - 12.0e6 * (a**2 + b**2)) / (b**2 - a**2), -12.0e6
     shear = 2.0e4 * b / (2.0 * I)
