@@ -12,8 +12,8 @@ import pytest
 from riser_soil.core.snapshot import RiserSnapshot, WallSnapshot
 from riser_soil.errors import SceneError
 from riser_soil.results import Run
-from riser_soil.run import run
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
 
