@@ -69,7 +69,7 @@ class Run:
 
     def has(self, name: str) -> bool:
         """Whether results.nc has a variable."""
-        with self._open_series() as file:
+        with self._open(run_folder.SERIES) as file:
             return name in file
 
     @cached_property
