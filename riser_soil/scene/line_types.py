@@ -61,7 +61,7 @@ class Damping(BaseModel):
         return self.ratio / (math.pi * self.frequency)
 
 
-class Wall(BaseModel):
+class MetalWall(BaseModel):
     """The wall of a metal pipe, which bears the stress of tension, bending, torsion and pressure."""
 
     model_config = FROZEN
@@ -147,7 +147,7 @@ class LineType(BaseModel):
         description="largest effective tension allowed [N], such as the breaking load over its safety factor; a run "
         "warns where the riser is pulled more; any by default",
     )
-    wall: Wall | None = Field(
+    wall: MetalWall | None = Field(
         default=None,
         description="wall of a metal pipe, {outer_diameter, inner_diameter, yield_stress, design_factor}, whose stress "
         "is a result; none by default",

@@ -160,7 +160,7 @@ def test_packing_and_unpacking_agree() -> None:
     assert nested["start"]["position"] == [0.0, 1.0, 2.0]
     assert nested["end"]["angle_deg"] == 23.0
     assert nested["touchdown_position"] == [25.0, 26.0, 27.0]
-    assert nested["contact_force"] == 38.0
+    assert nested["contact_force"] == 41.0
 
 
 def test_plain_json() -> None:
