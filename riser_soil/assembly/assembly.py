@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from riser_soil.contact.soil_friction import SoilFriction
     from riser_soil.riser.attachments import PointAttachment
     from riser_soil.riser.catenary import Catenary
+    from riser_soil.riser.wall_sections import WallSections
     from riser_soil.riser.wall_tension import Pressures
     from riser_soil.soil.condensed import CondensedSoil
     from riser_soil.soil.soil import Soil
@@ -129,6 +130,21 @@ class Assembly:
     @cached_property
     def scales(self) -> Scales:
         return scales_of(self.elements)
+
+    @cached_property
+    def wall_sections(self) -> WallSections | None:
+        """Sections of the walls that bear stress; None where no line type has one."""
+        each = self.elements
+        if not each.wall_outer_diameter.any():
+            return None
+        from riser_soil.riser.wall_sections import wall_sections
+        from riser_soil.riser.wall_stress import Wall
+
+        wall, pressed = (
+            Wall(each.wall_outer_diameter, each.wall_inner_diameter),
+            Wall(each.outer_diameter, each.inner_diameter),
+        )
+        return wall_sections(wall, pressed, each.allowable_stress)
 
     def error_tolerance(self, stage: DynamicStage) -> float:
         """Largest local error of an automatic step [m]."""

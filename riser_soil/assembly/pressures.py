@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 def no_wall_tension(scene: Scene) -> str:
     """Why there is no wall tension; empty where there is one."""
     if scene.water is None:
-        return "" if scene.riser.contents else "without water and contents it is the effective tension"
+        needed = scene.riser.contents or any(line.wall for line in scene.used_line_types.values())
+        return "" if needed else "without water and contents it is the effective tension"
     if scene.water.surface_level is None:
         return "the pressure outside is unknown without water.surface_level"
     if any(line.outer_diameter is None for line in scene.used_line_types.values()):

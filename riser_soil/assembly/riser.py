@@ -39,6 +39,7 @@ def elements_of(scene: Scene) -> sections.Elements:
 def _line_type(given: LineType) -> sections.SectionProperties:
     """As the elements take it: properties of the same name as they are given, or the elements' own default."""
     EI_y, EI_z = given.bending_stiffness
+    outer, inner = given.wall_diameters
     formed: dict[str, Any] = {
         "EI_y": EI_y,
         "EI_z": EI_z,
@@ -46,6 +47,9 @@ def _line_type(given: LineType) -> sections.SectionProperties:
         "added_mass": (given.added_mass.normal, given.added_mass.tangential) if given.added_mass else (0.0, 0.0),
         "rotary_inertia": None if given.rotary_inertia is True else float(given.rotary_inertia),
         "damping": given.damping.time if given.damping else 0.0,
+        "wall_outer_diameter": outer,
+        "wall_inner_diameter": inner,
+        "allowable_stress": given.wall.allowable_stress if given.wall else 0.0,
     }
     names = [each.name for each in fields(sections.SectionProperties) if each.name not in formed]
     same = {name: getattr(given, name) for name in names}

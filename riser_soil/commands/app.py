@@ -7,6 +7,7 @@ import typer
 from riser_soil import __version__
 from riser_soil.commands.accuracy import study
 from riser_soil.commands.cases import cases
+from riser_soil.commands.fatigue import fatigue
 from riser_soil.commands.ground import calibrate, material
 from riser_soil.commands.modes import modes
 from riser_soil.commands.results import film, stiffness
@@ -23,7 +24,7 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
-COMMANDS = (run, check, cases, study, stress, modes, material, calibrate, schema, statistics, stiffness, film)
+COMMANDS = (run, check, cases, study, stress, modes, material, calibrate, schema, statistics, stiffness, fatigue, film)
 for command in COMMANDS:
     app.command()(command if command in PRINTING else telling(command))
 

@@ -7,12 +7,29 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
 
+from riser_soil.core.lazy import LazyModule
+
 if TYPE_CHECKING:
+    import numpy as np
+
     from riser_soil.core.arrays import Array
+else:
+    np = LazyModule("numpy")
 
 Seen = TypeVar("Seen")
 Where = Literal["nodes", "model", "summary", "sections", "across", "soil points", "soil cells", "step"]
-Need = Literal["", "pressures", "min_bend_radius", "ground", "friction", "soil"]
+Need = Literal[
+    "",
+    "pressures",
+    "min_bend_radius",
+    "max_tension",
+    "wall",
+    "wall in space",
+    "yield stress",
+    "ground",
+    "friction",
+    "soil",
+]
 
 
 @dataclass(frozen=True)
@@ -94,6 +111,11 @@ def least(name: str, row: Row | None = None) -> Figure:
 def greatest(name: str, row: Row | None = None) -> Figure:
     """The largest value along the riser, with its place."""
     return Figure(name, lambda along: along.max(), node=lambda along: along.argmax(), row=row)
+
+
+def greatest_known(name: str, row: Row | None = None) -> Figure:
+    """The largest value along the riser but for nodes where it is nan, with its place."""
+    return Figure(name, lambda along: np.nanmax(along), node=lambda along: np.nanargmax(along), row=row)
 
 
 def greatest_between(name: str, row: Row | None = None) -> Figure:

@@ -18,6 +18,7 @@ from riser_soil.core.output import (
     greatest,
     greatest_between,
     greatest_in_soil,
+    greatest_known,
     least,
     near_greatest,
     resultant,
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from riser_soil.core.snapshot import Instant, SoilSnapshot
 
 _ON_RISER = "exerted by the support on the riser; global axes, z up"
+_ON_START = "right-hand rule; exerted by the part towards the end on the part towards the start"
 _RIGHT_HAND = "right-hand rule; " + _ON_RISER
 
 ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
@@ -60,6 +62,55 @@ ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
     OutputQuantity(
         "bend_utilisation", "", "1", "curvature times the smallest bend radius allowed", "nodes",
         lambda i: i.riser.bend_utilisation, "above 1 the pipe is bent too much", needs="min_bend_radius",
+    ),
+    OutputQuantity(
+        "tension_utilisation", "", "1", "effective tension over the largest allowed, max_tension", "nodes",
+        lambda i: i.riser.tension_utilisation, "above 1 the riser is pulled too much, below 0 it is compressed",
+        needs="max_tension",
+        figures=(greatest_known("max_tension_utilisation", Row("tension over what is allowed")),),
+    ),
+    OutputQuantity(
+        "internal_pressure", "p_i", "Pa", "pressure of the contents", "nodes",
+        lambda i: i.riser.wall and i.riser.wall.internal_pressure, needs="wall",
+    ),
+    OutputQuantity(
+        "external_pressure", "p_o", "Pa", "pressure of the water around, at rest", "nodes",
+        lambda i: i.riser.wall and i.riser.wall.external_pressure, needs="wall",
+    ),
+    OutputQuantity(
+        "bending_moment_y", "M_y", "N m", "bending moment about the section's y axis", "nodes",
+        lambda i: i.riser.wall and i.riser.wall.moment_y, _ON_START, needs="wall",
+    ),
+    OutputQuantity(
+        "bending_moment_z", "M_z", "N m", "bending moment about the section's z axis", "nodes",
+        lambda i: i.riser.wall and i.riser.wall.moment_z, _ON_START, needs="wall in space",
+    ),
+    OutputQuantity(
+        "torque", "M_x", "N m", "torque about the pipe's own axis", "nodes",
+        lambda i: i.riser.wall and i.riser.wall.torque, _ON_START, needs="wall in space",
+    ),
+    OutputQuantity(
+        "wall_axial_stress", "", "Pa", "stress of the wall tension along the pipe", "nodes",
+        lambda i: i.riser.wall and i.riser.wall.axial_stress, "positive in tension", needs="wall",
+    ),
+    OutputQuantity(
+        "wall_bending_stress", "", "Pa", "largest bending stress around the wall's outer surface", "nodes",
+        lambda i: i.riser.wall and i.riser.wall.bending_stress, ">= 0", needs="wall",
+    ),
+    OutputQuantity(
+        "wall_hoop_stress", "", "Pa", "hoop stress at the wall's inner surface", "nodes",
+        lambda i: i.riser.wall and i.riser.wall.hoop_stress, "positive in tension", needs="wall",
+    ),
+    OutputQuantity(
+        "wall_von_mises_stress", "", "Pa", "largest von Mises stress around the wall, inside and outside", "nodes",
+        lambda i: i.riser.wall and i.riser.wall.von_mises_stress, ">= 0", needs="wall",
+        figures=(greatest_known("max_wall_von_mises_stress", Row("largest stress in the wall", "MPa", 1e-6)),),
+    ),
+    OutputQuantity(
+        "stress_utilisation", "", "1", "von Mises stress of the wall over design_factor times yield_stress", "nodes",
+        lambda i: i.riser.wall and i.riser.wall.stress_utilisation, "above 1 the wall is stressed too much",
+        needs="yield stress",
+        figures=(greatest_known("max_stress_utilisation", Row("stress over what is allowed")),),
     ),
     OutputQuantity(
         "contact_force", "f", "N m-1", "contact force per length of riser", "nodes",

@@ -95,6 +95,7 @@ AxialStiffness = Annotated[Positive, Bounds(1e-30, 1e36, "N")]
 _BENDING_STIFFNESS = Bounds(1e-40, 1e45, "N.m2")
 BendingStiffness = Annotated[Positive, _BENDING_STIFFNESS]
 BendingStiffnessOrNone = Annotated[NonNegative, replace(_BENDING_STIFFNESS, zero=True)]
+Tension = Annotated[Positive, Bounds(1e-30, 1e36, "N")]
 RotationalStiffness = Annotated[Positive, Bounds(1e-36, 1e42, "N.m/rad")]
 BedStiffness = Annotated[Positive, Bounds(1e-15, 1e24, "N/m2")]
 Pressure = Annotated[Real, Bounds(0.0, 1e24, "Pa")]

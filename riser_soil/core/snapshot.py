@@ -20,6 +20,25 @@ class LargestAlong(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
+class WallSnapshot:
+    """Loads and stress of the pipe's wall at the nodes (nn,); stresses are nan where there is no wall, and at a joint
+    those of the side with the larger von Mises' stress. Moments about the section's axes, exerted by the part towards
+    `end` on the part towards `start`.
+    """
+
+    internal_pressure: Array  # Pa
+    external_pressure: Array  # Pa
+    moment_y: Array  # N.m
+    moment_z: Array  # N.m, 0 in a plane
+    torque: Array  # N.m, 0 in a plane
+    axial_stress: Array  # Pa, of the wall tension, positive in tension
+    bending_stress: Array  # Pa >= 0, largest around the outer surface
+    hoop_stress: Array  # Pa, at the inner surface, positive in tension
+    von_mises_stress: Array  # Pa, largest around, inside and outside
+    stress_utilisation: Array | None  # over the allowable stress; None where none is given
+
+
+@dataclass(frozen=True, eq=False)
 class RiserSnapshot:
     """The riser at one instant.
 
@@ -44,6 +63,8 @@ class RiserSnapshot:
     end_moment: Array  # (3,) N.m
     start_tangent: Array  # (3,) unit tangent at the start, in the direction of growing arc length
     end_tangent: Array  # (3,) the same at the end
+    tension_utilisation: Array | None = None  # (nn,) effective tension over the largest allowed; None without one
+    wall: WallSnapshot | None = None  # None where no wall is given
 
 
 @dataclass(frozen=True, eq=False)

@@ -264,6 +264,10 @@ def _known_fields(assembly: Assembly) -> tuple[str, ...]:
     has = {
         "pressures": assembly.pressures is not None,
         "min_bend_radius": bool(assembly.elements.min_bend_radius.any()),
+        "max_tension": bool(assembly.elements.max_tension.any()),
+        "wall": assembly.wall_sections is not None,
+        "wall in space": assembly.wall_sections is not None and assembly.line.dimension == 3,
+        "yield stress": bool(assembly.elements.allowable_stress.any()),
         "ground": bool(assembly.contacts),
         "friction": bool(assembly.frictions),
         "soil": assembly.soil_contact is not None,

@@ -67,6 +67,11 @@ class Run:
         except (OSError, ValueError) as err:
             raise ResultsError(f"{path}: cannot be read: {err}") from err
 
+    def has(self, name: str) -> bool:
+        """Whether results.nc has a variable."""
+        with self._open(run_folder.SERIES) as file:
+            return name in file
+
     @cached_property
     def summary(self) -> dict[str, Any]:
         path = self.folder / run_folder.SUMMARY

@@ -317,6 +317,7 @@ class Recorder:
             stage.indicators.follow(now, self._latest, step.health, step.ledger)
         stage.seen = seen
         stage.bend(now, seen.riser)
+        stage.pull(now, seen.arc, seen.riser)
 
     def _record(self, seen: Instant, due: DueOutputs, soil: SoilSnapshot | None) -> None:
         self._last = LastState(seen, soil, due)

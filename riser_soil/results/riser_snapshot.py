@@ -9,7 +9,7 @@ import numpy as np
 from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
-from riser_soil.core.snapshot import LargestAlong, RiserSnapshot
+from riser_soil.core.snapshot import LargestAlong, RiserSnapshot, WallSnapshot
 from riser_soil.riser import bending_peaks
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import acting_on, overrides
@@ -22,6 +22,7 @@ from riser_soil.riser.section_forces import (
     section_forces,
     viscous_residual,
 )
+from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.trial import Trial
 from riser_soil.solve.time_stepper import TimeStepper
 
@@ -54,6 +55,8 @@ def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
         end_moment=end.moment,
         start_tangent=tangent[0, 0],
         end_tangent=tangent[-1, 1],
+        tension_utilisation=_tension_utilisation(assembly, inside.effective_tension),
+        wall=_wall(assembly, line.trial(state), inside, position[:, 2]),
     )
 
 
@@ -112,6 +115,27 @@ def _wall_tension(assembly: Assembly, effective: Array, z: Array) -> Array:
     if assembly.pressures is None:
         return np.full(assembly.line.nodes, np.nan)
     return assembly.pressures.wall_tension(effective, z)
+
+
+def _tension_utilisation(assembly: Assembly, tension: Array) -> Array | None:
+    """Of the nodes (nn,), nan where any tension is allowed; None where it is everywhere. A node has the smaller tension
+    allowed beside it.
+    """
+    allowed = assembly.elements.max_tension
+    if not allowed.any():
+        return None
+    share = larger_beside(np.divide(1.0, allowed, out=np.zeros_like(allowed), where=allowed > 0.0))
+    return np.where(share > 0.0, tension * share, np.nan)
+
+
+def _wall(assembly: Assembly, trial: Trial, inside: SectionForces, z: Array) -> WallSnapshot | None:
+    """z: heights of the nodes (nn,) [m]."""
+    sections = assembly.wall_sections
+    if sections is None:
+        return None
+    from riser_soil.results.wall_snapshot import wall_snapshot
+
+    return wall_snapshot(assembly, sections, trial, inside, z)
 
 
 def _contact_force(assembly: Assembly, state: State) -> Array:

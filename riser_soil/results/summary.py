@@ -12,13 +12,16 @@ from typing import Any
 
 import numpy as np
 
+from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, under, unpacked, within
 from riser_soil.core.snapshot import Instant, Ledger, RiserSnapshot, RunFacts, StepStatistics
 from riser_soil.results.figures import Extremes, final_state
 from riser_soil.results.folder import write_atomically
 from riser_soil.results.indicators import StageIndicators
+from riser_soil.results.utilisation import MostUsed, TightestBend
 
-_NOT_PLAIN = ("seen", "extremes", "energy", "worst_residual", "tightest", "implausible", "soil", "indicators")
+_USED = ("tightest", "pulled", "stressed")
+_NOT_PLAIN = (*_USED, "seen", "extremes", "energy", "worst_residual", "implausible", "soil", "indicators")
 DOUBTFUL = 0.01  # share of the energy turned over above which what is wrong in its balance is a warning
 
 
@@ -46,23 +49,6 @@ def energy_warnings(ledger: Ledger, worst: float, t: float) -> Iterator[str]:
         )
 
 
-@dataclass(frozen=True)
-class TightestBend:
-    """The tightest bend relative to the allowable radius: radius m, arc m, t s or load factor."""
-
-    utilisation: float = 0.0
-    radius: float = math.inf
-    arc: float = math.nan
-    t: float = math.nan
-
-    def warnings(self, unit: str) -> Iterator[str]:
-        if self.utilisation > 1.0:
-            yield (
-                f"the pipe is bent beyond its min_bend_radius: {self.utilisation:.4g} times what is allowed at arc "
-                f"{self.arc:.5g} m and {self.t:.5g} {unit}, where the bend radius is {self.radius:.4g} m"
-            )
-
-
 @dataclass
 class StageTally:
     """Statistics of one stage, gathered while it runs.
@@ -83,7 +69,9 @@ class StageTally:
     final: dict[str, Any] | None = None
     extremes: Extremes = field(default_factory=Extremes)
     energy: Ledger = field(default_factory=Ledger)
-    tightest: TightestBend = TightestBend()
+    tightest: TightestBend = field(default_factory=TightestBend)
+    pulled: MostUsed = field(default_factory=MostUsed)
+    stressed: MostUsed = field(default_factory=MostUsed)
     worst_residual: tuple[float, float] = (0.0, math.nan)  # of the energy balance [J], and its time [s]
     implausible: tuple[str, ...] = ()  # what is not plausible about the riser's shape, forces and surroundings
     indicators: StageIndicators = field(default_factory=StageIndicators)
@@ -100,6 +88,13 @@ class StageTally:
         used, arc = riser.largest_bend_utilisation
         if used > self.tightest.utilisation:
             self.tightest = TightestBend(used, riser.tightest_radius, arc, t)
+
+    def pull(self, t: float, arc: Array, riser: RiserSnapshot) -> None:
+        """arc (nn,): m, of the nodes. t: s (static stages: load factor)."""
+        wall = riser.wall
+        self.pulled = self.pulled.or_more(riser.tension_utilisation, riser.effective_tension, arc, t)
+        if wall is not None:
+            self.stressed = self.stressed.or_more(wall.stress_utilisation, wall.von_mises_stress, arc, t)
 
     def count(self, health: StepStatistics) -> None:
         self.steps += 1
@@ -138,28 +133,40 @@ class StageTally:
     @property
     def warnings(self) -> list[str]:
         """Warnings about the stage's results, with numbers and a remedy."""
-        tight = self.tightest.warnings("s" if self.kind == "dynamic" else "of the load")
+        used = [*self._overused("s" if self.kind == "dynamic" else "of the load")]
         if self.kind != "dynamic":
-            return [*tight, *self.implausible]
+            return [*used, *self.implausible]
         off = energy_warnings(self.energy, *self.worst_residual)
-        return [*tight, *self.implausible, *off, *self.indicators.warnings()]
+        return [*used, *self.implausible, *off, *self.indicators.warnings()]
+
+    def _overused(self, unit: str) -> Iterator[str]:
+        yield from self.tightest.warnings(unit)
+        yield from self.pulled.warnings(
+            unit, "the riser is pulled beyond its max_tension", "the effective tension is {:.4g} N"
+        )
+        yield from self.stressed.warnings(
+            unit, "the wall is stressed beyond design_factor times yield_stress", "von Mises' stress is {:.4g} Pa"
+        )
 
     def state(self) -> Saved:
         self._finish()
         plain = {name: value for name, value in vars(self).items() if name not in ("seen", "extremes", "indicators")}
-        told = plain | {"energy": asdict(self.energy), "tightest": asdict(self.tightest)}
+        told = plain | {name: asdict(vars(self)[name]) for name in _RECORDS}
         return gathered(self._followers) | {"told": packed(told)}
 
     def restore(self, saved: Saved) -> None:
         vars(self).update(unpacked(saved["told"]))
         restore_all(self._followers, saved)
-        self.energy, self.tightest = Ledger(**vars(self)["energy"]), TightestBend(**vars(self)["tightest"])
+        vars(self).update({name: kind(**vars(self)[name]) for name, kind in _RECORDS.items()})
         worst, t = self.worst_residual
         self.worst_residual, self.implausible = (worst, t), tuple(self.implausible)
 
     @property
     def _followers(self) -> dict[str, Stateful]:
         return {"extremes": self.extremes, "indicators": self.indicators}
+
+
+_RECORDS = {"energy": Ledger, "tightest": TightestBend, "pulled": MostUsed, "stressed": MostUsed}
 
 
 class Summary:

@@ -27,6 +27,8 @@ class SectionProperties:
     rotary_inertia: kg m about an axis across the pipe; None computes it from masses and diameters. The inertia about
     the pipe's own axis follows, see `polar_inertia`.
     damping: s, ratio of viscous to elastic stiffness. min_bend_radius: m, the least that is allowed; 0 for any.
+    max_tension: N, the largest that is allowed; 0 for any. wall_outer_diameter, wall_inner_diameter: m, of the wall
+    that bears the stress, 0 where there is none; allowable_stress: Pa, 0 for any.
     """
 
     EA: float
@@ -42,6 +44,10 @@ class SectionProperties:
     rotary_inertia: float | None = 0.0
     damping: float = 0.0
     min_bend_radius: float = 0.0
+    max_tension: float = 0.0
+    wall_outer_diameter: float = 0.0
+    wall_inner_diameter: float = 0.0
+    allowable_stress: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -71,7 +77,8 @@ class Elements:
     """Properties per element (ne,); drag and added_mass (ne, 2). mass includes the contents, weight is
     submerged. rotary_inertia: kg m about an axis across the pipe, polar_inertia: about its own; damping: s, of viscous
     over elastic stiffness.
-    min_bend_radius: m, the least that is allowed, 0 for any.
+    min_bend_radius: m, the least that is allowed, max_tension: N and allowable_stress: Pa, the largest; 0 for any.
+    wall_outer_diameter, wall_inner_diameter: m, of the wall that bears the stress, 0 where there is none.
     """
 
     length: Array
@@ -89,6 +96,10 @@ class Elements:
     polar_inertia: Array
     damping: Array
     min_bend_radius: Array
+    max_tension: Array
+    wall_outer_diameter: Array
+    wall_inner_diameter: Array
+    allowable_stress: Array
 
     @property
     def bends(self) -> BoolArray:

@@ -41,6 +41,11 @@ class Pressures:
     inner_diameter: Array
     outer_diameter: Array
 
+    def at(self, z: Array) -> tuple[Array, Array]:
+        """Pressure inside and outside [Pa] at heights [m]; 0 where there is no fluid."""
+        inside, outside = (np.zeros_like(z) if fluid is None else fluid.at(z) for fluid in (self.inside, self.outside))
+        return inside, np.maximum(outside, 0.0)
+
     def wall_tension(self, effective: Array, z: Array) -> Array:
         """N, positive in tension, from the effective tension [N] and the heights [m] of the nodes, each (nn,)."""
         wall = effective

@@ -82,6 +82,8 @@ def _mass_needed(scene: Scene, line: LineType) -> str | None:
 def _diameter_needed(scene: Scene, line: LineType) -> str | None:
     if isinstance(scene.seabed, HystereticSeabed):
         return "the law of a hysteretic seabed counts in diameters"
+    if scene.water and any(each.wall for each in scene.used_line_types.values()):
+        return "the pressure outside acts on it, and the stress of a wall follows from it"
     if scene.water and scene.gravity > 0.0 and line.submerged_weight is None:
         return "buoyancy follows from the outer diameter, unless submerged_weight is given"
     if line.rotary_inertia is True and any(stage.kind == "dynamic" for stage in scene.stages):
@@ -110,6 +112,13 @@ def _water_where_it_acts(scene: Scene) -> Iterator[Problem]:
                 yield Problem(
                     ("line_types", name, key), "acts in water only, and the scene has no water", remedy
                 )
+
+
+def _pressure_on_walls_known(scene: Scene) -> Iterator[Problem]:
+    for name, line in scene.used_line_types.items():
+        if line.wall is not None and scene.water is not None and scene.water.surface_level is None:
+            allowed = "its stress hangs on the pressure outside, which is unknown without water.surface_level"
+            yield Problem(("line_types", name, "wall"), allowed, "give water.surface_level [m], or leave out wall")
 
 
 def _attachments_fit(scene: Scene) -> Iterator[Problem]:
@@ -247,6 +256,7 @@ _CHECKS: tuple[_Check, ...] = (
     _line_types_suffice,
     _no_weight_without_gravity,
     _water_where_it_acts,
+    _pressure_on_walls_known,
     _attachments_fit,
     _contents_fit,
     _stays_in_plane,

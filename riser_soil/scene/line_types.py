@@ -16,7 +16,10 @@ from riser_soil.core.quantities import (
     LengthOrNone,
     MassPerLength,
     NonNegative,
+    Ratio,
     RotaryInertiaPerLength,
+    Stress,
+    Tension,
     WeightPerLength,
     wrong,
 )
@@ -56,6 +59,31 @@ class Damping(BaseModel):
     def time(self) -> float:
         """Viscous over elastic stiffness [s]: a mode of angular frequency w has the damping ratio w time / 2."""
         return self.ratio / (math.pi * self.frequency)
+
+
+class MetalWall(BaseModel):
+    """The wall of a metal pipe, which bears the stress of tension, bending, torsion and pressure."""
+
+    model_config = FROZEN
+
+    outer_diameter: Length | None = Field(
+        default=None, description="of the wall that bears the stress [m]; by default the line type's outer_diameter"
+    )
+    inner_diameter: Length | None = Field(
+        default=None, description="the same [m]; by default the line type's inner_diameter"
+    )
+    yield_stress: Stress | None = Field(
+        default=None, description="specified minimum yield stress [Pa]; with it there is a stress utilisation"
+    )
+    design_factor: Ratio | None = Field(
+        default=None,
+        description="share of the yield stress that von Mises' stress may reach, such as 0.67 [-]; 1 by default",
+    )
+
+    @property
+    def allowable_stress(self) -> float:
+        """Von Mises' stress allowed [Pa]; 0 for any."""
+        return (self.yield_stress or 0.0) * (1.0 if self.design_factor is None else self.design_factor)
 
 
 def _switch_or_number(value: Any) -> str:
@@ -114,6 +142,16 @@ class LineType(BaseModel):
         default=None,
         description="smallest bend radius allowed [m]; a run warns where the pipe is bent more; any by default",
     )
+    max_tension: Tension | None = Field(
+        default=None,
+        description="largest effective tension allowed [N], such as the breaking load over its safety factor; a run "
+        "warns where the riser is pulled more; any by default",
+    )
+    wall: MetalWall | None = Field(
+        default=None,
+        description="wall of a metal pipe, {outer_diameter, inner_diameter, yield_stress, design_factor}, whose stress "
+        "is a result; none by default",
+    )
 
     @model_validator(mode="after")
     def _bore_inside_wall(self) -> Self:
@@ -135,6 +173,31 @@ class LineType(BaseModel):
                 "EI", "the bending stiffness is given twice", "give either EI or the pair EI_y and EI_z"
             )
         return self
+
+    @model_validator(mode="after")
+    def _wall_between_two_diameters(self) -> Self:
+        if self.wall is None:
+            return self
+        outer, inner = self.wall_diameters
+        if not inner < outer:
+            raise wrong(
+                "wall",
+                f"must lie between two diameters, but its outer one is {outer:g} m and its inner one {inner:g} m",
+                "give outer_diameter and inner_diameter of the line type or of its wall",
+            )
+        if inner == 0.0:
+            raise wrong("wall", "needs an inner diameter", "give inner_diameter of the line type or of its wall [m]")
+        if self.wall.yield_stress is None and self.wall.design_factor is not None:
+            raise wrong("wall", "has a design_factor without a yield_stress", "give wall.yield_stress [Pa]")
+        return self
+
+    @property
+    def wall_diameters(self) -> tuple[float, float]:
+        """Outer and inner diameter of the wall that bears the stress [m]; 0 where there is none."""
+        if self.wall is None:
+            return 0.0, 0.0
+        outer, inner = self.wall.outer_diameter, self.wall.inner_diameter
+        return outer or self.outer_diameter or 0.0, inner or self.inner_diameter
 
     @property
     def bending_stiffness(self) -> tuple[float, float]:

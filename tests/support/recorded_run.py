@@ -21,6 +21,7 @@ from riser_soil.core.snapshot import (
     SoilMesh,
     SoilSnapshot,
     StepStatistics,
+    WallSnapshot,
 )
 from riser_soil.results.record import Recorder
 from riser_soil.results.schedule import DueOutputs, Schedule
@@ -42,6 +43,12 @@ SCENE = "title: Touchdown on soft clay\nline_types: {flexible: {outer_diameter: 
 
 def _largest(arc: Array, values: Array) -> LargestAlong:
     return LargestAlong(float(values.max()), float(arc[values.argmax()]))
+
+
+def _wall(tension: Array, moment: Array) -> WallSnapshot:
+    axial, bending, nothing = tension / 0.02, moment / 1.0e-3, np.zeros_like(moment)
+    loads = nothing, nothing, -moment, nothing, nothing
+    return WallSnapshot(*loads, axial, bending, nothing, axial + bending, (axial + bending) / 3.0e8)
 
 
 @dataclass(frozen=True)
@@ -79,6 +86,8 @@ class Catenary:
             end_moment=np.zeros(3),
             start_tangent=np.array([1.0, 0.0, 0.0]),
             end_tangent=top / np.linalg.norm(top),
+            tension_utilisation=tension / 2.0e5,
+            wall=_wall(tension, EI * curvature),
         )
 
     def touch(self, arc: Array) -> ContactSnapshot:

@@ -42,6 +42,7 @@ def test_damping() -> None:
     assert left_out(scene(damping={"ratio": 0.0, "frequency": 0.5}))["structural damping"]
 
 
+IN_WALL = ("wall_outer_diameter", "wall_inner_diameter", "allowable_stress")
 GIVEN = {
     "EA": 2.0e8,
     "GJ": 3.0e4,
@@ -49,6 +50,7 @@ GIVEN = {
     "inner_diameter": 0.3,
     "mass": 60.0,
     "min_bend_radius": 4.0,
+    "max_tension": 5.0e5,
     "submerged_weight": 70.0,
 }
 
@@ -67,6 +69,19 @@ def test_properties_of_the_same_name_reach_the_elements() -> None:
 def test_what_is_not_given_is_the_elements_default() -> None:
     bare = scene(GJ=None, outer_diameter=None, inner_diameter=0.0, submerged_weight=10.0)
     made = elements_of(bare)
-    for name in ("GJ", "outer_diameter", "inner_diameter", "min_bend_radius", "damping", "drag", "added_mass"):
+    assert not made.damping.any()
+    assert not made.added_mass.any()
+    for name in ("GJ", "outer_diameter", "inner_diameter", "min_bend_radius", "max_tension", *IN_WALL, "drag"):
         assert not getattr(made, name).any(), name
     assert made.EI_y.tolist() == made.EI_z.tolist() == [1.0e4] * 3
+
+
+def test_a_wall_has_the_line_type_s_diameters_unless_it_has_its_own() -> None:
+    for wall, expected in (
+        ({}, (0.4, 0.2, 0.0)),
+        ({"outer_diameter": 0.3, "yield_stress": 4.0e8}, (0.3, 0.2, 4.0e8)),
+        ({"inner_diameter": 0.25, "yield_stress": 4.0e8, "design_factor": 0.6}, (0.4, 0.25, 2.4e8)),
+    ):
+        made = elements_of(scene(wall=wall))
+        for name, value in zip(IN_WALL, expected, strict=True):
+            assert getattr(made, name) == pytest.approx(np.full(3, value)), name

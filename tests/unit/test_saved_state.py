@@ -22,7 +22,8 @@ from riser_soil.core.saved_state import (
     within,
 )
 from riser_soil.core.system import System, Timer
-from riser_soil.results.summary import StageTally, TightestBend
+from riser_soil.results.summary import StageTally
+from riser_soil.results.utilisation import MostUsed, TightestBend
 from riser_soil.solve.automatic_steps import AutoSteps
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solution import NewtonSettings
@@ -108,6 +109,7 @@ def test_seconds_spent_before_count_too() -> None:
 
 def test_a_tally_comes_back_as_it_was() -> None:
     tally = StageTally("heave", "dynamic", tightest=TightestBend(0.5, 3.0, 10.0, 0.1), worst_residual=(0.2, 0.1))
+    tally.pulled, tally.stressed = MostUsed(0.2, 1.0e5, 80.0, 0.1), MostUsed(0.7, 2.0e8, 20.0, 0.2)
     tally.implausible, tally.final = ("doubtful",), {"start": {"position": [0.0, 0.1, math.pi]}}
     again = StageTally("", "")
     again.restore(tally.state())

@@ -24,6 +24,9 @@ WHOLE = {
     "touchdown_points",
     "min_bend_radius",
     "max_bend_utilisation",
+    "max_tension_utilisation",
+    "max_wall_von_mises_stress",
+    "max_stress_utilisation",
     "max_embedment",
     "max_bending_moment",
     "max_curvature",
@@ -69,9 +72,11 @@ def test_what_is_unknown_is_left_out() -> None:
     nothing = np.full(ARC.size, math.nan)
     unused = LargestAlong(math.nan, math.nan)
     riser = replace(LINE.riser(ARC), wall_tension=nothing, largest_bend_utilisation=unused)
+    riser = replace(riser, tension_utilisation=None, wall=None)
     touch, extremes = replace(LINE.touch(ARC), embedment=None), Extremes()
     extremes.update(0.0, pack(Instant(ARC, riser, touch)))
     unknown = {"min_wall_tension", "max_wall_tension", "max_bend_utilisation", "max_embedment"}
+    unknown |= {"max_tension_utilisation", "max_wall_von_mises_stress", "max_stress_utilisation"}
     for found in (final_state(Instant(ARC, riser, touch)), extremes.nested()):
         assert set(found) == {"start", "end", PLACE} | WHOLE - unknown
 
@@ -150,12 +155,12 @@ def test_never_touching_is_null(tmp_path: Path) -> None:
 
 
 def test_packing_and_unpacking_agree() -> None:
-    vector = np.arange(39.0)
+    vector = np.arange(42.0)
     nested = unpack(vector)
     assert nested["start"]["position"] == [0.0, 1.0, 2.0]
     assert nested["end"]["angle_deg"] == 23.0
     assert nested["touchdown_position"] == [25.0, 26.0, 27.0]
-    assert nested["contact_force"] == 38.0
+    assert nested["contact_force"] == 41.0
 
 
 def test_plain_json() -> None:

@@ -1,0 +1,1 @@
+"""Fatigue of the pipe's wall: rainflow cycles of recorded stress, S-N curves, damage over load cases."""

@@ -1,0 +1,138 @@
+"""What an assessment tells: on the screen; in its folder a table of all points, numbers, and a picture."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from riser_soil import __version__
+from riser_soil.errors import SceneError
+from riser_soil.fatigue.assessment import YearlyDamage
+from riser_soil.results.summary import plain_json
+from riser_soil.results.whole_file import refuse_file, written_together
+
+FILES = TABLE, NUMBERS, PICTURE = "fatigue.csv", "fatigue.json", "fatigue.png"
+COLUMNS = ("arc_m", "angle_deg", "diameter_m", "thickness_m", "damage_per_year", "life_years")
+
+
+def refuse_folder(folder: Path, force: bool) -> None:
+    """Only an empty folder, or by force one with an assessment, takes another."""
+    refuse_file(folder)
+    there = sorted(entry.name for entry in folder.iterdir()) if folder.is_dir() else []
+    if [name for name in there if name not in FILES]:
+        raise SceneError(f"{folder}: holds more than an assessment, {there[0]}; choose another with -o FOLDER")
+    if there and not force:
+        raise SceneError(f"{folder}: holds an assessment; overwrite it with --force, or choose another with -o FOLDER")
+
+
+def write_folder(folder: Path, found: YearlyDamage, plot: bool) -> None:
+    """All files together, none of them by halves; an earlier picture goes where none is drawn."""
+    with written_together(folder, FILES if plot else FILES[:2]) as made:
+        with (made / TABLE).open("w", newline="", encoding="utf-8") as file:
+            csv.writer(file, lineterminator="\n").writerows(_rows(found))
+        (made / NUMBERS).write_text(json.dumps(plain_json(as_dict(found)), indent=2) + "\n", encoding="utf-8")
+        if plot:
+            _draw(made / PICTURE, found)
+    if not plot:
+        (folder / PICTURE).unlink(missing_ok=True)
+
+
+def life(damage: float) -> float:
+    """Years; inf without damage."""
+    return 1.0 / damage if damage > 0.0 else math.inf
+
+
+def _rows(found: YearlyDamage) -> Iterator[list[str]]:
+    yield [*COLUMNS]
+    diameters = found.wall[0 if found.given.surface == "outer" else 1]
+    for s, (arc, diameter, thickness) in enumerate(zip(found.arc, diameters, found.wall.thickness, strict=True)):
+        for p, angle in enumerate(np.degrees(found.how.angles)):
+            damage = float(found.per_year[s, p])
+            numbers = arc, angle, diameter, thickness, damage, life(damage)
+            yield [f"{number:.10g}" for number in numbers]
+
+
+def as_dict(found: YearlyDamage) -> dict[str, Any]:
+    """The numbers of fatigue.json; null stands for a life without end."""
+    section, point = found.worst
+    largest = float(found.per_year[section, point])
+    curve, how = found.how.curve, found.how
+    cases = [
+        {
+            "run": each.case.run,
+            "share": each.case.share,
+            "seconds": each.seconds,
+            "mean_period": each.period,
+            "records_per_period": each.records,
+            "standard_error": each.scatter,
+            "damage_per_year": float(each.per_year[section, point]),
+            "touchdown_arc": list(each.touchdown),
+        }
+        for each in found.cases
+    ]
+    return {
+        "version": __version__,
+        "curve": {
+            "name": curve.name,
+            "source": curve.source,
+            "log_a": list(curve.log_a),
+            "m": list(curve.m),
+            "change": list(curve.change),
+            "thickness_exponent": curve.k,
+            "reference_thickness": curve.reference,
+        },
+        "stress_concentration": how.stress_concentration,
+        "factor_on_ranges": how.factor(float(found.wall.thickness[section])),
+        "surface": how.surface,
+        "points": how.points,
+        "load_classes": how.load_classes,
+        "share": found.given.total_share,
+        "largest": {
+            "arc": float(found.arc[section]),
+            "angle_deg": float(np.degrees(how.angles[point])),
+            "damage_per_year": largest,
+            "life_years": life(largest),
+        },
+        "design": {
+            "life_years": found.given.design_life,
+            "fatigue_factor": found.given.design_fatigue_factor,
+            "utilisation": found.utilisation,
+        },
+        "cases": cases,
+        "warnings": [*found.warnings()],
+    }
+
+
+def result_lines(found: YearlyDamage) -> list[str]:
+    """For the screen: the largest damage, each case's part of it, what to doubt."""
+    section, point = found.worst
+    largest = float(found.per_year[section, point])
+    curve = found.how.curve
+    angle = np.degrees(found.how.angles[point])
+    where = f"arc {found.arc[section]:.5g} m, {angle:g} degrees around, {found.how.surface} surface"
+    lines = [
+        f"S-N curve {curve.name}: {curve.source}",
+        f"stress ranges times {found.how.factor(float(found.wall.thickness[section])):.4g} (SCF and thickness there)",
+        f"largest damage {largest:.4g} a year, life {life(largest):.4g} years, at {where}",
+    ]
+    for each in found.cases:
+        part = float(each.per_year[section, point])
+        lines.append(f"  {each.case.run}: {each.case.share:.4%} of the year, damage {part:.4g}")
+    if found.utilisation is not None:
+        years, factor = found.given.design_life, found.given.design_fatigue_factor
+        lines.append(f"damage in {years:g} years times {factor:g}: {found.utilisation:.4g}")
+    return [*lines, *(f"warning: {text}" for text in found.warnings())]
+
+
+def _draw(png: Path, found: YearlyDamage) -> None:
+    from riser_soil.plots.damage import draw_damage
+
+    zone = np.array([each.touchdown for each in found.cases])
+    reach = (np.nanmin(zone), np.nanmax(zone)) if np.isfinite(zone).any() else None
+    draw_damage(png, found.arc, np.degrees(found.how.angles), found.per_year, reach, result_lines(found)[:3])

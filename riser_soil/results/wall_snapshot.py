@@ -1,0 +1,53 @@
+"""The pipe's wall at an accepted state: its loads, and the stress that they make."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.assembly import Assembly
+from riser_soil.core.arrays import Array
+from riser_soil.core.snapshot import WallSnapshot
+from riser_soil.riser.section_forces import SectionForces
+from riser_soil.riser.section_moments import about_section_axes
+from riser_soil.riser.trial import Trial
+from riser_soil.riser.wall_sections import WallSections
+from riser_soil.riser.wall_stress import bending_stress, hoop_and_radial_stress, largest_von_mises
+
+
+def wall_snapshot(
+    assembly: Assembly, sections: WallSections, trial: Trial, forces: SectionForces, z: Array
+) -> WallSnapshot:
+    """z: heights of the nodes (nn,) [m]."""
+    assert assembly.pressures is not None  # scenes with a wall are refused without
+    wall, nodes = sections.wall, assembly.line.nodes
+    inside, outside = assembly.pressures.at(z)
+    moments = about_section_axes(assembly.line, trial, forces.moment) * assembly.elements.bends_beside[:, None]
+    torque, moment_y, moment_z = moments.T
+    loads = sections.loads(forces.effective_tension, moment_y, moment_z, torque, inside, outside)
+    von_mises = largest_von_mises(loads, wall)
+
+    def governing(stress: Array) -> Array:
+        return sections.at_nodes(stress, von_mises, nodes)
+
+    return WallSnapshot(
+        internal_pressure=inside,
+        external_pressure=outside,
+        moment_y=moment_y,
+        moment_z=moment_z,
+        torque=torque,
+        axial_stress=governing(loads.tension / wall.area),
+        bending_stress=governing(bending_stress(loads.moment, wall.outer_diameter, wall)),
+        hoop_stress=governing(hoop_and_radial_stress(loads, wall.inner_diameter, wall)[0]),
+        von_mises_stress=governing(von_mises),
+        stress_utilisation=_utilisation(sections, von_mises, nodes),
+    )
+
+
+def _utilisation(sections: WallSections, von_mises: Array, nodes: int) -> Array | None:
+    """Of the nodes (nn,), nan where no stress is allowed; None where none is anywhere."""
+    limited = sections.allowable > 0.0
+    if not limited.any():
+        return None
+    used = np.divide(von_mises, sections.allowable, out=np.full(von_mises.size, -np.inf), where=limited)
+    found = sections.at_nodes(used, used, nodes)
+    return np.where(np.isfinite(found), found, np.nan)
