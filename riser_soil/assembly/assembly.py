@@ -11,6 +11,7 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.assembly.condensation import condensed_of
+from riser_soil.assembly.hang_off import hung_end
 from riser_soil.assembly.motions import end_positions, set_motions, vessels_of
 from riser_soil.assembly.pressures import pressures_of
 from riser_soil.assembly.riser import attached_weight, attachments_of, elements_of, line_of, springs_of
@@ -252,6 +253,8 @@ def build(scene: Scene, comm: MPI.Intracomm) -> Assembly:
     """Build the parts of a scene; collective. Raises SceneError or MeshError."""
     if scene.accuracy is not None:
         raise SceneError("accuracy: elements and steps are to be chosen first, by riser_soil.accuracy.target_run")
+    if (asking := hung_end(scene)) is not None:
+        raise SceneError(f"{asking.path}: is to be solved first, by riser_soil.hang_off")
     scene = sized(scene)
     elements = elements_of(scene)
     attachments = attachments_of(scene)

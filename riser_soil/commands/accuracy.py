@@ -34,7 +34,11 @@ def study(
 ) -> None:
     """Vary elements, time step, soil mesh and penalty: the error of the answers against what they cost."""
     with expected_errors():
+        from riser_soil.accuracy.chosen_run import in_numbers
+
         checked = read_begun(scene, overrides)
+        with placed(scene, overrides):
+            checked, _ = in_numbers(checked)
         if rank() > 0:
             return
         from riser_soil.accuracy.study import LEAST_RUNGS, MOST_RUNGS

@@ -23,7 +23,11 @@ def stress(
 ) -> None:
     """Run a scene's extremes: stiffnesses, penalty, steps, meshes, motions; tell which end quietly wrong."""
     with expected_errors():
+        from riser_soil.accuracy.chosen_run import in_numbers
+
         checked = read_begun(scene, overrides)
+        with placed(scene, overrides):
+            checked, _ = in_numbers(checked)
         if rank() > 0:
             return
         for name, value in (("limit", limit), ("jobs", jobs)):

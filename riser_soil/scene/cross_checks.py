@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from riser_soil.core.quantities import Vector
 from riser_soil.scene.feature_checks import feature_conflicts
 from riser_soil.scene.ground_checks import ground_conflicts
+from riser_soil.scene.hang_off_checks import hang_off_conflicts
 from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.output import SettlementSections
@@ -251,6 +252,7 @@ _CHECKS: tuple[_Check, ...] = (
     _initial_shape_meets_the_supports,
     _passes_over_block,
     _sections_across_soil,
+    hang_off_conflicts,
     feature_conflicts,
     water_conflicts,
     stage_conflicts,

@@ -22,6 +22,7 @@ from riser_soil.core.quantities import (
 )
 from riser_soil.scene.attachments import Attachment
 from riser_soil.scene.grading import graded_count, graded_lengths
+from riser_soil.scene.hang_off import HangOff
 from riser_soil.scene.shapes import Initial, Unstressed
 
 
@@ -127,6 +128,11 @@ class Support(BaseModel):
         default="free",
         description="free, fixed (keeps the direction of the initial shape), or {stiffness: N.m/rad}",
     )
+    hang_off: HangOff | None = Field(
+        default=None,
+        description="angle or tension with which the riser hangs off here at rest, {angle: deg} or {tension: N}: the "
+        "position, the other end's or a segment's length are then a first guess, and solved for",
+    )
 
 
 End = Annotated[
@@ -168,6 +174,11 @@ class Riser(BaseModel):
             allowed = f"the segments have {self.element_count} elements together, more than {MOST_ELEMENTS}"
             raise wrong("segments", allowed, "take longer elements")
         return self
+
+    @property
+    def hangs_off(self) -> bool:
+        """Whether an end asks for a hang-off angle or tension."""
+        return any(isinstance(end, Support) and end.hang_off is not None for end in (self.start, self.end))
 
     @property
     def element_count(self) -> int:
