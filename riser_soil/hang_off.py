@@ -41,7 +41,8 @@ class HungScene:
     @property
     def told(self) -> str:
         """In words."""
-        return f"{told(self.hung, self.value)} gives {self.reached:.7g} {self.hung.asked.unit} ({self.solves} static solves)"
+        gives = f"gives {self.reached:.7g} {self.hung.asked.unit}"
+        return f"{told(self.hung, self.value)} {gives} ({self.solves} static solves)"
 
     @property
     def summary(self) -> dict[str, Any]:

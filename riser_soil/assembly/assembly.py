@@ -155,21 +155,11 @@ class Assembly:
         return self.catenary.slack if self.catenary is not None else 0.0
 
     @property
-    def hanging(self) -> str:
-        """Configuration of a riser whose initial shape ends beyond its prescribed position: in a loop, or stretched and
-        so steep that its horizontal tension is less than a bend takes.
-        """
-        ends = self.scene.riser.start, self.scene.riser.end
-        points = [end.position for end in ends if isinstance(end, Support)]
-        taut = len(points) == 2 and math.dist(*points) >= self.scene.riser.length
-        return "the riser is taut and steep" if taut else "the riser is slack"
-
-    @property
     def too_slack(self) -> str:
         """Error message where a riser too slack for its elements finds no equilibrium."""
         bend = least_bend(self.elements)
         return (
-            f"{self.hanging}: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
+            "the riser is slack: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
             "its place, and no way back there was found; take shorter segments, move the ends apart, or take "
             f"elements well below (EI/w)^(1/3) = {bend:.3g} m, the length over which it bends under its own weight"
         )

@@ -133,9 +133,9 @@ def by_cable(hung: HungEnd, asked: float) -> float:
             return float(brentq(lambda x: _seen(hung, x) - asked, *between, xtol=close, rtol=CLOSE))
     what = "length" if hung.asked.by == "length" else "layback"
     raise SceneError(
-        f"{hung.path}: {hung.told} is out of reach: by a cable, a {what} from {min(values):.4g} to {max(values):.4g} m "
-        f"gives {min(seen):.4g} to {max(seen):.4g} {hung.asked.unit}; ask for what lies between, or change the segments "
-        "or the height"
+        f"{hung.path}: {hung.told} is out of reach: as a cable, with a {what} from {min(values):.4g} to "
+        f"{max(values):.4g} m, it has {min(seen):.4g} to {max(seen):.4g} {hung.asked.unit}; ask for what lies between, "
+        "or change the segments or the height"
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from riser_soil.assembly import Assembly
 from riser_soil.checks.bending_plausibility import bending_warnings
+from riser_soil.core.arrays import BoolArray
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Load, StaticStage
 
@@ -43,13 +44,29 @@ def _moves(scene: Scene) -> bool:
 
 
 def _light_pipes(assembly: Assembly) -> Iterator[str]:
+    """Pipes that float though nobody says that they should; see `_meant_to_float`."""
     weight, arc = assembly.elements.weight, assembly.line.arc
-    light = np.flatnonzero(weight < 0.0)
+    light = np.flatnonzero((weight < 0.0) & ~_meant_to_float(assembly))
     if light.size:
         yield (
             f"submerged weight is negative, {weight[light].min():.4g} N/m, from arc {arc[light[0]]:.4g} m on: the "
             "pipe floats; check mass, contents and diameters, or give submerged_weight"
         )
+
+
+def _meant_to_float(assembly: Assembly) -> BoolArray:
+    """Elements (ne,) whose buoyancy is meant: their submerged_weight is given, or they are a stretch between heavier
+    ones of a riser that weighs something as a whole, as the buoyant section of a lazy wave.
+    """
+    scene, weight = assembly.scene, assembly.elements.weight
+    given = [scene.line_types[segment.line_type].submerged_weight is not None for segment in scene.riser.segments]
+    said = np.repeat(given, [segment.element_count for segment in scene.riser.segments])
+    heavy = np.flatnonzero(weight > 0.0)
+    held = float(weight @ assembly.elements.length) + sum(each.net_weight for each in assembly.attachments)
+    between = np.zeros(weight.size, dtype=bool)
+    if heavy.size and held > 0.0:
+        between[heavy[0] : heavy[-1]] = True
+    return np.asarray(said | between)
 
 
 def _beyond_the_rao(assembly: Assembly) -> Iterator[str]:

@@ -119,7 +119,8 @@ def _attachments_fit(scene: Scene) -> Iterator[Problem]:
         path: Path = ("riser", "attachments", n)
         for m, arc in enumerate(given.arcs):
             if arc > length * (1.0 + 1e-9):
-                place = (*path, "at", m) if isinstance(given.at, tuple) else (*path, "at")
+                key = "to" if given.at is None else "at"
+                place = (*path, key, m) if isinstance(given.at, tuple) else (*path, key)
                 yield Problem(place, f"must not exceed the riser's length ({length:.6g} m)", "correct the arc length")
         for key in ("volume", "drag_area"):
             if getattr(given, key) > 0.0 and scene.water is None:

@@ -1,4 +1,4 @@
-"""Scene language: an end that hangs off at an angle or with a top tension; what is moved or lengthened is solved for."""
+"""Scene language: an end that hangs off at an angle or with a top tension, and what is solved for that."""
 
 from typing import Literal, Self
 
