@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from riser_soil.assembly.shape import initial_shape, unstressed_shape
-from riser_soil.core.part import Part
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Part, State
 from riser_soil.riser import sections, shapes
 from riser_soil.riser.ends import End
-from riser_soil.riser.line import Line
+from riser_soil.riser.line import UP, Line
 from riser_soil.riser.springs import EndSpring
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.plane import resolved_dimension, vertical_plane
@@ -113,10 +114,24 @@ def spins_freely(riser: Riser) -> bool:
 
 
 def springs_of(riser: Riser, line: Line) -> list[Part]:
-    """Rotational springs of the ends that have one; at rest in the line's present configuration."""
-    ends = ((0, riser.start), (-1, riser.end))
-    return [
-        EndSpring(line, node, end.rotation.stiffness)
-        for node, end in ends
-        if isinstance(end, Support) and isinstance(end.rotation, RotationSpring)
-    ]
+    """Rotational springs of the ends that have one; at rest in the line's present configuration, or at their neutral
+    angle.
+    """
+    springs = list[Part]()
+    for node, end in ((0, riser.start), (-1, riser.end)):
+        if isinstance(end, Support) and isinstance(end.rotation, RotationSpring):
+            if end.rotation.neutral_angle is not None:
+                line.turn_support(node, _to_neutral(line, node, end.rotation.neutral_angle))
+            springs.append(EndSpring(line, node, end.rotation.stiffness))
+    return springs
+
+
+def _to_neutral(line: Line, node: int, angle: float) -> Array:
+    """Rotation vector (3,) [rad] from an end's present tangent to its direction at a neutral angle [deg]."""
+    at_rest = line.trial(State.at_rest(0.0, line.offset + line.size)).turn.tangent @ line.basis.T
+    tangent = at_rest[node, 1 if node else 0]
+    upwards = 1.0 if tangent[2] >= 0.0 else -1.0
+    neutral = upwards * (np.sin(np.radians(angle)) * line.direction * upwards + np.cos(np.radians(angle)) * UP)
+    across = np.cross(tangent, neutral)
+    sine = float(np.linalg.norm(across))
+    return np.asarray(across * (np.arctan2(sine, tangent @ neutral) / sine if sine > 0.0 else 1.0))

@@ -55,18 +55,17 @@ def _light_pipes(assembly: Assembly) -> Iterator[str]:
 
 
 def _meant_to_float(assembly: Assembly) -> BoolArray:
-    """Elements (ne,) whose buoyancy is meant: their submerged_weight is given, or they are a stretch between heavier
-    ones of a riser that weighs something as a whole, as the buoyant section of a lazy wave.
+    """Elements (ne,) whose buoyancy is meant: those of a riser that weighs something as a whole, attachments included,
+    which lie between heavier ones, as the buoyant section of a lazy wave, or whose submerged_weight is given.
     """
     scene, weight = assembly.scene, assembly.elements.weight
     given = [scene.line_types[segment.line_type].submerged_weight is not None for segment in scene.riser.segments]
-    said = np.repeat(given, [segment.element_count for segment in scene.riser.segments])
+    meant = np.repeat(given, [segment.element_count for segment in scene.riser.segments])
     heavy = np.flatnonzero(weight > 0.0)
+    if heavy.size:
+        meant[heavy[0] : heavy[-1]] = True
     held = float(weight @ assembly.elements.length) + sum(each.net_weight for each in assembly.attachments)
-    between = np.zeros(weight.size, dtype=bool)
-    if heavy.size and held > 0.0:
-        between[heavy[0] : heavy[-1]] = True
-    return np.asarray(said | between)
+    return np.asarray(meant & (held > 0.0))
 
 
 def _beyond_the_rao(assembly: Assembly) -> Iterator[str]:

@@ -266,6 +266,13 @@ class Line:
         """Supports turn from where they are now."""
         self._bases = self._supports
 
+    def turn_support(self, node: int, rotation: Array) -> None:
+        """Turn the support of the first or last node (0, -1) by a rotation vector (3,) in global axes, before anything
+        moves.
+        """
+        node %= self.nodes
+        self._supports[node] = self.frames.turned(self._supports[node], rotation @ self.turning_axes)
+
     def support(self, node: int, t: float) -> Array:
         """Orientation of the support of the first or last node, as the turn's `at` gives that of the node: the node's
         own at first, then turned by the support's rotation.

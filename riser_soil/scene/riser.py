@@ -13,6 +13,7 @@ from riser_soil.core.quantities import (
     Density,
     ElementCount,
     Length,
+    NeutralAngle,
     Position,
     Pressure,
     RotationalStiffness,
@@ -101,11 +102,17 @@ class Contents(BaseModel):
 
 
 class RotationSpring(BaseModel):
-    """A rotational spring between the riser's end and its support."""
+    """A rotational spring between the riser's end and its support: a flex joint."""
 
     model_config = FROZEN
 
     stiffness: RotationalStiffness = Field(description="rotational stiffness [N.m/rad]")
+    neutral_angle: NeutralAngle | None = Field(
+        default=None,
+        description="angle of the riser from the vertical at which the joint is at rest [deg], in the ends' vertical "
+        "plane, positive where the riser, followed upwards, leans towards the upper end; by default the direction of "
+        "the initial shape",
+    )
 
 
 Rotation = Annotated[
@@ -126,7 +133,8 @@ class Support(BaseModel):
     position: Position = Field(description="prescribed position of the end, [x, y, z] [m]")
     rotation: Rotation = Field(
         default="free",
-        description="free, fixed (keeps the direction of the initial shape), or {stiffness: N.m/rad}",
+        description="free, fixed (keeps the direction of the initial shape), or {stiffness: N.m/rad}, "
+        "with a neutral_angle [deg] if it rests in another direction",
     )
     hang_off: HangOff | None = Field(
         default=None,
