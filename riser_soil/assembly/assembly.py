@@ -199,7 +199,7 @@ class Assembly:
     def _enter(self, stage: Stage, origins: Array) -> Model:
         set_motions(self.line, stage, self.vessels, origins)
         prescribe_spin(self.scene, self.line, stage)
-        parts = [*self.riser_parts, *loads_of(self.line, stage)]
+        parts = [*self.riser_parts, *loads_of(self.scene, self.line, stage)]
         if isinstance(stage, DynamicStage):
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)

@@ -34,7 +34,17 @@ def elements_of(scene: Scene) -> sections.Elements:
     )
     types = {name: _line_type(t) for name, t in scene.used_line_types.items()}
     segments = [sections.MeshedSegment(types[s.line_type], s.element_lengths) for s in scene.riser.segments]
-    return sections.elements(segments, around)
+    return _stiffened(scene.riser, sections.elements(segments, around), around)
+
+
+def _stiffened(riser: Riser, elements: sections.Elements, around: sections.Surroundings) -> sections.Elements:
+    """With the bend stiffeners of the ends that have one."""
+    for end, is_last in ((riser.start, False), (riser.end, True)):
+        if isinstance(end, Support) and end.bend_stiffener is not None:
+            from riser_soil.riser.bend_stiffener import Taper, with_taper
+
+            elements = with_taper(elements, Taper(**end.bend_stiffener.model_dump()), is_last, around)
+    return elements
 
 
 def _line_type(given: LineType) -> sections.SectionProperties:
@@ -105,7 +115,7 @@ def line_of(
 def _end(given: str | Support) -> End:
     if not isinstance(given, Support):
         return End(prescribed=False)
-    return End(prescribed=True, rotation_fixed=given.rotation == "fixed")
+    return End(prescribed=True, rotation_fixed=given.rotation == "fixed", heaves=given.tensioner is not None)
 
 
 def spins_freely(riser: Riser) -> bool:

@@ -36,7 +36,8 @@ def _rows(assembly: Assembly) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = [(*HEADS, *STIFFNESSES)]
     begin = 0.0
     firsts = accumulate((segment.element_count for segment in scene.riser.segments), initial=0)
-    for segment, e in zip(scene.riser.segments, firsts, strict=False):
+    for segment, first in zip(scene.riser.segments, firsts, strict=False):
+        e = first + segment.element_count // 2  # beyond bend stiffeners
         line = scene.line_types[segment.line_type]
         mass, end = float(elements.mass[e]), begin + segment.length
         numbers = (begin, end, line.outer_diameter, line.inner_diameter, line.mass, mass or None)

@@ -84,12 +84,13 @@ def _loads_that_end(scene: Scene) -> Iterator[str]:
     for n, (stage, after) in enumerate(pairwise(scene.stages)):
         if not isinstance(stage, StaticStage):
             continue
+        acting_after = [_acting(other) for other in after.loads]
         for m, load in enumerate(stage.loads):
-            if not _has_ended(load) and _acting(load) not in [_acting(other) for other in after.loads]:
+            if not load.keep and not _has_ended(load) and _acting(load) not in acting_after:
                 back = "springs back at once" if isinstance(after, DynamicStage) else "comes back"
                 yield (
                     f"stages.{n}.loads.{m}: {_told(load)} ends with its stage; {after.name} is without it, and the "
-                    f"riser {back}: repeat it in stages.{n + 1}.loads if it stays"
+                    f"riser {back}: give it keep: true if it stays"
                 )
 
 

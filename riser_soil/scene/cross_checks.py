@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterator
 
 from riser_soil.core.quantities import Vector
+from riser_soil.scene.end_checks import end_conflicts
 from riser_soil.scene.feature_checks import feature_conflicts
 from riser_soil.scene.ground_checks import ground_conflicts
 from riser_soil.scene.hang_off_checks import hang_off_conflicts
@@ -253,6 +254,7 @@ _CHECKS: tuple[_Check, ...] = (
     _initial_shape_meets_the_supports,
     _passes_over_block,
     _sections_across_soil,
+    end_conflicts,
     hang_off_conflicts,
     feature_conflicts,
     water_conflicts,

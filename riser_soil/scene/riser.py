@@ -15,8 +15,10 @@ from riser_soil.core.quantities import (
     Length,
     NeutralAngle,
     Position,
+    PositiveForce,
     Pressure,
     RotationalStiffness,
+    Stress,
     Text,
     word_or,
     wrong,
@@ -125,6 +127,32 @@ Rotation = Annotated[
 ]
 
 
+class BendStiffener(BaseModel):
+    """A tapered bend stiffener, a cone around the pipe whose base is at the riser's end."""
+
+    model_config = FROZEN
+
+    length: Length = Field(description="length from base to tip [m]")
+    base_diameter: Length = Field(description="outer diameter at the base [m]")
+    tip_diameter: Length = Field(description="outer diameter at the tip [m], at least the pipe's")
+    E: Stress = Field(description="Young's modulus of its material [Pa]")
+    density: Density = Field(default=1150.0, description="density of its material [kg/m3]; by default polyurethane's")
+
+    @model_validator(mode="after")
+    def _tapers(self) -> Self:
+        if self.base_diameter < self.tip_diameter:
+            raise wrong("base_diameter", f"is less than tip_diameter ({self.tip_diameter:g} m)", "swap the two")
+        return self
+
+
+class Tensioner(BaseModel):
+    """A heave-compensated top tension: a constant upward force in place of a vertical support."""
+
+    model_config = FROZEN
+
+    tension: PositiveForce = Field(description="upward force on the riser's end, the same at every height [N]")
+
+
 class Support(BaseModel):
     """The support of an end at a prescribed position."""
 
@@ -135,6 +163,14 @@ class Support(BaseModel):
         default="free",
         description="free, fixed (keeps the direction of the initial shape), or {stiffness: N.m/rad}, "
         "with a neutral_angle [deg] if it rests in another direction",
+    )
+    bend_stiffener: BendStiffener | None = Field(
+        default=None, description="tapered bend stiffener on the pipe at a fixed or sprung end; none by default"
+    )
+    tensioner: Tensioner | None = Field(
+        default=None,
+        description="heave-compensated top tension, {tension: N}: the end is held horizontally alone, and z of its "
+        "position is a first guess; the vertical part of its motions does not reach the riser",
     )
     hang_off: HangOff | None = Field(
         default=None,
