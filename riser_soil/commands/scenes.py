@@ -50,6 +50,15 @@ def read_begun(scene: str, overrides: list[str] | None) -> "Scene":
         return first_setting(checked)
 
 
+def read_solved(scene: str, overrides: list[str] | None) -> "Scene":
+    """As `read_begun`, with the hang-off solved that the scene asks for."""
+    checked = read_begun(scene, overrides)
+    from riser_soil.accuracy.chosen_run import in_numbers
+
+    with placed(scene, overrides):
+        return in_numbers(checked)[0]
+
+
 def result_folder(file: str, scene: "Scene", output: Path | None, force: bool) -> Path:
     """The folder for the results; a finished run in it is only overwritten by force."""
     from riser_soil.results.ownership import refuse
