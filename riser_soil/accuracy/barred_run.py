@@ -15,9 +15,9 @@ from riser_soil.accuracy.headlines import headlines
 from riser_soil.accuracy.screen import print_bars
 from riser_soil.errors import Interruption
 from riser_soil.interruption import handling_signals
-from riser_soil.results.folder import SUMMARY, FolderLock, write_atomically
+from riser_soil.results.folder import SUMMARY
 from riser_soil.results.peaks import RunPeaks
-from riser_soil.results.summary import plain_json
+from riser_soil.results.summary import add_to_summary
 from riser_soil.scene.scene import Scene
 from riser_soil.whole_run import run
 
@@ -57,10 +57,8 @@ def values_of_run(folder: Path, peaks: RunPeaks) -> RunValues:
 
 def write_bars(folder: Path, bars: list[ErrorBar], seconds: dict[str, float], **more: Any) -> None:
     """Into the summary of a finished run. more: blocks of the summary beside them."""
-    summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
-    summary |= {"error_bars": {"seconds": seconds, "quantities": [_told(bar) for bar in bars]}} | more
-    with FolderLock(folder):
-        write_atomically(folder / SUMMARY, json.dumps(plain_json(summary), indent=2, allow_nan=False) + "\n")
+    told = {"seconds": seconds, "quantities": [_told(bar) for bar in bars]}
+    add_to_summary(folder, {"error_bars": told} | more)
 
 
 def _told(bar: ErrorBar) -> dict[str, Any]:

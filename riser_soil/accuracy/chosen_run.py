@@ -1,8 +1,11 @@
-"""How a scene is run: as it is, with error bars, or to the accuracy asked. What isn't needed isn't imported."""
+"""How a scene is run: as it is, with error bars, or to the accuracy asked, its hang-off solved first. What isn't needed
+isn't imported.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from riser_soil.errors import SceneError
 from riser_soil.scene.scene import Scene
@@ -14,6 +17,7 @@ def run_as_asked(
     """Leaves the results in a folder; collective. error_bars: wanted, whether the scene asks for them or not. restart:
     go on from the folder's last checkpoint.
     """
+    scene, more = in_numbers(scene)
     if scene.accuracy is not None:
         from riser_soil.accuracy.target_run import run_to_accuracy
 
@@ -27,6 +31,13 @@ def run_as_asked(
         from riser_soil.whole_run import run
 
         run(scene, folder, force, restart=restart)
+    if more:
+        from mpi4py import MPI
+
+        from riser_soil.results.summary import add_to_summary
+
+        if MPI.COMM_WORLD.rank == 0:
+            add_to_summary(folder, more)
 
 
 def _refuse_restart(restart: bool, folder: Path) -> None:
@@ -36,3 +47,20 @@ def _refuse_restart(restart: bool, folder: Path) -> None:
             f"--restart: an accuracy is sought anew; leave --restart out, or run {folder}/scene.yaml, the setting that "
             "was computed last"
         )
+
+
+def in_numbers(scene: Scene) -> tuple[Scene, dict[str, Any]]:
+    """The scene with its hang-off solved, where it asks for one, and what its summary tells of that; collective."""
+    if not scene.riser.hangs_off:
+        return scene, {}
+    from mpi4py import MPI
+
+    from riser_soil.hang_off import hung
+    from riser_soil.interruption import handling_signals
+
+    with handling_signals():
+        found = hung(scene)
+    assert found is not None
+    if MPI.COMM_WORLD.rank == 0:
+        print(found.told)
+    return found.scene, {"hang_off": found.summary}

@@ -11,6 +11,7 @@ import numpy as np
 from mpi4py import MPI
 
 from riser_soil.assembly.condensation import condensed_of
+from riser_soil.assembly.hang_off import hung_end
 from riser_soil.assembly.motions import end_positions, set_motions, vessels_of
 from riser_soil.assembly.pressures import pressures_of
 from riser_soil.assembly.riser import attached_weight, attachments_of, elements_of, line_of, springs_of
@@ -175,21 +176,11 @@ class Assembly:
         return self.catenary.slack if self.catenary is not None else 0.0
 
     @property
-    def hanging(self) -> str:
-        """Configuration of a riser whose initial shape ends beyond its prescribed position: in a loop, or stretched and
-        so steep that its horizontal tension is less than a bend takes.
-        """
-        ends = self.scene.riser.start, self.scene.riser.end
-        points = [end.position for end in ends if isinstance(end, Support)]
-        taut = len(points) == 2 and math.dist(*points) >= self.scene.riser.length
-        return "the riser is taut and steep" if taut else "the riser is slack"
-
-    @property
     def too_slack(self) -> str:
         """Error message where a riser too slack for its elements finds no equilibrium."""
         bend = least_bend(self.elements)
         return (
-            f"{self.hanging}: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
+            "the riser is slack: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
             "its place, and no way back there was found; take shorter segments, move the ends apart, or take "
             f"elements well below (EI/w)^(1/3) = {bend:.3g} m, the length over which it bends under its own weight"
         )
@@ -229,7 +220,7 @@ class Assembly:
     def _enter(self, stage: Stage, origins: Array) -> Model:
         set_motions(self.line, stage, self.vessels, origins)
         prescribe_spin(self.scene, self.line, stage)
-        parts = [*self.riser_parts, *loads_of(self.line, stage)]
+        parts = [*self.riser_parts, *loads_of(self.scene, self.line, stage)]
         if isinstance(stage, DynamicStage):
             parts += dynamic_parts(stage, self.line, self.elements, self.attachments)
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
@@ -273,6 +264,8 @@ def build(scene: Scene, comm: MPI.Intracomm) -> Assembly:
     """Build the parts of a scene; collective. Raises SceneError or MeshError."""
     if scene.accuracy is not None:
         raise SceneError("accuracy: elements and steps are to be chosen first, by riser_soil.accuracy.target_run")
+    if (asking := hung_end(scene)) is not None:
+        raise SceneError(f"{asking.path}: is to be solved first, by riser_soil.hang_off")
     scene = sized(scene)
     elements = elements_of(scene)
     attachments = attachments_of(scene)

@@ -33,6 +33,8 @@ def end_places(scene: Scene) -> Iterator[dict[str, Array]]:
             set_motion(end, name, origin, stage, vessels)
             motion = end.motion
             place[name] = np.array([origin if motion is None else motion(t)[0] for t in instants(scene, stage)])
+            if ends[name].tensioner is not None:
+                place[name][:, 2] = origin[2]
         last = {name: x[-1] for name, x in place.items()}
         yield place
 

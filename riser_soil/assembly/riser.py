@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from riser_soil.assembly.shape import initial_shape, unstressed_shape
-from riser_soil.core.part import Part
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Part, State
 from riser_soil.riser import sections, shapes
 from riser_soil.riser.ends import End
-from riser_soil.riser.line import Line
+from riser_soil.riser.line import UP, Line
 from riser_soil.riser.springs import EndSpring
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.plane import resolved_dimension, vertical_plane
@@ -33,7 +34,17 @@ def elements_of(scene: Scene) -> sections.Elements:
     )
     types = {name: _line_type(t) for name, t in scene.used_line_types.items()}
     segments = [sections.MeshedSegment(types[s.line_type], s.element_lengths) for s in scene.riser.segments]
-    return sections.elements(segments, around)
+    return _stiffened(scene.riser, sections.elements(segments, around), around)
+
+
+def _stiffened(riser: Riser, elements: sections.Elements, around: sections.Surroundings) -> sections.Elements:
+    """With the bend stiffeners of the ends that have one."""
+    for end, is_last in ((riser.start, False), (riser.end, True)):
+        if isinstance(end, Support) and end.bend_stiffener is not None:
+            from riser_soil.riser.bend_stiffener import Taper, with_taper
+
+            elements = with_taper(elements, Taper(**end.bend_stiffener.model_dump()), is_last, around)
+    return elements
 
 
 def _line_type(given: LineType) -> sections.SectionProperties:
@@ -108,7 +119,7 @@ def line_of(
 def _end(given: str | Support) -> End:
     if not isinstance(given, Support):
         return End(prescribed=False)
-    return End(prescribed=True, rotation_fixed=given.rotation == "fixed")
+    return End(prescribed=True, rotation_fixed=given.rotation == "fixed", heaves=given.tensioner is not None)
 
 
 def spins_freely(riser: Riser) -> bool:
@@ -117,10 +128,24 @@ def spins_freely(riser: Riser) -> bool:
 
 
 def springs_of(riser: Riser, line: Line) -> list[Part]:
-    """Rotational springs of the ends that have one; at rest in the line's present configuration."""
-    ends = ((0, riser.start), (-1, riser.end))
-    return [
-        EndSpring(line, node, end.rotation.stiffness)
-        for node, end in ends
-        if isinstance(end, Support) and isinstance(end.rotation, RotationSpring)
-    ]
+    """Rotational springs of the ends that have one; at rest in the line's present configuration, or at their neutral
+    angle.
+    """
+    springs = list[Part]()
+    for node, end in ((0, riser.start), (-1, riser.end)):
+        if isinstance(end, Support) and isinstance(end.rotation, RotationSpring):
+            if end.rotation.neutral_angle is not None:
+                line.turn_support(node, _to_neutral(line, node, end.rotation.neutral_angle))
+            springs.append(EndSpring(line, node, end.rotation.stiffness))
+    return springs
+
+
+def _to_neutral(line: Line, node: int, angle: float) -> Array:
+    """Rotation vector (3,) [rad] from an end's present tangent to its direction at a neutral angle [deg]."""
+    at_rest = line.trial(State.at_rest(0.0, line.offset + line.size)).turn.tangent @ line.basis.T
+    tangent = at_rest[node, 1 if node else 0]
+    upwards = 1.0 if tangent[2] >= 0.0 else -1.0
+    neutral = upwards * (np.sin(np.radians(angle)) * line.direction * upwards + np.cos(np.radians(angle)) * UP)
+    across = np.cross(tangent, neutral)
+    sine = float(np.linalg.norm(across))
+    return np.asarray(across * (np.arctan2(sine, tangent @ neutral) / sine if sine > 0.0 else 1.0))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
@@ -11,6 +11,7 @@ from riser_soil.assembly.riser import spins_freely
 from riser_soil.core.part import Part
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
+from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import (
     DynamicStage,
@@ -19,6 +20,7 @@ from riser_soil.scene.stages import (
     NewmarkScheme,
     Stage,
     StaticStage,
+    loads_in,
 )
 from riser_soil.scene.stages import Load as LoadScene
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Midpoint, Scheme, Static
@@ -61,13 +63,24 @@ def prescribe_spin(scene: Scene, line: Line, stage: Stage) -> None:
     line.prescribe_spin(spins_freely(scene.riser) and isinstance(stage, StaticStage))
 
 
-def loads_of(line: Line, stage: Stage) -> list[Part]:
-    """The part of the stage's loads, if it has any."""
-    if not stage.loads:
+def loads_of(scene: Scene, line: Line, stage: Stage) -> list[Part]:
+    """The part of the loads on the riser in a stage, if there are any."""
+    loads = [*_tensioners(scene), *loads_in(scene.stages, stage)]
+    if not loads:
         return []
     from riser_soil.riser.loads import PointLoads
 
-    return [PointLoads(line, [_load(line, load, stage.kind == "static") for load in stage.loads])]
+    return [PointLoads(line, [_load(line, load, stage.kind == "static") for load in loads])]
+
+
+def _tensioners(scene: Scene) -> Iterator[LoadScene]:
+    """The constant upward forces of heave-compensated ends, as loads."""
+    always = (0.0, 1.0), (1.0, 1.0)
+    start, end = scene.riser.start, scene.riser.end
+    if isinstance(start, Support) and start.tensioner is not None:
+        yield LoadScene(at="start", force=(0.0, 0.0, start.tensioner.tension), history=always)
+    if isinstance(end, Support) and end.tensioner is not None:
+        yield LoadScene(at="end", force=(0.0, 0.0, end.tensioner.tension), history=always)
 
 
 def _load(line: Line, given: LoadScene, static: bool) -> AppliedLoad:

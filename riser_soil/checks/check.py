@@ -49,12 +49,14 @@ def _parts(assembly: Assembly) -> Iterator[str]:
 
 def _unknowns(assembly: Assembly) -> Iterator[str]:
     from riser_soil.checks.element_proposal import proposal
+    from riser_soil.checks.line_summary import line_summary
 
     line = assembly.line
     yield (
         f"riser: {line.length.size} elements of {line.length.min():.4g} to {line.length.max():.4g} m, "
         f"{unknowns(assembly.comm, line)} unknowns"
     )
+    yield from line_summary(assembly)
     if better := proposal(assembly):
         yield better
     if assembly.attachments:

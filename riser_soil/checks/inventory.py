@@ -27,12 +27,13 @@ def _reasons(scene: Scene) -> dict[str, str]:
     """Part -> why it is left out, empty where it is built."""
     ends = (scene.riser.start, scene.riser.end)
     sprung = any(isinstance(e, Support) and isinstance(e.rotation, RotationSpring) for e in ends)
+    tensioned = any(isinstance(e, Support) and e.tensioner is not None for e in ends)
     ground = scene.seabed is not None or scene.soil is not None
     return {
         "riser": "",
         "springs": "" if sprung else "no end has a rotational spring",
         "attachments": "" if scene.riser.attachments else "nothing is attached to the riser",
-        "loads": "" if any(s.loads for s in scene.stages) else "no stage has loads",
+        "loads": "" if any(s.loads for s in scene.stages) or tensioned else "no stage has loads",
         "inertia": "" if has_dynamics(scene) else "all stages are static",
         "rotary inertia": _no_rotary_inertia(scene),
         "structural damping": _no_structural_damping(scene),

@@ -9,6 +9,7 @@ import numpy as np
 
 from riser_soil.assembly import Assembly
 from riser_soil.checks.bending_plausibility import bending_warnings
+from riser_soil.core.arrays import BoolArray
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Load, StaticStage
 
@@ -43,13 +44,28 @@ def _moves(scene: Scene) -> bool:
 
 
 def _light_pipes(assembly: Assembly) -> Iterator[str]:
+    """Pipes that float though nobody says that they should; see `_meant_to_float`."""
     weight, arc = assembly.elements.weight, assembly.line.arc
-    light = np.flatnonzero(weight < 0.0)
+    light = np.flatnonzero((weight < 0.0) & ~_meant_to_float(assembly))
     if light.size:
         yield (
             f"submerged weight is negative, {weight[light].min():.4g} N/m, from arc {arc[light[0]]:.4g} m on: the "
             "pipe floats; check mass, contents and diameters, or give submerged_weight"
         )
+
+
+def _meant_to_float(assembly: Assembly) -> BoolArray:
+    """Elements (ne,) whose buoyancy is meant: those of a riser that weighs something as a whole, attachments included,
+    which lie between heavier ones, as the buoyant section of a lazy wave, or whose submerged_weight is given.
+    """
+    scene, weight = assembly.scene, assembly.elements.weight
+    given = [scene.line_types[segment.line_type].submerged_weight is not None for segment in scene.riser.segments]
+    meant = np.repeat(given, [segment.element_count for segment in scene.riser.segments])
+    heavy = np.flatnonzero(weight > 0.0)
+    if heavy.size:
+        meant[heavy[0] : heavy[-1]] = True
+    held = float(weight @ assembly.elements.length) + sum(each.net_weight for each in assembly.attachments)
+    return np.asarray(meant & (held > 0.0))
 
 
 def _beyond_the_rao(assembly: Assembly) -> Iterator[str]:
@@ -68,12 +84,13 @@ def _loads_that_end(scene: Scene) -> Iterator[str]:
     for n, (stage, after) in enumerate(pairwise(scene.stages)):
         if not isinstance(stage, StaticStage):
             continue
+        acting_after = [_acting(other) for other in after.loads]
         for m, load in enumerate(stage.loads):
-            if not _has_ended(load) and _acting(load) not in [_acting(other) for other in after.loads]:
+            if not load.keep and not _has_ended(load) and _acting(load) not in acting_after:
                 back = "springs back at once" if isinstance(after, DynamicStage) else "comes back"
                 yield (
                     f"stages.{n}.loads.{m}: {_told(load)} ends with its stage; {after.name} is without it, and the "
-                    f"riser {back}: repeat it in stages.{n + 1}.loads if it stays"
+                    f"riser {back}: give it keep: true if it stays"
                 )
 
 

@@ -7,7 +7,7 @@ import typer
 
 from riser_soil.commands.arguments import Overrides, SceneFile
 from riser_soil.commands.endings import expected_errors, rank
-from riser_soil.commands.scenes import placed, read_begun
+from riser_soil.commands.scenes import placed, read_solved
 from riser_soil.errors import ResultsError
 
 
@@ -34,7 +34,7 @@ def study(
 ) -> None:
     """Vary elements, time step, soil mesh and penalty: the error of the answers against what they cost."""
     with expected_errors():
-        checked = read_begun(scene, overrides)
+        checked = read_solved(scene, overrides)
         if rank() > 0:
             return
         from riser_soil.accuracy.study import LEAST_RUNGS, MOST_RUNGS

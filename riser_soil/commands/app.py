@@ -9,6 +9,7 @@ from riser_soil.commands.accuracy import study
 from riser_soil.commands.cases import cases
 from riser_soil.commands.fatigue import fatigue
 from riser_soil.commands.ground import calibrate, material
+from riser_soil.commands.imports import import_
 from riser_soil.commands.modes import modes
 from riser_soil.commands.results import film, stiffness
 from riser_soil.commands.run import check, run, schema
@@ -24,9 +25,12 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
-COMMANDS = (run, check, cases, study, stress, modes, material, calibrate, schema, statistics, stiffness, fatigue, film)
+COMMANDS = (
+    *(run, check, import_, cases, study, stress, modes, material, calibrate, schema),
+    *(statistics, stiffness, fatigue, film),
+)
 for command in COMMANDS:
-    app.command()(command if command in PRINTING else telling(command))
+    app.command(command.__name__.rstrip("_"))(command if command in PRINTING else telling(command))
 
 
 def _print_version(wanted: bool) -> None:

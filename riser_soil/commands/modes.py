@@ -7,7 +7,7 @@ import typer
 
 from riser_soil.commands.arguments import Overrides, SceneFile
 from riser_soil.commands.endings import expected_errors, rank, size
-from riser_soil.commands.scenes import placed, read_begun
+from riser_soil.commands.scenes import placed, read_solved
 from riser_soil.errors import SceneError
 
 
@@ -32,7 +32,7 @@ def modes(
             raise SceneError("riser-soil modes: works on one rank; leave out mpirun")
         if count < 1:
             raise SceneError(f"--count {count}: must be at least 1")
-        checked = read_begun(scene, overrides)
+        checked = read_solved(scene, overrides)
         from riser_soil.interruption import handling_signals
         from riser_soil.modes.modes import modes_of
         from riser_soil.modes.report import refuse_folder, table, write_folder

@@ -7,7 +7,7 @@ import typer
 
 from riser_soil.commands.arguments import Overrides, SceneFile
 from riser_soil.commands.endings import expected_errors, rank
-from riser_soil.commands.scenes import placed, read, read_begun, result_folder
+from riser_soil.commands.scenes import guessed, placed, read, read_begun, result_folder
 from riser_soil.errors import SceneError
 
 
@@ -52,7 +52,7 @@ def run(
 def check(scene: SceneFile, overrides: Overrides = None) -> None:
     """Check a scene: tell what would be built, what is left out and why, what looks doubtful; solve nothing."""
     with expected_errors():
-        checked = read_begun(scene, overrides)
+        checked = guessed(read_begun(scene, overrides), scene, overrides)
         from riser_soil.checks.check import describe
 
         with placed(scene, overrides):

@@ -22,6 +22,21 @@ def read(scene: str, overrides: list[str] | None) -> "Scene":
         raise SceneError(f"{scene}: cannot be read: {err.strerror}") from err
 
 
+def guessed(scene: "Scene", file: str, overrides: list[str] | None) -> "Scene":
+    """The scene with its hang-off as a cable would have it, where it asks for one."""
+    if not scene.riser.hangs_off:
+        return scene
+    from riser_soil.assembly.hang_off import by_cable, hung_end, told, with_value
+
+    with placed(file, overrides):
+        wanted = hung_end(scene)
+        assert wanted is not None
+        value = by_cable(wanted, wanted.asked.asked)
+    if rank() == 0:
+        print(f"{told(wanted, value)} by the cable without bending stiffness; a run solves it on the riser itself")
+    return with_value(wanted, value)
+
+
 def read_begun(scene: str, overrides: list[str] | None) -> "Scene":
     """As `read`; one that asks for an accuracy in the setting with which the search for it begins."""
     checked = read(scene, overrides)
@@ -33,6 +48,15 @@ def read_begun(scene: str, overrides: list[str] | None) -> "Scene":
         print(f"accuracy {checked.accuracy:.2%}: a run chooses elements and steps; here are those that it begins with")
     with placed(scene, overrides):
         return first_setting(checked)
+
+
+def read_solved(scene: str, overrides: list[str] | None) -> "Scene":
+    """As `read_begun`, with the hang-off solved that the scene asks for."""
+    checked = read_begun(scene, overrides)
+    from riser_soil.accuracy.chosen_run import in_numbers
+
+    with placed(scene, overrides):
+        return in_numbers(checked)[0]
 
 
 def result_folder(file: str, scene: "Scene", output: Path | None, force: bool) -> Path:

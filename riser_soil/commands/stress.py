@@ -7,7 +7,7 @@ import typer
 
 from riser_soil.commands.arguments import Overrides, SceneFile
 from riser_soil.commands.endings import expected_errors, rank
-from riser_soil.commands.scenes import placed, read_begun
+from riser_soil.commands.scenes import placed, read_solved
 from riser_soil.errors import ResultsError, SolveError
 
 
@@ -23,7 +23,7 @@ def stress(
 ) -> None:
     """Run a scene's extremes: stiffnesses, penalty, steps, meshes, motions; tell which end quietly wrong."""
     with expected_errors():
-        checked = read_begun(scene, overrides)
+        checked = read_solved(scene, overrides)
         if rank() > 0:
             return
         for name, value in (("limit", limit), ("jobs", jobs)):

@@ -201,7 +201,7 @@ class Observer:
         if self._recorder is not None:
             self._recorder.summary.laying = {"slack": slack, "load_steps": steps, "relaxations": relaxations}
             helped = f" and {relaxations} dynamic relaxation(s)" if relaxations else ""
-            print(f"{self._assembly.hanging}: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
+            print(f"the riser is slack: laid {slack:.4g} m too far, its end came back in {steps} step(s){helped}")
 
     def relaxed(self, relaxed: RelaxationResult) -> None:
         """Dynamic relaxation was needed; its Newton iterations count with the next step."""

@@ -16,7 +16,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, under, unpacked, within
 from riser_soil.core.snapshot import Instant, Ledger, RiserSnapshot, RunFacts, StepStatistics
 from riser_soil.results.figures import Extremes, final_state
-from riser_soil.results.folder import write_atomically
+from riser_soil.results.folder import SUMMARY, FolderLock, write_atomically
 from riser_soil.results.indicators import StageIndicators
 from riser_soil.results.utilisation import MostUsed, TightestBend
 
@@ -206,6 +206,13 @@ class Summary:
         stages = within(saved, "stages")
         self.stages = [StageTally("", "") for name in stages if name.count("/") == 1 and name.endswith("/told")]
         restore_all({str(n): stage for n, stage in enumerate(self.stages)}, stages)
+
+
+def add_to_summary(folder: Path, blocks: Mapping[str, Any]) -> None:
+    """Add blocks to the summary of a finished run."""
+    summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8")) | blocks
+    with FolderLock(folder):
+        write_atomically(folder / SUMMARY, json.dumps(plain_json(summary), indent=2, allow_nan=False) + "\n")
 
 
 def plain_json(value: Any) -> Any:

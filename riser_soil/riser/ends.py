@@ -33,10 +33,16 @@ class End:
 
     motion, when given, moves the prescribed position; without it the end stays where it is. turning, of the seconds
     since the stage began, turns the support: a fixed rotation turns with it, and so does the rest direction of a
-    rotational spring. A free rotation is not affected.
+    rotational spring. A free rotation is not affected. heaves: whether a prescribed end is free to move up and down, so
+    that the horizontal part of its motion alone moves it.
     """
 
     prescribed: bool
     rotation_fixed: bool = False
     motion: Motion | None = None
     turning: Callable[[float], SupportRotation] | None = None
+    heaves: bool = False
+
+    def held(self, dimension: int) -> int:
+        """How many of its coordinates are prescribed, the vertical one being the last."""
+        return (dimension - self.heaves) if self.prescribed else 0

@@ -121,7 +121,7 @@ class Line:
         """Whether the start of a line in space is kept from spinning about the pipe's axis; until the next call."""
         prescribed = np.zeros((self.nodes, self.ndof), dtype=bool)
         for node, end in ((0, self.start), (-1, self.end)):
-            prescribed[node, : self.dimension] = end.prescribed
+            prescribed[node, : end.held(self.dimension)] = True
             prescribed[node, self.dimension :] = end.rotation_fixed
         prescribed[0, self.dimension] |= spin and self.dimension == 3
         self.prescribed: BoolArray = prescribed.ravel()
@@ -266,6 +266,13 @@ class Line:
         """Supports turn from where they are now."""
         self._bases = self._supports
 
+    def turn_support(self, node: int, rotation: Array) -> None:
+        """Turn the support of the first or last node (0, -1) by a rotation vector (3,) in global axes, before anything
+        moves.
+        """
+        node %= self.nodes
+        self._supports[node] = self.frames.turned(self._supports[node], rotation @ self.turning_axes)
+
     def support(self, node: int, t: float) -> Array:
         """Orientation of the support of the first or last node, as the turn's `at` gives that of the node: the node's
         own at first, then turned by the support's rotation.
@@ -284,7 +291,8 @@ class Line:
         moved = self.nodal(predicted)[:, : self.dimension]
         for node, end in self._ends:
             if end.prescribed and end.motion is not None:
-                moved += self._reach[node] * (self._moved_end(node, guess.t)[0] - moved[node])
+                held = moved[:, : end.held(self.dimension)]
+                held += self._reach[node] * (self._moved_end(node, guess.t)[0][: held.shape[1]] - held[node])
         return predicted
 
     @cached_property
@@ -344,8 +352,9 @@ class Line:
             values[self._prescribed_dofs] = 0.0
         for node, end in self._ends:
             if end.prescribed and end.motion is not None:
-                at = slice(node * self.ndof, node * self.ndof + self.dimension)
-                u[at], v[at], a[at] = self._moved_end(node, t)
+                held = end.held(self.dimension)
+                at = slice(node * self.ndof, node * self.ndof + held)
+                u[at], v[at], a[at] = (each[:held] for each in self._moved_end(node, t))
             if end.rotation_fixed and end.turning is not None:
                 self._turn(node, end.turning(t), self.support(node, t), (u, v, a))
 

@@ -17,8 +17,8 @@ class EndSpring(LinePart):
     """Moment stiffness times the rotation vector from the support's orientation to the end's (group F).
 
     line: the riser's field. node: 0 for the start, -1 for the end. stiffness: N m/rad.
-    At rest in the line's first configuration, from where the support may turn. In space the rotation is below pi and
-    counts twist too; in the plane it is unlimited.
+    At rest in the line's first configuration, but for what `Line.turn_support` has turned, from where the support may
+    turn. In space the rotation is below pi and counts twist too; in the plane it is unlimited.
     """
 
     traits = Traits("F", symmetric=True)

@@ -4,8 +4,10 @@ import math
 from collections.abc import Callable, Iterator
 
 from riser_soil.core.quantities import Vector
+from riser_soil.scene.end_checks import end_conflicts
 from riser_soil.scene.feature_checks import feature_conflicts
 from riser_soil.scene.ground_checks import ground_conflicts
+from riser_soil.scene.hang_off_checks import hang_off_conflicts
 from riser_soil.scene.layout import initial_ends
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.output import SettlementSections
@@ -127,7 +129,8 @@ def _attachments_fit(scene: Scene) -> Iterator[Problem]:
         path: Path = ("riser", "attachments", n)
         for m, arc in enumerate(given.arcs):
             if arc > length * (1.0 + 1e-9):
-                place = (*path, "at", m) if isinstance(given.at, tuple) else (*path, "at")
+                key = "to" if given.at is None else "at"
+                place = (*path, key, m) if isinstance(given.at, tuple) else (*path, key)
                 yield Problem(place, f"must not exceed the riser's length ({length:.6g} m)", "correct the arc length")
         for key in ("volume", "drag_area"):
             if getattr(given, key) > 0.0 and scene.water is None:
@@ -269,6 +272,8 @@ _CHECKS: tuple[_Check, ...] = (
     _passes_over_block,
     _sections_across_soil,
     _error_bars_from_the_beginning,
+    end_conflicts,
+    hang_off_conflicts,
     feature_conflicts,
     water_conflicts,
     stage_conflicts,

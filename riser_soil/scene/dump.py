@@ -1,6 +1,7 @@
 """The resolved scene as YAML, all defaults filled in; reading it gives the same scene."""
 
 import io
+from typing import Any
 
 from ruamel.yaml import YAML
 from ruamel.yaml.nodes import Node
@@ -11,13 +12,18 @@ from riser_soil.scene.scene import Scene
 
 def dump_scene(scene: Scene) -> str:
     """The scene as YAML text; null stands for a part or value that is absent."""
+    return yaml_text(scene.model_dump(mode="json", by_alias=True))
+
+
+def yaml_text(data: dict[str, Any]) -> str:
+    """A scene's plain data as YAML text."""
     yaml = YAML(typ="safe", pure=True)
     yaml.default_flow_style = None  # vectors and small mappings on one line
     yaml.sort_base_mapping_type_on_output = False  # keep the language's own order
     yaml.width = 110
     yaml.representer.yaml_representers = {**yaml.representer.yaml_representers, float: _float}
     stream = io.StringIO()
-    yaml.dump(scene.model_dump(mode="json", by_alias=True), stream)
+    yaml.dump(data, stream)
     return stream.getvalue()
 
 

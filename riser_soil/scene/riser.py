@@ -13,15 +13,19 @@ from riser_soil.core.quantities import (
     Density,
     ElementCount,
     Length,
+    NeutralAngle,
     Position,
+    PositiveForce,
     Pressure,
     RotationalStiffness,
+    Stress,
     Text,
     word_or,
     wrong,
 )
 from riser_soil.scene.attachments import Attachment
 from riser_soil.scene.grading import graded_count, graded_lengths
+from riser_soil.scene.hang_off import HangOff
 from riser_soil.scene.shapes import Initial, Unstressed
 
 
@@ -100,11 +104,17 @@ class Contents(BaseModel):
 
 
 class RotationSpring(BaseModel):
-    """A rotational spring between the riser's end and its support."""
+    """A rotational spring between the riser's end and its support: a flex joint."""
 
     model_config = FROZEN
 
     stiffness: RotationalStiffness = Field(description="rotational stiffness [N.m/rad]")
+    neutral_angle: NeutralAngle | None = Field(
+        default=None,
+        description="angle of the riser from the vertical at which the joint is at rest [deg], in the ends' vertical "
+        "plane, positive where the riser, followed upwards, leans towards the upper end; by default the direction of "
+        "the initial shape",
+    )
 
 
 Rotation = Annotated[
@@ -117,6 +127,32 @@ Rotation = Annotated[
 ]
 
 
+class BendStiffener(BaseModel):
+    """A tapered bend stiffener, a cone around the pipe whose base is at the riser's end."""
+
+    model_config = FROZEN
+
+    length: Length = Field(description="length from base to tip [m]")
+    base_diameter: Length = Field(description="outer diameter at the base [m]")
+    tip_diameter: Length = Field(description="outer diameter at the tip [m], at least the pipe's")
+    E: Stress = Field(description="Young's modulus of its material [Pa]")
+    density: Density = Field(default=1150.0, description="density of its material [kg/m3]; by default polyurethane's")
+
+    @model_validator(mode="after")
+    def _tapers(self) -> Self:
+        if self.base_diameter < self.tip_diameter:
+            raise wrong("base_diameter", f"is less than tip_diameter ({self.tip_diameter:g} m)", "swap the two")
+        return self
+
+
+class Tensioner(BaseModel):
+    """A heave-compensated top tension: a constant upward force in place of a vertical support."""
+
+    model_config = FROZEN
+
+    tension: PositiveForce = Field(description="upward force on the riser's end, the same at every height [N]")
+
+
 class Support(BaseModel):
     """The support of an end at a prescribed position."""
 
@@ -125,7 +161,21 @@ class Support(BaseModel):
     position: Position = Field(description="prescribed position of the end, [x, y, z] [m]")
     rotation: Rotation = Field(
         default="free",
-        description="free, fixed (keeps the direction of the initial shape), or {stiffness: N.m/rad}",
+        description="free, fixed (keeps the direction of the initial shape), or {stiffness: N.m/rad}, "
+        "with a neutral_angle [deg] if it rests in another direction",
+    )
+    bend_stiffener: BendStiffener | None = Field(
+        default=None, description="tapered bend stiffener on the pipe at a fixed or sprung end; none by default"
+    )
+    tensioner: Tensioner | None = Field(
+        default=None,
+        description="heave-compensated top tension, {tension: N}: the end is held horizontally alone, and z of its "
+        "position is a first guess; the vertical part of its motions does not reach the riser",
+    )
+    hang_off: HangOff | None = Field(
+        default=None,
+        description="angle or tension with which the riser hangs off here at rest, {angle: deg} or {tension: N}: the "
+        "position, the other end's or a segment's length are then a first guess, and solved for",
     )
 
 
@@ -168,6 +218,11 @@ class Riser(BaseModel):
             allowed = f"the segments have {self.element_count} elements together, more than {MOST_ELEMENTS}"
             raise wrong("segments", allowed, "take longer elements")
         return self
+
+    @property
+    def hangs_off(self) -> bool:
+        """Whether an end asks for a hang-off angle or tension."""
+        return any(isinstance(end, Support) and end.hang_off is not None for end in (self.start, self.end))
 
     @property
     def element_count(self) -> int:

@@ -1,5 +1,6 @@
 """Scene language: static and dynamic stages with their moves, motions, loads and time schemes."""
 
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Annotated, Literal, Self
 
@@ -59,6 +60,10 @@ class Load(BaseModel):
         "began (in a static stage the part of the stage, 0 to 1); by default static loads grow linearly "
         "from 0 to 1 and dynamic loads have the factor 1 throughout",
     )
+    keep: Literal[True, False] = Field(
+        default=False,
+        description="whether the load stays, as large as at its stage's end, in all stages that follow",
+    )
 
     @model_validator(mode="after")
     def _acts_somewhere(self) -> Self:
@@ -81,6 +86,22 @@ class Load(BaseModel):
             allowed = f"times must increase, by {NEAREST:g} at least"
             raise wrong("history", allowed, "sort the points [t, factor] by t")
         return self
+
+
+    def kept_after(self, stage_end: float) -> "Load":
+        """The load as it stays after a stage that ended at a time [s] (static: 1)."""
+        factor = 1.0 if self.history is None else _between(self.history, stage_end)
+        return self.model_copy(update={"history": ((0.0, factor), (1.0, factor))})
+
+
+def _between(points: tuple[tuple[float, float], ...], t: float) -> float:
+    """Linear between points (t, value), constant beyond them."""
+    if t <= points[0][0]:
+        return points[0][1]
+    for (a, before), (b, after) in pairwise(points):
+        if t <= b:
+            return before + (after - before) * (t - a) / (b - a)
+    return points[-1][1]
 
 
 class MovedEnds(BaseModel):
@@ -214,3 +235,15 @@ Stage = Annotated[
         custom_error_message="static, dynamic",
     ),
 ]
+
+
+def loads_in(stages: Sequence[Stage], stage: Stage) -> tuple[Load, ...]:
+    """The loads of a stage, with those that earlier stages keep."""
+    names = [each.name for each in stages]
+    before = stages[: names.index(stage.name)] if stage.name in names else ()
+    kept = (load.kept_after(_end(each)) for each in before for load in each.loads if load.keep)
+    return (*kept, *stage.loads)
+
+
+def _end(stage: Stage) -> float:
+    return 1.0 if isinstance(stage, StaticStage) else stage.duration

@@ -12,7 +12,7 @@ from riser_soil.results.read import Run
 from riser_soil.results.summary import DOUBTFUL
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import StaticStage
+from riser_soil.scene.stages import StaticStage, loads_in
 from riser_soil.stress.answers import Answer, between
 
 BALANCE = 1e-3  # of the largest force: what an equilibrium may miss
@@ -82,7 +82,7 @@ def _weight(scene: Scene) -> float:
 def _loads(scene: Scene, stage: StaticStage) -> np.ndarray:
     """Sum of a stage's loads at its end (3,) [N]."""
     total = np.zeros(3)
-    for load in stage.loads:
+    for load in loads_in(scene.stages, stage):
         factor = 1.0 if load.history is None else load.history[-1][1]
         total += factor * np.asarray(load.force or (0.0, 0.0, 0.0))
         total += factor * scene.riser.length * np.asarray(load.distributed or (0.0, 0.0, 0.0))

@@ -269,7 +269,7 @@ def test_static_loads_that_end_with_their_stage_are_told() -> None:
     (found,) = told(LAY, lifted, heave(1.0))
     assert found == (
         "warning: stages.1.loads.0: force [0.0, 0.0, 1000.0] N at 20.0 ends with its stage; heave is without it, and "
-        "the riser springs back at once: repeat it in stages.2.loads if it stays"
+        "the riser springs back at once: give it keep: true if it stays"
     )
     assert "lay is without it, and the riser comes back" in told(lifted, LAY)[0]
     assert not told(LAY, lifted)

@@ -1,0 +1,128 @@
+"""An end that hangs off at an angle or with a top tension: what is solved for, against the catenary's closed form."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from typer.testing import CliRunner
+
+from riser_soil.assembly.hang_off import by_cable, hung_end
+from riser_soil.commands.app import app
+from riser_soil.errors import SceneError
+from riser_soil.hang_off import HungScene, from_vertical, hung
+from riser_soil.scene.reader import scene_from_mapping
+from tests.support.coupled_scenes import Mapping
+from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
+
+W, L, RISE = 200.0, 60.0, 40.0
+CHAIN: Mapping = {"EA": 1.0e10, "EI": 0.0, "submerged_weight": W}
+STIFF: Mapping = CHAIN | {"EI": 2.0e5}
+
+
+def hanging(pipe: Mapping = CHAIN, end: str = "end", elements: int = 30, **asked: Any) -> Mapping:
+    upper, lower = prescribed(30.0, 0.0, RISE), prescribed(0.0, 0.0, 0.0)
+    upper["hang_off"] = asked
+    start, last = (lower, upper) if end == "end" else (upper, lower)
+    return riser_scene(static(), pipe=pipe, length=L, elements=elements, start=start, end=last, gravity=9.81)
+
+
+def solved(scene: Mapping) -> HungScene:
+    found = hung(scene_from_mapping(scene))
+    assert found is not None
+    return found
+
+
+def catenary(layback: float, length: float = L) -> tuple[float, float]:
+    """Angle from the vertical [deg] and tension [N] at the upper end of an inextensible cable: with a = H/w,
+    sqrt(L^2 - rise^2) = 2 a sinh(x/2a), and V = w (L + rise coth(x/2a))/2 (Irvine, Cable Structures, 1981).
+    """
+    chord = np.sqrt(length**2 - RISE**2)
+    a = brentq(lambda a: 2.0 * a * np.sinh(layback / 2.0 / a) - chord, layback / 40.0, 1e4 * layback, xtol=1e-12)
+    H, V = W * a, 0.5 * W * (length + RISE / np.tanh(0.5 * layback / a))
+    return float(np.degrees(np.arctan2(H, V))), float(np.hypot(H, V))
+
+
+@pytest.mark.parametrize("end", ["end", "start"])
+def test_angle_of_a_cable(end: str) -> None:
+    found = solved(hanging(end=end, angle=20.0))
+    assert found.reached == pytest.approx(20.0, abs=0.002)
+    assert catenary(found.value)[0] == pytest.approx(20.0, abs=0.03), "by the elements"
+    assert getattr(found.scene.riser, end).position == pytest.approx((found.value, 0.0, RISE))
+    assert getattr(found.scene.riser, end).hang_off is None
+
+
+def test_tension_of_a_cable_by_its_length() -> None:
+    found = solved(hanging(tension=1.1e4, by="length"))
+    assert found.reached == pytest.approx(1.1e4, rel=2e-5)
+    assert found.scene.riser.segments[0].length == found.value != L
+    assert catenary(30.0, found.value)[1] == pytest.approx(1.1e4, rel=1e-3), "by the elements"
+
+
+@pytest.mark.parametrize(
+    ("asked", "promised"), [({"angle": 15.0}, 0.01), ({"tension": 1.2e4, "by": "anchor"}, 1e-4 * 1.2e4)]
+)
+def test_a_stiff_riser_has_what_was_asked_for_in_its_run(asked: Mapping, promised: float) -> None:
+    """Not what a cable has with that layback, by far more than what is promised."""
+    found = solved(hanging(STIFF, **asked))
+    ((seen,),) = [[history.end] for history in stage_histories(found.scene)]
+    reached = from_vertical(seen.end_tangent) if "angle" in asked else float(seen.effective_tension[-1])
+    wanted = found.hung.asked.asked
+    assert reached == pytest.approx(wanted, abs=promised)
+    assert abs(catenary(found.value)["tension" in asked] - wanted) > 5.0 * promised
+    if "by" in asked:
+        assert seen.position[-1] == pytest.approx([30.0, 0.0, RISE]), "the anchor moves"
+        assert seen.position[0] == pytest.approx([30.0 - found.value, 0.0, 0.0])
+
+
+def test_a_cable_is_where_it_begins() -> None:
+    wanted = hung_end(scene_from_mapping(hanging(angle=20.0)))
+    assert wanted is not None
+    assert catenary(by_cable(wanted, 20.0))[0] == pytest.approx(20.0, abs=1e-4)
+
+
+def test_what_no_layback_gives_is_told() -> None:
+    with pytest.raises(SceneError, match=r"^riser.end.hang_off: a hang-off angle of 85 deg is out of reach"):
+        solved(hanging(angle=85.0))
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"riser": {"end": {"hang_off": {"angle": 10.0, "tension": 1.0}}}}, "angle and tension are both given"),
+        ({"riser": {"end": {"hang_off": {}}}}, "neither angle nor tension is given"),
+        ({"riser": {"end": {"hang_off": {"angle": 90.0}}}}, "must be less than 90"),
+        ({"riser": {"start": {"hang_off": {"angle": 10.0}}}}, "both ends hang off"),
+        ({"riser": {"end": {"position": [0.0, 0.0, RISE]}}}, "right above the start"),
+        ({"riser": {"end": {"position": [30.0, 0.0, -1.0]}}}, "the end is not above the start"),
+        ({"riser": {"initial": "straight"}}, "needs a catenary to begin with"),
+        ({"stages": [static(move={"end": [30.0, 0.0, 41.0]})]}, "moves an end"),
+    ],
+)
+def test_what_a_hang_off_needs(change: Mapping, told: str) -> None:
+    scene = hanging(angle=20.0)
+    for key, value in change.items():
+        if key == "riser":
+            for name, inner in value.items():
+                scene["riser"][name] = {**scene["riser"][name], **inner} if isinstance(inner, dict) else inner
+        else:
+            scene[key] = value
+    with pytest.raises(SceneError, match=told):
+        scene_from_mapping(scene)
+
+
+def test_commands_tell_what_was_found(tmp_path: Path) -> None:
+    file = tmp_path / "scene.yaml"
+    file.write_text(json.dumps(hanging(angle=20.0)))
+    guessed = CliRunner().invoke(app, ["check", str(file)])
+    assert guessed.output.startswith("a hang-off angle of 20 deg: a layback of ")
+    assert CliRunner().invoke(app, ["run", str(file), "-o", str(tmp_path / "run")]).exit_code == 0
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    told, final = summary["hang_off"], summary["stages"][0]["final"]
+    assert told["asked"] == {"angle_deg": 20.0}
+    assert final["end"]["angle_deg"] == pytest.approx(90.0 - told["reached"], abs=1e-6)
+    assert final["end"]["position"][0] == pytest.approx(told["value"], rel=1e-12)

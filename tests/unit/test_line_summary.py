@@ -1,0 +1,127 @@
+"""The line summary of `check`: masses and weights by their formulas, tensions at rest of a cable and by hand."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from riser_soil.assembly import build
+from riser_soil.checks.line_summary import line_summary
+from riser_soil.checks.plausibility import physical_warnings
+from riser_soil.errors import SceneError
+from riser_soil.riser.attachments import PointAttachment
+from riser_soil.scene.dump import dump_scene
+from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.scene import Scene
+from tests.support.coupled_scenes import Mapping
+from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
+
+PIPE: Mapping = {"outer_diameter": 0.3, "inner_diameter": 0.2, "mass": 120.0, "EA": 3.0e8, "EI": 5.0e4}
+FLOAT: Mapping = PIPE | {"outer_diameter": 0.6, "mass": 180.0}
+FULL = 120.0 + 850.0 * np.pi * 0.01  # kg/m
+WET = 9.81 * (FULL - 1000.0 * np.pi * 0.0225)  # N/m
+
+
+def scene(*segments: Mapping, end: tuple[float, float, float] = (80.0, 0.0, 100.0), **riser: Any) -> Scene:
+    made = riser_scene(
+        static(), pipe=PIPE, length=150.0, elements=50, start=prescribed(0.0, 0.0, 0.15), end=prescribed(*end),
+        gravity=9.81, water={"density": 1000.0}, seabed={"kind": "spring", "stiffness": 1e5},
+        riser={"contents": {"density": 850.0}} | riser,
+    )  # fmt: skip
+    made["line_types"]["float"] = dict(FLOAT)
+    if segments:
+        made["riser"]["segments"] = list(segments)
+    return scene_from_mapping(made)
+
+
+def part(length: float, line_type: str = "pipe") -> Mapping:
+    return {"line_type": line_type, "length": length, "elements": round(length / 2.0)}
+
+
+LAZY = part(60.0), part(20.0, "float"), part(70.0)
+
+
+def told(given: Scene) -> list[str]:
+    return line_summary(build(given, MPI.COMM_SELF))
+
+
+def numbers(line: str) -> list[float]:
+    return [float(x) for x in re.findall(r"(?<![\w.])-?\d+\.?\d*(?:e[+-]\d+)?", line)]
+
+
+def test_weights_of_a_segment() -> None:
+    _, row, whole, *_ = told(scene())
+    assert numbers(row) == pytest.approx([0, 150, 0.3, 0.2, 120, FULL, 9.81 * FULL, WET, 3e8, 5e4], rel=5e-4)
+    assert numbers(whole) == pytest.approx([150, 0.15 * FULL, 0.15 * 9.81 * FULL, 0.15 * WET], rel=5e-4)
+
+
+def test_tension_by_hand_beside_the_cable() -> None:
+    """T = H + w h over the touchdown point (Irvine, Cable Structures, 1981), and the riser's own is near."""
+    given = scene()
+    *_, at_rest, top = told(given)
+    cable, _, w, h, by_hand = numbers(top)
+    H, level = numbers(at_rest)
+    assert (w, h, level) == pytest.approx((WET / 1e3, 99.85, 0.15), rel=1e-3)
+    assert by_hand == pytest.approx(H + w * h, rel=1e-3)
+    assert cable == pytest.approx(by_hand, rel=1e-3)
+    (run,) = stage_histories(given)
+    assert run.end.effective_tension[-1] == pytest.approx(1e3 * cable, rel=5e-3)
+
+
+def test_tension_by_hand_of_a_lazy_wave_with_attachments() -> None:
+    row = {"from": 100.0, "to": 120.0, "spacing": 5.0, "mass": 100.0, "volume": 0.3}
+    *_, top = told(scene(*LAZY, attachments=[row]))
+    cable, by_hand = numbers(top)[0], numbers(top)[-1]
+    assert cable == pytest.approx(by_hand, rel=5e-3)
+
+
+def test_a_taut_vertical_riser_begins_in_balance() -> None:
+    """Straight, stretched by T l/EA, whatever the types of its segments; it is not laid, nor called slack."""
+    given = scene(part(80.0), part(20.0, "float"), end=(0.0, 0.0, 100.3))
+    assembly = build(given, MPI.COMM_SELF)
+    assert assembly.laying is None
+    (run,) = stage_histories(given)
+    first, last = numbers(line_summary(assembly)[-1])[-2:]
+    assert [first, last] == pytest.approx(run.end.effective_tension[[0, -1]] / 1e3, rel=1e-3)
+    assert run.position[-1] == pytest.approx(assembly.line.to_global(assembly.line.x), abs=1e-9)
+
+
+def floating(given: Scene) -> list[str]:
+    return [warning for warning in physical_warnings(build(given, MPI.COMM_SELF)) if "floats" in warning]
+
+
+def test_meant_buoyancy_is_not_warned_of() -> None:
+    assert floating(scene(*LAZY)) == []
+    assert len(floating(scene(part(130.0), part(20.0, "float")))) == 1, "at the riser's end it is a mistake, likely"
+    assert len(floating(scene(part(30.0), part(100.0, "float"), part(20.0)))) == 1, "the whole riser floats"
+
+
+def test_a_row_of_attachments() -> None:
+    row = {"from": 10.0, "to": 10.7, "spacing": 0.1, "mass": 5.0}
+    given = scene(attachments=[row])
+    assert given.riser.attachments[0].arcs == pytest.approx(10.0 + 0.1 * np.arange(8))
+    last: PointAttachment = build(given, MPI.COMM_SELF).attachments[-1]
+    assert (last.arc, last.mass) == (10.7, 5.0)
+    again = scene(attachments=[row | {"to": 10.69}])
+    assert len(again.riser.attachments[0].arcs) == 7
+    assert "from: 10.0" in dump_scene(given)
+
+
+@pytest.mark.parametrize(
+    ("row", "message"),
+    [
+        ({"from": 1.0, "to": 2.0}, "a row lacks spacing"),
+        ({"at": 1.0, "from": 1.0, "to": 2.0, "spacing": 0.5}, "the places are given twice"),
+        ({}, "the place is missing"),
+        ({"from": 2.0, "to": 1.0, "spacing": 0.5}, "must not be less than from"),
+        ({"from": 1.0, "to": 2.0, "spacing": 1e-5}, "more than 10000 of them"),
+        ({"from": 1.0, "to": 200.0, "spacing": 1.0}, r"attachments.0.to.* must not exceed the riser's length"),
+    ],
+)
+def test_rows_that_are_none(row: Mapping, message: str) -> None:
+    with pytest.raises(SceneError, match=message):
+        scene(attachments=[row | {"mass": 1.0}])

@@ -1,0 +1,167 @@
+"""Scenes of MoorDyn v2 decks: their numbers, and each entry that is not carried over, by its line."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from typer.testing import CliRunner
+
+from riser_soil.commands.app import app
+from riser_soil.errors import SceneError
+from riser_soil.moordyn.deck import Deck, read_deck
+from riser_soil.moordyn.scene_of import scene_of
+from riser_soil.scene.reader import read_scene, scene_from_mapping
+from tests.support.coupled_scenes import Mapping
+
+PEER = Path(__file__).parents[2] / "benchmarks" / "peers" / "moordyn.py"
+DECK = """--------------------- MoorDyn Input File ---------------------
+A lazy wave of a power cable
+---------------------- LINE TYPES ----------------------
+TypeName   Diam    Mass/m     EA     BA/-zeta    EI        Cd     Ca    CdAx   CaAx   Cl
+(name)     (m)     (kg/m)     (N)    (N-s/-)     (N-m^2)   (-)    (-)   (-)    (-)    (-)
+cable      0.20    72.0     6.0e8    -0.8        2.0e4     1.2    1.0   0.05   0.1    0
+buoyed     0.40    90.0     6.0d8|9.0e8    0     0         1.1    0.9   0.0    0.0    0.3
+---------------------- BODIES ----------------------
+ID   Attachment  X0     Y0    Z0     r0      p0     y0     Mass  CG*   I*      Volume   CdA*   Ca*
+(#)   (word)     (m)    (m)   (m)   (deg)   (deg)  (deg)   (kg)  (m)  (kg-m^2)  (m^3)   (m^2)  (-)
+1     coupled     5     0      -10     0       0      0       0     0     0        0       0      0
+---------------------- POINTS ----------------------
+ID   Attachment  X       Y     Z      Mass   Volume  CdA    Ca
+(#)  (word/ID)  (m)     (m)   (m)    (kg)   (m^3)   (m^2)  (-)
+1    Body1       1       0      2      0      0       0      0
+2    Free        60      0    -40     50      0.2    0.1    0.5
+3    Free        90      0    -60      0      0       0      0   # the lower joint
+4    Fixed      150      0   -100      0      0       0      0
+5    Fixed     -150      0   -100      0      0       0      0
+---------------------- LINES ----------------------
+ID   LineType   AttachA  AttachB  UnstrLen  NumSegs  LineOutputs
+(#)   (name)     (ID)     (ID)      (m)       (-)      (-)
+1     cable       1        2         80        40       pt
+2     buoyed      2        3         40        20       -
+3     cable       4        3         90        45       -
+4     cable       5        1        210        50       -
+---------------------- EXTERNAL LOADS ----------------------
+ID    Object          Fext             Blin          Bquad         CSys
+(#)   (name)           (N)            (Ns/m)       (Ns^2/m^2)      (-)
+3    Point1       0.0|0.0|0.0     0.0|0.0|0.0     0.0|0.0|0.0      -
+---------------------- OPTIONS ----------------------
+0.002         dtM           time step
+1.0e6         kbot          bottom stiffness (Pa/m)
+3.0e5         cbot          bottom damping (Pa-s/m)
+100           WtrDpth       depth
+9.80665       g
+1000.0        rho
+0.3           FrictionCoefficient
+0             WaveKin
+---------------------- OUTPUTS ----------------------
+FairTen1
+---------------------- need this line ----------------------
+"""
+
+
+def deck(folder: Path, text: str = DECK) -> Deck:
+    (folder / "LINE.dat").write_text(text)
+    return read_deck(folder / "LINE.dat")
+
+
+def read(deck: Deck, line: str | None = None) -> Mapping:
+    """The scene as it is checked, in plain data."""
+    return scene_from_mapping(scene_of(deck, line).data).model_dump(by_alias=True)
+
+
+def test_a_lazy_wave(tmp_path: Path) -> None:
+    """From the anchor, along lines that are written in either direction."""
+    scene = read(deck(tmp_path))
+    riser, cable, buoyed = scene["riser"], scene["line_types"]["cable"], scene["line_types"]["buoyed"]
+    segments = [(each["line_type"], each["length"], each["elements"]) for each in riser["segments"]]
+    assert segments == [("cable", 90.0, 45), ("buoyed", 40.0, 20), ("cable", 80.0, 40)]
+    assert riser["start"]["position"] == (150.0, 0.0, -100.0)
+    assert riser["end"]["position"] == (6.0, 0.0, -8.0)
+    (joint,) = riser["attachments"]
+    told = [joint[key] for key in ("at", "mass", "volume", "drag_area", "added_mass")]
+    assert told == [130.0, 50.0, 0.2, 0.1, 0.5]
+    assert [cable[key] for key in ("outer_diameter", "mass", "EA", "EI")] == [0.2, 72.0, 6.0e8, 2.0e4]
+    assert cable["drag"] == {"normal": 1.2, "tangential": 0.05}
+    assert cable["added_mass"] == {"normal": 1.0, "tangential": 0.1}
+    assert (buoyed["EA"], buoyed["EI"]) == (6.0e8, 0.0)
+    water, seabed, friction = scene["water"], scene["seabed"], scene["contact"]["friction"]
+    assert (scene["gravity"], water["density"], water["surface_level"]) == (9.80665, 1000.0, 0.0)
+    assert (seabed["kind"], seabed["level"], seabed["contact_at"]) == ("spring", -100.0, "axis")
+    assert seabed["stiffness"] == pytest.approx(1.0e6 * 0.2)
+    assert (friction["axial"], friction["lateral"]) == (0.3, 0.3)
+
+
+def test_what_is_not_carried_over_is_told_by_line(tmp_path: Path) -> None:
+    told = dict[int, list[str]]()
+    for line, text in scene_of(deck(tmp_path)).remarks:
+        told.setdefault(line, []).append(text)
+    assert sorted(told) == [6, 7, 11, 15, 23, 25, 26, 30, 32, 34, 41]
+    for line, word in {6: "BA", 11: "bodies", 15: "motion", 23: "pt", 25: "kBot", 26: "--line 4", 30: "Point1"}.items():
+        assert word in told[line][0]
+    assert [text.split()[0] for text in told[7]] == ["Cl", "EA"]
+    assert (told[32][0].split()[0], told[34][0].split()[0], told[41]) == ("dtM", "cbot", ["outputs: FairTen1"])
+
+
+def test_another_line_of_the_deck(tmp_path: Path) -> None:
+    assert [each["length"] for each in read(deck(tmp_path), "4")["riser"]["segments"]] == [210.0]
+
+
+def test_the_deck_of_the_comparison_with_moordyn(tmp_path: Path) -> None:
+    """Written for MoorDyn from a case, and read again."""
+    tree = ast.parse(PEER.read_text())
+    text = next(
+        ast.literal_eval(node.value)
+        for node in tree.body
+        if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "DECK"
+    )
+    case = SimpleNamespace(
+        diameter=0.1, mass=12.5, EA=1.5e6, EI=0.57, drag=1.1, added_mass=0.9, length=25.0,
+    )  # fmt: skip
+    written = text.format(
+        case=case, damping=0.8, start=(0.0, -5.0), end=(18.0, -1.0), elements=30, time_step=1e-3, gravity=9.81,
+        water=998.0, depth=5.0, relaxed=0, kBot=2.0e4 / case.diameter,
+    )  # fmt: skip
+    scene = read(deck(tmp_path, written))
+    (kind,), (segment,) = scene["line_types"].values(), scene["riser"]["segments"]
+    known = vars(case) | {"outer_diameter": case.diameter}
+    assert [kind[key] for key in ("outer_diameter", "mass", "EA", "EI")] == [
+        known[key] for key in ("outer_diameter", "mass", "EA", "EI")
+    ]
+    assert (kind["drag"]["normal"], kind["added_mass"]["normal"]) == (case.drag, case.added_mass)
+    assert (segment["length"], segment["elements"]) == (case.length, 30)
+    assert (scene["riser"]["start"]["position"], scene["riser"]["end"]["position"]) == ((0, 0, -5.0), (18.0, 0, -1.0))
+    assert scene["seabed"]["stiffness"] == pytest.approx(2.0e4)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("3     cable       4        3", "3     cable       4        2", r"LINE.dat:25: a third line at point 2"),
+        ("1     cable       1        2", "1     chain       1        2", r"LINE.dat:23: line type chain is not among"),
+        ("6.0e8    -0.8", "stiff.dat    -0.8", r"LINE.dat:6: EA .* is 'stiff.dat', not a number"),
+        ("150      0   -100      0      0       0      0", "150 0 -100", r"LINE.dat:18: 5 entries, where a row"),
+        ("1     cable       1        2", "1     cable       9        2", r"LINE.dat:23: line 1 ends at 9, which"),
+        ("5     0      -10     0", "5     0      -10     5", "LINE.dat:11: body 1 is"),
+        ("ID   LineType   AttachA  AttachB  UnstrLen", "ID   LineType   UnstrLen", r"LINE.dat:21: .* MoorDyn v1"),
+        ("LINES -", "CABLES -", "has no section LINES"),
+    ],
+)  # fmt: skip
+def test_decks_that_give_no_scene(old: str, new: str, told: str, tmp_path: Path) -> None:
+    assert old in DECK
+    with pytest.raises(SceneError, match=told):
+        scene_of(deck(tmp_path, DECK.replace(old, new)))
+
+
+def test_the_command_writes_a_scene_once(tmp_path: Path) -> None:
+    deck(tmp_path)
+    arguments = ["import", str(tmp_path / "LINE.dat"), "-o", str(tmp_path / "scene.yaml")]
+    done = CliRunner().invoke(app, arguments)
+    assert done.exit_code == 0
+    assert "LINE.dat:34: not carried over: cbot 3.0e5: the seabed's damping" in done.output.splitlines()
+    assert read_scene(tmp_path / "scene.yaml") == scene_from_mapping(scene_of(deck(tmp_path)).data)
+    assert "# LINE.dat:41: not carried over" in (tmp_path / "scene.yaml").read_text()
+    again = CliRunner().invoke(app, arguments)
+    assert (again.exit_code, "--force" in again.output) == (2, True)
