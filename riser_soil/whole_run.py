@@ -41,10 +41,10 @@ def run(scene: Scene, folder: Path | str, force: bool = False, peaks: RunPeaks |
         if comm.rank == 0:
             for told in resolution(assembly):
                 print(told)
-        for warning in (*physical_warnings(assembly), *of_size):
-            if comm.rank == 0:
-                print(f"warning: {warning}")
-        with agreeing(comm), Observer.open(assembly, clock, folder, force, peaks) as observer:
+        warnings = [*physical_warnings(assembly), *of_size]
+        for warning in warnings if comm.rank == 0 else ():
+            print(f"warning: {warning}")
+        with agreeing(comm), Observer.open(assembly, clock, folder, force, peaks, warnings) as observer:
             _take_all(assembly, observer, clock)
 
 
