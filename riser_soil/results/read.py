@@ -68,6 +68,12 @@ class Run:
             raise ResultsError(f"{path}: cannot be read: {err}") from err
 
     @cached_property
+    def variables(self) -> frozenset[str]:
+        """Names of what results.nc has."""
+        with self._open_series() as file:
+            return frozenset(file)
+
+    @cached_property
     def summary(self) -> dict[str, Any]:
         path = self.folder / run_folder.SUMMARY
         try:
