@@ -9,7 +9,7 @@ from riser_soil.commands.accuracy import study
 from riser_soil.commands.cases import cases
 from riser_soil.commands.ground import calibrate, material
 from riser_soil.commands.modes import modes
-from riser_soil.commands.pictures import plot
+from riser_soil.commands.pictures import plot, report
 from riser_soil.commands.results import film, stiffness
 from riser_soil.commands.run import check, run, schema
 from riser_soil.commands.statistics import statistics
@@ -24,7 +24,7 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
-COMMANDS = (run, check, cases, study, stress, modes, material, calibrate, schema, statistics, stiffness, film, plot)
+COMMANDS = (run, check, cases, study, stress, modes, material, calibrate, schema, statistics, stiffness, film, plot, report)
 for command in COMMANDS:
     app.command()(command if command in PRINTING else telling(command))
 

@@ -41,3 +41,21 @@ def plot(
         wanted = [name for group in what or () for name in group.split(",") if name]
         for file, words in album(Run(folder), output or folder / "plots", wanted, ending, stage):
             typer.echo(f"{file}: {words}" if file else words)
+
+
+def report(
+    folders: Annotated[list[Path], typer.Argument(metavar="RUN…", help="folders of runs; several are put side by side")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="FILE", help="the page; by default report.html")
+    ] = Path("report.html"),
+    stage: Annotated[
+        str | None, typer.Option("--stage", metavar="NAME", help="the stage that is drawn; by default all dynamic ones")
+    ] = None,
+) -> None:
+    """Report runs on one HTML page: scene, warnings, extremes, pictures, energy, solver, how to reproduce them."""
+    with expected_errors():
+        from riser_soil.report.report import write_report
+
+        if output.suffix not in (".html", ".htm"):
+            raise ResultsError(f"{output}: a report is an .html file; change its ending")
+        typer.echo(write_report(folders, output, stage))
