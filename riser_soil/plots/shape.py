@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
@@ -19,6 +21,7 @@ from riser_soil.results.seabed_line import seabed_under
 SNAPSHOTS = 9
 _ASIDE = 0.002  # of the riser's length: what goes out of the plane less is not drawn from above
 _ZONE = 0.06  # of the riser's length: to either side of the touchdown point
+_UNDER = 0.04  # of the height shown: how much of the ground is seen
 _AHEAD, _UP = "horizontal distance from the start [m]", "z [m], upwards"
 
 
@@ -49,9 +52,10 @@ def snapshots(stage: StageRecords) -> Figure:
             axes.plot(x, z, color=colour, linewidth=1.2, label=f"{run.time[record]:.4g} s")
         if aside is not None:
             panels[2].plot(x, (position[record] - position[0, 0]) @ aside, color=colour, linewidth=1.2)
-    _draw_seabed(panels[:2], run, position[at], ahead)
     _whole(panels[0])
     _zone(panels[1], stage, position[at], ahead)
+    _draw_seabed(panels[:2], run, position[at], ahead)
+    panels[0].legend(fontsize="x-small", title="t")
     if aside is not None:
         panels[2].set(title="from above", xlabel=_AHEAD, ylabel="to the left of the plane [m]")
     return figure
@@ -75,15 +79,19 @@ def _in_plane(axis: Array, origin: Array, ahead: Array) -> Array:
     return np.asarray((axis - origin) @ ahead)
 
 
-def _draw_seabed(panels: list[Axes], run: Run, position: Array, ahead: Array) -> None:
+def _draw_seabed(panels: Sequence[Axes], run: Run, position: Array, ahead: Array) -> None:
+    """Below the riser; the last panel, which is not all of it, shows some of it."""
     origin = position[0, 0]
     x = np.linspace(*_limits((position - origin) @ ahead), 200)
     level = seabed_under(run, origin + x[:, None] * ahead)
     if level is None:
         return
+    seen, (low, high) = panels[-1].get_xlim(), panels[-1].get_ylim()
     for axes in panels:
         axes.plot(x, level, color="saddlebrown", linewidth=1.0, label="seabed")
         axes.fill_between(x, level, level - 0.05 * np.ptp(position[..., 2]), color="tan", alpha=0.5, linewidth=0.0)
+    under = level[(x >= seen[0]) & (x <= seen[1])].min(initial=np.inf)
+    panels[-1].set(xlim=seen, ylim=(min(low, under - _UNDER * (high - low)), high))
 
 
 def _limits(x: Array) -> tuple[float, float]:
@@ -94,7 +102,6 @@ def _limits(x: Array) -> tuple[float, float]:
 def _whole(axes: Axes) -> None:
     axes.set(title="whole riser", xlabel=_AHEAD, ylabel=_UP)
     axes.set_aspect("equal", adjustable="datalim")
-    axes.legend(fontsize="x-small", title="t")
 
 
 def _zone(axes: Axes, stage: StageRecords, position: Array, ahead: Array) -> None:

@@ -14,11 +14,11 @@ from riser_soil.errors import ResultsError
 from riser_soil.plots import histories
 from riser_soil.plots.curves import sheet
 from riser_soil.plots.ranges import compare_ranges, names
+from riser_soil.report.extremes import READ_IN
 from riser_soil.report.tables import NOTHING, Table, number
 from riser_soil.results import Run
 from riser_soil.results.stage_records import StageRecords, stage_records
 
-_UNITS = {"N": ("kN", 1e-3), "N.m": ("kN.m", 1e-3)}
 _MISSING = object()
 
 
@@ -49,14 +49,14 @@ def headlines_table(runs: Mapping[str, Run]) -> Table:
     rows = []
     for key in dict.fromkeys(key for each in known for key in each):
         one = next(each[key] for each in known if key in each)
-        unit, scale = _UNITS.get(one.unit, (one.unit, 1.0))
+        unit, scale = READ_IN.get(one.unit, (one.unit, 1.0))
         values = [number(each[key].value * scale) if key in each else NOTHING for each in known]
         row = [key, unit, values[0]]
         for value, each in zip(values[1:], others, strict=True):
             row += [value, _difference(first, each, key)]
         rows.append(row)
     labels = [*runs]
-    heads = [head for label in labels[1:] for head in (label, f"less {labels[0]} [%]")]
+    heads = [head for label in labels[1:] for head in (label, f"differs from {labels[0]} by [%]")]
     note = (
         "Of static stages at their end, of dynamic ones the extremes. A difference is relative to the first run's size; of "
         "forces to a tenth of the stage's largest at least, of touchdown arcs to the distance of the ends."

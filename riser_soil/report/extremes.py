@@ -9,8 +9,9 @@ from riser_soil.accuracy.headlines import headlines
 from riser_soil.core import outputs
 from riser_soil.core.output import Figure, OutputQuantity
 from riser_soil.plots.units import shown
-from riser_soil.report.tables import NOTHING, Table, found, number
+from riser_soil.report.tables import NOTHING, Table, compact, found, number
 
+READ_IN = {"N": ("kN", 1e-3), "N.m": ("kN.m", 1e-3)}  # units of headline quantities, as they are read
 _HEADS = {
     "static": ("quantity", "unit", "value", "at arc [m]", "±"),
     "dynamic": (
@@ -19,7 +20,8 @@ _HEADS = {
     ),
 }
 _AXES, _ALL = ("x", "y", "z"), ", x, y, z"
-_TIME_NOTE = "Times count from the beginning of the stage; arc lengths from the riser's start. "
+_NOTE = "Times are those of the run, arc lengths count from the riser's start. "
+_LEFT_OUT = "Components that stay 0 are left out. "
 
 
 def extremes_table(summary: Mapping[str, Any], stage: Mapping[str, Any]) -> Table:
@@ -40,27 +42,30 @@ def error_bars(summary: Mapping[str, Any], stage: str) -> dict[tuple[str, str], 
     return {(known[key].figure, known[key].which): bar for key, bar in names.items() if key in known}
 
 
-def bars_table(summary: Mapping[str, Any]) -> Table:
-    """Error bars of headline quantities, by source."""
-    told = found(summary, ("error_bars", "quantities")) or []
-    sources = list(dict.fromkeys(source for each in told for source in each["by_source"]))
-    rows = [
-        [
-            f"{each['stage']}: {each['name']}",
-            each["unit"],
-            number(each["value"]),
-            number(each["bar"], 2) if each["bar"] is not None else f"not known: {each.get('reason', '')}",
-            *(number(each["by_source"].get(source), 2) for source in sources),
-        ]
-        for each in told
-    ]
-    return Table(("quantity", "unit", "value", "±", *(f"by {source}" for source in sources)), rows)
+def headlines_table(summary: Mapping[str, Any]) -> Table:
+    """What is read first: headline quantities stage by stage, with error bars in all and by source where there are any."""
+    bars = {f"{each['stage']}: {each['name']}": each for each in found(summary, ("error_bars", "quantities")) or []}
+    sources = list(dict.fromkeys(source for each in bars.values() for source in each["by_source"]))
+    rows = []
+    for key, each in headlines(summary).items():
+        unit, scale = READ_IN.get(each.unit, (each.unit, 1.0))
+        bar = bars.get(key, {})
+        shares = (_bar(bar.get("by_source", {}).get(source), scale) for source in sources)
+        rows.append([each.stage, each.name, unit, number(each.value * scale), _whole_bar(bar, scale), *shares])
+    head = ("stage", "quantity", "unit", "value", "±", *(f"by {source}" for source in sources))
+    note = "Of static stages at their end, of dynamic ones the extremes over the stage."
+    return compact(Table(head, rows, note))
+
+
+def _whole_bar(bar: Mapping[str, Any], scale: float) -> str:
+    return "not known" if "reason" in bar else _bar(bar.get("bar"), scale)
 
 
 def _table(stage: Mapping[str, Any], headline: bool, bars: Mapping[tuple[str, str], float | None]) -> Table:
     if stage["final"] is None:
         return Table(_HEADS[stage["kind"]], [])
-    rows, signs = [], {}
+    rows: list[list[str]] = []
+    signs: dict[str, list[str]] = {}
     for output, figure in outputs.figures(()):
         final, extremes = found(stage["final"], figure.path), found(stage["extremes"], figure.path)
         if final is None or (figure.row is not None) != headline:
@@ -69,9 +74,9 @@ def _table(stage: Mapping[str, Any], headline: bool, bars: Mapping[tuple[str, st
         bar = {which: bars.get((figure.name, which)) for which in ("min", "max")}
         rows += list(_rows(stage["kind"], (words, unit, scale), final, extremes, bar))
         if output.sign:
-            signs[words] = output.sign
-    note = _TIME_NOTE if stage["kind"] == "dynamic" else ""
-    return Table(_HEADS[stage["kind"]], rows, note + "; ".join(f"{words}: {sign}" for words, sign in signs.items()))
+            signs.setdefault(output.sign, []).append(words.removesuffix(_ALL))
+    told = [f"{', '.join(words)}: {sign}." for sign, words in signs.items()]
+    return compact(Table(_HEADS[stage["kind"]], rows, _NOTE + ("" if headline else _LEFT_OUT) + " ".join(told)))
 
 
 def _words(output: OutputQuantity[Any], figure: Figure) -> tuple[str, str, float]:
@@ -95,6 +100,8 @@ def _rows(
     if isinstance(final, list):
         for n, axis in enumerate(_AXES):
             part = {key: values[n] for key, values in (extremes or {}).items() if isinstance(values, list)}
+            if not (final[n] or part.get("min") or part.get("max")):
+                continue
             yield from _rows(kind, (f"{words.removesuffix(_ALL)}, {axis}", unit, scale), final[n], part, bars)
         return
     arc = final.get("arc") if isinstance(final, dict) else None
@@ -115,4 +122,4 @@ def _scaled(value: float | None, scale: float) -> str:
 
 
 def _bar(bar: float | None, scale: float) -> str:
-    return "" if bar is None else f"{number(bar * scale, 2)}"
+    return "" if bar is None else number(bar * scale, 2)

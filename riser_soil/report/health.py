@@ -39,7 +39,7 @@ def energy_table(stage: Mapping[str, Any]) -> Table:
     energy = stage["energy"]
     whole = energy["turned_over"] or float("nan")
     rows = [
-        [words, number(_times(energy[name], 1e-3)), number(_times(energy[name], 100.0 / whole), 3)]
+        [words, number(energy[name] * 1e-3), number(energy[name] * 100.0 / whole, 3) if name != "potential" else NOTHING]
         for name, words in _ENERGY
         if energy[name] is not None
     ]
@@ -52,7 +52,8 @@ def energy_table(stage: Mapping[str, Any]) -> Table:
     note = "Energy is not balanced in statics." if stage["kind"] == "static" else ""
     if worst["value"] is not None and worst["time"] is not None:
         share = number(100.0 * worst["value"] / whole, 3)
-        note = f"Largest residual on the way: {number(worst['value'], 3)} J, {share} % of what was turned over, at {number(worst['time'], 4)} s."
+        size, at = number(worst["value"], 3), number(worst["time"], 4)
+        note = f"Largest residual on the way: {size} J, {share} % of what was turned over, at {at} s."
     return Table(("energy", "kJ", "% of turned over"), rows, note)
 
 
@@ -103,6 +104,3 @@ def _indicators(nested: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[li
         else:
             yield [", ".join((*path, name)).replace("_", " "), number(value, 3) if value is not None else NOTHING]
 
-
-def _times(value: float | None, factor: float) -> float | None:
-    return None if value is None else value * factor

@@ -16,7 +16,7 @@ from riser_soil.plots import picture
 from riser_soil.plots.album import GROUPS, pictures
 from riser_soil.report import comparison, health, scene_words
 from riser_soil.report.embedding import embedded, embedded_png
-from riser_soil.report.extremes import bars_table, ends_table, extremes_table
+from riser_soil.report.extremes import ends_table, extremes_table, headlines_table
 from riser_soil.report.tables import Table
 from riser_soil.results import Run
 from riser_soil.results import folder as run_folder
@@ -61,7 +61,7 @@ class RunPart:
     touchdown: Image | None
     no_touchdown: str
     stages: Sequence[StagePart]
-    bars: Table
+    headlines: Table
     solver: Table
     seconds: Table
     versions: Table
@@ -128,7 +128,7 @@ def _run_part(label: str, anchor: str, run: Run, stage: str | None) -> RunPart:
         touchdown=touchdown,
         no_touchdown=why,
         stages=[_stage_part(summary, told, drawn.get(n)) for n, told in enumerate(summary["stages"])],
-        bars=bars_table(summary),
+        headlines=headlines_table(summary),
         solver=health.solver_table(summary),
         seconds=health.seconds_table(summary),
         versions=health.versions_table(summary),

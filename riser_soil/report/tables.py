@@ -22,6 +22,13 @@ class Table:
         return bool(self.rows)
 
 
+def compact(table: Table) -> Table:
+    """The table without columns in which there is nothing."""
+    kept = [n for n in range(len(table.head)) if any(row[n] not in ("", NOTHING) for row in table.rows)]
+    rows = [[row[n] for n in kept] for row in table.rows]
+    return Table([table.head[n] for n in kept], rows, table.note)
+
+
 def number(value: float | None, digits: int = 5) -> str:
     """A number with so many figures, without an exponent where it reads well; a dash for none."""
     if value is None or not math.isfinite(value):
