@@ -17,15 +17,16 @@ AnyStage = Annotated[
 def plot(
     folder: RunFolder,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="FOLDER", help="folder of the pictures; by default RUN/plots")
+        Path | None,
+        typer.Option("-o", "--output", metavar="FOLDER", help="folder of the pictures; by default RUN/plots"),
     ] = None,
     what: Annotated[
         list[str] | None,
         typer.Option(
             "--what",
             metavar="NAME,…",
-            help="ranges, histories, shape, soil, energy, solver, touchdown, film, or a picture by the name of its file; "
-            "may be repeated; by default all that the run has",
+            help="ranges, histories, shape, soil, energy, solver, touchdown, film, or a picture by the name of its "
+            "file; may be repeated; by default all that the run has",
         ),
     ] = None,
     ending: Annotated[str, typer.Option("--format", metavar="png|svg|pdf", help="format of the curves")] = "png",
@@ -44,7 +45,9 @@ def plot(
 
 
 def report(
-    folders: Annotated[list[Path], typer.Argument(metavar="RUN…", help="folders of runs; several are put side by side")],
+    folders: Annotated[
+        list[Path], typer.Argument(metavar="RUN…", help="folders of runs; several are put side by side")
+    ],
     output: Annotated[
         Path, typer.Option("-o", "--output", metavar="FILE", help="the page; by default report.html")
     ] = Path("report.html"),

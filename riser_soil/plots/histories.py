@@ -70,7 +70,7 @@ def least_and_tightest(stage: StageRecords) -> Figure:
 
 
 def energy(stage: StageRecords) -> Figure:
-    """Energy stored, dissipated and put in since the stage began, and the balance's residual over what was turned over."""
+    """Energy stored, dissipated and put in since the stage began; the balance's residual over what was turned over."""
     figure, (stored, residual) = sheet(2, 1, height=2.6)
     of_step = stage.run["step_stage"] == stage.number
     t = stage.run["step_time"][of_step]

@@ -90,7 +90,7 @@ def _mark_touchdown(axes: Axes, stage: StageRecords) -> None:
     touchdown = stage["touchdown_arc"]
     if np.isnan(touchdown).all():
         return
-    low, high = np.nanmin(touchdown), np.nanmax(touchdown)
+    low, high = float(np.nanmin(touchdown)), float(np.nanmax(touchdown))
     words = f"touchdown, {low:.4g} to {high:.4g} m" if high > low else f"touchdown, {low:.4g} m"
     axes.axvspan(low, high, color="tan", alpha=0.35, linewidth=1.0, label=words)
 

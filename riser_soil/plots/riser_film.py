@@ -31,14 +31,11 @@ def film_riser(run: Run, file: Path, stage: str | None = None, period: float | N
     """
     number = dynamic_stage(run, stage)
     of_stage = stage_records(run, run.stage_names[number])
-    if period is None:
-        records = filmed_records(of_stage, MOST_FRAMES)
-    else:
-        records = cycles(run, number, period)[-1].records
+    records = filmed_records(of_stage, MOST_FRAMES) if period is None else cycles(run, number, period)[-1].records
     if len(records) < 2:
         raise ResultsError(
-            f'{run.folder}: stage "{of_stage.name}" has {len(records)} record(s) to film, and a film takes two; shorten '
-            "output.interval of the scene and run again"
+            f'{run.folder}: stage "{of_stage.name}" has {len(records)} record(s) to film, and a film takes two; '
+            "shorten output.interval of the scene and run again"
         )
     write_film(file, _pictures(run, records), float(np.diff(run.time[records]).mean()))
 
@@ -60,7 +57,8 @@ def _pictures(run: Run, records: IntArray) -> Iterator[Array]:
     if level is not None:
         axes.plot(ground, level, color="saddlebrown")
     top, _ = colour_scale(moment[records])
-    line = axes.add_collection(LineCollection([], cmap="viridis", linewidth=4.0, clim=(0.0, top)))
+    line = LineCollection([], cmap="viridis", linewidth=4.0, clim=(0.0, top))
+    axes.add_collection(line)
     figure.colorbar(line, ax=axes, label="bending moment [kN m]")
     for n in records:
         points = np.column_stack([x[n], z[n]])

@@ -15,8 +15,8 @@ from riser_soil.plots.curves import sheet
 from riser_soil.results import Run
 from riser_soil.results.cycles import cycles, period_of
 from riser_soil.results.derived import along
-from riser_soil.results.stage_records import StageRecords
 from riser_soil.results.seabed_line import seabed_under
+from riser_soil.results.stage_records import StageRecords
 
 SNAPSHOTS = 9
 _ASIDE = 0.002  # of the riser's length: what goes out of the plane less is not drawn from above

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-SHOWN: dict[str, tuple[str, float]] = {  # unit of SI as UDUNITS writes it -> the unit shown, how many of it are one of SI
+SHOWN: dict[str, tuple[str, float]] = {  # unit of SI as UDUNITS writes it -> unit shown, how many of it are one of SI
     "N": ("kN", 1e-3),
     "N m": ("kN m", 1e-3),
     "N m-1": ("kN/m", 1e-3),

@@ -43,7 +43,7 @@ def error_bars(summary: Mapping[str, Any], stage: str) -> dict[tuple[str, str], 
 
 
 def headlines_table(summary: Mapping[str, Any]) -> Table:
-    """What is read first: headline quantities stage by stage, with error bars in all and by source where there are any."""
+    """What is read first: headline quantities stage by stage, and their error bars if there are any."""
     bars = {f"{each['stage']}: {each['name']}": each for each in found(summary, ("error_bars", "quantities")) or []}
     sources = list(dict.fromkeys(source for each in bars.values() for source in each["by_source"]))
     rows = []

@@ -38,8 +38,12 @@ def energy_table(stage: Mapping[str, Any]) -> Table:
     """The energy balance at the stage's end [kJ], and its share of what was turned over."""
     energy = stage["energy"]
     whole = energy["turned_over"] or float("nan")
+
+    def percent(value: float) -> str:
+        return number(100.0 * value / whole, 3)
+
     rows = [
-        [words, number(energy[name] * 1e-3), number(energy[name] * 100.0 / whole, 3) if name != "potential" else NOTHING]
+        [words, number(energy[name] * 1e-3), NOTHING if name == "potential" else percent(energy[name])]
         for name, words in _ENERGY
         if energy[name] is not None
     ]
@@ -47,11 +51,11 @@ def energy_table(stage: Mapping[str, Any]) -> Table:
         for name, value in energy[kind].items():
             if value:
                 words = f"{title} {name.replace('_', ' ')}"
-                rows.append([words, number(value * 1e-3), number(value * 100.0 / whole, 3)])
+                rows.append([words, number(value * 1e-3), percent(value)])
     worst = energy["worst_residual"]
     note = "Energy is not balanced in statics." if stage["kind"] == "static" else ""
     if worst["value"] is not None and worst["time"] is not None:
-        share = number(100.0 * worst["value"] / whole, 3)
+        share = percent(worst["value"])
         size, at = number(worst["value"], 3), number(worst["time"], 4)
         note = f"Largest residual on the way: {size} J, {share} % of what was turned over, at {at} s."
     return Table(("energy", "kJ", "% of turned over"), rows, note)
@@ -59,7 +63,8 @@ def energy_table(stage: Mapping[str, Any]) -> Table:
 
 def solver_table(summary: Mapping[str, Any]) -> Table:
     """Steps and iterations, stage by stage."""
-    head = ("stage", "kind", "simulated [s]", "steps", "failed attempts", "Newton iterations a step", "most", "found by")
+    counts = ("steps", "failed attempts", "Newton iterations a step", "most")
+    head = ("stage", "kind", "simulated [s]", *counts, "found by")
     rows = []
     for stage in summary["stages"]:
         mean = stage["newton_iterations"] / max(1, stage["steps"])

@@ -14,8 +14,9 @@ from riser_soil import __version__
 from riser_soil.errors import ResultsError
 from riser_soil.plots import picture
 from riser_soil.plots.album import GROUPS, pictures
+from riser_soil.plots.embedding import embedded, embedded_png
+from riser_soil.plots.side_by_side import sheets
 from riser_soil.report import comparison, health, scene_words
-from riser_soil.report.embedding import embedded, embedded_png
 from riser_soil.report.extremes import ends_table, extremes_table, headlines_table
 from riser_soil.report.tables import Table
 from riser_soil.results import Run
@@ -188,5 +189,5 @@ def _comparison(runs: Mapping[str, Run], stage: str | None) -> Comparison:
     return Comparison(
         comparison.differences_table(runs),
         comparison.headlines_table(runs),
-        [Image(embedded(each.figure), each.caption) for each in comparison.sheets(runs, stage)],
+        [Image(embedded(each.figure), each.caption) for each in sheets(runs, stage)],
     )

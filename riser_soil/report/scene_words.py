@@ -82,7 +82,9 @@ def stages_table(scene: Scene) -> Table:
     """What each stage does, key by key."""
     rows: list[Sequence[str]] = []
     for stage in scene.stages:
-        rows += [row for key, value in stage if key != "name" for row in _rows(type(stage), key, value, (stage.name, key))]
+        for key, value in stage:
+            if key != "name":
+                rows += _rows(type(stage), key, value, (stage.name, key))
     return Table(("key", "value", "unit", "meaning"), rows)
 
 
@@ -127,22 +129,21 @@ def _cell(value: Any) -> str:
 
 def _riser(scene: Scene, run: Run) -> str:
     length, position = float(run.arc[-1]), run["position"][0]
-    ends = ", ".join(f"its {name} at {text([float(x) for x in position[at]])} m" for name, at in (("start", 0), ("end", -1)))
+    start, end = (text([float(x) for x in position[at]]) for at in (0, -1))
     count = len(scene.riser.segments)
     inside = scene.riser.contents
     filled = f", filled with {number(inside.density)} kg/m³" if inside is not None else ""
     stretches = "one segment" if count == 1 else f"{count} segments"
-    return f"A riser of {number(length)} m in {stretches}{filled}, in {len(run.arc) - 1} elements; {ends} (x, y, z; z up)."
+    meshed = f"A riser of {number(length)} m in {stretches}{filled}, in {len(run.arc) - 1} elements"
+    return f"{meshed}; its start at {start} m, its end at {end} m (x, y, z; z up)."
 
 
 def _ground(scene: Scene) -> str:
-    told = []
+    seabed = None if scene.seabed is None else f"a {scene.seabed.kind} seabed"
     if scene.soil is not None:
-        told.append(f"it touches down on a block of soil ({getattr(scene.soil.law, 'kind', 'given')})")
-    if scene.seabed is not None:
-        beside = " beside it" if told else ""
-        told.append(f"a {scene.seabed.kind} seabed{beside}" if told else f"it touches down on a {scene.seabed.kind} seabed")
-    return f"{' with '.join(told).capitalize()}." if told else "There is no ground."
+        beside = "" if seabed is None else f", with {seabed} beside it"
+        return f"The ground is a block of soil ({getattr(scene.soil.law, 'kind', 'given')}){beside}."
+    return "There is no ground." if seabed is None else f"The ground is {seabed}."
 
 
 def _water(scene: Scene) -> str:
@@ -155,5 +156,5 @@ def _water(scene: Scene) -> str:
 
 
 def _stages(scene: Scene) -> str:
-    told = [f"{s.name} (dynamic, {number(s.duration)} s)" if s.kind == "dynamic" else f"{s.name} (static)" for s in scene.stages]
-    return f"Stages: {', '.join(told)}."
+    lasts = {stage.name: f", {number(stage.duration)} s" for stage in scene.stages if stage.kind == "dynamic"}
+    return f"Stages: {', '.join(f'{s.name} ({s.kind}{lasts.get(s.name, str())})' for s in scene.stages)}."

@@ -54,7 +54,7 @@ def stage_records(run: Run, name: str | None = None) -> StageRecords:
 
     Raises ResultsError where there is no such stage, or nothing was recorded of it.
     """
-    stages, of_record = run.summary["stages"], run["stage"]
+    stages, of_record = run.summary["stages"], _stage_of_records(run)
     recorded = [n for n in range(len(stages)) if (of_record == n).any()]
     if not recorded:
         raise ResultsError(f"{run.folder}: nothing was recorded, so there is nothing to draw")
@@ -70,8 +70,13 @@ def stage_records(run: Run, name: str | None = None) -> StageRecords:
 
 def all_stages(run: Run) -> list[StageRecords]:
     """Every stage of which something was recorded, in turn."""
-    of_record = run["stage"]
+    of_record = _stage_of_records(run)
     return [_of(run, n, of_record) for n in range(len(run.summary["stages"])) if (of_record == n).any()]
+
+
+def _stage_of_records(run: Run) -> IntArray:
+    """Number of the stage of each record, (nt,)."""
+    return run["stage"].astype(int)
 
 
 def _of(run: Run, number: int, of_record: IntArray) -> StageRecords:
