@@ -108,6 +108,7 @@ def _labels(folders: Sequence[Path]) -> list[str]:
 
 
 def _run_part(label: str, anchor: str, run: Run, stage: str | None) -> RunPart:
+    drawn = _drawn_stages(run, stage)
     summary, scene = run.summary, scene_words.read(run)
     shape, touchdown, why = _shape(run), None, ""
     try:
@@ -115,7 +116,6 @@ def _run_part(label: str, anchor: str, run: Run, stage: str | None) -> RunPart:
         touchdown = Image(uri, f"the touchdown zone and the whole riser at {run.time[-1]:.5g} s")
     except ResultsError as err:
         why = str(err)
-    drawn = _drawn_stages(run, stage)
     built, left_out = health.parts_words(summary)
     return RunPart(
         label=label,
