@@ -183,9 +183,12 @@ def test_plain_json() -> None:
 
 
 def test_structure_of_the_file(tmp_path: Path) -> None:
-    record(tmp_path, duration=1.0)
+    facts = replace(FACTS, warnings=("elements are long",), versions={"python": "3.11.2"})
+    record(tmp_path, duration=1.0, facts=facts)
     summary = strictly((tmp_path / "summary.json").read_text())
-    assert set(summary) == {"title", "finished", "version", "ranks", "parts", "dofs", "stages", "seconds"}
+    told = {"title", "finished", "version", "versions", "warnings", "ranks", "parts", "dofs", "stages", "seconds"}
+    assert set(summary) == told
+    assert (summary["warnings"], summary["versions"]) == (["elements are long"], {"python": "3.11.2"})
     assert summary["finished"] is True
     assert summary["parts"] == {
         "built": ["riser", "soil", "contact"],
