@@ -50,7 +50,7 @@ def test_every_number_along_the_riser_has_a_range_graph(run: Run) -> None:
 def test_a_range_is_least_mean_and_largest_of_the_stage(run: Run) -> None:
     _, (axes,) = sheet(1, 1)
     draw_range(axes, stage_records(run), "bending_moment")
-    most, mean, least = (line.get_ydata() for line in axes.lines)
+    most, mean, least = (np.asarray(line.get_ydata()) for line in axes.lines)
     values = 1e-3 * run["bending_moment"]
     assert most == pytest.approx(values.max(axis=0))
     assert least == pytest.approx(values.min(axis=0))
