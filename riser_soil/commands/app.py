@@ -24,8 +24,9 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
-COMMANDS = (run, check, cases, study, stress, modes, material, calibrate, schema, statistics, stiffness, film, plot, report)
-for command in COMMANDS:
+OF_SCENES = (run, check, cases, study, stress, modes, material, calibrate, schema)
+OF_RUNS = (statistics, stiffness, film, plot, report)
+for command in (*OF_SCENES, *OF_RUNS):
     app.command()(command if command in PRINTING else telling(command))
 
 
