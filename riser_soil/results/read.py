@@ -70,7 +70,7 @@ class Run:
     @cached_property
     def variables(self) -> frozenset[str]:
         """Names of what results.nc has."""
-        with self._open_series() as file:
+        with self._open(run_folder.SERIES) as file:
             return frozenset(file)
 
     @cached_property
