@@ -53,10 +53,10 @@ def run(
         if comm.rank == 0:
             for told in resolution(assembly):
                 print(told)
-        for warning in (*physical_warnings(assembly), *of_size):
-            if comm.rank == 0:
-                print(f"warning: {warning}")
-        opened = Observer.open(assembly, clock, folder, force, peaks, goes_on=saved is not None)
+        warnings = [*physical_warnings(assembly), *of_size]
+        for warning in warnings if comm.rank == 0 else ():
+            print(f"warning: {warning}")
+        opened = Observer.open(assembly, clock, folder, force, peaks, saved is not None, warnings)
         with agreeing(comm), opened as observer:
             _take_all(assembly, observer, clock, saved)
 

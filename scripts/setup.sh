@@ -20,8 +20,11 @@ debian_packages=(
     libopenblas0-serial # without it MUMPS falls back to the reference BLAS, seven times slower
     libegl1 libegl-mesa0 libgl1-mesa-dri # pictures without a display
 )
+test_packages=(
+    chromium-headless-shell # opens the pages that riser_soil writes
+)
 run_modules=(
-    dolfinx petsc4py mpi4py gmsh numpy scipy h5py numba pydantic typer rich ruamel.yaml h5netcdf pyvista matplotlib
+    dolfinx petsc4py mpi4py gmsh numpy scipy h5py numba pydantic typer rich ruamel.yaml h5netcdf pyvista matplotlib jinja2
 )
 dev_modules=(pytest xdist hypothesis xarray ruff mypy)
 
@@ -36,7 +39,7 @@ main() {
     mkdir -p "$logs" && exec 9>"$logs/lock" || exit 1
     flock 9 # two set-ups at once would break each other's environment
     case ${1:-all} in
-        all) set_up_all ;;
+        all) debian_packages+=("${test_packages[@]}"); set_up_all ;;
         dependencies) set_up_dependencies run ;;
         project) set_up_project "${run_modules[@]}" ;;
         *)

@@ -29,13 +29,18 @@ Told = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Headline:
-    """A headline quantity of one stage: value and floor of its scale in `unit` (SI)."""
+    """A headline quantity of one stage: value and floor of its scale in `unit` (SI).
+
+    figure, which: the summary's figure that it is, and whether its min or max; of a static stage, the value at its end.
+    """
 
     stage: str
     name: str
     unit: str
     value: float
     floor: float
+    figure: str = ""
+    which: str = ""
 
     @property
     def scale(self) -> float:
@@ -62,18 +67,24 @@ def headlines(summary: Told) -> dict[str, Headline]:
 def _of_stage(stage: Told) -> list[Headline]:
     final, values = stage["final"], list(_values(stage))
     length = math.dist(final["start"]["position"], final["end"]["position"])
-    force = max((abs(value) for _, unit, value in values if unit == "N"), default=0.0)
+    force = max((abs(value) for _, unit, value, *_ in values if unit == "N"), default=0.0)
     floors = {"N": FORCE_FLOOR * force, "N.m": MOMENT_FLOOR * force * length, "m": SETTLEMENT_FLOOR * length}
     floors["1/m"] = CURVATURE_FLOOR / length if length > 0.0 else 0.0
 
     def floor(name: str, unit: str) -> float:
         return length if name.endswith("arc") else floors[unit]
 
-    return [Headline(stage["name"], name, unit, value, floor(name, unit)) for name, unit, value in values]
+    return [
+        Headline(stage["name"], name, unit, value, floor(name, unit), figure, which)
+        for name, unit, value, figure, which in values
+    ]
 
 
-def _values(stage: Told) -> Iterator[tuple[str, str, float]]:
-    """Name, unit and value of the known ones."""
+Known = tuple[str, str, float, str, str]
+
+
+def _values(stage: Told) -> Iterator[Known]:
+    """Name, unit, value, figure, and min or max of the known ones."""
     upper = _upper_end(stage["final"])
     for name, unit, path, which in (
         ("top tension", "N", (upper, "effective_tension"), "max"),
@@ -83,26 +94,27 @@ def _values(stage: Told) -> Iterator[tuple[str, str, float]]:
         ("largest curvature", "1/m", ("max_curvature",), "max"),
         ("least effective tension", "N", ("min_effective_tension",), "min"),
     ):
-        yield from _known(name, unit, _value(stage, path, which))
+        yield from _known(name, unit, _value(stage, path, which), ".".join(path), which)
     yield from _contact(stage)
 
 
-def _contact(stage: Told) -> Iterator[tuple[str, str, float]]:
+def _contact(stage: Told) -> Iterator[Known]:
     """Those of a riser that touches; one that never does has no touchdown point, and a contact force of 0."""
     if stage["kind"] == "static":
-        yield from _known("touchdown arc", "m", _value(stage, ("touchdown_arc",), "max"))
+        yield from _known("touchdown arc", "m", _value(stage, ("touchdown_arc",), "max"), "touchdown_arc", "max")
     else:
         for which, word in (("min", "least"), ("max", "largest")):
-            yield from _known(f"{word} touchdown arc", "m", _value(stage, ("touchdown_arc",), which))
+            value = _value(stage, ("touchdown_arc",), which)
+            yield from _known(f"{word} touchdown arc", "m", value, "touchdown_arc", which)
     force = _value(stage, ("contact_force",), "max")
-    yield from _known("largest contact force", "N", force if force else None)
+    yield from _known("largest contact force", "N", force if force else None, "contact_force", "max")
     settled = stage.get("soil", {}).get("max_settlement", {}).get("value")
-    yield from _known("soil settlement", "m", settled)
+    yield from _known("soil settlement", "m", settled, "max_settlement", "max")
 
 
-def _known(name: str, unit: str, value: float | None) -> Iterator[tuple[str, str, float]]:
+def _known(name: str, unit: str, value: float | None, figure: str, which: str) -> Iterator[Known]:
     if value is not None and math.isfinite(value):
-        yield name, unit, value
+        yield name, unit, value, figure, which
 
 
 def _value(stage: Told, path: tuple[str, ...], which: str) -> float | None:

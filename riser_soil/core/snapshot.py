@@ -183,6 +183,8 @@ class RunFacts:
     ranks: int
     built: tuple[str, ...]  # names of the parts that were built
     left_out: dict[str, str] = field(default_factory=dict)  # part -> reason
+    warnings: tuple[str, ...] = ()  # what was doubtful about the scene before its first step
+    versions: dict[str, str] = field(default_factory=dict)  # of Python and the packages that the run uses
     dissipating: tuple[str, ...] = ()  # names that may stand in the ledger's dissipated_by
     working: tuple[str, ...] = ()  # names that may stand in the ledger's work_by
     riser_dofs: int = 0

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from riser_soil.core.own_process import environment_alone
 from riser_soil.errors import ResultsError
+from riser_soil.results import Run
 from riser_soil.results.whole_file import written_whole
 
 FORMATS = (".gif", ".mp4")
@@ -41,20 +42,30 @@ def film(
     field: str | None = None,
     magnify: float | None = None,
 ) -> Path:
-    """Films the last whole cycle of a dynamic stage: the riser over its soil, coloured by a field, frame by frame.
+    """Films the last whole cycle of a dynamic stage: the riser over its soil, coloured by a field, frame by frame; of a
+    run without soil the riser's shape, coloured by bending moment.
 
     file: GIF, or MP4 where ffmpeg is installed. stage: by default the last dynamic one. period: s, by default that of
-    the stage's motion; without any the whole stage is filmed. field: of `riser_soil.plots.film.FIELDS`, by default the
+    the stage's motion; without any the whole stage is filmed (without soil: the records around the largest bending
+    moment). field: of `riser_soil.plots.film.FIELDS`, by default the
     settlement. magnify: as of `picture`.
     Raises ResultsError when the folder holds nothing to film, or drawing fails; a file is then left as it was.
     """
     file = Path(file)
     if file.suffix not in FORMATS:
         raise ResultsError(f"{file}: a film is a {' or '.join(FORMATS)} file; change its ending")
-    given = {"--stage": stage, "--period": period, "--field": field, "--magnify": magnify}
-    options = [f"{name}={value}" for name, value in given.items() if value is not None]
+    run = Run(folder)
     with written_whole(file) as part:
-        _draw(["film", str(folder), str(part), *options])
+        if run.has_soil:
+            given = {"--stage": stage, "--period": period, "--field": field, "--magnify": magnify}
+            options = [f"{name}={value}" for name, value in given.items() if value is not None]
+            _draw(["film", str(folder), str(part), *options])
+        elif field is not None or magnify is not None:
+            raise ResultsError(f"{run.folder}: the run has no soil, so there is nothing to colour or to magnify")
+        else:
+            from riser_soil.plots.riser_film import film_riser
+
+            film_riser(run, part, stage, period)
     return file
 
 

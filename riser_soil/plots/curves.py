@@ -11,22 +11,27 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.outputs import ALONG_RISER
+from riser_soil.plots.units import axis_words
 from riser_soil.results import Run
 from riser_soil.results.derived import along, reactions
 
 # Along the arc: what the axis says, and the factor that makes it so; the text and unit of the table of outputs, where
 # it is not said better here.
 ALONG_ARC: dict[str, tuple[str, float]] = {
-    **{output.name: (f"{output.text} [{output.units}]", 1.0) for output in ALONG_RISER if not output.vector},
+    **{output.name: axis_words(output.text, output.units) for output in ALONG_RISER if not output.vector},
     "effective_tension": ("effective tension [kN], + pulls", 1e-3),
     "bending_moment": ("bending moment, magnitude [kN m]", 1e-3),
     "curvature": ("curvature, magnitude [1/m]", 1.0),
     "contact_force": ("contact force per length [kN/m], + pushes", 1e-3),
+    "penetration": ("penetration into the ground as it is [mm]", 1e3),
+    "embedment": ("greatest depth yet below the ground's first level [mm]", 1e3),
+    "soil_settlement": ("settlement of the soil under the riser [mm], + down", 1e3),
 }
 _REACTIONS = {
     "H1": "H at the start [kN], + towards start",
@@ -34,7 +39,7 @@ _REACTIONS = {
     "V1": "V at the start [kN], + upwards",
     "V2": "V at the end [kN], + upwards",
 }
-_ARC, _TIME = "arc length from the start [m]", "time [s]"
+ARC, TIME = "arc length from the start [m]", "time [s]"
 
 
 def sheet(rows: int, columns: int, width: float = 9.0, height: float = 3.2) -> tuple[Figure, list[Axes]]:
@@ -46,9 +51,12 @@ def sheet(rows: int, columns: int, width: float = 9.0, height: float = 3.2) -> t
     return figure, list(panels.flat)
 
 
-def save(figure: Figure, png: Path | str) -> Path:
-    figure.savefig(png, dpi=120)
-    return Path(png)
+def save(figure: Figure, file: Path | str) -> Path:
+    """In the format of the file's ending: PNG, SVG or PDF; the same run gives the same file, but for the library."""
+    unstamped = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+    with rc_context({"svg.hashsalt": "riser_soil"}):
+        figure.savefig(file, dpi=120, metadata=unstamped.get(Path(file).suffix))
+    return Path(file)
 
 
 def shapes(axes: Axes, run: Run, at: Sequence[int] = (-1,), labels: Sequence[str] = (), **style: Any) -> None:
@@ -68,15 +76,17 @@ def along_arc(axes: Axes, run: Run, name: str, at: int = -1, label: str | None =
     """A quantity of ALONG_ARC at one record, node by node."""
     words, factor = ALONG_ARC[name]
     axes.plot(run.arc, factor * run[name][at], label=label, **style)
-    _name(axes, _ARC, words)
+    _name(axes, ARC, words)
 
 
 def envelope(axes: Axes, run: Run, name: str, since: float = 0.0, label: str | None = None) -> None:
     """Smallest and largest value of a quantity of ALONG_ARC at each node, over the records from `since` [s] on."""
     words, factor = ALONG_ARC[name]
     values = factor * run[name][run.time >= since]
-    axes.fill_between(run.arc, values.min(axis=0), values.max(axis=0), alpha=0.5, label=label)
-    _name(axes, _ARC, words)
+    least, most = values.min(axis=0), values.max(axis=0)
+    # A band has no width where nothing changes: its edge is a line.
+    axes.fill_between(run.arc, least, most, alpha=0.5, label=label, linewidth=1.0, edgecolor="face")
+    _name(axes, ARC, words)
 
 
 def end_reactions(panels: Sequence[Axes], runs: Mapping[str, Run], since: float = 0.0) -> None:
@@ -85,7 +95,7 @@ def end_reactions(panels: Sequence[Axes], runs: Mapping[str, Run], since: float 
         found, seen = reactions(run), run.time >= since
         for axes, (name, words) in zip(panels, _REACTIONS.items(), strict=True):
             axes.plot(run.time[seen], 1e-3 * getattr(found, name)[seen], label=label, linewidth=1.0)
-            axes.set_xlabel(_TIME)
+            axes.set_xlabel(TIME)
             axes.set_ylabel(words)
     if len(runs) > 1:
         panels[0].legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=len(runs), frameon=False)
@@ -95,7 +105,7 @@ def end_tension(axes: Axes, run: Run, since: float = 0.0, label: str | None = No
     """Effective tension at the end in time."""
     seen = run.time >= since
     axes.plot(run.time[seen], 1e-3 * run["effective_tension"][seen, -1], label=label, linewidth=1.0)
-    _name(axes, _TIME, "tension at the end [kN], + pulls")
+    _name(axes, TIME, "tension at the end [kN], + pulls")
 
 
 def instants(run: Run, since: float, until: float, count: int) -> list[int]:

@@ -1,4 +1,4 @@
-"""Round numbers for colour bars and for the magnification of deformations."""
+"""Round numbers for colour bars and for the magnification of deformations; lengths in words and in sight."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ _TOPS = ((1, 6), (1.2, 5), (1.6, 5), (2, 5), (3, 4), (4, 5), (5, 6), (6, 4), (8,
 _FACTORS = (5.0, 2.0, 1.0)
 # A magnified displacement that is this share of the body's depth is well visible, and not absurd.
 _VISIBLE_SHARE = 0.1
+# Radius of a pipe over the width of the view from which it shows as a pipe: some 9 pixels of 1,200 across.
+_SEEN_SHARE = 0.004
 
 
 def colour_scale(values: Array) -> tuple[float, int]:
@@ -27,3 +29,13 @@ def magnification(largest: float, depth: float) -> float:
     wanted = max(1.0, _VISIBLE_SHARE * depth / largest) if largest > 0.0 else 1.0
     decade = 10.0 ** math.floor(math.log10(wanted))
     return next(factor * decade for factor in _FACTORS if factor * decade <= wanted * (1.0 + 1e-9))
+
+
+def metres(length: float) -> str:
+    """A length in words: whole metres from 100 m on, else three figures."""
+    return f"{length:.0f} m" if abs(length) >= 99.95 else f"{length:.3g} m"
+
+
+def drawn_radius(radius: float, across: float) -> float:
+    """Radius [m] at which a pipe is drawn in a view `across` [m] wide: thick enough to be seen."""
+    return max(radius, _SEEN_SHARE * across)

@@ -18,12 +18,13 @@ from riser_soil.plots.bodies import (
     carried_down,
     colour_bar,
     exit_status,
+    flat_seabed,
     pipe_radius,
     require,
     soil_grid,
     touchdown_place,
 )
-from riser_soil.plots.scales import colour_scale, magnification
+from riser_soil.plots.scales import colour_scale, drawn_radius, magnification, metres
 from riser_soil.results import Run, SoilFrame
 from riser_soil.results.derived import along
 
@@ -49,6 +50,20 @@ class _Frame:
     touchdown: Array
     touchdown_arc: float
     soil: pv.UnstructuredGrid | None
+    seabed: float | None  # m, level of a flat one
+
+    @property
+    def across(self) -> float:
+        """m, what the close view shows from left to right, roughly."""
+        if self.soil is None:
+            return 0.2 * float(np.ptp(self.position, axis=0).max())
+        x0, x1, y0, y1, _, _ = self.soil.bounds
+        return 0.4 * max(x1 - x0, y1 - y0)
+
+    @property
+    def thickened(self) -> float:
+        """Factor on the radius in the close view: a riser over soil is drawn as it is."""
+        return 1.0 if self.soil is not None else drawn_radius(self.radius, self.across) / self.radius
 
 
 def draw(folder: Path, png: Path, magnify: float | None = None) -> None:
@@ -103,6 +118,7 @@ def _read(run: Run) -> _Frame:
         touchdown=touchdown_place(touchdown_arc, run.arc, position),
         touchdown_arc=touchdown_arc,
         soil=None if frame is None else _grid(frame),
+        seabed=flat_seabed(run),
     )
 
 
@@ -124,6 +140,7 @@ def _draw_close(plotter: pv.Plotter, still: _Frame, factor: float) -> None:
     ahead = along(still.position)
     side = np.cross(UP, ahead)
     if still.soil is None:
+        _add_seabed(plotter, still, ahead)
         _add_tube(plotter, still.position, still)
     else:
         opened = still.soil.clip(normal=-side, origin=still.touchdown)
@@ -134,10 +151,10 @@ def _draw_close(plotter: pv.Plotter, still: _Frame, factor: float) -> None:
     if not math.isnan(still.touchdown_arc):
         _mark(
             plotter,
-            still.touchdown + 4.0 * still.radius * UP,
+            still.touchdown + 4.0 * still.thickened * still.radius * UP,
             f"touchdown at arc {still.touchdown_arc:.4g} m",
         )
-    reach = _reach(still)
+    reach = still.across
     plotter.camera.focal_point = still.touchdown + 0.05 * reach * UP
     plotter.camera.position = still.touchdown + reach * (0.6 * UP - 1.2 * side - 0.2 * ahead)
     plotter.camera.up = UP
@@ -153,7 +170,8 @@ def _mark(plotter: pv.Plotter, where: Array, text: str) -> None:
 def _caption(still: _Frame, factor: float) -> str:
     words = f"{still.title}\nt = {still.time:.4g} s"
     if still.soil is None:
-        return words
+        thick = f"\nthe riser is drawn {still.thickened:.2g} times as thick as it is"
+        return words + (thick if still.thickened > 1.0 else "")
     words += "\nsoil cut open along the riser"
     return f"{words}; its deformation is drawn \u00d7 {factor:g} and carries it along"
 
@@ -173,18 +191,21 @@ def _add_soil(plotter: pv.Plotter, soil: pv.UnstructuredGrid) -> None:
     )
 
 
-def _reach(still: _Frame) -> float:
-    """m, what the close view shows from left to right, roughly."""
-    if still.soil is None:
-        return 0.2 * float(np.ptp(still.position, axis=0).max())
-    x0, x1, y0, y1, _, _ = still.soil.bounds
-    return 0.4 * max(x1 - x0, y1 - y0)
+def _add_seabed(plotter: pv.Plotter, still: _Frame, ahead: Array) -> None:
+    """A plate under the riser: as much lower than the seabed as the riser is drawn too thick."""
+    if still.seabed is None:
+        return
+    lower = (still.thickened - 1.0) * still.radius
+    centre = [*still.touchdown[:2], still.seabed - lower]
+    plate = pv.Plane(center=centre, direction=UP, i_size=2.0 * still.across, j_size=0.5 * still.across)
+    turned = plate.rotate_z(math.degrees(math.atan2(ahead[1], ahead[0])), point=centre)
+    plotter.add_mesh(turned, color="tan", ambient=0.6, diffuse=0.4)
 
 
 def _add_tube(plotter: pv.Plotter, position: Array, still: _Frame) -> None:
     top, labels = colour_scale(1e-3 * still.moment)
     plotter.add_mesh(
-        _tube(position, still.moment, still.radius),
+        _tube(position, still.moment, still.thickened * still.radius),
         scalars=_MOMENT,
         cmap=_MOMENT_COLOURS,
         clim=(0.0, top),
@@ -207,7 +228,7 @@ def _draw_whole(plotter: pv.Plotter, still: _Frame) -> None:
     if still.soil is not None:
         plotter.add_mesh(still.soil.outline(), color="saddlebrown", line_width=2)
     wide = float(np.linalg.norm(size[:2]))
-    plotter.add_text(f"whole riser, {wide:.3g} m by {size[2]:.3g} m", font_size=12, color="black")
+    plotter.add_text(f"whole riser, {metres(wide)} by {metres(size[2])}", font_size=12, color="black")
     plotter.enable_parallel_projection()
     plotter.camera.focal_point = 0.5 * (lowest + highest)
     plotter.camera.position = 0.5 * (lowest + highest) - float(size.max()) * np.cross(

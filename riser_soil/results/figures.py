@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -48,14 +49,21 @@ _PLACES: list[tuple[str, int | slice, Callable[[Any], Any]]] = [
     (output.name, first if figure.size == 1 else slice(first, first + figure.size), figure.of)
     for (output, figure), first in zip(_FIGURES, _FIRST, strict=False)
 ]
+# Those that sit somewhere along the riser.
+_PLACED = [(output.name, figure) for output, figure in _FIGURES if figure.placed]
 
 
 def pack(seen: Instant) -> Array:
-    """All figures of one instant as one vector, in the order of the summary; nan for what is not known."""
-    values, vector = _values(seen), np.full(_SIZE, np.nan)
+    """All figures of one instant as one vector, in the order of the summary, and behind them the arc lengths [m] of
+    those that sit somewhere along the riser; nan for what is not known.
+    """
+    values, vector = _values(seen), np.full(_SIZE + len(_PLACED), np.nan)
     for name, at, of in _PLACES:
         if (value := values[name]) is not None:
             vector[at] = of(value)
+    for n, (name, figure) in enumerate(_PLACED, start=_SIZE):
+        if (value := values[name]) is not None:
+            vector[n] = _arc(figure, value, seen.arc)
     return vector
 
 
@@ -88,6 +96,9 @@ def places_of(name: str) -> slice:
     raise KeyError(name)
 
 
+_AT_PLACED = np.array([places_of(figure.name).start for _, figure in _PLACED])
+
+
 def final_state(seen: Instant) -> dict[str, Any]:
     """The summary's `final`: the figures, with the arc length [m] of those that sit somewhere along the riser."""
     values = _values(seen)
@@ -111,20 +122,26 @@ def _arc(figure: Figure, value: Any, arc: Array) -> float:
 
 
 class Extremes:
-    """Smallest and largest of every figure, with their times; nan does not count."""
+    """Smallest and largest of every figure, with their times and places along the riser; nan does not count."""
 
     def __init__(self) -> None:
         self._least, self._most = np.full(_SIZE, np.inf), np.full(_SIZE, -np.inf)
         self._t_least, self._t_most = np.full(_SIZE, np.nan), np.full(_SIZE, np.nan)
+        self._arc_least, self._arc_most = np.full(len(_PLACED), np.nan), np.full(len(_PLACED), np.nan)
 
     def update(self, t: float, vector: Array) -> None:
         """t: s (static stages: load factor); vector: from `pack`."""
-        less, more = vector < self._least, vector > self._most
-        self._least[less], self._most[more] = vector[less], vector[more]
+        values, arcs = vector[:_SIZE], vector[_SIZE:]
+        less, more = values < self._least, values > self._most
+        self._least[less], self._most[more] = values[less], values[more]
         self._t_least[less], self._t_most[more] = t, t
+        less, more = less[_AT_PLACED], more[_AT_PLACED]
+        self._arc_least[less], self._arc_most[more] = arcs[less], arcs[more]
 
     def nested(self) -> dict[str, Any]:
-        """{min, max, t_min, t_max} at each figure's place; vectors by component."""
+        """{min, max, t_min, t_max} of each figure, and {arc_min, arc_max} [m] of those that sit somewhere along the
+        riser; vectors by component.
+        """
         columns = {"min": self._least, "max": self._most, "t_min": self._t_least, "t_max": self._t_most}
         parts = {key: unpack(values) for key, values in columns.items()}
         nested: dict[str, Any] = {}
@@ -132,6 +149,9 @@ class Extremes:
             least = _get(parts["min"], figure.path)
             if figure.name not in _SOMETIMES or np.isfinite(least).all():
                 _put(nested, figure.path, {key: _get(part, figure.path) for key, part in parts.items()})
+        for (_, figure), least, most in zip(_PLACED, self._arc_least, self._arc_most, strict=True):
+            with suppress(KeyError):  # one that is unknown was left out
+                _get(nested, figure.path).update(arc_min=float(least), arc_max=float(most))
         return nested
 
     def state(self) -> Saved:

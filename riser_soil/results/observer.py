@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +19,7 @@ from riser_soil.core.part import Energy
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import ContactSnapshot, Instant, RiserSnapshot, RunFacts, SoilSnapshot, StepStatistics
 from riser_soil.core.system import Timer
+from riser_soil.core.versions import versions
 from riser_soil.errors import Interruption, MemoryShortageError, RiserSoilError, SolveError
 from riser_soil.interruption import leave_between_steps, uninterrupted
 from riser_soil.results.checkpoint import CheckpointSchedule, about
@@ -71,13 +72,15 @@ class Observer:
         force: bool,
         peaks: RunPeaks | None = None,
         goes_on: bool = False,
+        warnings: Sequence[str] = (),
     ) -> Iterator[Observer]:
         """Take the run's folder over; collective. What was written stays when the block is left early.
 
-        goes_on: with the files that are there, up to what is restored.
+        goes_on: with the files that are there, up to what is restored. warnings: told before the first step, for the
+        summary.
         """
         mesh = assembly.soil.output_mesh() if assembly.soil is not None else None
-        known = facts(assembly)
+        known = facts(assembly, warnings)
         with Progress(enabled=assembly.comm.rank == 0) as progress:
             recorder = None
             with _on_all_ranks(assembly.comm), uninterrupted():
@@ -275,7 +278,7 @@ def _known_fields(assembly: Assembly) -> tuple[str, ...]:
     return outputs.known(assembly.scene.output.fields, [need for need, there in has.items() if there])
 
 
-def facts(assembly: Assembly) -> RunFacts:
+def facts(assembly: Assembly, warnings: Sequence[str] = ()) -> RunFacts:
     """Facts about a run before its first step; collective."""
     across = assembly.soil_contact is not None and "settlement_across" in assembly.scene.output.fields
     return RunFacts(
@@ -284,6 +287,8 @@ def facts(assembly: Assembly) -> RunFacts:
         ranks=assembly.comm.size,
         built=built(assembly.scene),
         left_out=left_out(assembly.scene),
+        warnings=tuple(warnings),
+        versions=versions(),
         dissipating=dissipating(assembly.scene),
         working=working(assembly.scene),
         riser_dofs=unknowns(assembly.comm, assembly.line),

@@ -73,6 +73,12 @@ class Run:
             return name in file
 
     @cached_property
+    def variables(self) -> frozenset[str]:
+        """Names of what results.nc has."""
+        with self._open(run_folder.SERIES) as file:
+            return frozenset(file)
+
+    @cached_property
     def summary(self) -> dict[str, Any]:
         path = self.folder / run_folder.SUMMARY
         try:

@@ -178,11 +178,12 @@ def record(
     fields: tuple[str, ...] | None = None,
     force: bool = False,
     finish: bool = True,
+    facts: RunFacts = FACTS,
 ) -> Array:
     """Records a static stage and a dynamic stage of steps of 0.1 s. Returns the arc lengths."""
     arc = CATENARY_ARC
     schedule = Schedule(interval, picture_interval)
-    with Recorder.open(folder, FACTS, arc, mesh, SCENE, fields, force) as recorder:
+    with Recorder.open(folder, facts, arc, mesh, SCENE, fields, force) as recorder:
         for name, kind, times in (
             ("lay", "static", [0.5, 1.0]),
             ("heave", "dynamic", list(0.1 * np.arange(1, round(duration / 0.1) + 1))),

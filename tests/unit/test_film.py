@@ -100,8 +100,8 @@ def test_what_cannot_be_filmed_is_said_and_leaves_no_file(
 
 def test_no_soil_or_no_folder_is_said(tmp_path: Path) -> None:
     record(tmp_path, duration=0.3)
-    with pytest.raises(ResultsError, match="the run has no soil"):
-        film(tmp_path, tmp_path / "film.gif")
+    with pytest.raises(ResultsError, match="the run has no soil, so there is nothing to colour or to magnify"):
+        film(tmp_path, tmp_path / "film.gif", magnify=5.0)
     with pytest.raises(WriteError, match="there is no folder"):
         film(tmp_path, tmp_path / "nowhere" / "film.gif")
     assert CliRunner().invoke(app, ["film", str(tmp_path), "--magnify", "0"]).exit_code == 2

@@ -1,0 +1,138 @@
+"""The pictures of a run: which there are for a stage, and their files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from riser_soil.errors import ResultsError
+from riser_soil.plots import film, histories, picture
+from riser_soil.plots.curves import save, sheet
+from riser_soil.plots.ranges import draw_range, names
+from riser_soil.plots.shape import snapshots
+from riser_soil.plots.trough import has_trough, trough
+from riser_soil.results import Run
+from riser_soil.results.stage_records import StageRecords, stage_records
+from riser_soil.results.whole_file import written_whole
+
+FORMATS = ("png", "svg", "pdf")
+GROUPS = ("ranges", "histories", "shape", "soil", "energy", "solver", "touchdown", "film")
+_ALONE = {"touchdown": "touchdown.png", "film": "film.gif"}  # drawn by a process of their own, in one format
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A sheet of curves: the name of its file without ending, its group, its caption, and how it is drawn."""
+
+    name: str
+    group: str
+    caption: str
+    draw: Callable[[], Figure]
+
+
+def pictures(stage: StageRecords) -> list[Picture]:
+    """All sheets of curves that a stage has something for."""
+    return [*_ranges(stage), *_others(stage)]
+
+
+def album(
+    run: Run, folder: Path, what: Sequence[str] = (), ending: str = "png", stage: str | None = None
+) -> Iterator[tuple[Path | None, str]]:
+    """Draws pictures into a folder: file by file with its caption, or None and the reason why one is not there.
+
+    what: of GROUPS, or names of pictures; none for all that there is. Raises ResultsError for unknown names, and where
+    what was asked for by name can't be drawn.
+    """
+    of_stage = stage_records(run, stage)
+    there = pictures(of_stage)
+    _check(what, there)
+    folder.mkdir(parents=True, exist_ok=True)
+    for each in there:
+        if not what or {each.group, each.name} & set(what):
+            file = folder / f"{each.name}.{ending}"
+            with written_whole(file) as part:
+                save(each.draw(), part)
+            yield file, each.caption
+    for name, file_name in _ALONE.items():
+        if not what or name in what:
+            yield _drawn_alone(name, of_stage, folder / file_name, asked=bool(what))
+
+
+def _check(what: Sequence[str], there: Sequence[Picture]) -> None:
+    known = [*GROUPS, *(each.name for each in there if each.name not in GROUPS)]
+    for name in what:
+        if name not in known:
+            raise ResultsError(f'--what: "{name}" is not among the pictures of this run; it has {", ".join(known)}')
+    drawn = {each.group for each in there} | _ALONE.keys()
+    for name in what:
+        if name in GROUPS and name not in drawn:
+            raise ResultsError(f"--what {name}: the stage has nothing to draw for it")
+
+
+def _ranges(stage: StageRecords) -> Iterator[Picture]:
+    for name in names(stage):
+        caption = f"{name.replace('_', ' ')} along the riser: {when(stage)}"
+        yield Picture(f"range_{name}", "ranges", caption, partial(_range_sheet, stage, name))
+
+
+def _range_sheet(stage: StageRecords, name: str) -> Figure:
+    figure, (axes,) = sheet(1, 1, width=8.0, height=3.6)
+    draw_range(axes, stage, name)
+    axes.set_title(f"{stage.run.summary['title']}: {when(stage)}", fontsize="medium")
+    return figure
+
+
+def _others(stage: StageRecords) -> Iterator[Picture]:
+    there = stage.run.variables
+    if stage.moves:
+        yield _sheet(stage, "history_ends", "histories", "ends in time", histories.ends)
+        if _touches(stage):
+            yield _sheet(stage, "history_touchdown", "histories", "touchdown and contact in time", histories.touchdown)
+        words = "least tension and smallest bend radius in time"
+        yield _sheet(stage, "history_extremes", "histories", words, histories.least_and_tightest)
+    yield _sheet(stage, "shape", "shape", "shape of the riser", snapshots)
+    if has_trough(stage):
+        yield _sheet(stage, "trough", "soil", "trough across the riser", trough)
+    if stage.moves and "kinetic_energy" in there:
+        yield _sheet(stage, "energy", "energy", "energy since the stage began", histories.energy)
+        yield _sheet(stage, "solver", "solver", "iterations and steps", histories.solver)
+
+
+def _touches(stage: StageRecords) -> bool:
+    return bool((stage["max_penetration"] > 0.0).any())
+
+
+def _sheet(
+    stage: StageRecords, name: str, group: str, words: str, draw: Callable[[StageRecords], Figure]
+) -> Picture:
+    return Picture(name, group, f"{words}: {when(stage)}", partial(_titled, stage, draw))
+
+
+def _titled(stage: StageRecords, draw: Callable[[StageRecords], Figure]) -> Figure:
+    figure = draw(stage)
+    figure.suptitle(f"{stage.run.summary['title']}: {when(stage)}", fontsize="medium")
+    return figure
+
+
+def when(stage: StageRecords) -> str:
+    """The stage, and from when to when it was recorded."""
+    if not stage.moves:
+        return f"{stage.name}, at its end"
+    return f"{stage.name}, {stage.time[0]:.5g} to {stage.time[-1]:.5g} s"
+
+
+def _drawn_alone(name: str, stage: StageRecords, file: Path, asked: bool) -> tuple[Path | None, str]:
+    """The picture of the run's end, or the film of a stage; what was asked for must be there."""
+    run = stage.run
+    try:
+        if name == "film":
+            return film(run.folder, file, stage=stage.name), f"film: {stage.name}"
+        return picture(run.folder, file), "the touchdown zone at the run's end"
+    except ResultsError as err:
+        if asked:
+            raise
+        return None, f"no {name}: {err}"

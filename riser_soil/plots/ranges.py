@@ -1,0 +1,105 @@
+"""Range graphs: least, mean and largest value of a quantity at each node of the riser over a stage's records."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.outputs import ALONG_RISER
+from riser_soil.plots.curves import ALONG_ARC, ARC
+from riser_soil.results.stage_records import StageRecords
+
+_LIMITED = "utilisation"  # quantities that are limited by 1 have this in their names
+_NEAR_LIMIT = 0.5  # from which on the limit is drawn
+_LINE = 32  # characters of an axis's name in one line
+_ROUND_OFF = 1e-9  # of the largest value
+_SIDE = 0.1  # of the span where a quantity acts: shown beside it
+
+
+def names(stage: StageRecords) -> list[str]:
+    """Quantities along the riser that the run recorded and knows: what the table of outputs has but for vectors."""
+    there = stage.run.variables
+    known = [output.name for output in ALONG_RISER if not output.vector and output.name in there]
+    return [name for name in known if np.isfinite(stage[name]).any()]
+
+
+def draw_range(axes: Axes, stage: StageRecords, name: str) -> None:
+    """The range of a quantity of ALONG_ARC; of a stage with one record a line."""
+    words, factor = ALONG_ARC[name]
+    values, arc = factor * stage[name], stage.run.arc
+    if len(values) == 1:
+        axes.plot(arc, values[0], color="C0", label=f"at the stage's end, {_extremes(arc, values[0])}")
+    else:
+        _draw_band(axes, arc, values, stage.time)
+    _mark_touchdown(axes, stage)
+    if _LIMITED in name and np.nanmax(values) > _NEAR_LIMIT:
+        axes.axhline(1.0, color="C3", linestyle="--", linewidth=1.0, label="limit")
+    axes.set_xlim(*_span(arc, values))
+    axes.set_xlabel(ARC)
+    axes.set_ylabel(textwrap.fill(words, _LINE))
+    axes.legend(fontsize="small")
+
+
+def compare_ranges(axes: Axes, stages: dict[str, StageRecords], name: str) -> None:
+    """Ranges of a quantity in several runs, by their labels, on one sheet: a band's edges in one colour for each."""
+    words, factor = ALONG_ARC[name]
+    spans = []
+    for n, (label, stage) in enumerate(stages.items()):
+        values, arc = factor * stage[name], stage.run.arc
+        axes.plot(arc, values.max(axis=0), color=f"C{n}", linewidth=1.2, label=label)
+        axes.plot(arc, values.min(axis=0), color=f"C{n}", linewidth=1.2, linestyle=":")
+        spans.append(_span(arc, values))
+    axes.set_xlim(min(low for low, _ in spans), max(high for _, high in spans))
+    axes.set_xlabel(ARC)
+    axes.set_ylabel(textwrap.fill(words, _LINE))
+    axes.legend(fontsize="small", title="largest, dotted least")
+
+
+def mean_in_time(time: Array, values: Array) -> Array:
+    """Mean over the time (nr,) [s] of values (nr, nn) that run straight from record to record."""
+    gaps = np.diff(time)
+    weights = np.concatenate([[0.0], gaps]) + np.concatenate([gaps, [0.0]])
+    return np.average(values, axis=0, weights=weights if weights.sum() > 0.0 else None)
+
+
+def _draw_band(axes: Axes, arc: Array, values: Array, time: Array) -> None:
+    least, most = values.min(axis=0), values.max(axis=0)
+    axes.fill_between(arc, least, most, color="C0", alpha=0.2, linewidth=0.0)
+    axes.plot(arc, most, color="C3", linewidth=1.2, label=f"max, {_place('largest', arc, most, np.nanargmax)}")
+    axes.plot(arc, mean_in_time(time, values), color="k", linewidth=0.9, linestyle="--", label="mean")
+    axes.plot(arc, least, color="C0", linewidth=1.2, label=f"min, {_place('least', arc, least, np.nanargmin)}")
+
+
+def _place(word: str, arc: Array, values: Array, at: Callable[[Array], Any]) -> str:
+    """What is round-off beside the largest value is told as 0."""
+    n = int(at(values))
+    told = values[n] if abs(values[n]) > _ROUND_OFF * np.nanmax(np.abs(values)) else 0.0
+    return f"{word} {told:.4g} at {arc[n]:.4g} m"
+
+
+def _extremes(arc: Array, values: Array) -> str:
+    return f"{_place('largest', arc, values, np.nanargmax)}, {_place('least', arc, values, np.nanargmin)}"
+
+
+def _mark_touchdown(axes: Axes, stage: StageRecords) -> None:
+    touchdown = stage["touchdown_arc"]
+    if np.isnan(touchdown).all():
+        return
+    low, high = float(np.nanmin(touchdown)), float(np.nanmax(touchdown))
+    words = f"touchdown, {low:.4g} to {high:.4g} m" if high > low else f"touchdown, {low:.4g} m"
+    axes.axvspan(low, high, color="tan", alpha=0.35, linewidth=1.0, label=words)
+
+
+def _span(arc: Array, values: Array) -> tuple[float, float]:
+    """What is shown of the arc length [m]: all of it, or where the quantity acts if that is less than half."""
+    acts = np.flatnonzero((np.nan_to_num(values) != 0.0).any(axis=0))
+    if len(acts) == 0 or np.ptp(arc[acts]) > 0.5 * np.ptp(arc):
+        return float(arc[0]), float(arc[-1])
+    low, high = arc[max(acts[0] - 1, 0)], arc[min(acts[-1] + 1, len(arc) - 1)]
+    side = _SIDE * (high - low)
+    return float(max(low - side, arc[0])), float(min(high + side, arc[-1]))

@@ -1,0 +1,69 @@
+"""Film of a riser without soil: its shape in the plane of its ends, coloured by bending moment, frame by frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
+
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.errors import ResultsError
+from riser_soil.plots.curves import sheet
+from riser_soil.plots.moving_pictures import write_film
+from riser_soil.plots.scales import colour_scale
+from riser_soil.plots.shape import filmed_records
+from riser_soil.results import Run
+from riser_soil.results.cycles import cycles, dynamic_stage
+from riser_soil.results.derived import along
+from riser_soil.results.seabed_line import seabed_under
+from riser_soil.results.stage_records import stage_records
+
+MOST_FRAMES = 120
+_INCHES, _DPI = (9.6, 5.4), 100
+
+
+def film_riser(run: Run, file: Path, stage: str | None = None, period: float | None = None) -> None:
+    """The last whole cycle of a dynamic stage, by default the last one; of motion without one period the records around
+    the largest moment.
+    """
+    number = dynamic_stage(run, stage)
+    of_stage = stage_records(run, run.stage_names[number])
+    records = filmed_records(of_stage, MOST_FRAMES) if period is None else cycles(run, number, period)[-1].records
+    if len(records) < 2:
+        raise ResultsError(
+            f'{run.folder}: stage "{of_stage.name}" has {len(records)} record(s) to film, and a film takes two; '
+            "shorten output.interval of the scene and run again"
+        )
+    write_film(file, _pictures(run, records), float(np.diff(run.time[records]).mean()))
+
+
+def _pictures(run: Run, records: IntArray) -> Iterator[Array]:
+    """Frames (height, width, 3), bytes of red, green and blue."""
+    position = run["position"]
+    moment = 1e-3 * (run["bending_moment"] if "bending_moment" in run.variables else np.zeros(position.shape[:2]))
+    origin, ahead = position[0, 0], along(position[0])
+    x, z = (position - origin) @ ahead, position[..., 2]
+    figure, (axes,) = sheet(1, 1, *_INCHES)
+    canvas = FigureCanvasAgg(figure)
+    figure.set_dpi(_DPI)
+    axes.set(xlabel="horizontal distance from the start [m]", ylabel="z [m], upwards")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.plot(x[records].T, z[records].T, color="0.85", linewidth=0.8)
+    ground = np.linspace(x[records].min(), x[records].max(), 100)
+    level = seabed_under(run, origin + ground[:, None] * ahead)
+    if level is not None:
+        axes.plot(ground, level, color="saddlebrown")
+    top, _ = colour_scale(moment[records])
+    line = LineCollection([], cmap="viridis", linewidth=4.0, clim=(0.0, top))
+    axes.add_collection(line)
+    figure.colorbar(line, ax=axes, label="bending moment [kN m]")
+    for n in records:
+        points = np.column_stack([x[n], z[n]])
+        line.set_segments(np.stack([points[:-1], points[1:]], axis=1))
+        line.set_array(0.5 * (moment[n, :-1] + moment[n, 1:]))
+        axes.set_title(f"{run.summary['title']}, t = {run.time[n]:.5g} s")
+        canvas.draw()
+        yield np.array(canvas.buffer_rgba())[..., :3]

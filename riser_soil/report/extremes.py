@@ -1,0 +1,125 @@
+"""Tables of a stage: figures at its end and their extremes, with times, places and error bars."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from riser_soil.accuracy.headlines import headlines
+from riser_soil.core import outputs
+from riser_soil.core.output import Figure, OutputQuantity
+from riser_soil.plots.units import shown
+from riser_soil.report.tables import NOTHING, Table, compact, found, number
+
+READ_IN = {"N": ("kN", 1e-3), "N.m": ("kN.m", 1e-3)}  # units of headline quantities, as they are read
+_HEADS = {
+    "static": ("quantity", "unit", "value", "at arc [m]", "±"),
+    "dynamic": (
+        *("quantity", "unit", "at the end", "min", "at t [s]", "at arc [m]", "±"),
+        *("max", "at t [s]", "at arc [m]", "±"),
+    ),
+}
+_AXES, _ALL = ("x", "y", "z"), ", x, y, z"
+_NOTE = "Times are those of the run, arc lengths count from the riser's start. "
+_LEFT_OUT = "Components that stay 0 are left out. "
+
+
+def extremes_table(summary: Mapping[str, Any], stage: Mapping[str, Any]) -> Table:
+    """The figures of a stage that an engineer reads first: those of the screen, with places and error bars."""
+    return _table(stage, headline=True, bars=error_bars(summary, stage["name"]))
+
+
+def ends_table(stage: Mapping[str, Any]) -> Table:
+    """Positions of the ends, forces and moments of their supports, by component."""
+    return _table(stage, headline=False, bars={})
+
+
+def error_bars(summary: Mapping[str, Any], stage: str) -> dict[tuple[str, str], float | None]:
+    """Error bars of SI by figure and min or max; empty where none were asked for."""
+    known = headlines(summary)
+    told = found(summary, ("error_bars", "quantities")) or []
+    names = {f"{each['stage']}: {each['name']}": each["bar"] for each in told if each["stage"] == stage}
+    return {(known[key].figure, known[key].which): bar for key, bar in names.items() if key in known}
+
+
+def headlines_table(summary: Mapping[str, Any]) -> Table:
+    """What is read first: headline quantities stage by stage, and their error bars if there are any."""
+    bars = {f"{each['stage']}: {each['name']}": each for each in found(summary, ("error_bars", "quantities")) or []}
+    sources = list(dict.fromkeys(source for each in bars.values() for source in each["by_source"]))
+    rows = []
+    for key, each in headlines(summary).items():
+        unit, scale = READ_IN.get(each.unit, (each.unit, 1.0))
+        bar = bars.get(key, {})
+        shares = (_bar(bar.get("by_source", {}).get(source), scale) for source in sources)
+        rows.append([each.stage, each.name, unit, number(each.value * scale), _whole_bar(bar, scale), *shares])
+    head = ("stage", "quantity", "unit", "value", "±", *(f"by {source}" for source in sources))
+    note = "Of static stages at their end, of dynamic ones the extremes over the stage."
+    return compact(Table(head, rows, note))
+
+
+def _whole_bar(bar: Mapping[str, Any], scale: float) -> str:
+    return "not known" if "reason" in bar else _bar(bar.get("bar"), scale)
+
+
+def _table(stage: Mapping[str, Any], headline: bool, bars: Mapping[tuple[str, str], float | None]) -> Table:
+    if stage["final"] is None:
+        return Table(_HEADS[stage["kind"]], [])
+    rows: list[list[str]] = []
+    signs: dict[str, list[str]] = {}
+    for output, figure in outputs.figures(()):
+        final, extremes = found(stage["final"], figure.path), found(stage["extremes"], figure.path)
+        if final is None or (figure.row is not None) != headline:
+            continue
+        words, unit, scale = _words(output, figure)
+        bar = {which: bars.get((figure.name, which)) for which in ("min", "max")}
+        rows += list(_rows(stage["kind"], (words, unit, scale), final, extremes, bar))
+        if output.sign:
+            signs.setdefault(output.sign, []).append(words.removesuffix(_ALL))
+    told = [f"{', '.join(words)}: {sign}." for sign, words in signs.items()]
+    return compact(Table(_HEADS[stage["kind"]], rows, _NOTE + ("" if headline else _LEFT_OUT) + " ".join(told)))
+
+
+def _words(output: OutputQuantity[Any], figure: Figure) -> tuple[str, str, float]:
+    if figure.row is not None:
+        return figure.row.words, figure.row.unit, figure.row.scale
+    unit, scale = shown(output.units)
+    end = f", {figure.path[0]}" if output.where == "nodes" and len(figure.path) > 1 else ""
+    size = ", resultant" if "resultant" in figure.name else ""
+    named = f"{output.text}{end}{size}"
+    return (named if end or output.where != "nodes" else figure.name.replace("_", " ")), unit, scale
+
+
+def _rows(
+    kind: str,
+    quantity: tuple[str, str, float],
+    final: Any,
+    extremes: Mapping[str, Any] | None,
+    bars: Mapping[str, float | None],
+) -> Iterator[list[str]]:
+    words, unit, scale = quantity
+    if isinstance(final, list):
+        for n, axis in enumerate(_AXES):
+            part = {key: values[n] for key, values in (extremes or {}).items() if isinstance(values, list)}
+            if not (final[n] or part.get("min") or part.get("max")):
+                continue
+            yield from _rows(kind, (f"{words.removesuffix(_ALL)}, {axis}", unit, scale), final[n], part, bars)
+        return
+    arc = final.get("arc") if isinstance(final, dict) else None
+    value = final["value"] if isinstance(final, dict) else final
+    if kind == "static":
+        yield [words, unit, _scaled(value, scale), number(arc), _bar(bars["max"] or bars["min"], scale)]
+        return
+    told = extremes or {}
+    sides = []
+    for which in ("min", "max"):
+        place = number(told.get(f"arc_{which}"))
+        sides += [_scaled(told.get(which), scale), number(told.get(f"t_{which}"), 4), place, _bar(bars[which], scale)]
+    yield [words, unit, _scaled(value, scale), *sides]
+
+
+def _scaled(value: float | None, scale: float) -> str:
+    return NOTHING if value is None else number(value * scale)
+
+
+def _bar(bar: float | None, scale: float) -> str:
+    return "" if bar is None else number(bar * scale, 2)

@@ -1,0 +1,193 @@
+"""The report of one run or several: one HTML page that needs no other file, no network and no script."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from riser_soil import __version__
+from riser_soil.errors import ResultsError
+from riser_soil.plots import picture
+from riser_soil.plots.album import GROUPS, pictures
+from riser_soil.plots.embedding import embedded, embedded_png
+from riser_soil.plots.side_by_side import sheets
+from riser_soil.report import comparison, health, scene_words
+from riser_soil.report.extremes import ends_table, extremes_table, headlines_table
+from riser_soil.report.tables import Table
+from riser_soil.results import Run
+from riser_soil.results import folder as run_folder
+from riser_soil.results.stage_records import StageRecords, all_stages, stage_records
+from riser_soil.results.whole_file import written_whole
+
+
+@dataclass(frozen=True)
+class Image:
+    """A picture of the page: its data URI and what it shows."""
+
+    uri: str
+    caption: str
+
+
+@dataclass(frozen=True)
+class StagePart:
+    """What the page tells of a stage; pictures by their groups, of stages that are drawn."""
+
+    name: str
+    kind: str
+    extremes: Table
+    ends: Table
+    soil: Table
+    energy: Table
+    indicators: Table
+    pictures: Mapping[str, Sequence[Image]]
+
+
+@dataclass(frozen=True)
+class RunPart:
+    """What the page tells of a run; the rest of it follows from its summary."""
+
+    label: str
+    anchor: str
+    folder: str
+    summary: Mapping[str, Any]
+    warnings: Sequence[str]
+    prose: Sequence[str]
+    scene_tables: Sequence[tuple[str, Table]]
+    shape: Sequence[Image]
+    touchdown: Image | None
+    no_touchdown: str
+    stages: Sequence[StagePart]
+    headlines: Table
+    solver: Table
+    seconds: Table
+    versions: Table
+    built: str
+    left_out: Sequence[str]
+    scene_text: str
+
+
+def write_report(folders: Sequence[Path], file: Path, stage: str | None = None) -> Path:
+    """Writes the page. stage: the one that is drawn; by default all dynamic ones, else the last.
+
+    Raises ResultsError where a folder holds no run, or nothing was recorded; the file is then left as it was.
+    """
+    runs = dict(zip(_labels(folders), (Run(folder) for folder in folders), strict=True))
+    with written_whole(file) as part:
+        part.write_text(_page(runs, stage), encoding="utf-8")
+    return file
+
+
+def _page(runs: Mapping[str, Run], stage: str | None) -> str:
+    parts = [_run_part(label, f"run{n}", run, stage) for n, (label, run) in enumerate(runs.items())]
+    page: str = _template().render(
+        title=" | ".join(dict.fromkeys(part.summary["title"] for part in parts)),
+        runs=parts,
+        compared=_comparison(runs, stage) if len(runs) > 1 else None,
+        made=f"riser-soil {__version__}, {date.today().isoformat()}",
+    )
+    return page
+
+
+def _template() -> Any:
+    loader = PackageLoader("riser_soil.report", "template")
+    environment = Environment(
+        loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    return environment.get_template("report.html")
+
+
+def _labels(folders: Sequence[Path]) -> list[str]:
+    """Names of the folders, or their paths where two have one name."""
+    names = [folder.resolve().name for folder in folders]
+    return names if len({*names}) == len(names) else [str(folder) for folder in folders]
+
+
+def _run_part(label: str, anchor: str, run: Run, stage: str | None) -> RunPart:
+    drawn = _drawn_stages(run, stage)
+    summary, scene = run.summary, scene_words.read(run)
+    shape, touchdown, why = _shape(run), None, ""
+    try:
+        uri = embedded_png(lambda png: picture(run.folder, png))
+        touchdown = Image(uri, f"the touchdown zone and the whole riser at {run.time[-1]:.5g} s")
+    except ResultsError as err:
+        why = str(err)
+    built, left_out = health.parts_words(summary)
+    return RunPart(
+        label=label,
+        anchor=anchor,
+        folder=str(run.folder),
+        summary=summary,
+        warnings=health.warnings_of(summary),
+        prose=scene_words.prose(scene, run) if scene is not None else ["The scene's file can't be read."],
+        scene_tables=[*_scene_tables(scene)] if scene is not None else [],
+        shape=shape,
+        touchdown=touchdown,
+        no_touchdown=why,
+        stages=[_stage_part(summary, told, drawn.get(n)) for n, told in enumerate(summary["stages"])],
+        headlines=headlines_table(summary),
+        solver=health.solver_table(summary),
+        seconds=health.seconds_table(summary),
+        versions=health.versions_table(summary),
+        built=built,
+        left_out=left_out,
+        scene_text=(run.folder / run_folder.SCENE).read_text(encoding="utf-8"),
+    )
+
+
+def _scene_tables(scene: Any) -> Iterator[tuple[str, Table]]:
+    yield "The riser from its start to its end", scene_words.segments_table(scene)
+    yield "Line types", scene_words.pipes_table(scene)
+    yield "Water, ground, contact, solver", scene_words.parts_table(scene)
+    yield "Stages", scene_words.stages_table(scene)
+
+
+def _shape(run: Run) -> list[Image]:
+    """The shape at the end of the first stage: where the riser lies before it is moved."""
+    first = all_stages(run)[:1]
+    still = [each for stage in first if not stage.dynamic for each in pictures(stage) if each.group == "shape"]
+    return [Image(embedded(each.draw()), each.caption) for each in still]
+
+
+def _drawn_stages(run: Run, stage: str | None) -> dict[int, StageRecords]:
+    """The stages that are drawn, by their numbers."""
+    chosen = stage_records(run, stage)
+    dynamic = [each for each in all_stages(run) if each.dynamic] if stage is None else []
+    return {each.number: each for each in (dynamic or [chosen])}
+
+
+def _stage_part(summary: Mapping[str, Any], told: Mapping[str, Any], drawn: StageRecords | None) -> StagePart:
+    groups: dict[str, list[Image]] = {group: [] for group in GROUPS}
+    for each in pictures(drawn) if drawn is not None else ():
+        groups[each.group].append(Image(embedded(each.draw()), each.caption))
+    return StagePart(
+        name=told["name"],
+        kind=told["kind"],
+        extremes=extremes_table(summary, told),
+        ends=ends_table(told),
+        soil=health.soil_table(told),
+        energy=health.energy_table(told),
+        indicators=health.indicators_table(told),
+        pictures=groups,
+    )
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Several runs side by side."""
+
+    differences: Table
+    headlines: Table
+    pictures: Sequence[Image]
+
+
+def _comparison(runs: Mapping[str, Run], stage: str | None) -> Comparison:
+    return Comparison(
+        comparison.differences_table(runs),
+        comparison.headlines_table(runs),
+        [Image(embedded(each.figure), each.caption) for each in sheets(runs, stage)],
+    )

@@ -1,0 +1,169 @@
+"""The pictures of riser-soil plot, by what they put on their axes and what files they leave."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from PIL import Image
+from typer.testing import CliRunner
+
+from riser_soil.__main__ import app
+from riser_soil.core.outputs import ALONG_RISER
+from riser_soil.errors import ResultsError
+from riser_soil.plots import film
+from riser_soil.plots.album import album, pictures
+from riser_soil.plots.curves import envelope, sheet
+from riser_soil.plots.ranges import draw_range, mean_in_time, names
+from riser_soil.plots.scales import drawn_radius, metres
+from riser_soil.plots.shape import filmed_records
+from riser_soil.plots.side_by_side import sheets
+from riser_soil.plots.units import axis_words
+from riser_soil.results import Run
+from riser_soil.results.seabed_line import seabed_under
+from riser_soil.results.stage_records import stage_records
+from tests.support.on_ranks import ROOT
+from tests.support.recorded_run import record
+
+SCENE = (ROOT / "demos/first_scene.yaml").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """A riser alone, in 1 s of motion, on the first scene's seabed."""
+    folder = tmp_path_factory.mktemp("album") / "run"
+    record(folder, duration=1.0)
+    (folder / "scene.yaml").write_text(SCENE, encoding="utf-8")
+    return Run(folder)
+
+
+def test_every_number_along_the_riser_has_a_range_graph(run: Run) -> None:
+    stage = stage_records(run)
+    expected = [output.name for output in ALONG_RISER if not output.vector and output.name in run.variables]
+    assert names(stage) == [name for name in expected if np.isfinite(run[name]).any()]
+    assert {"effective_tension", "bending_moment", "bend_utilisation", "slip"} <= {*names(stage)}
+    assert axis_words("stress", "Pa") == ("stress [MPa]", 1e-6)
+
+
+def test_a_range_is_least_mean_and_largest_of_the_stage(run: Run) -> None:
+    _, (axes,) = sheet(1, 1)
+    draw_range(axes, stage_records(run), "bending_moment")
+    most, mean, least = (np.asarray(line.get_ydata()) for line in axes.lines)
+    values = 1e-3 * run["bending_moment"]
+    assert most == pytest.approx(values.max(axis=0))
+    assert least == pytest.approx(values.min(axis=0))
+    assert ((least <= mean) & (mean <= most)).all()
+    assert axes.get_ylabel() == "bending moment, magnitude [kN m]"
+    largest, arc = values.max(), run.arc[values.max(axis=0).argmax()]
+    assert axes.get_legend_handles_labels()[1][0] == f"max, largest {largest:.4g} at {arc:.4g} m"
+
+
+def test_a_mean_counts_time_not_records() -> None:
+    assert mean_in_time(np.array([0.0, 1.0, 4.0]), np.array([[0.0], [1.0], [4.0]])) == pytest.approx(2.0)
+    assert mean_in_time(np.array([2.0]), np.array([[3.0]])) == pytest.approx(3.0)
+
+
+def test_a_stage_of_one_record_is_a_line(run: Run) -> None:
+    _, (axes,) = sheet(1, 1)
+    draw_range(axes, stage_records(run, "lay"), "effective_tension")
+    assert len(axes.lines) == 1
+    assert axes.lines[0].get_ydata() == pytest.approx(1e-3 * run["effective_tension"][0])
+
+
+def test_a_band_without_width_is_still_a_line(run: Run) -> None:
+    figure, (axes,) = sheet(1, 1)
+    axes.grid(visible=False)
+    envelope(axes, run, "effective_tension", since=float(run.time[-1]))
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    pixels = np.asarray(canvas.buffer_rgba()).astype(int)[..., :3]
+    blue = (pixels[..., 2] - pixels[..., 0]) > 60
+    assert blue.any(axis=0).mean() > 0.5, "across most of the sheet"
+
+
+def test_what_acts_near_touchdown_is_shown_from_close_by(run: Run) -> None:
+    _, (close, whole) = sheet(1, 2)
+    draw_range(close, stage_records(run), "contact_force")
+    draw_range(whole, stage_records(run), "bending_moment")
+    assert close.get_xlim()[1] < 40.0
+    assert whole.get_xlim()[1] == pytest.approx(run.arc[-1])
+
+
+def test_all_pictures_of_a_riser_alone(run: Run, tmp_path: Path) -> None:
+    there = {each.name for each in pictures(stage_records(run))}
+    assert {"history_ends", "history_touchdown", "history_extremes", "shape", "energy", "solver"} <= there
+    assert {each.name for each in pictures(stage_records(run, "lay"))} >= {"range_curvature", "shape"}
+    done = CliRunner().invoke(
+        app, ["plot", str(run.folder), "-o", str(tmp_path), "--what", "shape,range_slip", "--what", "solver"]
+    )
+    assert done.exit_code == 0, done.output
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["range_slip.png", "shape.png", "solver.png"]
+    assert f"{tmp_path / 'shape.png'}: shape of the riser: heave, 0 to 1 s" in done.output
+
+
+@pytest.mark.parametrize(("ending", "begins"), [("svg", b"<?xml"), ("pdf", b"%PDF")])
+def test_curves_in_other_formats_are_the_same_each_time(run: Run, tmp_path: Path, ending: str, begins: bytes) -> None:
+    made = [next(iter(album(run, tmp_path / name, ["range_slip"], ending)))[0] for name in "ab"]
+    one, other = (file.read_bytes() for file in made if file is not None)
+    assert one.startswith(begins)
+    assert one == other
+
+
+def test_the_seabed_is_drawn_where_it_is(run: Run) -> None:
+    assert seabed_under(run, np.array([[0.0, 0.0, 5.0], [50.0, 0.0, 9.0]])) == pytest.approx([0.0, 0.0])
+    figure = next(each for each in pictures(stage_records(run)) if each.name == "shape").draw()
+    seabed = [line for line in figure.axes[1].lines if line.get_label() == "seabed"]
+    assert seabed[0].get_ydata() == pytest.approx(0.0)
+
+
+def test_a_film_of_a_riser_alone(run: Run, tmp_path: Path) -> None:
+    with Image.open(film(run.folder, tmp_path / "riser.gif", period=0.3)) as gif:
+        assert (gif.size, gif.n_frames) == ((960, 540), 4)  # type: ignore[attr-defined]
+        first = np.asarray(gif.convert("RGB")).astype(int)
+        gif.seek(2)
+        assert np.abs(np.asarray(gif.convert("RGB")).astype(int) - first).max() > 50
+    assert len(filmed_records(stage_records(run), 5)) == 5
+    with pytest.raises(ResultsError, match="nothing to colour"):
+        film(run.folder, tmp_path / "no.gif", field="settlement")
+
+
+def test_runs_on_one_sheet(run: Run) -> None:
+    drawn = [*sheets({"one": run, "other": run}, None)]
+    assert drawn[0].caption == "effective tension along the riser: heave"
+    assert len(drawn[0].figure.axes[0].lines) == 4
+    assert drawn[-1].caption == "top tension and touchdown in time: heave"
+    assert [*sheets({"one": run}, None)] == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["--what", "waves"], '"waves" is not among the pictures of this run; it has ranges, histories'),
+        (["--what", "energy", "--stage", "lay"], "--what energy: the stage has nothing to draw for it"),
+        (["--stage", "storm"], '"storm" is no stage of the run with records; it has lay, heave'),
+        (["--format", "gif"], '--format "gif": must be one of png, svg, pdf'),
+    ],
+)
+def test_what_cannot_be_drawn_is_said(run: Run, tmp_path: Path, arguments: list[str], says: str) -> None:
+    done = CliRunner().invoke(app, ["plot", str(run.folder), "-o", str(tmp_path / "plots"), *arguments])
+    assert done.exit_code == 2
+    assert says in done.output
+    assert not (tmp_path / "plots").exists()
+
+
+def test_sizes_read_well() -> None:
+    assert [metres(length) for length in (1543.2, 100.0, 99.94, 2.5)] == ["1543 m", "100 m", "99.9 m", "2.5 m"]
+    assert drawn_radius(0.15, 300.0) == pytest.approx(1.2)
+    assert drawn_radius(0.15, 10.0) == 0.15
+
+
+COMMANDS = [command.callback.__name__ for command in app.registered_commands if command.callback]
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_helps(command: str) -> None:
+    done = CliRunner().invoke(app, [command, "--help"])
+    assert done.exit_code == 0
+    assert f"Usage: root {command}" in done.output

@@ -1,0 +1,197 @@
+"""The report of a recorded run: its tables against the summary, its page in a browser."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from PIL import Image
+from typer.testing import CliRunner
+
+from riser_soil.__main__ import app
+from riser_soil.errors import ResultsError, WriteError
+from riser_soil.report.comparison import differences_table, headlines_table
+from riser_soil.report.extremes import error_bars, extremes_table
+from riser_soil.report.extremes import headlines_table as headlines_of
+from riser_soil.report.health import energy_table, versions_table, warnings_of
+from riser_soil.report.report import write_report
+from riser_soil.report.scene_words import parts_table, pipes_table, prose, read, segments_table, stages_table
+from riser_soil.report.tables import Table, compact, number
+from riser_soil.results import Run
+from tests.support.browser import visit
+from tests.support.on_ranks import ROOT
+from tests.support.recorded_run import block, record
+
+SCENE = (ROOT / "demos/first_scene.yaml").read_text(encoding="utf-8")
+WARNING = "elements are <long>"
+BAR = {"stage": "heave", "name": "largest bending moment", "unit": "N.m", "value": 1.0, "bar": 12.0}
+
+
+def recorded(folder: Path, scene: str = SCENE, **options: Any) -> Run:
+    """A run that the recorder has seen, with the first scene's file."""
+    record(folder, duration=0.4, picture_interval=0.2, **options)
+    (folder / "scene.yaml").write_text(scene, encoding="utf-8")
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    summary["warnings"] = [WARNING]
+    summary["error_bars"] = {"quantities": [BAR | {"by_source": {"mesh": 9.0, "time": 3.0}}]}
+    (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    return Run(folder)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    return recorded(tmp_path_factory.mktemp("report") / "run", mesh=block(8, 4, 2))
+
+
+@pytest.fixture(scope="module")
+def page(run: Run) -> Path:
+    file = run.folder.parent / "report.html"
+    done = CliRunner().invoke(app, ["report", str(run.folder), "-o", str(file)])
+    assert (done.exit_code, done.output.strip()) == (0, str(file))
+    return file
+
+
+def images(page: Path) -> Iterator[tuple[str, bytes]]:
+    """Type and content of the page's pictures."""
+    for kind, data in re.findall(r'src="data:image/([^;]+);base64,([^"]*)"', page.read_text(encoding="utf-8")):
+        yield kind, base64.b64decode(data)
+
+
+def row(table: Table, *words: str) -> dict[str, str]:
+    """The row that begins with these words, by the heads of the columns; a head that comes twice keeps both."""
+    found = next(row for row in table.rows if tuple(row[: len(words)]) == words)
+    named = [f"{head}{'' if head not in table.head[:n] else ' (2)'}" for n, head in enumerate(table.head)]
+    return dict(zip(named, found, strict=True))
+
+
+def test_the_page_needs_nothing_else(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    assert not re.search(r"<script|<link [^>]*href=\"(?!data:)|@import|url\(|(src|href)=\"(?!data:|#)", text)
+    kinds = [kind for kind, _ in images(page)]
+    assert kinds.count("png") == 1
+    assert kinds.count("svg+xml") > 12
+    for kind, content in images(page):
+        if kind == "png":
+            assert Image.open(io.BytesIO(content)).size == (1600, 900)
+        else:
+            drawing = ElementTree.fromstring(content)
+            assert len(list(drawing.iter("{http://www.w3.org/2000/svg}path"))) > 10
+            assert not list(drawing.iter("{http://www.w3.org/2000/svg}text")), "letters are drawn: no font is needed"
+
+
+def test_the_page_tells_all_that_it_should(page: Path) -> None:
+    text = re.sub(r'src="[^"]*"', "", page.read_text(encoding="utf-8"))
+    assert "elements are &lt;long&gt;" in text
+    for words in (
+        *("Headline quantities", "A riser of 148 m", "Line types", "Stage lay (static)", "Stage heave (dynamic)"),
+        *("Along the riser", "Ends, touchdown and contact in time", "Shapes", "Soil", "Energy balance"),
+        *("How it was solved", "How to reproduce it", "riser-soil run scene.yaml", "@page", "trough across the riser"),
+    ):
+        assert words in text, words
+    assert SCENE.splitlines()[0] in text
+
+
+def test_a_browser_opens_the_page(page: Path, tmp_path: Path) -> None:
+    shot = tmp_path / "page.png"
+    seen = visit(page, "--dump-dom", f"--screenshot={shot}", "--window-size=1200,2400")
+    assert seen.console == []
+    assert "Stage heave (dynamic)" in seen.printed
+    pixels = np.asarray(Image.open(shot).convert("RGB")).astype(int)
+    assert pixels.shape[:2] == (2400, 1200)
+    assert 0.02 < (pixels.sum(axis=2) < 600).mean() < 0.6, "text and pictures on white"
+    assert (np.ptp(pixels, axis=2) > 60).mean() > 0.01, "pictures in colour"
+
+
+def test_the_page_prints_on_pages(page: Path, tmp_path: Path) -> None:
+    visit(page, f"--print-to-pdf={tmp_path / 'page.pdf'}", "--no-pdf-header-footer")
+    pdf = (tmp_path / "page.pdf").read_bytes()
+    assert pdf.startswith(b"%PDF")
+    assert len(re.findall(rb"/Type\s*/Page\b", pdf)) > 3
+
+
+def test_the_browser_would_tell(tmp_path: Path) -> None:
+    broken = tmp_path / "broken.html"
+    broken.write_text("<script>throw new Error('no good')</script>", encoding="utf-8")
+    assert any("no good" in line for line in visit(broken, "--dump-dom").console)
+
+
+def test_extremes_have_times_places_and_error_bars(run: Run) -> None:
+    stage = run.summary["stages"][1]
+    told = row(extremes_table(run.summary, stage), "largest bending moment")
+    known = stage["extremes"]["max_bending_moment"]
+    assert float(told["max"]) == pytest.approx(1e-3 * known["max"], rel=1e-4)
+    assert float(told["at t [s] (2)"]) == pytest.approx(known["t_max"], rel=1e-3)
+    assert float(told["at arc [m] (2)"]) == pytest.approx(known["arc_max"], rel=1e-4)
+    assert error_bars(run.summary, "heave") == {("max_bending_moment", "max"): 12.0}
+    assert "0.012" in told.values(), "of 12 N.m"
+    first = row(headlines_of(run.summary), "heave", "largest bending moment")
+    assert (first["±"], first["by mesh"], first["by time"]) == ("0.012", "0.009", "0.003")
+
+
+def test_energy_and_versions_and_warnings(run: Run) -> None:
+    stage = run.summary["stages"][1]
+    told = row(energy_table(stage), "put in since the stage began; negative where it was taken out")
+    assert float(told["kJ"]) == pytest.approx(1e-3 * stage["energy"]["work"], rel=1e-4)
+    assert float(told["% of turned over"]) == pytest.approx(100.0)
+    assert ("riser_soil", "0.1.0") in [tuple(row) for row in versions_table(run.summary).rows]
+    assert warnings_of(run.summary)[0] == WARNING
+
+
+def test_the_scene_in_words(run: Run) -> None:
+    scene = read(run)
+    assert scene is not None
+    assert "The ground is a spring seabed." in prose(scene, run)
+    assert row(pipes_table(scene), "flexible")["EI [N.m²]"] == "50000"
+    assert row(segments_table(scene), "flexible")["to arc [m]"] == "50"
+    told = row(parts_table(scene), "seabed.stiffness")
+    assert (told["value"], told["unit"]) == ("100000", "N/m2")
+    assert row(stages_table(scene), "heave.motion.end.harmonic.period")["value"] == "10"
+
+
+def test_two_runs_side_by_side(run: Run, tmp_path: Path) -> None:
+    other = recorded(tmp_path / "other", SCENE.replace("1.0e5", "2.0e4"))
+    runs = {"one": run, "other": other}
+    assert [tuple(row) for row in differences_table(runs).rows if row[0] == "seabed.stiffness"] == [
+        ("seabed.stiffness", "100000.0", "20000.0")
+    ]
+    changed = other.summary["stages"][1]["extremes"]["max_bending_moment"]
+    changed["max"] *= 1.1
+    told = row(headlines_table(runs), "heave: largest bending moment")
+    assert told["differs from one by [%]"] == "+10"
+
+
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [
+        *((None, "–"), (float("nan"), "–"), (0.0, "0"), (1543.21, "1543.2")),
+        *((123456.7, "123457"), (1.5e-7, "1.5e-07"), (3e8, "3e+08")),
+    ],
+)
+def test_numbers_read_well(value: float | None, told: str) -> None:
+    assert number(value) == told
+
+
+def test_columns_without_anything_are_left_out() -> None:
+    sparse = Table(("a", "b", "c"), [["1", "", "2"], ["3", "–", ""]])
+    assert compact(sparse) == Table(["a", "c"], [["1", "2"], ["3", ""]])
+
+
+def test_what_cannot_be_reported_is_said(run: Run, tmp_path: Path) -> None:
+    with pytest.raises(WriteError, match="there is no folder"):
+        write_report([run.folder], tmp_path / "nowhere" / "report.html")
+    with pytest.raises(ResultsError, match="is not the folder of a run"):
+        write_report([tmp_path], tmp_path / "report.html")
+    with pytest.raises(ResultsError, match='"storm" is no stage of the run'):
+        write_report([run.folder], tmp_path / "report.html", "storm")
+    assert not [*tmp_path.glob("*.html"), *tmp_path.glob(".*")]
+    done = CliRunner().invoke(app, ["report", str(run.folder), "-o", str(tmp_path / "report.pdf")])
+    assert done.exit_code == 2
+    assert "a report is an .html file" in done.output
