@@ -27,7 +27,7 @@ def main(folder: Path, page: bool) -> None:
     pictures = PICTURES if page else folder
     publish({"figures": figures(Run(folder)), "stiffness": stiffness(Run(folder))}, folder, PAGE if page else None)
     picture(folder, pictures / "touchdown.png")
-    print(f"\nresults are in {folder}, touchdown.png in {pictures}; open riser.xdmf and soil.xdmf in ParaView")
+    print(f"\nresults are in {folder}, touchdown.png in {pictures}; open riser.vtkhdf and soil.vtkhdf in ParaView")
 
 
 def figures(done: Run) -> str:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from itertools import takewhile
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 from riser_soil.scene.water import Current
+from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMoskowitz, Record, WaveKind
 
 if TYPE_CHECKING:
     from riser_soil.sea.components import Components
@@ -40,20 +42,43 @@ def components_of(scene: Scene) -> Components | None:
     waves = scene.water.waves if scene.water is not None else None
     if waves is None:
         return None
-    if waves.jonswap is not None:
-        from riser_soil.sea import jonswap
+    from riser_soil.sea.components import joined
 
-        sea = waves.jonswap
-        direction = np.radians(sea.direction_deg)
-        return jonswap.components(
-            sea.Hs, sea.Tp, sea.gamma, sea.components, sea.seed, direction, scene.gravity, scene.water_depth
-        )
-    assert waves.airy is not None  # the scene's checks have seen to it
-    from riser_soil.sea.components import regular
+    g, h = scene.gravity, scene.water_depth
+    return joined([_train(train, number, g, h) for number, (_, train) in enumerate(waves.each)])
 
-    wave = waves.airy
-    angles = np.radians(wave.direction_deg), np.radians(wave.phase_deg)
-    return regular(wave.height, wave.period, *angles, scene.gravity, scene.water_depth)
+
+def _train(train: WaveKind, number: int, g: float, h: float) -> Components:
+    """Waves of one train; seas of the same seed differ by the train's number."""
+    match train:
+        case Airy():
+            from riser_soil.sea.components import regular
+
+            angles = math.radians(train.direction_deg), math.radians(train.phase_deg)
+            return regular(train.height, train.period, *angles, g, h)
+        case Record():
+            from riser_soil.sea.elevation import recorded
+
+            elevation = np.array(train.record.elevation)
+            return recorded(elevation, train.record.step, train.harmonics, train.position, train.toward[0], g, h)
+        case Jonswap() | PiersonMoskowitz():
+            from riser_soil.sea import jonswap
+
+            gamma = train.gamma if isinstance(train, Jonswap) else 1.0
+            return jonswap.components(
+                *(train.Hs, train.Tp, gamma, train.components, _seed(train.seed, number)), np.array(train.toward), g, h
+            )
+        case GivenSpectrum():
+            from riser_soil.sea import given_spectrum
+
+            w, density = np.array(train.table.frequency), np.array(train.table.density)
+            seed, toward = _seed(train.seed, number), np.array(train.toward)
+            return given_spectrum.components(w, density, train.components, seed, toward, g, h)
+    assert_never(train)
+
+
+def _seed(seed: int, number: int) -> list[int]:
+    return [seed, number] if number else [seed]
 
 
 def wave_clock(scene: Scene, stage: Stage) -> float:

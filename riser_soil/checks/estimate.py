@@ -149,7 +149,7 @@ def size_of(scene: Scene) -> ProblemSize:
     stages = [_stage(scene, stage) for stage in scene.stages]
     steps, stops, records, pictures = (math.fsum(column) for column in zip(*stages, strict=True))
     waves = scene.water.waves if scene.water else None
-    components = waves.jonswap.components if waves and waves.jonswap else int(waves is not None)
+    components = waves.count if waves else 0
     of_riser = STEP + elements * (ELEMENT + WAVE * components)
     of_soil = cells * CELL + FACTORED * unknowns**2
     condensed = scene.soil is not None and _condensed(scene, scene.soil)

@@ -16,7 +16,7 @@ NOTED, LONG = 20.0, 3600.0  # s: a run tells its estimate; a run is warned of
 _REMEDIES = {
     "riser.segments": "take longer elements",
     "output.interval": "take a longer interval",
-    "water.waves.jonswap.components": "take fewer components or longer elements",
+    "water.waves": "take fewer components or longer elements",
     "soil.mesh": "take larger cells or a smaller block, or solver: {linear: iterative}",
 }
 _UNITS = ((365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "h"), (60.0, "min"), (0.0, "s"))
@@ -102,7 +102,7 @@ def _largest(size: ProblemSize) -> str:
     parts = {
         "riser.segments": riser_memory(1, size.riser_unknowns),
         "output.interval": size.memory_of_stops,
-        "water.waves.jonswap.components": size.memory_of_waves,
+        "water.waves": size.memory_of_waves,
     }
     parts["soil.mesh"] = size.memory(1) - sum(parts.values())
     return max(parts, key=lambda path: parts[path])

@@ -6,9 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from riser_soil.scene.problem import dotted
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import StaticStage
-from riser_soil.scene.water import Waves
+from riser_soil.scene.wave_kinds import Airy, WaveKind
 from riser_soil.sea.dispersion import wave_number
 
 # Height over Miche's breaking height from which linear theory is well off: Stokes's crests are a tenth higher there.
@@ -24,40 +25,42 @@ def wave_warnings(scene: Scene) -> Iterator[str]:
     assert scene.water is not None
     assert scene.water.waves is not None
     waves, h = scene.water.waves, scene.water_depth
-    k = float(wave_number(np.array([2.0 * np.pi / waves.period]), scene.gravity, h)[0])
-    if waves.airy is not None:
-        yield from _steep(waves, k, h)
-    if waves.jonswap is not None:
-        yield from _steep_sea(scene.gravity, waves)
-    yield from _shallow(waves, k, h)
+    for path, train in waves.each:
+        k = float(wave_number(np.array([2.0 * np.pi / train.period]), scene.gravity, h)[0])
+        place = dotted(("water", "waves", *path))
+        if isinstance(train, Airy):
+            yield from _steep(place, train, k, h)
+        else:
+            yield from _steep_sea(place, scene.gravity, train)
+        yield from _shallow(train, k, h)
     yield from _other_depth(scene)
     if all(isinstance(stage, StaticStage) for stage in scene.stages):
         yield "water.waves: waves act in dynamic stages, and all stages are static: nothing will come of them"
 
 
-def _steep(waves: Waves, k: float, h: float) -> Iterator[str]:
+def _steep(place: str, wave: Airy, k: float, h: float) -> Iterator[str]:
     """Miche's limit (1944): H = 0.142 L tanh kh."""
     length = 2.0 * np.pi / k
     breaking = 0.142 * length * np.tanh(k * h)
-    if waves.height > STEEP * breaking:
+    if wave.height > STEEP * breaking:
         yield (
-            f"water.waves.airy: H = {waves.height:g} m over L = {length:.4g} m is steep: {waves.height / breaking:.2g} "
+            f"{place}: H = {wave.height:g} m over L = {length:.4g} m is steep: {wave.height / breaking:.2g} "
             f"of the height at which such waves break, {breaking:.4g} m; linear theory gives them too low crests"
         )
 
 
-def _steep_sea(g: float, waves: Waves) -> Iterator[str]:
+def _steep_sea(place: str, g: float, sea: WaveKind) -> Iterator[str]:
     """Limit of a sea's steepness in DNV-RP-C205: 1/15 up to Tp = 8 s, 1/25 from 15 s on."""
-    steepness = 2.0 * np.pi * waves.height / (g * waves.period**2)
-    limit = float(np.interp(waves.period, [8.0, 15.0], [1.0 / 15.0, 1.0 / 25.0]))
+    steepness = 2.0 * np.pi * sea.height / (g * sea.period**2)
+    limit = float(np.interp(sea.period, [8.0, 15.0], [1.0 / 15.0, 1.0 / 25.0]))
     if steepness > limit:
         yield (
-            f"water.waves.jonswap: the steepness 2 pi Hs/(g Tp^2) = {steepness:.3g} is more than seas with a peak at "
-            f"{waves.period:g} s reach, {limit:.3g}: that is Hs = {waves.height * limit / steepness:.3g} m"
+            f"{place}: the steepness 2 pi Hs/(g Tp^2) = {steepness:.3g} is more than seas with a peak at "
+            f"{sea.period:.4g} s reach, {limit:.3g}: that is Hs = {sea.height * limit / steepness:.3g} m"
         )
 
 
-def _shallow(waves: Waves, k: float, h: float) -> Iterator[str]:
+def _shallow(waves: WaveKind, k: float, h: float) -> Iterator[str]:
     ursell = waves.height * (2.0 * np.pi / k) ** 2 / h**3
     if ursell > SHALLOW:
         yield (

@@ -96,7 +96,7 @@ def _prepared(run: Run, times: tuple[float, float], field: FilmedField, magnify:
     frames = np.flatnonzero((run.soil_times >= times[0] - slack) & (run.soil_times <= times[1] + slack))
     if len(frames) < 2:
         raise ResultsError(
-            f"{run.folder}: soil.xdmf has {len(frames)} frame(s) from {times[0]:g} to {times[1]:g} s, and a film takes "
+            f"{run.folder}: soil.vtkhdf has {len(frames)} frame(s) of {times[0]:g} to {times[1]:g} s; a film takes "
             "two; shorten output.xdmf_interval of the scene and run again"
         )
     require(run.soil_frame(int(frames[0])), "the film", "displacement", field.output)

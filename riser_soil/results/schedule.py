@@ -18,7 +18,7 @@ class DueOutputs:
     """Files that a step is written to."""
 
     series: bool  # results.nc
-    pictures: bool  # riser.xdmf and soil.xdmf
+    pictures: bool  # files for ParaView
 
 
 class _OutputInterval:

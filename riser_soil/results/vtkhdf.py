@@ -1,21 +1,25 @@
 """VTKHDF layout of the pictures' HDF5 files: VTK 9.3, ParaView 5.12 and later ones open them by themselves, with times.
 
-One group, VTKHDF: points, cells, values on both, and for each instant where its own begin. Values of all instants stand
-one after the other, a chunk for each, so that a frame costs the same however many there are. What all instants share is
-stored once: a mesh that stays, a line's cells; offsets that are the same for several values are links to one array.
+One group is of that layout, VTKHDF: points, cells, values on both, and for each instant where its own begin. Values of
+all instants stand one after the other, a chunk for each, so that a frame costs the same however many there are. What
+they share is stored once: a mesh that stays, a line's cells; offsets that are the same for several values are links to
+one array. Beside it each instant has a group of windows on its values, for XDMF: its newer reader knows no parts of
+datasets.
 Source: VTK's file formats, "VTKHDF File Format", version 2.0.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import h5py
 import numpy as np
+from h5py import h5d, h5p, h5s
 
 from riser_soil.core.arrays import Array, IntArray
 
 ROOT = "VTKHDF"
+_FRAME = "frame_"
 _TYPES = {4: 10, 8: 12, 10: 24}  # tetrahedron, hexahedron, second-order tetrahedron, by their points
 _KINDS_OF_LINES = ("Vertices", "Lines", "Polygons", "Strips")
 _STEPS_IN_CHUNK = 128
@@ -48,30 +52,37 @@ def lay_out(store: h5py.File, cells: IntArray, points: Array | None, polyline: b
 
 def append(
     store: h5py.File,
-    time: float,
+    times: Sequence[float],
     on_points: Mapping[str, Array],
     on_cells: Mapping[str, Array],
     geometry: str | None = None,
 ) -> None:
-    """One instant, with the same names as those before. geometry: of the values on points that are the points."""
+    """Instants (n,) [s], with the same names as those before. Values (n, np) or (n, np, 3), on cells alike.
+
+    geometry: name of the values on points that are the points.
+    """
     root = store[ROOT]
-    steps = root["Steps"]
-    number = int(steps.attrs["NSteps"])
+    steps, n = root["Steps"], len(times)
+    numbers = int(steps.attrs["NSteps"]) + np.arange(n)
     for kind, values in {"Point": on_points, "Cell": on_cells}.items():
-        _append_values(root[f"{kind}Data"], steps[f"{kind}DataOffsets"], number, values)
+        _append_values(root[f"{kind}Data"], steps[f"{kind}DataOffsets"], numbers, values)
     if geometry is not None and "Points" not in root:
         root["Points"] = root["PointData"][geometry]
-    moved = number * int(root["NumberOfPoints"][0]) if geometry is not None else 0
-    for name, value in {"Values": time, "PartOffsets": 0, "NumberOfParts": 1, "PointOffsets": moved}.items():
-        _extend(steps[name], [value])
+    moved = numbers * (int(root["NumberOfPoints"][0]) if geometry is not None else 0)
+    none = np.zeros_like(numbers)
+    of_steps = {"Values": times, "PartOffsets": none, "NumberOfParts": none + 1, "PointOffsets": moved}
+    for name, rows in of_steps.items():
+        _extend(steps[name], rows)
     for name in ("CellOffsets", "ConnectivityIdOffsets"):
-        _extend(steps[name], np.zeros((1, steps[name].shape[1]), dtype=np.int64))
-    steps.attrs["NSteps"] = number + 1
+        _extend(steps[name], np.zeros((n, steps[name].shape[1]), dtype=np.int64))
+    steps.attrs["NSteps"] = int(numbers[-1]) + 1
 
 
 def cut_back(store: h5py.File, frames: int) -> None:
-    """Take the instants after the first `frames` away."""
+    """Take the instants after the first `frames` away, with their windows."""
     root = store[ROOT]
+    for group in [name for name in store if name.startswith(_FRAME) and int(name.removeprefix(_FRAME)) >= frames]:
+        del store[group]
     steps = root["Steps"]
     for kind in ("Point", "Cell"):
         for values in root[f"{kind}Data"].values():
@@ -114,18 +125,32 @@ def _add_cells(group: h5py.Group, cells: IntArray) -> None:
     group["Offsets"] = points * np.arange(count + 1, dtype=np.int64)
 
 
-def _append_values(data: h5py.Group, offsets: h5py.Group, number: int, values: Mapping[str, Array]) -> None:
+def window(store: h5py.File, kind: str, name: str, number: int) -> str:
+    """Path of one instant's values alone, for readers that know no parts of datasets: a view, it stores no number."""
+    values = store[ROOT][f"{kind}Data"][name]
+    rows, row = values.chunks[0], values.shape[1:]
+    view, all_of_it = h5s.create_simple((rows, *row)), h5s.create_simple(values.shape)
+    all_of_it.select_hyperslab((number * rows, *(0 for _ in row)), (rows, *row))
+    layout = h5p.create(h5p.DATASET_CREATE)
+    layout.set_virtual(view, b".", values.name.encode(), all_of_it)
+    group = store.require_group(f"{_FRAME}{number:06d}")
+    h5d.create(group.id, name.encode(), values.id.get_type(), view, layout)
+    return f"{group.name[1:]}/{name}"
+
+
+def _append_values(data: h5py.Group, offsets: h5py.Group, numbers: IntArray, values: Mapping[str, Array]) -> None:
     for name, array in values.items():
+        rows, row = array.shape[1], array.shape[2:]
         if name not in data:
-            _make_growing(data, name, array.shape[1:], array.dtype, len(array))
+            _make_growing(data, name, row, array.dtype, rows)
             if len(offsets):
                 offsets[name] = offsets[next(iter(offsets))]
             else:
                 _make_growing(offsets, name, (), "i8", _STEPS_IN_CHUNK)
-        _extend(data[name], array)
+        _extend(data[name], array.reshape(-1, *row))
     if values:
         name, array = next(iter(values.items()))
-        _extend(offsets[name], [number * len(array)])
+        _extend(offsets[name], numbers * array.shape[1])
 
 
 def _make_growing(group: h5py.Group, name: str, row: tuple[int, ...], dtype: object, rows: int) -> None:

@@ -8,7 +8,7 @@ that the XML never refers to missing data.
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
@@ -69,9 +69,9 @@ class XdmfFile:
             vtkhdf.lay_out(store, cells, points, polyline)
         self._heavy = GrowingFile(heavy, None if goes_on else content.getvalue())
         kind = _polyline_of(cells) if polyline else f'TopologyType="{_CELLS[cells.shape[1]]}"'
-        item = self._item("Lines/Connectivity" if polyline else "Connectivity", (cells.size,), "Int")
+        item = self._item(f"{vtkhdf.ROOT}/{'Lines/' if polyline else ''}Connectivity", (cells.size,), "Int")
         self._topology = f'<Topology {kind} NumberOfElements="{len(cells)}">{item}</Topology>'
-        self._points = None if points is None else self._item("Points", points.shape)
+        self._points = None if points is None else self._item(f"{vtkhdf.ROOT}/Points", points.shape)
         self._path, self._head = path, XDMF_HEAD.format(name=quoteattr(name))
         self._goes_on = goes_on
         self._text = GrowingFile(path, None) if goes_on and path.exists() else None
@@ -87,8 +87,11 @@ class XdmfFile:
         """Writes the waiting frames: first the numbers, then the XML."""
         if not self._waiting:
             return
+        frames = self._waiting
         with appending(self._heavy) as store:
-            grids = [self._grid(store, self._frames + i, frame) for i, frame in enumerate(self._waiting)]
+            on_points, on_cells = (_stacked([getattr(f, of) for f in frames]) for of in ("on_points", "on_cells"))
+            vtkhdf.append(store, [frame.time for frame in frames], on_points, on_cells, frames[0].geometry)
+            grids = [self._grid(store, self._frames + i, frame) for i, frame in enumerate(frames)]
         self._frames += len(grids)
         self._waiting.clear()
         self._append("".join(grids))
@@ -133,9 +136,12 @@ class XdmfFile:
             self._text.update({at: _FOOT.encode()}, at + len(_FOOT))
 
     def _grid(self, store: h5py.File, number: int, frame: Frame) -> str:
-        vtkhdf.append(store, frame.time, frame.on_points, frame.on_cells, frame.geometry)
-        items = {name: self._part(f"PointData/{name}", number, v.shape) for name, v in frame.on_points.items()}
-        items |= {name: self._part(f"CellData/{name}", number, v.shape) for name, v in frame.on_cells.items()}
+        on = {"Point": frame.on_points, "Cell": frame.on_cells}
+        items = {
+            name: self._item(vtkhdf.window(store, kind, name, number), v.shape)
+            for kind, values in on.items()
+            for name, v in values.items()
+        }
         points = self._points if frame.geometry is None else items[frame.geometry]
         lines = [
             f'{_GRID}{number:06d}" GridType="Uniform">',
@@ -151,17 +157,7 @@ class XdmfFile:
         """A whole array of the VTKHDF file, as large as it is now."""
         return (
             f'<DataItem Dimensions="{_words(shape)}" NumberType="{number}" Precision="8" Format="HDF">'
-            f"{self._heavy_name}:/{vtkhdf.ROOT}/{where}</DataItem>"
-        )
-
-    def _part(self, where: str, number: int, shape: Sequence[int]) -> str:
-        """The rows of one instant: where they begin, in steps of one, how many."""
-        rows, row = shape[0], shape[1:]
-        begin, step = (number * rows, *(0 for _ in row)), (1 for _ in shape)
-        return (
-            f'<DataItem ItemType="HyperSlab" Dimensions="{_words(shape)}">'
-            f'<DataItem Dimensions="3 {len(shape)}" Format="XML">{_words((*begin, *step, *shape))}</DataItem>'
-            f"{self._item(where, ((number + 1) * rows, *row))}</DataItem>"
+            f"{self._heavy_name}:/{where}</DataItem>"
         )
 
     def _append(self, grids: str) -> None:
@@ -179,6 +175,10 @@ class XdmfFile:
 def polyline(nodes: int) -> IntArray:
     """Connectivity (1, nodes) of one line through all points in their order."""
     return np.arange(nodes, dtype=np.int64)[None, :]
+
+
+def _stacked(values: Sequence[Mapping[str, Array]]) -> dict[str, Array]:
+    return {name: np.stack([of_frame[name] for of_frame in values]) for name in values[0]}
 
 
 def _words(numbers: Iterable[int]) -> str:

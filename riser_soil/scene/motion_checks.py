@@ -38,12 +38,16 @@ def _vessel(scene: Scene, path: Path, vessel: Vessel) -> Iterator[Problem]:
     if waves.ramp == 0.0 and vessel.ramp is None:
         allowed = f"without a ramp, as the waves have none, the {path[3]} would jump as the stage begins"
         yield Problem((*path, "ramp"), allowed, "give a ramp [s]")
-    relative = waves.direction_deg - vessel.heading_deg
-    if gap := vessel.table.gap(math.radians(relative)):
+    for toward in waves.toward:
+        relative = math.degrees(toward) - vessel.heading_deg
+        gap = vessel.table.gap(math.radians(relative))
+        if gap is None:
+            continue
         first, last = (f"{math.degrees(direction):.6g}" for direction in gap)
         angle = f"{relative % 360.0:.6g} deg to the heading"
         allowed = f"waves run at {angle}, but the table's nearest directions are {first} and {last} deg"
         yield Problem((*path, "rao"), allowed, "add rows for directions at most 45 deg apart")
+        return
 
 
 def _jumps(path: Path, motion: EndMotion) -> Iterator[Problem]:

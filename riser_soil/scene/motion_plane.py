@@ -62,7 +62,8 @@ def _modes(scene: Scene, path: Path, vessel: Vessel, among: tuple[str, ...]) -> 
     """Modes in which a vessel responds to the scene's waves."""
     waves = scene.water.waves if scene.water else None
     if waves:
-        moving = vessel.table.moving(math.radians(waves.direction_deg - vessel.heading_deg))
+        heading = math.radians(vessel.heading_deg)
+        moving = {mode for toward in waves.toward for mode in vessel.table.moving(toward - heading)}
         yield from (((*path, "rao"), vessel.axes(mode)) for mode in among if mode in moving)
 
 

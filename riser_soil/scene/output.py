@@ -55,7 +55,7 @@ class Output(BaseModel):
     )
     xdmf_interval: Time | None = Field(
         default=None,
-        description="time between records in riser.xdmf and soil.xdmf [s]; as interval by default",
+        description="time between records of riser and soil for ParaView, VTKHDF and XDMF [s]; as interval by default",
     )
     fields: tuple[FieldName, ...] = Field(
         default=ALL_FIELDS, description="fields to record beside the positions; all by default"

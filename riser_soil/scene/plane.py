@@ -126,10 +126,12 @@ def _flows(scene: Scene) -> Iterator[tuple[Path, Vector]]:
         yield ("water", "current", "profile", n), (ux, uy, 0.0)
     waves = scene.water.waves if scene.water else None
     if waves:
-        for kind, given in {"airy": waves.airy, "jonswap": waves.jonswap}.items():
-            if given:
-                angle = math.radians(given.direction_deg)
-                yield ("water", "waves", kind, "direction_deg"), (math.cos(angle), math.sin(angle), 0.0)
+        for path, train in waves.each:
+            angles = {"direction_deg": math.radians(train.direction_deg)}
+            if len(train.toward) > 1:
+                angles["spreading"] = train.toward[0]
+            for key, angle in angles.items():
+                yield ("water", "waves", *path, key), (math.cos(angle), math.sin(angle), 0.0)
 
 
 def _axes(scene: Scene) -> Iterator[tuple[Path, Vector]]:

@@ -1,28 +1,20 @@
 """Scene language: the water around the riser, its surface, current and waves."""
 
-import math
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Field, model_validator
 
-from riser_soil.core.quantities import (
-    FROZEN,
-    SHORTEST,
-    Angle,
-    Coordinate,
-    Count,
-    Density,
-    Length,
-    Real,
-    Time,
-    TimeOrNone,
-    Velocity,
-    wrong,
-)
+from riser_soil.core.quantities import FROZEN, SHORTEST, Coordinate, Density, Length, TimeOrNone, Velocity, wrong
+from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMoskowitz, Record, WaveKind
 
-# A sea of more components is no better, and each costs time at every point in every iteration.
-_MOST_COMPONENTS = 10000
+KINDS = ("airy", "jonswap", "pierson_moskowitz", "spectrum", "record")
+_MOST_TRAINS = 10
+_AIRY = "a regular wave: height, period, direction_deg, phase_deg"
+_JONSWAP = "an irregular sea: Hs, Tp, gamma, seed, components, direction_deg, spreading"
+_PIERSON_MOSKOWITZ = "an irregular, fully developed sea: as jonswap, without gamma"
+_SPECTRUM = "an irregular sea with the spectrum in a file: file, seed, components, direction_deg, spreading"
+_RECORD = "a sea that repeats a record of the surface: file, position, direction_deg, shortest_period, longest_period"
 
 
 class Current(BaseModel):
@@ -44,44 +36,35 @@ class Current(BaseModel):
         return self
 
 
-class Airy(BaseModel):
-    """A regular linear wave; its crest is at x = y = 0 as its clock starts, unless phase_deg says else."""
+class Train(BaseModel):
+    """One of several wave trains: waves of one kind."""
 
     model_config = FROZEN
 
-    height: Length = Field(description="height from trough to crest [m]")
-    period: Time = Field(description="period [s]")
-    direction_deg: Angle = Field(default=0.0, description="direction towards which it travels, from x towards y [deg]")
-    phase_deg: Angle = Field(
-        default=0.0, description="phase of the crest at x = y = 0 as the waves' clock starts [deg]"
-    )
+    airy: Airy | None = Field(default=None, description=_AIRY)
+    jonswap: Jonswap | None = Field(default=None, description=_JONSWAP)
+    pierson_moskowitz: PiersonMoskowitz | None = Field(default=None, description=_PIERSON_MOSKOWITZ)
+    spectrum: GivenSpectrum | None = Field(default=None, description=_SPECTRUM)
+    record: Record | None = Field(default=None, description=_RECORD)
 
-
-class Jonswap(BaseModel):
-    """An irregular long-crested sea with a JONSWAP spectrum."""
-
-    model_config = FROZEN
-
-    Hs: Length = Field(description="significant wave height [m]")
-    Tp: Time = Field(description="period of the spectrum's peak [s]")
-    gamma: Annotated[Real, Field(ge=1.0, le=7.0)] = Field(default=3.3, description="peak enhancement factor [-]")
-    seed: Annotated[int, Field(strict=True, ge=0)] = Field(
-        default=1, description="which of all seas with this spectrum; the same seed gives the same sea [-]"
-    )
-    components: Annotated[Count, Field(le=_MOST_COMPONENTS)] = Field(
-        default=100, description="number of linear waves that make up the sea [-]"
-    )
-    direction_deg: Angle = Field(default=0.0, description="direction towards which it travels, from x towards y [deg]")
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        _only_one({kind: getattr(self, kind) for kind in KINDS}, "leave out one of the two")
+        return self
 
 
 class Waves(BaseModel):
-    """Linear waves, regular (airy) or irregular (jonswap); they act in dynamic stages."""
+    """Linear waves, regular or irregular, or the sum of several trains of them; they act in dynamic stages."""
 
     model_config = FROZEN
 
-    airy: Airy | None = Field(default=None, description="a regular wave: height, period, direction_deg, phase_deg")
-    jonswap: Jonswap | None = Field(
-        default=None, description="an irregular sea: Hs, Tp, gamma, seed, components, direction_deg"
+    airy: Airy | None = Field(default=None, description=_AIRY)
+    jonswap: Jonswap | None = Field(default=None, description=_JONSWAP)
+    pierson_moskowitz: PiersonMoskowitz | None = Field(default=None, description=_PIERSON_MOSKOWITZ)
+    spectrum: GivenSpectrum | None = Field(default=None, description=_SPECTRUM)
+    record: Record | None = Field(default=None, description=_RECORD)
+    trains: Annotated[tuple[Train, ...], Field(min_length=2, max_length=_MOST_TRAINS)] | None = Field(
+        default=None, description="several trains that add up, as swell and wind sea, [{jonswap: ...}, ...]"
     )
     stretching: Literal["wheeler", "vertical"] = Field(
         default="wheeler",
@@ -96,51 +79,50 @@ class Waves(BaseModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _grow_over_a_period(cls, data: Any) -> Any:
-        return {**data, "ramp": _period(data)} if isinstance(data, dict) and data.get("ramp") is None else data
+    def _no_ramp_is_none(cls, data: Any) -> Any:
+        if isinstance(data, dict) and data.get("ramp", 0.0) is None:
+            return {key: value for key, value in data.items() if key != "ramp"}
+        return data
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
-        if self.airy is None and self.jonswap is None:
-            raise wrong("airy", "no wave is given", "give airy: {height, period} or jonswap: {Hs, Tp}")
-        if self.airy is not None and self.jonswap is not None:
-            raise wrong("jonswap", "airy and jonswap are both given", "leave out one of the two")
+        _only_one({kind: getattr(self, kind) for kind in (*KINDS, "trains")}, "leave out one of the two")
         return self
 
+    @model_validator(mode="after")
+    def _grow_over_a_period(self) -> Self:
+        return self if "ramp" in self.model_fields_set else self.model_copy(update={"ramp": self.period})
+
     @property
-    def height(self) -> float:
-        """Height of the wave, or significant height [m]."""
-        return self.airy.height if self.airy else self._sea.Hs
+    def each(self) -> tuple[tuple[tuple[str | int, ...], WaveKind], ...]:
+        """All trains, each with its path."""
+        trains = {(): self} if self.trains is None else {("trains", n): train for n, train in enumerate(self.trains)}
+        found = (((*path, kind), getattr(train, kind)) for path, train in trains.items() for kind in KINDS)
+        return tuple((path, given) for path, given in found if given is not None)
 
     @property
     def period(self) -> float:
-        """Period of the wave, or of the spectrum's peak [s]."""
-        return self.airy.period if self.airy else self._sea.Tp
+        """Longest period of the trains, of an irregular one that of its peak [s]."""
+        return max(train.period for _, train in self.each)
 
     @property
-    def direction_deg(self) -> float:
-        """Direction towards which they travel, from x towards y [deg]."""
-        return self.airy.direction_deg if self.airy else self._sea.direction_deg
+    def toward(self) -> tuple[float, ...]:
+        """All directions towards which waves travel, from x towards y [rad]."""
+        return tuple(dict.fromkeys(angle for _, train in self.each for angle in train.toward))
 
     @property
-    def height_key(self) -> tuple[str, str]:
-        """Where the height is given."""
-        return ("airy", "height") if self.airy else ("jonswap", "Hs")
-
-    @property
-    def _sea(self) -> Jonswap:
-        assert self.jonswap is not None
-        return self.jonswap
+    def count(self) -> int:
+        """Number of linear waves."""
+        return sum(train.count for _, train in self.each)
 
 
-def _period(waves: dict[str, Any]) -> Any:
-    """What is given as the waves' period, if it is a period."""
-    for kind, key in (("airy", "period"), ("jonswap", "Tp")):
-        given = waves.get(kind)
-        period = given.get(key) if isinstance(given, dict) else getattr(given, key, None)
-        if isinstance(period, int | float) and not isinstance(period, bool) and 0.0 < period < math.inf:
-            return float(period)
-    return 0.0
+def _only_one(given: dict[str, Any], remedy: str) -> None:
+    """One of several keys must be given."""
+    first, *others = [key for key, value in given.items() if value is not None] or [""]
+    if not first:
+        raise wrong("airy", "no wave is given", "give airy: {height, period} or jonswap: {Hs, Tp}")
+    if others:
+        raise wrong(others[0], f"{first} and {others[0]} are both given", remedy)
 
 
 class Water(BaseModel):
@@ -157,7 +139,9 @@ class Water(BaseModel):
         description="depth for the waves [m]; by default down to the seabed, or deep water in a scene without one",
     )
     current: Current | None = Field(default=None, description="current, {profile: [[z, ux, uy], ...]}; none by default")
-    waves: Waves | None = Field(default=None, description="waves, {airy: ...} or {jonswap: ...}; none by default")
+    waves: Waves | None = Field(
+        default=None, description="waves, {airy: ...}, {jonswap: ...} or another kind; none by default"
+    )
 
     @model_validator(mode="after")
     def _waves_on_a_surface(self) -> Self:

@@ -2,13 +2,18 @@
 
 import math
 from collections.abc import Iterator
+from typing import assert_never
 
 from riser_soil.scene.problem import Problem
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.stages import DynamicStage
 from riser_soil.scene.water import Waves
+from riser_soil.scene.wave_kinds import Airy, GivenSpectrum, Jonswap, PiersonMoskowitz, Record, WaveKind
 
 # A wave breaks at the latest at this height over its length, times tanh kh (Miche 1944).
 _BREAKING = 0.142
+_LOWER = "lower the waves or lengthen their period"
+_LATE = 1e-9  # part of a record's duration by which the stages may be longer
 
 
 def water_conflicts(scene: Scene) -> Iterator[Problem]:
@@ -26,10 +31,31 @@ def _possible(scene: Scene, waves: Waves) -> Iterator[Problem]:
     """Waves that can't exist are no sea at all; steep ones are a doubt."""
     if scene.gravity == 0.0:
         yield Problem(("water", "waves"), "there are no waves without gravity", "give gravity, or leave out waves")
-    elif waves.height > (highest := _highest(scene.gravity, scene.water_depth, waves.period)):
-        which = f"waves of {waves.period:g} s{_where(scene.water_depth)}"
-        allowed = f"must not exceed {highest:.4g} m: higher {which} break"
-        yield Problem(("water", "waves", *waves.height_key), allowed, "lower the waves or lengthen their period")
+        return
+    for path, train in waves.each:
+        if train.height > (highest := _highest(scene.gravity, scene.water_depth, train.period)):
+            which = f"waves of {train.period:.4g} s{_where(scene.water_depth)}"
+            allowed = f"must not exceed {highest:.4g} m: higher {which} break"
+            yield Problem(("water", "waves", *path, *_height_key(train)), allowed, _LOWER)
+        if isinstance(train, Record) and train.record.duration * (1.0 + _LATE) < (acting := _acting(scene)):
+            allowed = f"{train.file} lasts {train.record.duration:.6g} s, but waves act for {acting:.6g} s in all"
+            yield Problem(("water", "waves", *path, "file"), allowed, "shorten the stages, or take a longer record")
+
+
+def _height_key(train: WaveKind) -> tuple[str, ...]:
+    match train:
+        case Airy():
+            return ("height",)
+        case Jonswap() | PiersonMoskowitz():
+            return ("Hs",)
+        case GivenSpectrum() | Record():
+            return ("file",)
+    assert_never(train)
+
+
+def _acting(scene: Scene) -> float:
+    """Duration of all dynamic stages [s]."""
+    return math.fsum(stage.duration for stage in scene.stages if isinstance(stage, DynamicStage))
 
 
 def _highest(g: float, h: float, period: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +24,24 @@ class Components(NamedTuple):
     wave_number: Array
     direction: Array
     phase: Array
+
+
+def joined(seas: Sequence[Components]) -> Components:
+    """Several seas that add up."""
+    return Components(*(np.concatenate(parts) for parts in zip(*seas, strict=True)))
+
+
+def drawn(draw: np.random.Generator, variance: float, w: Array, toward: Array, g: float, h: float) -> Components:
+    """Waves of the same amplitude with increasing frequencies w (n,) [rad/s], and phases drawn evenly; the sum of a^2/2
+    is the variance [m2].
+
+    toward: directions (m,) [rad], n being a multiple of m: each m neighbours get one each, in an order that is drawn.
+    """
+    phase = 2.0 * np.pi * draw.random(w.size)
+    direction = np.full(w.size, toward[0])
+    if toward.size > 1:
+        direction = np.concatenate([draw.permutation(toward) for _ in range(w.size // toward.size)])
+    return Components(np.sqrt(2.0 * variance / w.size) * np.ones(w.size), w, wave_number(w, g, h), direction, phase)
 
 
 def regular(height: float, period: float, direction: float, phase: float, g: float, h: float) -> Components:

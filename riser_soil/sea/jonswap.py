@@ -7,8 +7,7 @@ from functools import cache
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.sea.components import Components
-from riser_soil.sea.dispersion import wave_number
+from riser_soil.sea.components import Components, drawn
 
 # Frequencies of a sea's components, over the peak's. What lies outside is 0.0 % below and 0.1 to 0.2 % above of the
 # spectrum's energy (gamma 7 to 1).
@@ -27,20 +26,19 @@ def spectrum(w: Array, Hs: float, Tp: float, gamma: float) -> Array:
 
 
 def components(
-    Hs: float, Tp: float, gamma: float, count: int, seed: int, direction: float, g: float, h: float
+    Hs: float, Tp: float, gamma: float, count: int, seed: int | list[int], toward: float | Array, g: float, h: float
 ) -> Components:
-    """A sea of `count` waves towards `direction` [rad] in water of depth h [m]; the same seed gives the same sea.
+    """A sea of `count` waves towards directions (m,) [rad] in water of depth h [m]; the same seed gives the same sea.
 
     The frequencies from LOWEST to HIGHEST times the peak's are cut into bins of equal energy, one for each wave. Within
     its bin a wave's frequency is drawn with the spectrum as its density, so that no frequency is preferred and the sea
-    never repeats itself; phases are drawn evenly. All amplitudes are alike, and the sum of a^2/2 is Hs^2/16.
+    never repeats itself; phases are drawn evenly. All amplitudes are alike, and the sum of a^2/2 is Hs^2/16. Of gamma 1
+    it is the spectrum of Pierson and Moskowitz (1964).
     """
     draw = np.random.default_rng(seed)
     share = (np.arange(count) + draw.random(count)) / count
     w = 2.0 * np.pi / Tp * quantiles(share, gamma)
-    every = np.ones(count)
-    phase = 2.0 * np.pi * draw.random(count)
-    return Components(Hs / np.sqrt(8.0 * count) * every, w, wave_number(w, g, h), direction * every, phase)
+    return drawn(draw, Hs**2 / 16.0, w, np.atleast_1d(toward), g, h)
 
 
 def _shape(x: Array, gamma: float) -> Array:

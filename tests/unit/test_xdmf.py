@@ -110,16 +110,17 @@ def test_vtkhdf_is_cut_back_and_goes_on(tmp_path: Path) -> None:
     points, cells = np.random.default_rng(2).uniform(size=(8, 3)), np.arange(8)[None, :]
     with h5py.File(tmp_path / "soil.vtkhdf", "w") as store:
         vtkhdf.lay_out(store, cells, points, polyline=False)
-        for time in (0.0, 1.0, 9.0, 2.0):
-            if time == 2.0:
+        for times in ([0.0], [1.0, 9.0], [2.0]):
+            if times == [2.0]:
                 vtkhdf.cut_back(store, 2)
-            on_cells = {"stress": np.array([time]), "p": np.array([3.0])}
-            vtkhdf.append(store, time, {"displacement": points + time}, on_cells)
+            on_cells = {"stress": np.array([times]).T, "p": np.full((len(times), 1), 3.0)}
+            vtkhdf.append(store, times, {"displacement": np.array([points + time for time in times])}, on_cells)
         assert vtkhdf.times(store).tolist() == [0.0, 1.0, 2.0]
         np.testing.assert_array_equal(vtkhdf.mesh(store)[1], cells)
         found = vtkhdf.values_at(store, 2)
         np.testing.assert_array_equal(found["displacement"], points + 2.0)
         assert (found["stress"].tolist(), found["p"].tolist()) == ([2.0], [3.0])
+        assert store[vtkhdf.window(store, "Cell", "stress", 2)][...].tolist() == [2.0]
         steps = store[vtkhdf.ROOT]["Steps"]
         assert steps["PointDataOffsets"]["displacement"][...].tolist() == [0, 8, 16]
         assert {len(rows) for rows in steps.values() if isinstance(rows, h5py.Dataset)} == {3}

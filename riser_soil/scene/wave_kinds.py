@@ -1,0 +1,264 @@
+"""Scene language: kinds of waves, regular, irregular by a spectrum, and by a record of the surface."""
+
+import math
+from functools import cached_property
+from typing import Annotated, Self
+
+from pydantic import BaseModel, Field, model_validator
+
+from riser_soil.core.quantities import FROZEN, Angle, Coordinate, Count, Length, Real, Time, wrong
+from riser_soil.scene.files import NamedFile
+from riser_soil.scene.spreading import relative_directions
+from riser_soil.scene.wave_files import ElevationRecord, SpectrumTable, read_elevation, read_spectrum
+
+# A sea of more components is no better, and each costs time at every point in every iteration.
+MOST_COMPONENTS = 10000
+_MOST_DIRECTIONS = 36
+
+Seed = Annotated[int, Field(strict=True, ge=0)]
+Components = Annotated[Count, Field(le=MOST_COMPONENTS)]
+_TOWARD = "direction towards which it travels, from x towards y [deg]"
+_SEED = "which of all seas with this spectrum; the same seed gives the same sea [-]"
+_COMPONENTS = "number of linear waves that make up the sea [-]"
+_SPREADING = "spreading about direction_deg, {s, directions}; long-crested by default"
+
+
+class Spreading(BaseModel):
+    """Directional spreading: the energy goes with cos^2s of half the angle from the mean direction."""
+
+    model_config = FROZEN
+
+    s: Annotated[Real, Field(ge=0.5, le=200.0)] = Field(
+        description="exponent: wind seas have 5 to 15, swell 25 and more [-]"
+    )
+    directions: Annotated[Count, Field(ge=2, le=_MOST_DIRECTIONS, multiple_of=2)] = Field(
+        default=10, description="even number of directions, of equal energy; ten cost six times as much as one [-]"
+    )
+
+    @property
+    def relative(self) -> tuple[float, ...]:
+        """The directions from the mean [rad]."""
+        return relative_directions(self.s, self.directions)
+
+
+class Airy(BaseModel):
+    """A regular linear wave; its crest is at x = y = 0 as its clock starts, unless phase_deg says else."""
+
+    model_config = FROZEN
+
+    height: Length = Field(description="height from trough to crest [m]")
+    period: Time = Field(description="period [s]")
+    direction_deg: Angle = Field(default=0.0, description="direction towards which it travels, from x towards y [deg]")
+    phase_deg: Angle = Field(
+        default=0.0, description="phase of the crest at x = y = 0 as the waves' clock starts [deg]"
+    )
+
+    @property
+    def count(self) -> int:
+        """Number of linear waves."""
+        return 1
+
+    @property
+    def toward(self) -> tuple[float, ...]:
+        """Directions [rad]."""
+        return (math.radians(self.direction_deg),)
+
+
+class Jonswap(BaseModel):
+    """An irregular sea with a JONSWAP spectrum."""
+
+    model_config = FROZEN
+
+    Hs: Length = Field(description="significant wave height [m]")
+    Tp: Time = Field(description="period of the spectrum's peak [s]")
+    gamma: Annotated[Real, Field(ge=1.0, le=7.0)] = Field(default=3.3, description="peak enhancement factor [-]")
+    seed: Seed = Field(default=1, description=_SEED)
+    components: Components = Field(default=100, description=_COMPONENTS)
+    direction_deg: Angle = Field(default=0.0, description=_TOWARD)
+    spreading: Spreading | None = Field(default=None, description=_SPREADING)
+
+    @model_validator(mode="after")
+    def _even(self) -> Self:
+        _check_even(self.components, self.spreading)
+        return self
+
+    @property
+    def height(self) -> float:
+        """Significant height [m]."""
+        return self.Hs
+
+    @property
+    def period(self) -> float:
+        """Of the peak [s]."""
+        return self.Tp
+
+    @property
+    def count(self) -> int:
+        """Number of linear waves."""
+        return self.components
+
+    @property
+    def toward(self) -> tuple[float, ...]:
+        """Directions [rad]."""
+        return _toward(self.direction_deg, self.spreading)
+
+
+class PiersonMoskowitz(BaseModel):
+    """An irregular, fully developed sea with a Pierson-Moskowitz spectrum."""
+
+    model_config = FROZEN
+
+    Hs: Length = Field(description="significant wave height [m]")
+    Tp: Time = Field(description="period of the spectrum's peak [s]")
+    seed: Seed = Field(default=1, description=_SEED)
+    components: Components = Field(default=100, description=_COMPONENTS)
+    direction_deg: Angle = Field(default=0.0, description=_TOWARD)
+    spreading: Spreading | None = Field(default=None, description=_SPREADING)
+
+    @model_validator(mode="after")
+    def _even(self) -> Self:
+        _check_even(self.components, self.spreading)
+        return self
+
+    @property
+    def height(self) -> float:
+        """Significant height [m]."""
+        return self.Hs
+
+    @property
+    def period(self) -> float:
+        """Of the peak [s]."""
+        return self.Tp
+
+    @property
+    def count(self) -> int:
+        """Number of linear waves."""
+        return self.components
+
+    @property
+    def toward(self) -> tuple[float, ...]:
+        """Directions [rad]."""
+        return _toward(self.direction_deg, self.spreading)
+
+
+class GivenSpectrum(BaseModel):
+    """An irregular sea with a spectrum from a file, linear between its rows, nothing beyond them."""
+
+    model_config = FROZEN
+
+    file: NamedFile = Field(
+        description="CSV file with the columns frequency [Hz] (or rad/s) and density [m2/Hz] (or m2 s/rad); a relative "
+        "name is sought beside the scene file"
+    )
+    seed: Seed = Field(default=1, description=_SEED)
+    components: Components = Field(default=100, description=_COMPONENTS)
+    direction_deg: Angle = Field(default=0.0, description=_TOWARD)
+    spreading: Spreading | None = Field(default=None, description=_SPREADING)
+
+    @model_validator(mode="after")
+    def _can_be_read(self) -> Self:
+        _check_even(self.components, self.spreading)
+        _ = self.table
+        return self
+
+    @cached_property
+    def table(self) -> SpectrumTable:
+        """What the file holds."""
+        return read_spectrum(self.file)
+
+    @property
+    def height(self) -> float:
+        """Significant height, four standard deviations [m]."""
+        return 4.0 * math.sqrt(self.table.energy)
+
+    @property
+    def period(self) -> float:
+        """Of the peak [s]."""
+        return 2.0 * math.pi / self.table.peak
+
+    @property
+    def count(self) -> int:
+        """Number of linear waves."""
+        return self.components
+
+    @property
+    def toward(self) -> tuple[float, ...]:
+        """Directions [rad]."""
+        return _toward(self.direction_deg, self.spreading)
+
+
+class Record(BaseModel):
+    """A long-crested sea by a record of the surface's elevation, which it repeats at one place."""
+
+    model_config = FROZEN
+
+    file: NamedFile = Field(
+        description="CSV file with the columns t [s] (or min, ms), at even steps, and elevation [m] (or mm, cm, ft); a "
+        "relative name is sought beside the scene file"
+    )
+    position: tuple[Coordinate, Coordinate] = Field(
+        default=(0.0, 0.0), description="x and y of the place where it was recorded [m]"
+    )
+    direction_deg: Angle = Field(default=0.0, description=_TOWARD)
+    shortest_period: Time | None = Field(
+        default=None, description="shorter waves are left out [s]; by default those of two rows and less"
+    )
+    longest_period: Time | None = Field(
+        default=None, description="longer waves are left out [s]; by default none but the mean"
+    )
+
+    @model_validator(mode="after")
+    def _can_be_read(self) -> Self:
+        if not 1 <= self.count <= MOST_COMPONENTS:
+            what = f"{self.file}: {self.count} waves lie between the shortest and the longest period"
+            allowed = f"1 to {MOST_COMPONENTS} are allowed"
+            raise wrong("shortest_period", f"{what}; {allowed}", "change the periods, or cut the record")
+        return self
+
+    @cached_property
+    def record(self) -> ElevationRecord:
+        """What the file holds."""
+        return read_elevation(self.file)
+
+    @property
+    def harmonics(self) -> range:
+        """Numbers of the waves: how many periods each has in the record."""
+        whole, rows = self.record.duration, len(self.record.elevation)
+        most = math.floor(whole / self.shortest_period * (1.0 + 1e-9)) if self.shortest_period else rows
+        least = math.ceil(whole / self.longest_period * (1.0 - 1e-9)) if self.longest_period else 1
+        return range(max(1, least), min(most, (rows - 1) // 2) + 1)
+
+    @property
+    def height(self) -> float:
+        """Significant height, four standard deviations [m]."""
+        return self.record.significant_height
+
+    @property
+    def period(self) -> float:
+        """Mean time between crossings of the mean, upwards [s]."""
+        return self.record.mean_period
+
+    @property
+    def count(self) -> int:
+        """Number of linear waves."""
+        return len(self.harmonics)
+
+    @property
+    def toward(self) -> tuple[float, ...]:
+        """Directions [rad]."""
+        return (math.radians(self.direction_deg),)
+
+
+WaveKind = Airy | Jonswap | PiersonMoskowitz | GivenSpectrum | Record
+
+
+def _check_even(components: int, spreading: Spreading | None) -> None:
+    """As many waves in each direction."""
+    if spreading is not None and components % spreading.directions:
+        allowed = f"must be a multiple of spreading.directions, {spreading.directions}, for an equal energy of all"
+        raise wrong("components", allowed, "change one of the two")
+
+
+def _toward(direction_deg: float, spreading: Spreading | None) -> tuple[float, ...]:
+    relative = (0.0,) if spreading is None else spreading.relative
+    return tuple(math.radians(direction_deg) + angle for angle in relative)
