@@ -5,9 +5,8 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
-from mpi4py import MPI
-
 from riser_soil.assembly import Assembly, build, sized
+from riser_soil.assembly.packages import communicator_of
 from riser_soil.checks.check import resolution
 from riser_soil.checks.limits import size_that_fits, tell, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings
@@ -30,7 +29,7 @@ def run(scene: Scene, folder: Path | str, force: bool = False, peaks: RunPeaks |
     """
     folder = Path(folder)
     with handling_signals():
-        comm, clock, since = MPI.COMM_WORLD, Timer.new(), time.perf_counter()
+        comm, clock, since = communicator_of(scene), Timer.new(), time.perf_counter()
         refuse_together(folder, force, comm)
         scene = sized(scene)
         size = size_that_fits(scene, folder, comm)
