@@ -9,8 +9,13 @@ from contextlib import contextmanager
 
 import typer
 
-from riser_soil.errors import Interruption, RiserSoilError, WriteError, is_full
+from riser_soil.errors import Interruption, RiserSoilError, SceneError, WriteError, is_full
 from riser_soil.interruption import default_signal_handlers, unmasked
+
+# Packages beyond those of a riser alone that PyPI has, and the extra of the project that brings them.
+EXTRAS = {"scipy": "tables", "matplotlib": "plots", "pyvista": "plots", "fatpack": "fatigue", "xarray": "cases"} | {
+    "distributed": "cases", "jinja2": "report"
+}
 
 # Seconds that a rank leaves to the first one to tell an error that both have met.
 _PATIENCE = 5.0
@@ -33,6 +38,13 @@ def expected_errors() -> Iterator[None]:
         if not err.together:
             _leave_other_ranks(err.exit_status)
         raise typer.Exit(err.exit_status) from err
+    except ModuleNotFoundError as err:
+        extra = EXTRAS.get((err.name or "").partition(".")[0])
+        if extra is None:
+            raise
+        _tell_once(f"{err.name}: is needed here and not installed; pip install 'riser_soil[{extra}]' brings it")
+        _end_other_ranks(SceneError.exit_status)
+        raise typer.Exit(SceneError.exit_status) from err
     except OSError as err:
         if not is_full(err):
             raise
