@@ -11,7 +11,6 @@ import io
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 import h5py
 import numpy as np
@@ -19,7 +18,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.results import vtkhdf
 from riser_soil.results.growing_file import GrowingFile, appending
-from riser_soil.results.ownership import PROGRAM, XDMF_HEAD
+from riser_soil.results.ownership import PROGRAM, XDMF_HEAD, quoted
 
 _CELLS = {4: "Tetrahedron", 8: "Hexahedron", 10: "Tetrahedron_10"}
 _FOOT = "  </Grid>\n </Domain>\n</Xdmf>\n"
@@ -62,7 +61,7 @@ class XdmfFile:
         item = self._item("Lines/Connectivity" if polyline else "Connectivity", (cells.size,), "Int")
         self._topology = f'<Topology {kind} NumberOfElements="{len(cells)}">{item}</Topology>'
         self._points = None if points is None else self._item("Points", points.shape)
-        self._path, self._head = path, XDMF_HEAD.format(name=quoteattr(name))
+        self._path, self._head = path, XDMF_HEAD.format(name=quoted(name))
         self._text: GrowingFile | None = None
 
     def add(self, frame: Frame) -> None:
@@ -143,4 +142,4 @@ def _polyline_of(cells: IntArray) -> str:
 
 def _attribute(name: str, centre: str, values: Array, item: str) -> str:
     kind = "Vector" if values.ndim == 2 else "Scalar"
-    return f'<Attribute Name={quoteattr(name)} AttributeType="{kind}" Center="{centre}">{item}</Attribute>'
+    return f'<Attribute Name={quoted(name)} AttributeType="{kind}" Center="{centre}">{item}</Attribute>'

@@ -69,7 +69,8 @@ def test_snes_asked_for_says_that_it_needs_petsc(tmp_path: Path) -> None:
 
 def test_a_motion_table_says_that_it_needs_scipy(tmp_path: Path) -> None:
     table = tmp_path / "surge.csv"
-    table.write_text("t [s],x [m]\n0,0\n1,0.1\n2,0.0\n3,0.2\n")
+    rows = "".join(f"{t},{0.1 * t},0,0,0,0,0\n" for t in range(200))
+    table.write_text(f"t [s],x [m],y [m],z [m],rx [deg],ry [deg],rz [deg]\n{rows}")
     motion = f'stages.1.motion={{"end": {{"table": "{table}"}}}}'
     done = riser_soil_without(["scipy"], "check", SCENE, "--set", motion)
     assert done.returncode == SceneError.exit_status
