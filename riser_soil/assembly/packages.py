@@ -14,9 +14,7 @@ FOR_SNES = {"petsc4py": "PETSc", "mpi4py": "MPI"}
 PROVIDED = (
     "Debian: apt install {debian}; conda-forge: conda install {conda}; Docker: the project's image (docs/running.md)"
 )
-DEBIAN = {"dolfinx": "python3-dolfinx", "petsc4py": "python3-petsc4py", "mpi4py": "python3-mpi4py"} | {
-    "gmsh": "python3-gmsh", "scipy": "python3-scipy"
-}
+DEBIAN = {name: f"python3-{name}" for name in FOR_SOIL}
 CONDA = {"dolfinx": "fenics-dolfinx", "gmsh": "python-gmsh"}
 
 

@@ -13,9 +13,17 @@ from riser_soil.errors import Interruption, RiserSoilError, SceneError, WriteErr
 from riser_soil.interruption import default_signal_handlers, unmasked
 
 # Packages beyond those of a riser alone that PyPI has, and the extra of the project that brings them.
-EXTRAS = {"scipy": "tables", "matplotlib": "plots", "pyvista": "plots", "fatpack": "fatigue", "xarray": "cases"} | {
-    "distributed": "cases", "jinja2": "report"
+EXTRAS = {
+    "scipy": "tables",
+    "matplotlib": "plots",
+    "pyvista": "plots",
+    "fatpack": "fatigue",
+    "xarray": "cases",
+    "distributed": "cases",
+    "jinja2": "report",
 }
+# Packages that PyPI has none of that work together.
+ELSEWHERE = ("petsc4py", "mpi4py", "dolfinx", "gmsh")
 
 # Seconds that a rank leaves to the first one to tell an error that both have met.
 _PATIENCE = 5.0
@@ -39,10 +47,9 @@ def expected_errors() -> Iterator[None]:
             _leave_other_ranks(err.exit_status)
         raise typer.Exit(err.exit_status) from err
     except ModuleNotFoundError as err:
-        extra = EXTRAS.get((err.name or "").partition(".")[0])
-        if extra is None:
+        if not (way := _way_to(err.name or "")):
             raise
-        _tell_once(f"{err.name}: is needed here and not installed; pip install 'riser_soil[{extra}]' brings it")
+        _tell_once(f"{err.name}: is needed here and not installed; {way}")
         _end_other_ranks(SceneError.exit_status)
         raise typer.Exit(SceneError.exit_status) from err
     except OSError as err:
@@ -56,6 +63,14 @@ def expected_errors() -> Iterator[None]:
             traceback.print_exc()
         _end_other_ranks(1)
         raise
+
+
+def _way_to(module: str) -> str:
+    """What brings a package that may be absent; "" for those that are always there."""
+    package = module.partition(".")[0]
+    if package in ELSEWHERE:
+        return "Debian, conda-forge or the project's Docker image bring it (docs/running.md)"
+    return f"pip install 'riser_soil[{EXTRAS[package]}]' brings it" if package in EXTRAS else ""
 
 
 def rank() -> int:

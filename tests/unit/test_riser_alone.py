@@ -14,8 +14,8 @@ import pytest
 from riser_soil.core import banded, communicator
 from riser_soil.core.csr_matrix import CsrMatrix
 from riser_soil.errors import SceneError
-from riser_soil.run import run
 from riser_soil.scene.reader import read_scene
+from riser_soil.whole_run import run
 from tests.support.on_ranks import ROOT
 from tests.support.without_packages import FOR_USERS, SOIL, riser_soil_without
 
