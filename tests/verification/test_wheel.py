@@ -1,4 +1,4 @@
-"""The project's wheel, installed by pip into an empty environment, runs the first scene: without PETSc, MPI, dolfinx."""
+"""The project's wheel, installed by pip into an empty environment, runs the first scene: no PETSc, MPI or dolfinx."""
 
 from __future__ import annotations
 
