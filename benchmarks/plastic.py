@@ -18,6 +18,7 @@ from riser_soil.soil.soil import Soil
 from riser_soil.solve.kept_factors import KeptFactors
 from riser_soil.solve.linear_solver import use_mumps
 from riser_soil.solve.newton import Newton
+from riser_soil.solve.snes import SnesLoop
 
 CLAY = "su: 2.0e3, su_gradient: 1.5e3, E_over_su: 300.0"
 LAWS = {
@@ -71,7 +72,8 @@ def _walked(overrides: tuple[str, ...]) -> Walk:
     """The first steps of the demo's dynamic stage."""
     stage = last_stage(SCENE, overrides, Timer.new())
     assert isinstance(stage.newton, Newton)
-    kept, began = stage.newton.linear, time.process_time()
+    assert isinstance(stage.newton.loop, SnesLoop)
+    kept, began = stage.newton.loop.linear, time.process_time()
     stage.walk(STEPS)
     seconds = (time.process_time() - began) / stage.iterations
     made = (kept.factorisations, kept.iterations) if isinstance(kept, KeptFactors) else (stage.iterations, 0)

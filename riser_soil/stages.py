@@ -139,7 +139,7 @@ def _take(
     if not isinstance(begin, State):
         _restore(system, begin)
     settings = replace(settings_of(assembly), linear_start=_starts_at_rest(assembly, stage))
-    newton = solver_of(system, scheme_of(stage), settings, assembly.scene.solver.newton == "compiled")
+    newton = solver_of(system, scheme_of(stage), settings)
     try:
         run = _begin_run(assembly, stage, system, newton, begin, observer)
         return _walk(run, checkpoint)
@@ -259,7 +259,12 @@ def settings_of(assembly: Assembly) -> NewtonSettings:
     on_soil = assembly.soil is not None
     floor = assembly.scales.force_floor
     return NewtonSettings(
-        solver.tolerance, solver.max_iterations, floor, line_search=on_soil, linear=solver.linear
+        solver.tolerance,
+        solver.max_iterations,
+        floor,
+        line_search=on_soil,
+        linear=solver.linear,
+        snes=solver.newton == "snes",
     )
 
 

@@ -6,9 +6,8 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from mpi4py import MPI
-
 from riser_soil.assembly import Assembly, build, sized
+from riser_soil.assembly.packages import communicator_of
 from riser_soil.checks.check import resolution
 from riser_soil.checks.limits import size_that_fits, tell, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings
@@ -39,7 +38,7 @@ def run(
     """
     folder = Path(folder)
     with handling_signals():
-        comm, clock, since = MPI.COMM_WORLD, Timer.new(), time.perf_counter()
+        comm, clock, since = communicator_of(scene), Timer.new(), time.perf_counter()
         refuse_together(folder, force, comm)
         saved = last_checkpoint(folder, scene, peaks is not None, comm) if restart else None
         scene = sized(scene)

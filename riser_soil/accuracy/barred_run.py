@@ -7,12 +7,11 @@ import time
 from pathlib import Path
 from typing import Any
 
-from mpi4py import MPI
-
 from riser_soil.accuracy.chain import companions, run_values
 from riser_soil.accuracy.error_bars import ErrorBar, RunValues, error_bars
 from riser_soil.accuracy.headlines import headlines
 from riser_soil.accuracy.screen import print_bars
+from riser_soil.assembly.packages import communicator_of
 from riser_soil.errors import Interruption
 from riser_soil.interruption import handling_signals
 from riser_soil.results.folder import SUMMARY
@@ -26,7 +25,7 @@ LEFT = "while its error bars were computed; {} has the whole run, without them"
 
 def run_with_error_bars(scene: Scene, folder: Path | str, force: bool = False, restart: bool = False) -> None:
     """As `run`, then tell the error bars; collective. What goes wrong with a companion leaves the run as it is."""
-    folder, comm, peaks = Path(folder), MPI.COMM_WORLD, RunPeaks()
+    folder, comm, peaks = Path(folder), communicator_of(scene), RunPeaks()
     began = time.perf_counter()
     run(scene, folder, force, peaks, restart)
     taken = time.perf_counter() - began

@@ -11,8 +11,6 @@ import time
 from pathlib import Path
 from typing import Any
 
-from mpi4py import MPI
-
 from riser_soil.accuracy.barred_run import values_of_run, write_bars
 from riser_soil.accuracy.error_bars import SOURCES, ErrorBar
 from riser_soil.accuracy.first_setting import first_setting
@@ -20,6 +18,7 @@ from riser_soil.accuracy.knobs import knobs_of, settings_told
 from riser_soil.accuracy.needed import expected, largest, needed, out_of_reach
 from riser_soil.accuracy.screen import print_bars
 from riser_soil.accuracy.search import TriedSetting, finer, trial
+from riser_soil.assembly.packages import communicator_of
 from riser_soil.errors import AccuracyError, Interruption, MeshError, SceneError
 from riser_soil.interruption import handling_signals
 from riser_soil.results.ownership import refuse_together
@@ -35,7 +34,7 @@ def run_to_accuracy(scene: Scene, folder: Path | str, force: bool = False) -> No
     """As `run`, with a setting that reaches `scene.accuracy`; collective. AccuracyError where none was found: the
     finest run is in the folder then, with its error bars.
     """
-    folder, comm, began = Path(folder), MPI.COMM_WORLD, time.perf_counter()
+    folder, comm, began = Path(folder), communicator_of(scene), time.perf_counter()
     accuracy = scene.accuracy
     assert accuracy is not None
     refuse_together(folder, force, comm)

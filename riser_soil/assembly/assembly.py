@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from mpi4py import MPI
 
 from riser_soil.assembly.condensation import condensed_of
 from riser_soil.assembly.hang_off import hung_end
@@ -20,6 +19,7 @@ from riser_soil.assembly.sea_loads import sea_loads
 from riser_soil.assembly.shape import least_bend
 from riser_soil.assembly.stage import dynamic_parts, loads_of, prescribe_spin
 from riser_soil.core.arrays import Array
+from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Field, Model, Part
 from riser_soil.core.saved_state import Saved
 from riser_soil.errors import SceneError
@@ -63,7 +63,7 @@ class Assembly:
     """
 
     scene: Scene
-    comm: MPI.Intracomm
+    comm: Communicator
     line: Line
     elements: Elements
     riser_parts: list[Part]
@@ -260,7 +260,7 @@ def sized(scene: Scene) -> Scene:
     return with_sizes(scene, scene.soil)
 
 
-def build(scene: Scene, comm: MPI.Intracomm) -> Assembly:
+def build(scene: Scene, comm: Communicator) -> Assembly:
     """Build the parts of a scene; collective. Raises SceneError or MeshError."""
     if scene.accuracy is not None:
         raise SceneError("accuracy: elements and steps are to be chosen first, by riser_soil.accuracy.target_run")

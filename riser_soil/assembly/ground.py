@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
-from mpi4py import MPI
 
 from riser_soil.assembly.scales import Scales, contact_radius, scales_of
 from riser_soil.core.arrays import Array
+from riser_soil.core.communicator import Communicator
 from riser_soil.errors import SceneError
 from riser_soil.interruption import restoring_signal_handlers
 from riser_soil.riser.line import Line
@@ -45,7 +45,7 @@ SHALLOWEST = 1.0 / 300.0  # soil that gains strength from nothing has at least t
 CUSHION, LEVEL = 0.01, 0.01  # of the diameter: how far it gives under the riser's weight; unevenness of a level top
 
 
-def soil_of(scene: Scene, given: SoilScene, line: Line, diameter: float, comm: MPI.Intracomm) -> Soil:
+def soil_of(scene: Scene, given: SoilScene, line: Line, diameter: float, comm: Any) -> Soil:
     """The continuum; meshed finely under the straight line between the riser's ends. diameter: of the riser [m].
     Collective.
     """
@@ -62,7 +62,7 @@ def soil_of(scene: Scene, given: SoilScene, line: Line, diameter: float, comm: M
     )
 
 
-def _grid(scene: Scene, given: SoilScene, line: Line, comm: MPI.Intracomm) -> DistributedMesh:
+def _grid(scene: Scene, given: SoilScene, line: Line, comm: Any) -> DistributedMesh:
     from riser_soil.assembly.soil_block import block_of
     from riser_soil.soil.grid import block_grid, file_grid
 
@@ -179,7 +179,7 @@ def soil_friction_of(
 
 
 def cushion_of(
-    scene: Scene, contact: SoilContact, elements: Elements, top: Array, comm: MPI.Intracomm
+    scene: Scene, contact: SoilContact, elements: Elements, top: Array, comm: Communicator
 ) -> Cushion | None:
     """What holds the riser at first that is to lie on a level soil; collective.
 

@@ -6,14 +6,13 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from mpi4py import MPI
-
 from riser_soil.calibration.data import MeasuredResistance, read_resistance
 from riser_soil.calibration.least_squares import Fit, FitParameter, fit
 from riser_soil.calibration.path import path_through
 from riser_soil.calibration.report import printed, refuse_folder, write_folder
 from riser_soil.calibration.segment import TABLE, PipeSegment, diameter, first_penetration, write_table
 from riser_soil.core.arrays import Array
+from riser_soil.core.communicator import world
 from riser_soil.errors import SceneError
 from riser_soil.interruption import handling_signals
 from riser_soil.scene.problem import NOTHING, shown, value_at
@@ -41,7 +40,7 @@ def calibrate(
     computed, for what is wrong; the folder is only made once all is found.
     """
     folder = Path(folder)
-    if MPI.COMM_WORLD.size > 1:
+    if world().size > 1:
         raise SceneError("calibrate runs on one process: start it without mpirun")
     if not 0.0 < step <= 0.5:
         raise SceneError(f"--step {step:g}: must lie between 0 and 0.5 diameters; 0.01 is usual")

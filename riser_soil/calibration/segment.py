@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from mpi4py import MPI
 
 from riser_soil.assembly import Assembly, build
+from riser_soil.assembly.packages import communicator_of
 from riser_soil.calibration.path import PenetrationPath
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
@@ -46,7 +46,7 @@ class PipeSegment:
     def resistance(self, parameters: Mapping[str, float], path: PenetrationPath, table: Path) -> Array:
         """Vertical resistance (m,) at the steps of a path [N/m], > 0 where the soil pushes the pipe up."""
         scene = self.scene(parameters, table, len(path.w) - 1)
-        assembly = build(scene, MPI.COMM_SELF)
+        assembly = build(scene, communicator_of(scene))
         log = ContactForceLog(assembly)
         try:
             run_stage(assembly, scene.stages[0], State.at_rest(0.0, assembly.size), log, Timer.new())

@@ -6,10 +6,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mpi4py import MPI
-
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.condensation import why_whole
+from riser_soil.assembly.packages import communicator_of
 from riser_soil.checks.estimate import ProblemSize, riser_memory, soil_factor, soil_memory
 from riser_soil.checks.inventory import built, left_out, unknowns
 from riser_soil.checks.limits import in_bytes, in_words, size_that_fits, tell, tight, too_long
@@ -22,11 +21,11 @@ if TYPE_CHECKING:
 
 def describe(scene: Scene) -> str:
     """The report of `riser-soil check`; collective. Raises SceneError or MeshError."""
-    scene = sized(scene)
-    size = size_that_fits(scene, Path(), MPI.COMM_WORLD)
-    tell(size, MPI.COMM_WORLD)
-    of_size = [*tight(size, MPI.COMM_WORLD), *too_long(size)]
-    assembly = build(scene, MPI.COMM_WORLD)
+    comm, scene = communicator_of(scene), sized(scene)
+    size = size_that_fits(scene, Path(), comm)
+    tell(size, comm)
+    of_size = [*tight(size, comm), *too_long(size)]
+    assembly = build(scene, comm)
     lines = [*_parts(assembly), *_unknowns(assembly), _memory_line(assembly), *_results(size)]
     warnings = [*physical_warnings(assembly), *of_size]
     return "\n".join([*lines, *(f"warning: {warning}" for warning in warnings), _verdict(warnings)])

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from mpi4py import MPI
 
 from riser_soil.assembly.pressures import no_wall_tension
+from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Field
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.riser import RotationSpring, Support
@@ -125,6 +125,6 @@ def _no_buoyancy(scene: Scene) -> str:
     return "the water has no surface: all is submerged" if scene.water.surface_level is None else ""
 
 
-def unknowns(comm: MPI.Intracomm, field: Field) -> int:
+def unknowns(comm: Communicator, field: Field) -> int:
     """Free dofs of a field over all ranks; collective."""
     return int(comm.allreduce(int(np.count_nonzero(field.owned & ~field.prescribed))))

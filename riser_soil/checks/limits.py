@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-
-from mpi4py import MPI
+from typing import Any
 
 from riser_soil.checks.estimate import WITHIN, ProblemSize, riser_memory, size_of
 from riser_soil.checks.machine import available_memory, free_disk
+from riser_soil.core.communicator import Communicator
 from riser_soil.errors import SceneError
 from riser_soil.scene.scene import Scene
 
@@ -22,13 +22,13 @@ _REMEDIES = {
 _UNITS = ((365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "h"), (60.0, "min"), (0.0, "s"))
 
 
-def size_that_fits(scene: Scene, folder: Path, comm: MPI.Intracomm) -> ProblemSize:
+def size_that_fits(scene: Scene, folder: Path, comm: Communicator) -> ProblemSize:
     """The size of a scene whose results go to a folder; SceneError, with the numbers, where it exceeds the memory that
     is available, by more than the forecast may be off, or the disk that is free. Collective: all ranks come to the same
     answer.
     """
     size = size_of(scene)
-    most, free = _memory_left(comm), comm.allreduce(free_disk(folder), MPI.MIN)
+    most, free = _memory_left(comm), min(comm.allgather(free_disk(folder)))
     if size.memory(comm.size) > WITHIN * most:
         raise SceneError(_too_much_memory(size, comm.size, most))
     if size.disk > free:
@@ -36,7 +36,7 @@ def size_that_fits(scene: Scene, folder: Path, comm: MPI.Intracomm) -> ProblemSi
     return size
 
 
-def tight(size: ProblemSize, comm: MPI.Intracomm) -> list[str]:
+def tight(size: ProblemSize, comm: Communicator) -> list[str]:
     """A warning of a run that may not fit into the memory that is available; to be asked for before it takes any.
     Collective.
     """
@@ -46,9 +46,9 @@ def tight(size: ProblemSize, comm: MPI.Intracomm) -> list[str]:
     return [f"the run may end for want of memory: {_too_much_memory(size, comm.size, most)}"]
 
 
-def _memory_left(comm: MPI.Intracomm) -> float:
+def _memory_left(comm: Communicator) -> float:
     """Bytes that all ranks together can still have; collective."""
-    return float(comm.allreduce(available_memory() * _nodes(comm), MPI.MIN))
+    return min(comm.allgather(available_memory() * _nodes(comm)))
 
 
 def too_long(size: ProblemSize) -> Iterator[str]:
@@ -60,7 +60,7 @@ def too_long(size: ProblemSize) -> Iterator[str]:
         )
 
 
-def tell(size: ProblemSize, comm: MPI.Intracomm) -> None:
+def tell(size: ProblemSize, comm: Communicator) -> None:
     """Tell of a run that lasts a while, before it begins."""
     if size.seconds > NOTED and comm.rank == 0:
         print(f"this takes about {in_words(size.seconds)}, {size.told_steps} of {_parts(size)}", flush=True)
@@ -76,12 +76,16 @@ def in_bytes(number: float) -> str:
     return f"{number / 1e9:.3g} GB" if number >= 1e9 else f"{number / 1e6:.3g} MB"
 
 
-def _nodes(comm: MPI.Intracomm) -> float:
+def _nodes(comm: Any) -> float:
     """On how many machines the ranks run, each with memory of its own."""
-    here = comm.Split_type(MPI.COMM_TYPE_SHARED)
+    if comm.size == 1:
+        return 1.0
+    from mpi4py import MPI
+
+    here: Any = comm.Split_type(MPI.COMM_TYPE_SHARED)
     share = comm.size / here.size
     here.Free()
-    return share
+    return float(share)
 
 
 def _parts(size: ProblemSize) -> str:

@@ -9,8 +9,21 @@ from contextlib import contextmanager
 
 import typer
 
-from riser_soil.errors import Interruption, RiserSoilError, WriteError, is_full
+from riser_soil.errors import Interruption, RiserSoilError, SceneError, WriteError, is_full
 from riser_soil.interruption import default_signal_handlers, unmasked
+
+# Packages beyond those of a riser alone that PyPI has, and the extra of the project that brings them.
+EXTRAS = {
+    "scipy": "tables",
+    "matplotlib": "plots",
+    "pyvista": "plots",
+    "fatpack": "fatigue",
+    "xarray": "cases",
+    "distributed": "cases",
+    "jinja2": "report",
+}
+# Packages that PyPI has none of that work together.
+ELSEWHERE = ("petsc4py", "mpi4py", "dolfinx", "gmsh")
 
 # Seconds that a rank leaves to the first one to tell an error that both have met.
 _PATIENCE = 5.0
@@ -33,6 +46,12 @@ def expected_errors() -> Iterator[None]:
         if not err.together:
             _leave_other_ranks(err.exit_status)
         raise typer.Exit(err.exit_status) from err
+    except ModuleNotFoundError as err:
+        if not (way := _way_to(err.name or "")):
+            raise
+        _tell_once(f"{err.name}: is needed here and not installed; {way}")
+        _end_other_ranks(SceneError.exit_status)
+        raise typer.Exit(SceneError.exit_status) from err
     except OSError as err:
         if not is_full(err):
             raise
@@ -44,6 +63,14 @@ def expected_errors() -> Iterator[None]:
             traceback.print_exc()
         _end_other_ranks(1)
         raise
+
+
+def _way_to(module: str) -> str:
+    """What brings a package that may be absent; "" for those that are always there."""
+    package = module.partition(".")[0]
+    if package in ELSEWHERE:
+        return "Debian, conda-forge or the project's Docker image bring it (docs/running.md)"
+    return f"pip install 'riser_soil[{EXTRAS[package]}]' brings it" if package in EXTRAS else ""
 
 
 def rank() -> int:

@@ -1,7 +1,8 @@
-"""Global numbering of the free dofs of all fields, and exchange between global vectors and local arrays.
+"""Global numbering of the free dofs of all fields, and exchange between the system's unknowns and local arrays.
 
 Every rank holds local arrays over its fields' entries: owned ones, copies of other ranks' (ghosts), and second views of
 the same dof (the soil's surface). Prescribed entries have no number: the system holds no row that it doesn't solve for.
+The system's unknowns, and all that has its rows, are arrays over the rows that this rank owns.
 """
 
 from __future__ import annotations
@@ -9,10 +10,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from mpi4py import MPI
-from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.communicator import Communicator, largest_of
 from riser_soil.core.part import Field
 
 
@@ -20,43 +20,51 @@ class Numbering:
     """Numbers of local entries in the monolithic system.
 
     size: entries of a local array. free: rows of the system, all ranks. owned: rows that this rank owns.
-    index (size,): row of each local entry, -1 where prescribed.
+    index (size,): row of each local entry, -1 where prescribed. bounds (ranks + 1,): the ranks' first rows, and `free`.
     """
 
-    def __init__(self, comm: MPI.Intracomm, fields: Sequence[Field]) -> None:
+    def __init__(self, comm: Communicator, fields: Sequence[Field]) -> None:
         self.comm = comm
         self.size = _set_offsets(fields)
         index, self.owned = _number(comm, fields, self.size)
         self.index: IntArray = index
-        self.free: int = comm.allreduce(self.owned)
+        self.bounds: IntArray = np.cumsum([0, *comm.allgather(self.owned)])
+        self.free = int(self.bounds[-1])
+        self.first = first = int(self.bounds[comm.rank])
         self._free_local = np.flatnonzero(index >= 0)
-        self.vector = PETSc.Vec().createMPI((self.owned, PETSc.DETERMINE), comm=comm)
-        self._local = PETSc.Vec().createSeq(len(self._free_local))
-        rows = PETSc.IS().createGeneral(index[self._free_local].astype(PETSc.IntType), comm=PETSc.COMM_SELF)
-        self._scatter = PETSc.Scatter().create(self.vector, rows, self._local, None)
-        rows.destroy()
-        first, last = self.vector.getOwnershipRange()
-        self._owned_local = np.flatnonzero((index >= first) & (index < last))
+        self._rows = index[self._free_local]
+        self._owned_local = np.flatnonzero((index >= first) & (index < first + self.owned))
         self._owned_rows = index[self._owned_local] - first
+        self._scatter = None
+        if comm.size > 1:
+            from riser_soil.core.scatter import Scatter
 
-    def to_global(self, values: Array, out: PETSc.Vec) -> None:
-        """Copy the free entries of a local array, the same wherever ranks share a dof, to the system's unknowns."""
-        out.array_w[self._owned_rows] = values[self._owned_local]
+            self._scatter = Scatter(comm, self.owned, self._rows)
 
-    def to_local(self, x: PETSc.Vec, out: Array) -> None:
-        """Copy the system's unknowns into the free entries of a local array."""
-        self._scatter.scatter(x, self._local, PETSc.InsertMode.INSERT, PETSc.ScatterMode.FORWARD)
-        out[self._free_local] = self._local.array_r
+    def zeros(self) -> Array:
+        """Zero in this rank's rows (owned,)."""
+        return np.zeros(self.owned)
 
-    def add_to_global(self, values: Array, out: PETSc.Vec) -> None:
-        """Sum local contributions into their rows; entries of prescribed dofs stay behind."""
-        out.set(0.0)
-        self._local.array_w[:] = values[self._free_local]
-        self._scatter.scatter(self._local, out, PETSc.InsertMode.ADD, PETSc.ScatterMode.REVERSE)
+    def to_global(self, values: Array) -> Array:
+        """The free entries of a local array, the same wherever ranks share a dof, as the system's unknowns (owned,)."""
+        out = self.zeros()
+        out[self._owned_rows] = values[self._owned_local]
+        return out
+
+    def to_local(self, x: Array, out: Array) -> None:
+        """Copy the system's unknowns (owned,) into the free entries of a local array; collective."""
+        out[self._free_local] = x[self._rows] if self._scatter is None else self._scatter.from_all(x)
+
+    def add_to_global(self, values: Array) -> Array:
+        """Sums (owned,) of local contributions in their rows; entries of prescribed dofs stay behind; collective."""
+        mine = values[self._free_local]
+        if self._scatter is not None:
+            return self._scatter.summed(mine)
+        return np.asarray(np.bincount(self._rows, mine, minlength=self.owned), dtype=float)
 
     def destroy(self) -> None:
-        for thing in (self._scatter, self._local, self.vector):
-            thing.destroy()
+        if self._scatter is not None:
+            self._scatter.destroy()
 
 
 def _set_offsets(fields: Sequence[Field]) -> int:
@@ -67,7 +75,7 @@ def _set_offsets(fields: Sequence[Field]) -> int:
     return size
 
 
-def _number(comm: MPI.Intracomm, fields: Sequence[Field], size: int) -> tuple[IntArray, int]:
+def _number(comm: Communicator, fields: Sequence[Field], size: int) -> tuple[IntArray, int]:
     """Rows of all local entries; owned free entries are numbered field by field, rank by rank."""
     counts = [int(np.count_nonzero(f.owned & ~f.prescribed)) for f in fields]
     first = comm.exscan(sum(counts)) or 0
@@ -81,12 +89,11 @@ def _number(comm: MPI.Intracomm, fields: Sequence[Field], size: int) -> tuple[In
     return index, sum(counts)
 
 
-def _rows_of_space(comm: MPI.Intracomm, members: Sequence[tuple[Field, int]]) -> IntArray:
+def _rows_of_space(comm: Communicator, members: Sequence[tuple[Field, int]]) -> IntArray:
     """Row of every dof of a space, known to all ranks: the owners' numbers, spread by one reduction."""
     largest = max((int(f.global_index.max()) for f, _ in members if f.size), default=-1)
-    table = np.full(comm.allreduce(largest, MPI.MAX) + 1, -1, dtype=np.int64)
+    table = np.full(max(comm.allgather(largest)) + 1, -1, dtype=np.int64)
     for field, start in members:
         mine = field.global_index[field.owned & ~field.prescribed]
         table[mine] = start + np.arange(len(mine))
-    comm.Allreduce(MPI.IN_PLACE, table, MPI.MAX)
-    return table
+    return largest_of(comm, table)

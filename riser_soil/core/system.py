@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from mpi4py import MPI
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.communicator import Communicator, all_of, any_of, sum_of
 from riser_soil.core.compiled import njit
 from riser_soil.core.matrix import Matrix
 from riser_soil.core.numbering import Numbering
@@ -56,14 +56,14 @@ class System:
     lever: the longest one of a line, see `LineField`; levers (size,): of each local dof, 1 for translations.
     """
 
-    def __init__(self, comm: MPI.Intracomm, model: Model, clock: Timer) -> None:
+    def __init__(self, comm: Communicator, model: Model, clock: Timer) -> None:
         self.comm, self.model, self.clock = comm, model, clock
         require_roles(model)
         self._active = [part for part in model.parts if part.active]
         self._number()
         self.lever, self.levers = self._weigh_moments()
-        self.symmetric: bool = comm.allreduce(all(p.traits.symmetric for p in model.parts), MPI.LAND)
-        self.smooth: bool = not comm.allreduce(any("E" in p.traits.groups for p in model.parts), MPI.LOR)
+        self.symmetric = all_of(comm, all(p.traits.symmetric for p in model.parts))
+        self.smooth = not any_of(comm, any("E" in p.traits.groups for p in model.parts))
         self.matrix = self._new_matrix()
 
     def _number(self) -> None:
@@ -185,11 +185,7 @@ class System:
 
     def sum(self, values: list[float]) -> list[float]:
         """Sums over all ranks; collective."""
-        if self.comm.size == 1:
-            return values
-        summed = np.array(values)
-        self.comm.Allreduce(MPI.IN_PLACE, summed)
-        return [float(value) for value in summed]
+        return sum_of(self.comm, values)
 
     def destroy(self) -> None:
         self.matrix.destroy()

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from mpi4py import MPI
 
 from riser_soil import __version__
 from riser_soil.assembly import Assembly
 from riser_soil.checks.inventory import built, dissipating, left_out, unknowns, working
 from riser_soil.core import outputs
+from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Energy
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import ContactSnapshot, Instant, RiserSnapshot, RunFacts, SoilSnapshot, StepStatistics
@@ -250,7 +250,7 @@ def _asked(assembly: Assembly) -> Checkpoint | None:
 
 
 @contextmanager
-def _on_all_ranks(comm: MPI.Intracomm) -> Iterator[None]:
+def _on_all_ranks(comm: Communicator) -> Iterator[None]:
     """An error on one rank in the block is raised on all."""
     failure: RiserSoilError | None = None
     try:

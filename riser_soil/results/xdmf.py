@@ -11,7 +11,6 @@ import io
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 import h5py
 import numpy as np
@@ -20,7 +19,7 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.saved_state import Saved
 from riser_soil.results import vtkhdf
 from riser_soil.results.growing_file import GrowingFile, appending, behind
-from riser_soil.results.ownership import PROGRAM, XDMF_HEAD
+from riser_soil.results.ownership import PROGRAM, XDMF_HEAD, quoted
 
 _CELLS = {4: "Tetrahedron", 8: "Hexahedron", 10: "Tetrahedron_10"}
 _GRID = '<Grid Name="frame_'
@@ -72,7 +71,7 @@ class XdmfFile:
         item = self._item(f"{vtkhdf.ROOT}/{'Lines/' if polyline else ''}Connectivity", (cells.size,), "Int")
         self._topology = f'<Topology {kind} NumberOfElements="{len(cells)}">{item}</Topology>'
         self._points = None if points is None else self._item(f"{vtkhdf.ROOT}/Points", points.shape)
-        self._path, self._head = path, XDMF_HEAD.format(name=quoteattr(name))
+        self._path, self._head = path, XDMF_HEAD.format(name=quoted(name))
         self._goes_on = goes_on
         self._text = GrowingFile(path, None) if goes_on and path.exists() else None
         self._lasting = False
@@ -191,4 +190,4 @@ def _polyline_of(cells: IntArray) -> str:
 
 def _attribute(name: str, centre: str, values: Array, item: str) -> str:
     kind = "Vector" if values.ndim == 2 else "Scalar"
-    return f'<Attribute Name={quoteattr(name)} AttributeType="{kind}" Center="{centre}">{item}</Attribute>'
+    return f'<Attribute Name={quoted(name)} AttributeType="{kind}" Center="{centre}">{item}</Attribute>'

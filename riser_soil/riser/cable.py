@@ -17,9 +17,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import solveh_banded
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.banded import solve_symmetric
 from riser_soil.errors import SceneError
 
 BALANCED = 1e-11  # misfit, see `_misfit`
@@ -251,7 +251,7 @@ def _newton_step(trial: CableBalance, goal: SpanCondition | None) -> CableBalanc
     banded[0, 1:] = -k[1:-1]
     banded[1] = k[:-1] + k[1:] + resting
     z = np.zeros((k.size + 1, 2))  # at constant H, and for a unit of H
-    z[1:-1] = solveh_banded(banded, np.stack([forces + wanted + np.diff(k * spans), -np.diff(k * c)], axis=1))
+    z[1:-1] = solve_symmetric(banded, np.stack([forces + wanted + np.diff(k * spans), -np.diff(k * c)], axis=1))
     dV = k[:, None] * (np.stack([spans, -c], axis=1) + np.diff(z, axis=0))
     dH = 0.0
     if goal is not None:

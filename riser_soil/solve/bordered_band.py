@@ -18,15 +18,12 @@ import numpy as np
 from petsc4py import PETSc
 from scipy.linalg.lapack import dgetrf, dgetrs
 
+from riser_soil.core import banded
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
-from riser_soil.solve import banded
+from riser_soil.solve.chain import SingularError
 
 WIDEST = 32  # entries beside the diagonal up to which a matrix is a chain's
-
-
-class SingularError(Exception):
-    """A matrix without an inverse."""
 
 
 class BorderedBand:
@@ -76,7 +73,6 @@ class BorderedBand:
             x[self._touched] -= self._by_border @ x[chain:]
         banded.solve(self._band, self._pivots, x[:chain], self._wide)
         found.setArray(x)
-
 
     def reset(self, pc: PETSc.PC) -> None:
         """Called as the preconditioner is destroyed."""

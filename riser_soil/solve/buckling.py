@@ -11,15 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.factor_memory import Room
 from riser_soil.core.part import State, Weights
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.relaxation import Relaxation
-from riser_soil.solve.linear_solver import factorise_directly
+from riser_soil.solve.chain import ChainFactors, is_chain
 from riser_soil.solve.stability import judged_parts
 
 MOST_ITERATIONS = 200
@@ -44,46 +42,42 @@ def buckling_mode(system: System, part: Relaxation, line: Line, state: State, we
     parts = judged_parts(system)
     assert parts is not None
     system.assemble(state, weights, [part])
-    drag = system.matrix.mat.getDiagonal()
+    drag = system.matrix.stored.diagonal()
     system.assemble(state, weights, parts)
-    solver = PETSc.PC().create(system.comm)
-    factorise_directly(solver, system, Room())
-    solver.setUp()
-    mode = _iterate(solver, drag, _start(system, line))
+    mode = _iterate(system, _exact_solver(system), drag, _start(system, line))
     found = np.zeros(system.numbering.size)
     system.numbering.to_local(mode, found)
-    for thing in (solver, drag, mode):
-        thing.destroy()
     return np.asarray(found / _largest(line.nodal(found)[:, : line.dimension]))
 
 
-def _start(system: System, line: Line) -> PETSc.Vec:
+def _exact_solver(system: System) -> Callable[[Array], Array]:
+    if is_chain(system):
+        return ChainFactors(system.matrix).solve
+    from riser_soil.solve.linear_solver import exact_solver
+
+    return exact_solver(system)
+
+
+def _start(system: System, line: Line) -> Array:
     """Displacements that grow along the line and share no symmetry with it."""
-    local, x = np.zeros(system.numbering.size), system.numbering.vector.duplicate()
+    local = np.zeros(system.numbering.size)
     line.nodal(local)[:, : line.dimension] = (1.0 + line.arc / line.arc[-1])[:, None] * AXES[: line.dimension]
-    x.set(0.0)
-    system.numbering.to_global(local, x)
-    return x
+    return system.numbering.to_global(local)
 
 
-def _iterate(solver: PETSc.PC, drag: PETSc.Vec, x: PETSc.Vec) -> PETSc.Vec:
-    """Inverse iteration from x, which becomes the mode, of unit size in the drag's norm."""
-    load, image = x.duplicate(), x.duplicate()
+def _iterate(system: System, solve: Callable[[Array], Array], drag: Array, x: Array) -> Array:
+    """Inverse iteration from x: the mode, of unit size in the drag's norm."""
+
+    def product(one: Array, other: Array) -> float:
+        return system.sum([float(one @ (drag * other))])[0]
+
     for _ in range(MOST_ITERATIONS):
-        load.pointwiseMult(drag, x)
-        solver.apply(load, image)
-        along = image.dot(load) / x.dot(load)
-        x.axpby(1.0, -along, image)  # what turns
-        load.pointwiseMult(drag, x)
-        turned = x.dot(load)
-        load.pointwiseMult(drag, image)
-        size = image.dot(load)
-        image.copy(x)
-        x.scale(size**-0.5)
+        image = solve(drag * x)
+        turn = image - x * (product(image, x) / product(x, x))
+        turned, size = product(turn, turn), product(image, image)
+        x = image * size**-0.5
         if turned < SETTLED * size:
             break
-    for vector in (load, image):
-        vector.destroy()
     return x
 
 

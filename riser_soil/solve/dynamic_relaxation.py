@@ -11,8 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from mpi4py import MPI
 
+from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Model, State
 from riser_soil.core.roles import with_role
 from riser_soil.core.saved_state import Stateful
@@ -44,7 +44,7 @@ class RelaxationResult:
 
 
 def relax(
-    comm: MPI.Intracomm, model: Model, line: Line, weight: float, settings: NewtonSettings, clock: Timer, t: float
+    comm: Communicator, model: Model, line: Line, weight: float, settings: NewtonSettings, clock: Timer, t: float
 ) -> RelaxationResult:
     """Bring the line to a stable equilibrium at the load factor t and commit it.
 

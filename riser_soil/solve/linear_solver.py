@@ -1,4 +1,4 @@
-"""Linear solver: PETSc's banded LU where a serial system is a chain, MUMPS otherwise.
+"""Linear solver of PETSc: its banded LU where a serial system is a chain, MUMPS otherwise.
 
 The one of `bordered_band` solves a chain on few other dofs that all couple.
 """
@@ -6,17 +6,19 @@ The one of `bordered_band` solves a chain on few other dofs that all couple.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import ClassVar
 
 import numpy as np
 from petsc4py import PETSc
 
+from riser_soil.core.arrays import Array
 from riser_soil.core.factor_memory import Room
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
-from riser_soil.solve.bordered_band import WIDEST, BorderedBand, SingularError, bandwidth
+from riser_soil.solve.bordered_band import WIDEST, BorderedBand, bandwidth
+from riser_soil.solve.chain import SingularError, is_chain
 
 PREFIX = "riser_soil_"
 # MUMPS' controls for counting pivots, on several ranks too (13), null pivots (24).
@@ -75,7 +77,7 @@ def defaults(options: Mapping[str, str]) -> Iterator[None]:
 
 def keeps_factors(system: System, asked: str) -> bool:
     """Whether factors are kept from one tangent to the next: as asked ("kept", "direct"), or where that is cheaper."""
-    if _is_chain(system) or asked == "direct":
+    if is_chain(system) or asked == "direct":
         return False
     return asked == "kept" or system.numbering.free >= LARGE
 
@@ -87,7 +89,7 @@ def factorise_directly(pc: PETSc.PC, system: System, room: Room) -> None:
         pc.setType(PETSc.PC.Type.PYTHON)
         pc.setPythonContext(BorderedBand(system.matrix.mat, chain))
         return
-    mumps = not _is_chain(system)
+    mumps = not is_chain(system)
     _choose(pc, system, "cholesky" if mumps and system.symmetric else "lu", room.controls)
 
 
@@ -106,6 +108,24 @@ def complaint(err: PETSc.Error | SingularError) -> str:
     return f"the linear solver failed (MUMPS{where})"
 
 
+def exact_solver(system: System) -> Callable[[Array], Array]:
+    """What the matrix makes of loads (owned,), factorised at once; collective."""
+    solver = PETSc.PC().create(system.comm)
+    factorise_directly(solver, system, Room())
+    solver.setUp()
+
+    def solve(load: Array) -> Array:
+        given, found = system.matrix.mat.createVecs()
+        given.array_w[:] = load
+        solver.apply(given, found)
+        answer = np.array(found.array_r)
+        for vector in (given, found):
+            vector.destroy()
+        return answer
+
+    return solve
+
+
 def negative_pivots(system: System) -> int:
     """Negative pivots of the system's symmetric matrix: its number of negative eigenvalues; collective."""
     room = Room()
@@ -122,7 +142,7 @@ def negative_pivots(system: System) -> int:
 
 def _choose(pc: PETSc.PC, system: System, kind: str, controls: Mapping[int, int]) -> None:
     pc.setOperators(system.matrix.mat)
-    if _is_chain(system):
+    if is_chain(system):
         pc.setType(kind)
         pc.setFactorOrdering("natural")
         pc.setFactorPivot(zeropivot=NO_PIVOT)
@@ -139,13 +159,9 @@ def use_mumps(pc: PETSc.PC, kind: str, controls: Mapping[int, int]) -> None:
         pc.getFactorMatrix().setMumpsIcntl(control, value)
 
 
-def _is_chain(system: System) -> bool:
-    return system.comm.size == 1 and len(system.model.fields) == 1
-
-
 def _bordered_chain(system: System) -> int | None:
     """Rows of a serial system that are a chain's, the first ones, where all the others couple with each other."""
-    if system.comm.size > 1 or _is_chain(system):
+    if system.comm.size > 1 or is_chain(system):
         return None
     at = slice(0, sum(line.size for line in system.model.lines))
     chain, rows = int(np.count_nonzero(system.numbering.index[at] >= 0)), system.numbering.free

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from petsc4py import PETSc
 
 from riser_soil.core.factor_memory import Room
@@ -13,11 +15,12 @@ from riser_soil.solve.linear_solver import LinearSystems, factorise_directly, ke
 
 def linear_systems(system: System, asked: str) -> LinearSystems:
     """As asked: "direct", "kept", "iterative", or "auto"; what there is nothing for is solved directly."""
+    comm: Any = system.comm
     solid = solid_of(system) if asked == "iterative" else None
     if solid is not None:
         return IterativeSolver(system, solid)
     if keeps_factors(system, asked):
-        return KeptFactors(system.comm, system.symmetric, Room())
+        return KeptFactors(comm, system.symmetric, Room())
     return DirectSolver(system, Room())
 
 

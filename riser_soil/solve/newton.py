@@ -1,38 +1,30 @@
-"""Newton's method for one step, by PETSc's SNES."""
+"""Newton's method for one step: its residual, tangent and tests. What iterates is a loop of `loops`."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
-from mpi4py import MPI
-from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.communicator import any_of
 from riser_soil.core.part import Energy, Forces, State, Work, local
 from riser_soil.core.roles import Adaptive, with_role
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
-from riser_soil.solve.bordered_band import SingularError
-from riser_soil.solve.failed_step import place_of_largest, reason_name
+from riser_soil.solve.chain import is_chain
+from riser_soil.solve.failed_step import place_of_largest
 from riser_soil.solve.line_search import step_length
-from riser_soil.solve.linear_solver import PREFIX, complaint, defaults
-from riser_soil.solve.linear_systems import linear_systems
+from riser_soil.solve.loops import CONVERGED, DIVERGED, ITERATING, LOOSE, NOT_FINITE, OUTGROWN, ChainLoop, Loop
 from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.round_off import ROUND_OFF, stays
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError, told
 from riser_soil.solve.stability import prescribe_free_turns, unstable_modes
 from riser_soil.solve.time_scheme import Static
 
-CONVERGED = PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
-DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_DTOL
-NOT_SOLVED = PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE
-ITERATING = PETSc.SNES.ConvergedReason.ITERATING
-OUTGROWN = PETSc.SNES.ConvergedReason.CONVERGED_ITS  # stops where the matrix' pattern lacks places
-LOOSE, TIGHT = 1e-5, 1e-10  # shares of the residual that a linear system solved by iterations may leave
+TIGHT = 1e-10  # least share of the residual that a linear system solved by iterations may leave, LOOSE the largest
 BELOW = 0.1  # what it may leave, of what Newton's method is expected to leave, or may
 PROBE = 1e-6  # of the prescribed motion, along which the slope of the residual is taken
 STATIC = Static().weights(0.0)
@@ -50,31 +42,21 @@ class Newton:
         self.iterations, self.rests = 0, False
         self._state: State | None = None
         self._known: State | None = None  # whose forces are known
-        self._try_again = False
-        self._make_vectors()
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
-        self.linear = linear_systems(system, settings.linear)
-        self._snes = self._create()
+        self.loop = self._new_loop()
+        self._make_vectors()
+
+    def _new_loop(self) -> Loop:
+        if is_chain(self.system) and not self.settings.snes:
+            return ChainLoop(self.system, self)
+        from riser_soil.solve.snes import SnesLoop
+
+        return SnesLoop(self.system, self.settings, self)
 
     def _make_vectors(self) -> None:
         numbering = self.system.numbering
-        self._x, self._f, self._levers = (numbering.vector.duplicate() for _ in range(3))
-        numbering.to_global(self.system.levers, self._levers)
-
-    def _create(self) -> PETSc.SNES:
-        snes = PETSc.SNES().create(self.system.comm)
-        snes.setType(PETSc.SNES.Type.NEWTONLS)
-        snes.setFunction(self._function, self._f)
-        snes.setJacobian(self._jacobian, self.system.matrix.mat)
-        snes.setConvergenceTest(self._test)
-        snes.setTolerances(max_it=self.settings.max_iterations)
-        if self.settings.line_search:
-            snes.setLineSearchPreCheck(self._shorten)
-        self.linear.serve(snes.getKSP(), self._levers)
-        snes.setOptionsPrefix(PREFIX)
-        with defaults({"snes_linesearch_type": "basic"}):
-            snes.setFromOptions()
-        return snes
+        self._x, self._f = numbering.zeros(), numbering.zeros()
+        self._levers = numbering.to_global(self.system.levers)
 
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError; collective."""
@@ -116,20 +98,20 @@ class Newton:
         while self._outgrown():
             self._renew(start)
             self._assemble(start)
-        self.system.numbering.add_to_global(residual + (probed - residual) / PROBE, self._f)
+        self._f = self.system.numbering.add_to_global(residual + (probed - residual) / PROBE)
         self._norms.append(self._norm())
         self._first = 1
-        while failure := self._failing(self._respond, lambda: self._snes.getKSP().reason < 0):
-            if not self._try_again:
-                raise NotConvergedError(failure)
-        self._x.scale(-1.0)
+        while failure := self._timed_respond():
+            if not self.loop.again:
+                raise NotConvergedError(self._reason(failure))
 
-    def _respond(self) -> None:
-        """Solve the linear system of the tangent and the residual."""
-        solver = self._snes.getKSP()
-        solver.setOperators(self.system.matrix.mat)
-        solver.setTolerances(rtol=LOOSE)
-        solver.solve(self._f, self._x)
+    def _timed_respond(self) -> str:
+        """Take the response of the tangent to the residual: "", or why there is none."""
+        began, counted = time.perf_counter(), self.system.clock.total
+        failure, response = self.loop.respond(self._f)
+        self._x = -response
+        self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
+        return failure
 
     def _with_prescribed(self, u: Array) -> Array:
         """Increments with those that are prescribed in the step."""
@@ -139,7 +121,7 @@ class Newton:
 
     def _out_of_balance(self, u: Array) -> float:
         """Norm of the residual of increments [N]; collective."""
-        self.system.numbering.add_to_global(self._balance(u)[1], self._f)
+        self._f = self.system.numbering.add_to_global(self._balance(u)[1])
         return self._norm()
 
     def _balance(self, u: Array) -> tuple[State, Array]:
@@ -153,40 +135,20 @@ class Newton:
         room with more; "" where that converges, else why not.
         """
         while True:
-            failure = self._run()
-            if not (failure and self._try_again):
-                if failure or self._snes.reason != OUTGROWN:
-                    self.iterations += self._taken
-                    return failure
+            ending = self._run()
+            if ending == OUTGROWN:
                 self._renew(self._balanced)
+            elif not self.loop.again:
+                self.iterations += self._taken
+                return "" if ending == CONVERGED else self._reason(ending)
             self._norms.pop()
 
     def _run(self) -> str:
-        """Iterate until that converges or the pattern is outgrown: "", else why it has failed."""
-        self._snes.setTolerances(max_it=self.settings.max_iterations - self._taken)
-        failure = self._failing(lambda: self._snes.solve(None, self._x), lambda: self._snes.reason == NOT_SOLVED)
-        return failure or ("" if self._snes.reason > 0 else self._reason(self._snes.reason))
-
-    def _failing(self, solve: Callable[[], None], unsolved: Callable[[], bool]) -> str:
-        """Call a solver; why its linear systems could not be solved, else "". No factors outlive a failed
-        factorisation: MUMPS would refuse all that comes after it.
-        """
-        began, counted, complained = time.perf_counter(), self.system.clock.total, ""
-        self._try_again = False
-        try:
-            solve()
-        except (PETSc.Error, SingularError) as err:
-            complained = complaint(err)
-            if not complained:
-                raise
+        """Iterate until that converges, the pattern is outgrown or it fails: how it ends."""
+        began, counted = time.perf_counter(), self.system.clock.total
+        ending = self.loop.iterate(self._x, self.settings.max_iterations - self._taken)
         self.system.clock.add("linear_solve", began + self.system.clock.total - counted)
-        if not complained and not unsolved():
-            return ""
-        why, self._try_again = self.linear.failed(self._snes.getKSP())
-        failure = self._reason(NOT_SOLVED, complained or why)
-        self._snes.destroy()
-        self._snes = self._create()
-        return failure
+        return ending
 
     @property
     def _taken(self) -> int:
@@ -223,7 +185,7 @@ class Newton:
         """Negative pivots at a static state; its forces may be known. doubtful: with those that may be. Without factors
         there are none, and nothing is judged. Collective.
         """
-        if not self.linear.factorises:
+        if not self.loop.factorises:
             return 0
         scale = self._scale(self.system.forces(state) if forces is None else forces)
         negative = unstable_modes(self.system, state, STATIC, scale, doubtful)
@@ -243,15 +205,14 @@ class Newton:
         """Take a matrix of the pattern that the parts have now, and of the dofs that they act on, if any can change."""
         if not self._adaptive:
             return
-        self._release()
-        self.linear.renew()
+        self.loop.release()
         self.system.renew_pattern()
         self._make_vectors()
         if self._state is not None:
-            self.system.numbering.to_global(self._state.u, self._x)
+            self._x = self.system.numbering.to_global(self._state.u)
             self.system.prescribe(self._prescribed)
             self._state = None
-        self._snes = self._create()
+        self.loop.renew()
 
     def _begin(self, step: Step) -> None:
         self._step, self._norms, self._first = step, list[float](), 0
@@ -260,11 +221,12 @@ class Newton:
         self._prescribed = State(step.t, *(x.copy() for x in (step.guess, self._still.v, self._still.a)))
         self.system.prescribe(self._prescribed)
         self._state = None
-        self.system.numbering.to_global(step.guess, self._x)
-        self._answers_load = self.rests or self._x.norm() > 0.0  # one like round-off has an answer, too
+        self._x = self.system.numbering.to_global(step.guess)
+        guessed = any_of(self.system.comm, bool(self._x.any()))
+        self._answers_load = self.rests or guessed  # one like round-off has an answer, too
         self.rests = False
 
-    def _trial(self, x: PETSc.Vec) -> State:
+    def _trial(self, x: Array) -> State:
         """State of the unknowns x; the same object while x stays the same, so that parts need not look twice."""
         found = np.zeros(self.system.numbering.size)
         self.system.numbering.to_local(x, found)
@@ -282,31 +244,22 @@ class Newton:
         v[at], a[at] = self._prescribed.v[at], self._prescribed.a[at]
         return State(self._step.t, u, v, a)
 
-    def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
+    def residual(self, x: Array) -> Array:
+        """Residual of the unknowns, both (owned,); collective."""
         self._trial(x)
         if self._balanced is not self._known:
             self._forces, self._known = self.system.forces(self._balanced), self._balanced
-        residual = self._step.scheme.combine(self._forces, self._past)
-        self.system.numbering.add_to_global(residual, f)
+        return self.system.numbering.add_to_global(self._step.scheme.combine(self._forces, self._past))
 
-    def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> bool:
-        """Scale the step -y from x to the length that the line search finds; whether that changed it."""
-        tried, found = x.duplicate(), x.duplicate()
+    def shortened(self, x: Array, y: Array) -> Array:
+        """The step -y from x, whose residual is known, to the length that the line search finds: a part of y."""
+        if not self.settings.line_search:
+            return y
 
-        def slope(part: float) -> float:
-            x.copy(tried)
-            tried.axpy(-part, y)
-            self._function(self._snes, tried, found)
-            return -float(found.dot(y))
+        def along(f: Array) -> float:
+            return -self.system.sum([float(f @ y)])[0]
 
-        part = step_length(-float(self._f.dot(y)), slope)
-        y.scale(part)
-        for vector in (tried, found):
-            vector.destroy()
-        return part != 1.0
-
-    def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, jacobian: PETSc.Mat, p: PETSc.Mat) -> None:
-        """The convergence test has assembled it; a matrix that it has left as it was keeps its factors."""
+        return step_length(along(self._f), lambda part: along(self.residual(x - part * y))) * y
 
     def _assemble(self, state: State) -> None:
         self.system.assemble(state, self._weights)
@@ -317,7 +270,7 @@ class Newton:
         """Whether something in the tangent assembled last had no place in the pattern; collective."""
         if not self._adaptive:
             return False
-        return bool(self.system.comm.allreduce(any(part.outgrown for part in self._adaptive), MPI.LOR))
+        return any_of(self.system.comm, any(part.outgrown for part in self._adaptive))
 
     def _reusable(self) -> bool:
         """Whether the tangent of the previous iteration can be reused."""
@@ -335,15 +288,19 @@ class Newton:
         """Whether the guess continues a smooth motion: time steps without contact."""
         return self.system.smooth and self._weights.inertia > 0.0
 
-    def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
-        reason = self._tested()
-        return OUTGROWN if reason == CONVERGED and self._outgrown() else reason
+    def judge(self, x: Array, f: Array) -> str:
+        """Whether unknowns with the residual f are to be iterated further, and if so with which tangent: how it ends,
+        else ITERATING. What was judged last is what was found. Collective.
+        """
+        self._x, self._f = x, f
+        ending = self._judged()
+        return OUTGROWN if ending == CONVERGED and self._outgrown() else ending
 
-    def _tested(self) -> int:
+    def _judged(self) -> str:
         norm = self._norm()
         self._norms.append(norm)
         if not np.isfinite(norm):
-            return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
+            return NOT_FINITE
         if self._taken < self._least_iterations:
             return self._next_tangent()
         if norm <= self.settings.tolerance * self._scale(self._forces):
@@ -359,23 +316,18 @@ class Newton:
     def _at_round_off(self) -> bool:
         """Whether nothing in the residual can be told from its round-off; collective. Leaves another matrix behind."""
         self._trial(self._x)
-        sizes = self._f.duplicate()
-        self.system.numbering.add_to_global(self.system.magnitudes(self._balanced, self._weights), sizes)
-        above = bool((np.abs(self._f.array_r) > ROUND_OFF * sizes.array_r).any())
-        sizes.destroy()
-        return not self.system.comm.allreduce(above, MPI.LOR)
+        sizes = self.system.numbering.add_to_global(self.system.magnitudes(self._balanced, self._weights))
+        return not any_of(self.system.comm, bool((np.abs(self._f) > ROUND_OFF * sizes).any()))
 
-    def _next_tangent(self) -> int:
+    def _next_tangent(self) -> str:
         """Assemble that of the next iteration, if there is one with a tangent of its own; whether it has a place."""
-        if self.linear.to_tolerance:
-            self._snes.getKSP().setTolerances(rtol=self._linear_tolerance())
         if self._taken >= self.settings.max_iterations or self._reusable():
             return ITERATING
         self._trial(self._x)
         self._assemble(self._balanced)
         return OUTGROWN if self._outgrown() else ITERATING
 
-    def _linear_tolerance(self) -> float:
+    def linear_tolerance(self) -> float:
         """Share of the residual that the next linear system may leave.
 
         A fall by a factor f promises a next one by f² (Eisenstat & Walker, SIAM J. Sci. Comput. 17, 1996, choice 2,
@@ -400,27 +352,21 @@ class Newton:
         mine = [float(f @ f) for f in (reactions, inertia, contact)]
         return math.sqrt(max(system.sum(mine)))
 
-    def _reason(self, reason: int, complained: str = "") -> str:
-        """Why the step did not converge: PETSc's reason, or what the linear solver has complained of."""
-        why = complained or reason_name(reason)
-        place = place_of_largest(self.system, self._weighed(), self._f.getOwnershipRange()[0])
+    def _reason(self, why: str) -> str:
+        """Why the step did not converge, with where it is out of balance."""
+        place = place_of_largest(self.system, self._weighed(), self.system.numbering.first)
         return told(why, self._norms, place)
 
     def _weighed(self) -> Array:
         """This rank's residual [N], moments over the lever."""
-        return np.asarray(self._f.array_r / self._levers.array_r)
+        return self._f / self._levers
 
     def state(self) -> Saved:
         """What is kept of linear systems."""
-        return under("linear", self.linear.state())
+        return under("linear", self.loop.state())
 
     def restore(self, saved: Saved) -> None:
-        self.linear.restore(within(saved, "linear"))
+        self.loop.restore(within(saved, "linear"))
 
     def destroy(self) -> None:
-        self._release()
-        self.linear.forget()
-
-    def _release(self) -> None:
-        for thing in (self._snes, self._x, self._f, self._levers):
-            thing.destroy()
+        self.loop.destroy()

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from riser_soil.core import banded
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.bound import Bound, calls, in_turn
 from riser_soil.core.packed import Packed
@@ -31,7 +32,6 @@ from riser_soil.riser.part_kernels import (
     bound,
     forces_of,
 )
-from riser_soil.solve import banded
 from riser_soil.solve import riser_loop as loop
 from riser_soil.solve.riser_loop import Dofs, MatrixRoom, NewtonProgress, StepNumbers, StopLimits
 

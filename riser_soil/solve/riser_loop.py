@@ -10,13 +10,13 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from riser_soil.core import banded
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Calls, call_each
 from riser_soil.core.compiled import njit
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size, add_geometric, collect_nodal
 from riser_soil.riser.part_kernels import LineForces, LineWeights
-from riser_soil.solve import banded
 from riser_soil.solve.round_off import ROUND_OFF, STALLED
 
 GOING_ON, CONVERGED, NOT_FINITE, SINGULAR, DIVERGED, TOO_MANY = range(6)

@@ -8,9 +8,9 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from scipy.linalg import solveh_banded
 
 from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.banded import solve_symmetric
 from riser_soil.core.part import LineField, Part, State, Weights, local
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
@@ -90,7 +90,7 @@ class _LineMass:
         banded = _banded(_projected(blocks, self.moving), self.line.size)
         _add_nodal(banded, (blocks.max() or 1.0) * (np.eye(self.moving.shape[1]) - self.moving))
         nodal = force.reshape(len(self.moving), -1, 1)
-        return np.asarray(solveh_banded(banded, (self.moving @ nodal).ravel(), overwrite_ab=True))
+        return solve_symmetric(banded, (self.moving @ nodal).reshape(-1, 1))[:, 0]
 
     def _element_matrices(self, t: float) -> Array:
         state = State.at_rest(t, self._system.numbering.size)

@@ -48,7 +48,7 @@ class NewtonSettings:
     line_search: shorten steps that lead far beyond the least energy, see `line_search`. linear_start: begin a static
     step with the linear response to it, instead of the guess. linear: "direct" factorises each tangent, "kept" keeps
     factors as preconditioners, see `kept_factors`, "iterative" does without those of the soil, see `iterative_solver`,
-    "auto" keeps factors in large systems.
+    "auto" keeps factors in large systems. snes: let PETSc's SNES solve a riser alone, too.
     """
 
     tolerance: float
@@ -59,6 +59,7 @@ class NewtonSettings:
     line_search: bool = False
     linear_start: bool = False
     linear: Literal["auto", "kept", "direct", "iterative"] = "auto"
+    snes: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import LineField, Part, State, Weights, local
 from riser_soil.core.system import System
-from riser_soil.solve.linear_solver import negative_pivots
+from riser_soil.solve import chain
 
 EPS = float(np.finfo(float).eps)
 NO_STIFFNESS = 1e-4  # of the forces in play, for a turn that moves the riser by its length; a residual makes much less
@@ -45,14 +45,21 @@ def unstable_modes(system: System, state: State, weights: Weights, forces: float
         return 0
     system.assemble(state, weights, judged)
     prescribed = _one_dof_each(system, _neutral(system, state, NO_STIFFNESS * forces))
-    diagonal = system.matrix.mat.getDiagonal()
-    bounds = _row_bounds(system, diagonal.array)
+    bounds = _row_bounds(system)
+    more = (-EPS if doubtful else EPS) * bounds
     mine = _of_this_rank(system, prescribed)
-    diagonal.array_w[:] += (-EPS if doubtful else EPS) * bounds
-    diagonal.array_w[mine] += bounds[mine]
-    system.matrix.mat.setDiagonal(diagonal)
-    diagonal.destroy()
+    more[mine] += bounds[mine]
+    system.matrix.add_to_diagonal(more)
     return negative_pivots(system)
+
+
+def negative_pivots(system: System) -> int:
+    """Negative pivots of the system's symmetric matrix: its number of negative eigenvalues; collective."""
+    if chain.is_chain(system):
+        return chain.negative_pivots(system.matrix)
+    from riser_soil.solve import linear_solver
+
+    return linear_solver.negative_pivots(system)
 
 
 def prescribe_free_turns(system: System, state: State, least: float) -> None:
@@ -62,25 +69,24 @@ def prescribe_free_turns(system: System, state: State, least: float) -> None:
     """
     prescribed = _one_dof_each(system, _neutral(system, state, least))
     if prescribed.size:
-        diagonal, mine = system.matrix.mat.getDiagonal(), _of_this_rank(system, prescribed)
-        diagonal.array_w[mine] += np.abs(diagonal.array_r[mine])
-        system.matrix.mat.setDiagonal(diagonal)
-        diagonal.destroy()
+        more, mine = system.numbering.zeros(), _of_this_rank(system, prescribed)
+        more[mine] = np.abs(system.matrix.stored.diagonal()[mine])
+        system.matrix.add_to_diagonal(more)
 
 
 def _of_this_rank(system: System, rows: IntArray) -> IntArray:
     """Which of this rank's rows are among some of the system's."""
-    first, last = system.matrix.mat.getOwnershipRange()
-    return np.asarray(rows[(rows >= first) & (rows < last)] - first)
+    first, owned = system.numbering.first, system.numbering.owned
+    return np.asarray(rows[(rows >= first) & (rows < first + owned)] - first)
 
 
-def _row_bounds(system: System, diagonal: Array) -> Array:
-    """d_i sum_j |K_ij|/d_j of this rank's rows, whose diagonal entries are given."""
-    of_all = np.sqrt(np.abs(np.concatenate(system.comm.allgather(diagonal))))
+def _row_bounds(system: System) -> Array:
+    """d_i sum_j |K_ij|/d_j of this rank's rows."""
+    of_all = np.sqrt(np.abs(np.concatenate(system.comm.allgather(system.matrix.stored.diagonal()))))
     of_all[of_all == 0.0] = of_all.max()
-    starts, columns, values = system.matrix.mat.getValuesCSR()
-    first, last = system.matrix.mat.getOwnershipRange()
-    return np.asarray(of_all[first:last] * np.add.reduceat(np.abs(values) / of_all[columns], starts[:-1]))
+    starts, columns, values = system.matrix.stored.csr()
+    first, owned = system.numbering.first, system.numbering.owned
+    return np.asarray(of_all[first : first + owned] * np.add.reduceat(np.abs(values) / of_all[columns], starts[:-1]))
 
 
 def _neutral(system: System, state: State, least: float) -> Array:
@@ -101,17 +107,9 @@ def _neutral_turns(system: System, line: LineField, state: State, least: float) 
 
 def _products(system: System, increments: Array) -> list[Array]:
     """The assembled matrix times increments (k, size)."""
-    x, product = (system.numbering.vector.duplicate() for _ in range(2))
-    found = list[Array]()
-    for increment in increments:
-        met = np.zeros(system.numbering.size)
-        x.set(0.0)
-        system.numbering.to_global(increment, x)
-        system.matrix.mat.mult(x, product)
-        system.numbering.to_local(product, met)
-        found.append(met)
-    for vector in (x, product):
-        vector.destroy()
+    found = [np.zeros(system.numbering.size) for _ in increments]
+    for met, increment in zip(found, increments, strict=True):
+        system.numbering.to_local(system.matrix.stored.times(system.numbering.to_global(increment)), met)
     return found
 
 

@@ -1,4 +1,4 @@
-"""The solver of a stage's steps: PETSc's SNES, or for the time steps of a riser alone a compiled loop."""
+"""The solver of a stage's steps: Newton's method over its parts, or for time steps of a riser alone a compiled loop."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import Protocol
 
 from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.system import System
+from riser_soil.solve.chain import is_chain
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.riser_mass import InverseMass
 from riser_soil.solve.solution import NewtonSettings, Solution, Step
@@ -43,11 +44,11 @@ class StepSolver(Protocol):
     def destroy(self) -> None: ...
 
 
-def solver_of(system: System, scheme: Scheme, settings: NewtonSettings, compiled: bool) -> StepSolver:
-    """SNES; or, where that is wanted and can be, the compiled loop: for a riser alone on one rank, in time steps of
-    Newmark's scheme or generalised-alpha.
+def solver_of(system: System, scheme: Scheme, settings: NewtonSettings) -> StepSolver:
+    """`Newton`; or, where it can be and SNES is not asked for, the compiled loop: for a riser alone on one rank, in
+    time steps of Newmark's scheme or generalised-alpha.
     """
-    if compiled and system.comm.size == len(system.model.fields) == 1 and isinstance(scheme, GeneralizedAlpha):
+    if is_chain(system) and not settings.snes and isinstance(scheme, GeneralizedAlpha):
         from riser_soil.solve.riser_newton import riser_newton
 
         return riser_newton(system, settings) or Newton(system, settings)

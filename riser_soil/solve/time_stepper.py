@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from mpi4py import MPI
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.communicator import any_of
 from riser_soil.core.part import Energy, Forces, State, Work, local
 from riser_soil.core.roles import MomentumCorrecting, Predictor, with_role
 from riser_soil.core.saved_state import Saved, Stateful, gathered, record_of, under, values_of, within
@@ -117,7 +117,7 @@ class TimeStepper:
         change = total(self.system.forces(end)) - total(self.system.forces(self.before))
         self.system.prescribe(end)
         changed = bool(np.any(change != 0.0) or np.any(end.u != 0.0))
-        return bool(self.system.comm.allreduce(changed, MPI.LOR))
+        return any_of(self.system.comm, changed)
 
     def advance(self, control: Control, most_cuts: int | None = None) -> AcceptedStep:
         """Take one step, cut as often as it needs; SolveError when it can't be cut any more, or may not."""

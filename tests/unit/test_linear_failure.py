@@ -38,7 +38,7 @@ if sys.argv[1] == "raising":
 chain = Chain(np.arange(4.0), prescribed=True, owner=comm.rank == 0)
 springs = Springs(chain, 1.0, 1.0, weight=2.0 / comm.size)
 system = System(comm, Model([chain], [springs]), Timer.new())
-newton, z = Newton(system, NewtonSettings(1e-10, 20, 1e-12)), np.zeros(4)
+newton, z = Newton(system, NewtonSettings(1e-10, 20, 1e-12, snes=True)), np.zeros(4)
 told = []
 for k in (20.0, 0.0, 20.0, 0.0, 0.0, 10.0):
     springs.k = k / comm.size

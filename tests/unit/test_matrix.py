@@ -98,17 +98,14 @@ numbering = Numbering(comm, [chain])
 matrix = Matrix(numbering, {"pairs": chain.pairs()}, symmetric=True)
 matrix.values["pairs"][...] = np.array([[1.0, -1.0], [-1.0, 1.0]]) / comm.size
 matrix.assemble()
-x, y = numbering.vector, numbering.vector.duplicate()
-first, last = x.getOwnershipRange()
-x.array_w[:] = np.sin(np.arange(first, last))
-matrix.mat.mult(x, y)
+y = matrix.stored.times(np.sin(np.arange(numbering.first, numbering.first + numbering.owned)))
 local = np.zeros(chain.size)
 numbering.to_local(y, local)
-numbering.add_to_global(local / comm.size, x)
+x = numbering.add_to_global(local / comm.size)
+matrix.add_to_diagonal(x)
+square = comm.allreduce(float(x @ matrix.stored.diagonal()))
 if comm.rank == 0:
-    print(" ".join(f"{v:.12e}" for v in np.concatenate([local, [x.norm()]])))
-else:
-    x.norm()
+    print(" ".join(f"{v:.12e}" for v in np.concatenate([local, [square]])))
 '''
 
 

@@ -13,7 +13,7 @@ from packaging.utils import canonicalize_name
 
 from tests.support.on_ranks import ROOT
 
-DEBIAN = {"numpy", "scipy"}  # as its PETSc was compiled with them
+DEBIAN = {"numpy", "scipy", "h5py"}  # as its PETSc was compiled with them
 pythons = pytest.mark.parametrize("python", ["3.11", "3.13", "3.14"])
 
 
@@ -60,12 +60,20 @@ def test_runs_need_no_test_tools_and_bring_no_numpy(python: str) -> None:
 @pythons
 def test_pins_are_what_the_project_asks_for(python: str) -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    asked = {"run": project["dependencies"], "dev": project["optional-dependencies"]["dev"]}
+    extras = project["optional-dependencies"]
+    for_users = [text for extra, texts in extras.items() if extra not in ("dev", "all") for text in texts]
+    asked = {"run": [*project["dependencies"], *for_users], "dev": extras["dev"]}
     for name, texts in asked.items():
         found, needed = pins(name, python), [Requirement(text) for text in texts]
         assert {canonicalize_name(r.name) for r in needed} - DEBIAN == listed(name)
         for each in needed:
             assert each.name in DEBIAN or each.specifier.contains(found[canonicalize_name(each.name)][0]), str(each)
+
+
+def test_all_is_every_extra_for_users() -> None:
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    (everything,) = map(Requirement, extras["all"])
+    assert everything.extras == extras.keys() - {"dev", "all"}
 
 
 def test_what_pinned_packages_need_is_there() -> None:

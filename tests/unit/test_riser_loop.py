@@ -12,9 +12,9 @@ import pytest
 from scipy.linalg import solve_banded
 
 from benchmarks.stage import last_stage
+from riser_soil.core import banded
 from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
-from riser_soil.solve import banded
 from riser_soil.solve.newton import Newton
 from tests.support.riser_loop import (
     CASES,

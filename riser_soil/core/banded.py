@@ -1,4 +1,4 @@
-"""Banded LU factorisation with partial pivoting, for the compiled loop over a riser alone.
+"""Banded LU factorisation with partial pivoting, for chains such as a riser alone.
 
 A matrix of n rows with b entries on either side of its diagonal lies there by rows: entry (i, j) at ab[i, j - i + b],
 |j - i| <= b. Row exchanges fill b further places to the right. Below the last row there are b rows of zeros, so that
@@ -12,8 +12,8 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.riser.hermite import Size
 
+Size = tuple[int, ...]  # of `fixed`; or an array, where a band's width is not known as it is compiled
 HUGE = 1e300  # a pivot beyond it is no number to divide by
 
 
@@ -98,3 +98,37 @@ def inverse_at(ab: Array, pivots: IntArray, at: IntArray, B: Size) -> Array:
         for c in range(m):
             x[k, c] *= inverse
     return x[at]
+
+
+@njit
+def count_negative_pivots(ab: Array, n: int, B: Size) -> int:
+    """Negative pivots of a symmetric matrix without row exchanges: its negative eigenvalues. The matrix is lost."""
+    b, negative = len(B), 0
+    for k in range(n):
+        pivot = ab[k, b]
+        negative += pivot < 0.0
+        if pivot == 0.0:
+            continue
+        for i in range(1, min(b, n - 1 - k) + 1):
+            factor = ab[k, b + i] / pivot
+            if factor != 0.0:
+                for j in range(i, b + 1):
+                    ab[k + i, b + j - i] -= factor * ab[k, b + j]
+    return negative
+
+
+def solve_symmetric(upper: Array, loads: Array) -> Array:
+    """Solution (n, k) for loads (n, k) of a symmetric matrix whose entry (i, j), j >= i, lies at upper[b + i - j, j].
+
+    upper (b + 1, n): as scipy.linalg.solveh_banded takes it. Raises LinAlgError where the matrix is singular.
+    """
+    b, n = len(upper) - 1, upper.shape[1]
+    band, width, pivots = np.zeros((n + b, 3 * b + 1)), np.zeros(b), np.zeros(n, dtype=np.int64)
+    for d in range(min(b + 1, n)):
+        band[: n - d, b + d] = band[d:n, b - d] = upper[b - d, d:]
+    if not factorise(band, pivots, width):
+        raise np.linalg.LinAlgError("singular matrix")
+    columns = np.array(loads.T, order="C")
+    for column in columns:
+        solve(band, pivots, column, width)
+    return np.asarray(columns.T)

@@ -1,0 +1,49 @@
+"""Packages that a scene needs beyond those of a riser alone: asked for before anything is built, told in one line."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Sequence
+
+from riser_soil.core.communicator import Communicator, world
+from riser_soil.errors import SceneError
+from riser_soil.scene.scene import Scene
+
+FOR_SOIL = {"dolfinx": "dolfinx", "petsc4py": "PETSc", "mpi4py": "MPI", "gmsh": "gmsh", "scipy": "scipy"}
+FOR_SNES = {"petsc4py": "PETSc", "mpi4py": "MPI"}
+PROVIDED = (
+    "Debian: apt install {debian}; conda-forge: conda install {conda}; Docker: the project's image (docs/running.md)"
+)
+DEBIAN = {name: f"python3-{name}" for name in FOR_SOIL}
+CONDA = {"dolfinx": "fenics-dolfinx", "gmsh": "python-gmsh"}
+
+
+def communicator_of(scene: Scene) -> Communicator:
+    """The processes that a scene is solved on; SceneError where packages are missing that it needs."""
+    if scene.soil is not None:
+        _require("soil", FOR_SOIL)
+    elif scene.solver.newton == "snes":
+        _require("solver.newton: snes", FOR_SNES)
+    return world(with_mpi=scene.soil is not None or scene.solver.newton == "snes")
+
+
+def _require(key: str, packages: dict[str, str]) -> None:
+    """Raise SceneError where any of the packages can't be found."""
+    missing = [name for name in packages if importlib.util.find_spec(name) is None]
+    if missing:
+        raise SceneError(f"{key}: needs {_listed([*packages.values()])}; {_said(missing, packages)}. {_way(missing)}")
+
+
+def _said(missing: Sequence[str], packages: dict[str, str]) -> str:
+    names = _listed([packages[name] for name in missing])
+    return f"{names} {'is' if len(missing) == 1 else 'are'} not installed"
+
+
+def _way(missing: Sequence[str]) -> str:
+    debian, conda = (" ".join(names.get(each, each) for each in missing) for names in (DEBIAN, CONDA))
+    return PROVIDED.format(debian=debian, conda=conda)
+
+
+def _listed(names: Sequence[str]) -> str:
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last

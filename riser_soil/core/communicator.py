@@ -1,0 +1,128 @@
+"""The processes that take part in a run: MPI's communicator where there are several or soil, else one without MPI.
+
+A riser alone needs no MPI, which takes its time to start and need not be installed. Whether a process is one of several
+is told by the environment in which their launcher starts it.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import os
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Protocol
+
+from riser_soil.errors import SceneError
+
+if TYPE_CHECKING:
+    from riser_soil.core.arrays import IntArray
+
+# How many processes were started together, by OpenMPI, MPICH and Intel MPI, MVAPICH, IBM's jsrun, Slurm's srun.
+SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE", "JSM_NAMESPACE_SIZE", "SLURM_STEP_NUM_TASKS")
+RANKS = ("PMIX_RANK", "PMI_RANK", "PALS_RANKID", "ALPS_APP_PE")  # of one among a number that is not told
+
+
+class Communicator(Protocol):
+    """What is used of mpi4py's communicators by what a riser alone needs, too; collective but for rank and size."""
+
+    @property
+    def rank(self) -> int: ...
+
+    @property
+    def size(self) -> int: ...
+
+    def bcast(self, value: Any, root: int = 0) -> Any: ...
+
+    def gather(self, value: Any, root: int = 0) -> Any: ...
+
+    def allgather(self, value: Any) -> Any: ...
+
+    def allreduce(self, value: Any) -> Any:
+        """The sum."""
+        ...
+
+    def exscan(self, value: Any) -> Any:
+        """The sum over the ranks before; None on the first one."""
+        ...
+
+
+class Alone:
+    """The communicator of one process."""
+
+    rank, size = 0, 1
+
+    def bcast(self, value: Any, root: int = 0) -> Any:
+        return value
+
+    def gather(self, value: Any, root: int = 0) -> list[Any]:
+        return [value]
+
+    def allgather(self, value: Any) -> list[Any]:
+        return [value]
+
+    def allreduce(self, value: Any) -> Any:
+        return value
+
+    def exscan(self, value: Any) -> None:
+        return None
+
+
+def world(with_mpi: bool = False) -> Communicator:
+    """All processes that were started together. with_mpi: MPI's communicator for one process, too, as the soil needs.
+
+    SceneError where there are several and mpi4py is missing: each would take itself for the only one.
+    """
+    started = _started_together()
+    if not (with_mpi or started or "mpi4py.MPI" in sys.modules):
+        return Alone()
+    if started and importlib.util.find_spec("mpi4py") is None:
+        raise SceneError(
+            f"{started}: this process is one of several, which can't be without mpi4py; install it with the MPI that "
+            "has started them, or start one process alone"
+        )
+    comm: Communicator = importlib.import_module("mpi4py.MPI").COMM_WORLD
+    return comm
+
+
+def _started_together() -> str:
+    """What of the environment tells that there are several processes, or may be; "" where nothing does."""
+    environment = os.environ
+    told = [name for name in SIZES if environment.get(name, "").isdecimal()]
+    several = [name for name in told if int(environment[name]) > 1]
+    among = [] if told else [name for name in RANKS if name in environment]
+    return next((f"{name}={environment[name]}" for name in (*several, *among)), "")
+
+
+def any_of(comm: Communicator, here: bool) -> bool:
+    """Whether something is so on any rank; collective."""
+    return any(comm.allgather(bool(here)))
+
+
+def all_of(comm: Communicator, here: bool) -> bool:
+    """Whether something is so on all ranks; collective."""
+    return all(comm.allgather(bool(here)))
+
+
+def sum_of(comm: Communicator, values: Sequence[float]) -> list[float]:
+    """Sums over all ranks, one for each value; collective."""
+    if comm.size == 1:
+        return list(values)
+    return [float(each) for each in _reduced(comm, values, "SUM")]
+
+
+def largest_of(comm: Communicator, values: IntArray) -> IntArray:
+    """Largest entries on all ranks, of arrays of one shape; collective."""
+    if comm.size == 1:
+        return values
+    largest: IntArray = _reduced(comm, values, "MAX")
+    return largest
+
+
+def _reduced(comm: Any, values: Any, operation: str) -> Any:
+    import numpy as np
+    from mpi4py import MPI
+
+    reduced = np.array(values)
+    comm.Allreduce(MPI.IN_PLACE, reduced, getattr(MPI, operation))
+    return reduced

@@ -1,0 +1,71 @@
+"""The system matrix of one rank: compressed sparse rows (CSR) in arrays, which PETSc works on where it is asked for."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
+
+
+class CsrMatrix:
+    """Square matrix of n rows. keys: sorted entries row n + col, all of the diagonal among them; data: their values."""
+
+    def __init__(self, keys: IntArray, n: int, data: Array, symmetric: bool) -> None:
+        self._indptr, self._indices = csr_pattern(keys, 0, n, n)
+        self._diagonal = np.searchsorted(keys, np.arange(n) * (n + 1))
+        self._data, self._symmetric = data, symmetric
+
+    @cached_property
+    def mat(self) -> Any:
+        """The same arrays as a matrix of PETSc."""
+        from riser_soil.core.petsc_matrix import on_arrays
+
+        return on_arrays(*self.csr(), symmetric=self._symmetric)
+
+    def put(self, data: Array) -> None:
+        """The sums are here already."""
+        self._changed()
+
+    def _changed(self) -> None:
+        if "mat" in self.__dict__:
+            self.mat.assemble()
+
+    def csr(self) -> tuple[IntArray, IntArray, Array]:
+        """Starts of rows, columns, values."""
+        return self._indptr, self._indices, self._data
+
+    def diagonal(self) -> Array:
+        """A copy of it (n,)."""
+        return self._data[self._diagonal]
+
+    def set_diagonal(self, values: Array) -> None:
+        """Replace its entries (n,)."""
+        self._data[self._diagonal] = values
+        self._changed()
+
+    def times(self, x: Array) -> Array:
+        """Product with x (n,)."""
+        rows = np.repeat(np.arange(len(x)), np.diff(self._indptr))
+        return np.asarray(np.bincount(rows, self._data * x[self._indices], minlength=len(x)), dtype=float)
+
+    def destroy(self) -> None:
+        if "mat" in self.__dict__:
+            self.__dict__.pop("mat").destroy()
+
+
+def csr_pattern(keys: IntArray, first: int, count: int, n: int) -> tuple[IntArray, IntArray]:
+    """Starts of `count` rows from `first` on and columns, of n, of sorted entries row n + col."""
+    rows = keys // n - first if n else keys
+    indptr = np.concatenate(([0], np.cumsum(np.bincount(rows, minlength=count))))
+    return indptr.astype(np.int32), (keys % n if n else keys).astype(np.int32)
+
+
+@njit
+def add_at(data: Array, places: IntArray, values: Array) -> None:
+    """Add values to those at places, which may be the same."""
+    for k in range(places.size):
+        data[places[k]] += values[k]

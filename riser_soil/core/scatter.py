@@ -1,0 +1,37 @@
+"""Exchange between ranks of what several of them hold: values of the system's rows, and sums into them; by PETSc."""
+
+from __future__ import annotations
+
+import numpy as np
+from petsc4py import PETSc
+
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.communicator import Communicator
+
+
+class Scatter:
+    """Between this rank's rows (owned,) and the rows (n,) of its free local entries."""
+
+    def __init__(self, comm: Communicator, owned: int, rows: IntArray) -> None:
+        self._all = PETSc.Vec().createMPI((owned, PETSc.DETERMINE), comm=comm)
+        self._mine = PETSc.Vec().createSeq(len(rows))
+        at = PETSc.IS().createGeneral(rows.astype(PETSc.IntType), comm=PETSc.COMM_SELF)
+        self._scatter = PETSc.Scatter().create(self._all, at, self._mine, None)
+        at.destroy()
+
+    def from_all(self, x: Array) -> Array:
+        """Values (n,) at the entries' rows; collective."""
+        self._all.array_w[:] = x
+        self._scatter.scatter(self._all, self._mine, PETSc.InsertMode.INSERT, PETSc.ScatterMode.FORWARD)
+        return np.array(self._mine.array_r)
+
+    def summed(self, values: Array) -> Array:
+        """Sums (owned,) of all ranks' values (n,); collective."""
+        self._all.set(0.0)
+        self._mine.array_w[:] = values
+        self._scatter.scatter(self._mine, self._all, PETSc.InsertMode.ADD, PETSc.ScatterMode.REVERSE)
+        return np.array(self._all.array_r)
+
+    def destroy(self) -> None:
+        for thing in (self._scatter, self._mine, self._all):
+            thing.destroy()

@@ -1,0 +1,150 @@
+"""Newton's iteration by PETSc's SNES: of riser and soil, of several ranks, and where a scene asks for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from petsc4py import PETSc
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.saved_state import Saved
+from riser_soil.core.system import System
+from riser_soil.solve.bordered_band import SingularError
+from riser_soil.solve.linear_solver import PREFIX, complaint, defaults
+from riser_soil.solve.linear_systems import linear_systems
+from riser_soil.solve.loops import (
+    CONVERGED,
+    DIVERGED,
+    ITERATING,
+    LOOSE,
+    NOT_FINITE,
+    NOT_SOLVED,
+    OUTGROWN,
+    Balance,
+)
+from riser_soil.solve.solution import NewtonSettings
+
+REASON = PETSc.SNES.ConvergedReason
+REASONS = {
+    ITERATING: REASON.ITERATING,
+    CONVERGED: REASON.CONVERGED_FNORM_RELATIVE,
+    OUTGROWN: REASON.CONVERGED_ITS,
+    DIVERGED: REASON.DIVERGED_DTOL,
+    NOT_FINITE: REASON.DIVERGED_FNORM_NAN,
+}
+
+
+class SnesLoop:
+    """SNES with the project's tests and linear solvers. Its symbolic factorisation is reused throughout."""
+
+    def __init__(self, system: System, settings: NewtonSettings, balance: Balance) -> None:
+        self._system, self._settings, self._balance = system, settings, balance
+        self.again = False
+        self.linear = linear_systems(system, settings.linear)
+        self.factorises = self.linear.factorises
+        self._make()
+
+    def _make(self) -> None:
+        owned, comm = self._system.numbering.owned, self._system.comm
+        self._x, self._f, self._levers = (PETSc.Vec().createMPI((owned, PETSc.DETERMINE), comm=comm) for _ in range(3))
+        self._levers.array_w[:] = self._system.numbering.to_global(self._system.levers)
+        self._snes = self._create()
+
+    def _create(self) -> PETSc.SNES:
+        snes = PETSc.SNES().create(self._system.comm)
+        snes.setType(PETSc.SNES.Type.NEWTONLS)
+        snes.setFunction(self._function, self._f)
+        snes.setJacobian(self._jacobian, self._system.matrix.mat)
+        snes.setConvergenceTest(self._test)
+        snes.setTolerances(max_it=self._settings.max_iterations)
+        if self._settings.line_search:
+            snes.setLineSearchPreCheck(self._shorten)
+        self.linear.serve(snes.getKSP(), self._levers)
+        snes.setOptionsPrefix(PREFIX)
+        with defaults({"snes_linesearch_type": "basic"}):
+            snes.setFromOptions()
+        return snes
+
+    def iterate(self, x: Array, most: int) -> str:
+        """By SNES."""
+        self._snes.setTolerances(max_it=most)
+        self._x.array_w[:] = x
+        unsolved = REASON.DIVERGED_LINEAR_SOLVE
+        failure = self._failing(lambda: self._snes.solve(None, self._x), lambda: self._snes.reason == unsolved)
+        return failure or _ending(self._snes.reason)
+
+    def respond(self, f: Array) -> tuple[str, Array]:
+        """By the linear solver that SNES has."""
+        self._f.array_w[:] = f
+        failure = self._failing(self._respond, lambda: self._snes.getKSP().reason < 0)
+        return failure, np.array(self._x.array_r)
+
+    def _respond(self) -> None:
+        solver = self._snes.getKSP()
+        solver.setOperators(self._system.matrix.mat)
+        solver.setTolerances(rtol=LOOSE)
+        solver.solve(self._f, self._x)
+
+    def _failing(self, solve: Callable[[], None], unsolved: Callable[[], bool]) -> str:
+        """Call a solver; why its linear systems could not be solved, else "". No factors outlive a failed
+        factorisation: MUMPS would refuse all that comes after it.
+        """
+        complained, self.again = "", False
+        try:
+            solve()
+        except (PETSc.Error, SingularError) as err:
+            complained = complaint(err)
+            if not complained:
+                raise
+        if not complained and not unsolved():
+            return ""
+        why, self.again = self.linear.failed(self._snes.getKSP())
+        self._snes.destroy()
+        self._snes = self._create()
+        return complained or why or NOT_SOLVED
+
+    def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
+        f.array_w[:] = self._balance.residual(np.array(x.array_r))
+
+    def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, jacobian: PETSc.Mat, p: PETSc.Mat) -> None:
+        """The convergence test has assembled it; a matrix that it has left as it was keeps its factors."""
+
+    def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
+        ending = self._balance.judge(np.array(self._x.array_r), np.array(self._f.array_r))
+        if self.linear.to_tolerance:
+            snes.getKSP().setTolerances(rtol=self._balance.linear_tolerance())
+        return int(REASONS[ending])
+
+    def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> bool:
+        """Scale the step -y from x to the length that the line search finds; whether that changed it."""
+        step = np.array(y.array_r)
+        y.array_w[:] = shortened = self._balance.shortened(np.array(x.array_r), step)
+        return shortened is not step
+
+    def renew(self) -> None:
+        """Make all anew for the matrix that the system has now."""
+        self.linear.renew()
+        self._make()
+
+    def state(self) -> Saved:
+        return self.linear.state()
+
+    def restore(self, saved: Saved) -> None:
+        self.linear.restore(saved)
+
+    def destroy(self) -> None:
+        self.release()
+        self.linear.forget()
+
+    def release(self) -> None:
+        """Let go of the matrix, in whose place another is to come."""
+        for thing in (self._snes, self._x, self._f, self._levers):
+            thing.destroy()
+
+
+def _ending(reason: int) -> str:
+    """How SNES has ended, in the words of `loops`; failures by PETSc's name."""
+    known = {number: name for name, number in REASONS.items()}
+    names = (name for name, value in vars(REASON).items() if value == reason and name.startswith("DIV"))
+    return known.get(reason) or next(names, str(reason)).lower()
