@@ -35,7 +35,7 @@ MOST_RELAXED = 1  # times in a static stage on soil
 MOST_CUTS = 4  # of a static step, before relaxation is tried at what is left of it
 
 
-class Checkpoint(Protocol):
+class CheckpointWriter(Protocol):
     """Called between steps with a function that gives the saved state, from which the stage can be resumed.
 
     last: whether it is the stage's last step; leaving: whether the run ends here before its time.
@@ -105,14 +105,14 @@ def run_stage(
     before: State,
     observer: StageObserver,
     clock: Timer,
-    checkpoint: Checkpoint | None = None,
+    checkpoint: CheckpointWriter | None = None,
 ) -> State:
     """Take one stage to its end; the state that it leaves, increments zero."""
     return _take(assembly, assembly.begin(stage), stage, before, observer, clock, checkpoint)
 
 
 def resume_stage(
-    assembly: Assembly, saved: Saved, observer: StageObserver, clock: Timer, checkpoint: Checkpoint | None = None
+    assembly: Assembly, saved: Saved, observer: StageObserver, clock: Timer, checkpoint: CheckpointWriter | None = None
 ) -> tuple[Stage, State]:
     """Take the stage that was saved on its way to its end; the stage, and the state that it leaves.
 
@@ -130,7 +130,7 @@ def _take(
     begin: State | Saved,
     observer: StageObserver,
     clock: Timer,
-    checkpoint: Checkpoint | None = None,
+    checkpoint: CheckpointWriter | None = None,
 ) -> State:
     """From the state that the stage begins with, or from where it was saved."""
     if isinstance(begin, State) and assembly.cushion is not None and assembly.is_laid_in(stage):
@@ -202,7 +202,7 @@ def _overload(assembly: Assembly) -> str:
     return overload(assembly)
 
 
-def _walk(run: StageRun, checkpoint: Checkpoint | None) -> State:
+def _walk(run: StageRun, checkpoint: CheckpointWriter | None) -> State:
     stepper, control = run.stepper, run.control
     while not control.finished:
         static = isinstance(run.stage, StaticStage)

@@ -160,7 +160,7 @@ class Observer:
         stage.implausible, stage.indicators.bending = self._plausibility.warnings(), self._plausibility.bending()
 
     def checkpoint(self, gather: Callable[[], Saved], last: bool, leaving: bool) -> None:
-        """After a step, recorded: write the state, where it is due; collective. See `stages.Checkpoint`."""
+        """After a step, recorded: write the state, where it is due; collective. See `stages.CheckpointWriter`."""
         ends_run = last and self._stage is self._assembly.scene.stages[-1]
         if _asked(self._assembly) is not None:
             leave_between_steps()
