@@ -23,7 +23,7 @@ def trough(stage: StageRecords) -> Figure:
             axes.plot(offset, deepest, color="C3", linestyle=":", label="deepest")
         axes.invert_yaxis()
         axes.set(title=f"section at arc {arc[n]:.4g} m", xlabel="offset to the left of the riser [m]")
-    panels[0].set_ylabel("settlement of the soil's surface [mm], + down")
+    panels[0].set_ylabel("settlement of the soil's\nsurface [mm], + down")
     panels[0].legend(fontsize="small")
     return figure
 
