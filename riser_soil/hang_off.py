@@ -10,11 +10,11 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from mpi4py import MPI
-
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.hang_off import HungEnd, by_cable, hung_end, told, with_value
+from riser_soil.assembly.packages import communicator_of
 from riser_soil.core.arrays import Array
+from riser_soil.core.communicator import Communicator
 from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
 from riser_soil.interruption import agreeing
@@ -60,7 +60,7 @@ def hung(scene: Scene) -> HungScene | None:
 
     Raises SceneError where no value gives it, SolveError where none was found.
     """
-    wanted, comm = hung_end(scene), MPI.COMM_WORLD
+    wanted, comm = hung_end(scene), communicator_of(scene)
     if wanted is None:
         return None
     asked, (low, high) = wanted.asked.asked, wanted.limits
@@ -86,7 +86,7 @@ def _next(wanted: HungEnd, before: tuple[float, float], now: tuple[float, float]
     return value - off * (value - earlier) / (off - earlier_off) if off != earlier_off else value
 
 
-def _reached(wanted: HungEnd, scene: Scene, comm: Any) -> float:
+def _reached(wanted: HungEnd, scene: Scene, comm: Communicator) -> float:
     """The riser's own angle [deg] or tension [N] at the end of the first stage; collective."""
     assembly, clock = build(sized(scene), comm), Timer.new()
     last = _LastStep(assembly, wanted)

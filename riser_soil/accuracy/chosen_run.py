@@ -32,11 +32,10 @@ def run_as_asked(
 
         run(scene, folder, force, restart=restart)
     if more:
-        from mpi4py import MPI
-
+        from riser_soil.assembly.packages import communicator_of
         from riser_soil.results.summary import add_to_summary
 
-        if MPI.COMM_WORLD.rank == 0:
+        if communicator_of(scene).rank == 0:
             add_to_summary(folder, more)
 
 
@@ -53,14 +52,13 @@ def in_numbers(scene: Scene) -> tuple[Scene, dict[str, Any]]:
     """The scene with its hang-off solved, where it asks for one, and what its summary tells of that; collective."""
     if not scene.riser.hangs_off:
         return scene, {}
-    from mpi4py import MPI
-
+    from riser_soil.assembly.packages import communicator_of
     from riser_soil.hang_off import hung
     from riser_soil.interruption import handling_signals
 
     with handling_signals():
         found = hung(scene)
     assert found is not None
-    if MPI.COMM_WORLD.rank == 0:
+    if communicator_of(scene).rank == 0:
         print(found.told)
     return found.scene, {"hang_off": found.summary}

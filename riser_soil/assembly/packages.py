@@ -21,13 +21,13 @@ CONDA = {"dolfinx": "fenics-dolfinx", "gmsh": "python-gmsh"}
 def communicator_of(scene: Scene) -> Communicator:
     """The processes that a scene is solved on; SceneError where packages are missing that it needs."""
     if scene.soil is not None:
-        _require("soil", FOR_SOIL)
+        require("soil", FOR_SOIL)
     elif scene.solver.newton == "snes":
-        _require("solver.newton: snes", FOR_SNES)
+        require("solver.newton: snes", FOR_SNES)
     return world(with_mpi=scene.soil is not None or scene.solver.newton == "snes")
 
 
-def _require(key: str, packages: dict[str, str]) -> None:
+def require(key: str, packages: dict[str, str]) -> None:
     """Raise SceneError where any of the packages can't be found."""
     missing = [name for name in packages if importlib.util.find_spec(name) is None]
     if missing:

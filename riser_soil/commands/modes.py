@@ -33,6 +33,9 @@ def modes(
         if count < 1:
             raise SceneError(f"--count {count}: must be at least 1")
         checked = read_solved(scene, overrides)
+        from riser_soil.assembly.packages import FOR_SNES, require
+
+        require("modes", FOR_SNES)
         from riser_soil.interruption import handling_signals
         from riser_soil.modes.modes import modes_of
         from riser_soil.modes.report import refuse_folder, table, write_folder

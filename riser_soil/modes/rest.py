@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from mpi4py import MPI
 from scipy.sparse import csr_array
 
 from riser_soil.assembly import Assembly, build, sized
+from riser_soil.assembly.packages import communicator_of
 from riser_soil.assembly.sea_loads import sea_loads
 from riser_soil.assembly.stage import dynamic_parts
 from riser_soil.core.arrays import Array, IntArray
@@ -48,7 +48,7 @@ def at_rest(scene: Scene, stage: str | None = None) -> RiserAtRest:
     SceneError where there is no such stage; else raises what a run would.
     """
     stages = stages_up_to(scene, stage)
-    assembly, clock = build(sized(scene), MPI.COMM_SELF), Timer.new()
+    assembly, clock = build(sized(scene), communicator_of(scene)), Timer.new()
     with agreeing(assembly.comm):
         before, _ = lay(assembly, clock)
         for each in stages:
