@@ -7,13 +7,13 @@ from typing import Any
 
 from riser_soil.accuracy.headlines import headlines
 from riser_soil.report.extremes import READ_IN
-from riser_soil.report.tables import NOTHING, Table, number
+from riser_soil.report.tables import NOTHING, ReportTable, number
 from riser_soil.results import Run
 
 _MISSING = object()
 
 
-def differences_table(runs: Mapping[str, Run]) -> Table:
+def differences_table(runs: Mapping[str, Run]) -> ReportTable:
     """Keys of the scenes that are not the same in all runs; runs by their labels."""
     flat = {label: dict(_flattened(run.scene, "")) for label, run in runs.items()}
     keys = dict.fromkeys(key for each in flat.values() for key in each)
@@ -22,10 +22,10 @@ def differences_table(runs: Mapping[str, Run]) -> Table:
         values = [each.get(key, _MISSING) for each in flat.values()]
         if any(value != values[0] for value in values):
             rows.append([key, *(NOTHING if value is _MISSING else str(value) for value in values)])
-    return Table(("key", *runs), rows)
+    return ReportTable(("key", *runs), rows)
 
 
-def headlines_table(runs: Mapping[str, Run]) -> Table:
+def headlines_table(runs: Mapping[str, Run]) -> ReportTable:
     """Headline quantities, and by how much they differ from the first run's: relative to their scale."""
     known = [headlines(run.summary) for run in runs.values()]
     first, *others = known
@@ -44,7 +44,7 @@ def headlines_table(runs: Mapping[str, Run]) -> Table:
         "Of static stages at their end, of dynamic ones the extremes. A difference is relative to the first run's "
         "size; of forces to a tenth of the stage's largest at least, of touchdown arcs to the distance of the ends."
     )
-    return Table(("quantity", "unit", labels[0], *heads), rows, note)
+    return ReportTable(("quantity", "unit", labels[0], *heads), rows, note)
 
 
 def _difference(first: Mapping[str, Any], other: Mapping[str, Any], key: str) -> str:

@@ -9,7 +9,7 @@ from riser_soil.accuracy.headlines import headlines
 from riser_soil.core import outputs
 from riser_soil.core.output import Figure, OutputQuantity
 from riser_soil.plots.units import shown
-from riser_soil.report.tables import NOTHING, Table, compact, found, number
+from riser_soil.report.tables import NOTHING, ReportTable, compact, found, number
 
 READ_IN = {"N": ("kN", 1e-3), "N.m": ("kN.m", 1e-3)}  # units of headline quantities, as they are read
 _HEADS = {
@@ -24,12 +24,12 @@ _NOTE = "Times are those of the run, arc lengths count from the riser's start. "
 _LEFT_OUT = "Components that stay 0 are left out. "
 
 
-def extremes_table(summary: Mapping[str, Any], stage: Mapping[str, Any]) -> Table:
+def extremes_table(summary: Mapping[str, Any], stage: Mapping[str, Any]) -> ReportTable:
     """The figures of a stage that an engineer reads first: those of the screen, with places and error bars."""
     return _table(stage, headline=True, bars=error_bars(summary, stage["name"]))
 
 
-def ends_table(stage: Mapping[str, Any]) -> Table:
+def ends_table(stage: Mapping[str, Any]) -> ReportTable:
     """Positions of the ends, forces and moments of their supports, by component."""
     return _table(stage, headline=False, bars={})
 
@@ -42,7 +42,7 @@ def error_bars(summary: Mapping[str, Any], stage: str) -> dict[tuple[str, str], 
     return {(known[key].figure, known[key].which): bar for key, bar in names.items() if key in known}
 
 
-def headlines_table(summary: Mapping[str, Any]) -> Table:
+def headlines_table(summary: Mapping[str, Any]) -> ReportTable:
     """What is read first: headline quantities stage by stage, and their error bars if there are any."""
     bars = {f"{each['stage']}: {each['name']}": each for each in found(summary, ("error_bars", "quantities")) or []}
     sources = list(dict.fromkeys(source for each in bars.values() for source in each["by_source"]))
@@ -54,16 +54,16 @@ def headlines_table(summary: Mapping[str, Any]) -> Table:
         rows.append([each.stage, each.name, unit, number(each.value * scale), _whole_bar(bar, scale), *shares])
     head = ("stage", "quantity", "unit", "value", "±", *(f"by {source}" for source in sources))
     note = "Of static stages at their end, of dynamic ones the extremes over the stage."
-    return compact(Table(head, rows, note))
+    return compact(ReportTable(head, rows, note))
 
 
 def _whole_bar(bar: Mapping[str, Any], scale: float) -> str:
     return "not known" if "reason" in bar else _bar(bar.get("bar"), scale)
 
 
-def _table(stage: Mapping[str, Any], headline: bool, bars: Mapping[tuple[str, str], float | None]) -> Table:
+def _table(stage: Mapping[str, Any], headline: bool, bars: Mapping[tuple[str, str], float | None]) -> ReportTable:
     if stage["final"] is None:
-        return Table(_HEADS[stage["kind"]], [])
+        return ReportTable(_HEADS[stage["kind"]], [])
     rows: list[list[str]] = []
     signs: dict[str, list[str]] = {}
     for output, figure in outputs.figures(()):
@@ -76,7 +76,7 @@ def _table(stage: Mapping[str, Any], headline: bool, bars: Mapping[tuple[str, st
         if output.sign:
             signs.setdefault(output.sign, []).append(words.removesuffix(_ALL))
     told = [f"{', '.join(words)}: {sign}." for sign, words in signs.items()]
-    return compact(Table(_HEADS[stage["kind"]], rows, _NOTE + ("" if headline else _LEFT_OUT) + " ".join(told)))
+    return compact(ReportTable(_HEADS[stage["kind"]], rows, _NOTE + ("" if headline else _LEFT_OUT) + " ".join(told)))
 
 
 def _words(output: OutputQuantity[Any], figure: Figure) -> tuple[str, str, float]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from riser_soil.core import outputs
-from riser_soil.report.tables import NOTHING, Table, number
+from riser_soil.report.tables import NOTHING, ReportTable, number
 
 _ENERGY = (
     ("kinetic", "kinetic energy, added mass included"),
@@ -20,7 +20,7 @@ _ENERGY = (
 )
 
 
-def soil_table(stage: Mapping[str, Any]) -> Table:
+def soil_table(stage: Mapping[str, Any]) -> ReportTable:
     """Largest values in the soil among its recorded frames, with place and time."""
     rows = []
     for figure in (figure for output in outputs.OF_SOIL for figure in output.figures):
@@ -31,10 +31,10 @@ def soil_table(stage: Mapping[str, Any]) -> Table:
         value = number(largest["value"] * figure.row.scale)
         rows.append([figure.row.words, figure.row.unit or "-", value, place, number(largest["time"], 4)])
     time = "at t [s]" if stage["kind"] == "dynamic" else "at load factor"
-    return Table(("quantity", "unit", "value", "at x, y, z [m]", time), rows)
+    return ReportTable(("quantity", "unit", "value", "at x, y, z [m]", time), rows)
 
 
-def energy_table(stage: Mapping[str, Any]) -> Table:
+def energy_table(stage: Mapping[str, Any]) -> ReportTable:
     """The energy balance at the stage's end [kJ], and its share of what was turned over."""
     energy = stage["energy"]
     whole = energy["turned_over"] or float("nan")
@@ -58,10 +58,10 @@ def energy_table(stage: Mapping[str, Any]) -> Table:
         share = percent(worst["value"])
         size, at = number(worst["value"], 3), number(worst["time"], 4)
         note = f"Largest residual on the way: {size} J, {share} % of what was turned over, at {at} s."
-    return Table(("energy", "kJ", "% of turned over"), rows, note)
+    return ReportTable(("energy", "kJ", "% of turned over"), rows, note)
 
 
-def solver_table(summary: Mapping[str, Any]) -> Table:
+def solver_table(summary: Mapping[str, Any]) -> ReportTable:
     """Steps and iterations, stage by stage."""
     counts = ("steps", "failed attempts", "Newton iterations a step", "most")
     head = ("stage", "kind", "simulated [s]", *counts, "found by")
@@ -71,23 +71,23 @@ def solver_table(summary: Mapping[str, Any]) -> Table:
         numbers = (str(stage["steps"]), str(stage["step_cuts"]), number(mean, 3), str(stage["most_newton_iterations"]))
         found_by = stage["method"] or "time steps"
         rows.append([stage["name"], stage["kind"], number(stage["time"]), *numbers, found_by])
-    return Table(head, rows)
+    return ReportTable(head, rows)
 
 
-def indicators_table(stage: Mapping[str, Any]) -> Table:
+def indicators_table(stage: Mapping[str, Any]) -> ReportTable:
     """Estimates of the numerical error that cost no other run."""
-    return Table(("indicator", "value"), list(_indicators(stage.get("indicators", {}), ())))
+    return ReportTable(("indicator", "value"), list(_indicators(stage.get("indicators", {}), ())))
 
 
-def seconds_table(summary: Mapping[str, Any]) -> Table:
+def seconds_table(summary: Mapping[str, Any]) -> ReportTable:
     """Where the time went."""
-    return Table(("part", "seconds"), [[part, number(took, 3)] for part, took in summary["seconds"].items()])
+    return ReportTable(("part", "seconds"), [[part, number(took, 3)] for part, took in summary["seconds"].items()])
 
 
-def versions_table(summary: Mapping[str, Any]) -> Table:
+def versions_table(summary: Mapping[str, Any]) -> ReportTable:
     """What the run was computed with; a run of an earlier version tells its own alone."""
     versions = {"riser_soil": summary["version"]} | summary.get("versions", {})
-    return Table(("software", "version"), [[name, version] for name, version in versions.items()])
+    return ReportTable(("software", "version"), [[name, version] for name, version in versions.items()])
 
 
 def warnings_of(summary: Mapping[str, Any]) -> list[str]:

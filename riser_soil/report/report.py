@@ -18,7 +18,7 @@ from riser_soil.plots.embedding import embedded, embedded_png
 from riser_soil.plots.side_by_side import sheets
 from riser_soil.report import comparison, health, scene_words
 from riser_soil.report.extremes import ends_table, extremes_table, headlines_table
-from riser_soil.report.tables import Table
+from riser_soil.report.tables import ReportTable
 from riser_soil.results import Run
 from riser_soil.results import folder as run_folder
 from riser_soil.results.stage_records import StageRecords, all_stages, stage_records
@@ -39,11 +39,11 @@ class StagePart:
 
     name: str
     kind: str
-    extremes: Table
-    ends: Table
-    soil: Table
-    energy: Table
-    indicators: Table
+    extremes: ReportTable
+    ends: ReportTable
+    soil: ReportTable
+    energy: ReportTable
+    indicators: ReportTable
     pictures: Mapping[str, Sequence[Image]]
 
 
@@ -57,15 +57,15 @@ class RunPart:
     summary: Mapping[str, Any]
     warnings: Sequence[str]
     prose: Sequence[str]
-    scene_tables: Sequence[tuple[str, Table]]
+    scene_tables: Sequence[tuple[str, ReportTable]]
     shape: Sequence[Image]
     touchdown: Image | None
     no_touchdown: str
     stages: Sequence[StagePart]
-    headlines: Table
-    solver: Table
-    seconds: Table
-    versions: Table
+    headlines: ReportTable
+    solver: ReportTable
+    seconds: ReportTable
+    versions: ReportTable
     built: str
     left_out: Sequence[str]
     scene_text: str
@@ -139,7 +139,7 @@ def _run_part(label: str, anchor: str, run: Run, stage: str | None) -> RunPart:
     )
 
 
-def _scene_tables(scene: Any) -> Iterator[tuple[str, Table]]:
+def _scene_tables(scene: Any) -> Iterator[tuple[str, ReportTable]]:
     yield "The riser from its start to its end", scene_words.segments_table(scene)
     yield "Line types", scene_words.pipes_table(scene)
     yield "Water, ground, contact, solver", scene_words.parts_table(scene)
@@ -180,8 +180,8 @@ def _stage_part(summary: Mapping[str, Any], told: Mapping[str, Any], drawn: Stag
 class Comparison:
     """Several runs side by side."""
 
-    differences: Table
-    headlines: Table
+    differences: ReportTable
+    headlines: ReportTable
     pictures: Sequence[Image]
 
 

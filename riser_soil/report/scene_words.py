@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from riser_soil.errors import RiserSoilError
-from riser_soil.report.tables import NOTHING, Table, number
+from riser_soil.report.tables import NOTHING, ReportTable, number
 from riser_soil.results import Run
 from riser_soil.results import folder as run_folder
 from riser_soil.scene.reader import read_scene
@@ -44,7 +44,7 @@ def prose(scene: Scene, run: Run) -> list[str]:
     return [sentence for sentence in (_riser(scene, run), _ground(scene), _water(scene), _stages(scene)) if sentence]
 
 
-def segments_table(scene: Scene) -> Table:
+def segments_table(scene: Scene) -> ReportTable:
     """The riser's stretches from its start to its end."""
     rows, begin = [], 0.0
     for segment in scene.riser.segments:
@@ -53,10 +53,10 @@ def segments_table(scene: Scene) -> Table:
         end = begin + segment.length
         rows.append([segment.line_type, number(begin), number(end), number(segment.length), mesh])
         begin = end
-    return Table(("line type", "from arc [m]", "to arc [m]", "length [m]", "mesh"), rows)
+    return ReportTable(("line type", "from arc [m]", "to arc [m]", "length [m]", "mesh"), rows)
 
 
-def pipes_table(scene: Scene) -> Table:
+def pipes_table(scene: Scene) -> ReportTable:
     """The line types' properties; those that none has are left out."""
     pipes = scene.line_types
     shown = [(key, head) for key, head in _PIPE if any(getattr(pipe, key) is not None for pipe in pipes.values())]
@@ -66,26 +66,26 @@ def pipes_table(scene: Scene) -> Table:
         cells = [_cell(getattr(pipe, key)) for key, _ in shown]
         cells += [_cell(getattr(getattr(pipe, key), "normal", None)) for key, _ in drags]
         rows.append([name, *cells])
-    return Table(("line type", *(head for _, head in (*shown, *drags))), rows)
+    return ReportTable(("line type", *(head for _, head in (*shown, *drags))), rows)
 
 
-def parts_table(scene: Scene) -> Table:
+def parts_table(scene: Scene) -> ReportTable:
     """All else that the scene gives, key by key, with unit and meaning."""
     rows: list[Sequence[str]] = []
     for name, value in scene:
         if name not in _ELSEWHERE:
             rows += _rows(type(scene), name, value, (name,))
-    return Table(("key", "value", "unit", "meaning"), rows)
+    return ReportTable(("key", "value", "unit", "meaning"), rows)
 
 
-def stages_table(scene: Scene) -> Table:
+def stages_table(scene: Scene) -> ReportTable:
     """What each stage does, key by key."""
     rows: list[Sequence[str]] = []
     for stage in scene.stages:
         for key, value in stage:
             if key != "name":
                 rows += _rows(type(stage), key, value, (stage.name, key))
-    return Table(("key", "value", "unit", "meaning"), rows)
+    return ReportTable(("key", "value", "unit", "meaning"), rows)
 
 
 def text(value: Any) -> str:

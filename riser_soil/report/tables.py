@@ -11,7 +11,7 @@ NOTHING = "–"
 
 
 @dataclass(frozen=True)
-class Table:
+class ReportTable:
     """A table of text; note: below it."""
 
     head: Sequence[str]
@@ -22,11 +22,11 @@ class Table:
         return bool(self.rows)
 
 
-def compact(table: Table) -> Table:
+def compact(table: ReportTable) -> ReportTable:
     """The table without columns in which there is nothing."""
     kept = [n for n in range(len(table.head)) if any(row[n] not in ("", NOTHING) for row in table.rows)]
     rows = [[row[n] for n in kept] for row in table.rows]
-    return Table([table.head[n] for n in kept], rows, table.note)
+    return ReportTable([table.head[n] for n in kept], rows, table.note)
 
 
 def number(value: float | None, digits: int = 5) -> str:

@@ -24,7 +24,7 @@ from riser_soil.report.extremes import headlines_table as headlines_of
 from riser_soil.report.health import energy_table, versions_table, warnings_of
 from riser_soil.report.report import write_report
 from riser_soil.report.scene_words import parts_table, pipes_table, prose, read, segments_table, stages_table
-from riser_soil.report.tables import Table, compact, number
+from riser_soil.report.tables import ReportTable, compact, number
 from riser_soil.results import Run
 from tests.support.browser import visit
 from tests.support.on_ranks import ROOT
@@ -65,7 +65,7 @@ def images(page: Path) -> Iterator[tuple[str, bytes]]:
         yield kind, base64.b64decode(data)
 
 
-def row(table: Table, *words: str) -> dict[str, str]:
+def row(table: ReportTable, *words: str) -> dict[str, str]:
     """The row that begins with these words, by the heads of the columns; a head that comes twice keeps both."""
     found = next(row for row in table.rows if tuple(row[: len(words)]) == words)
     named = [f"{head}{'' if head not in table.head[:n] else ' (2)'}" for n, head in enumerate(table.head)]
@@ -180,8 +180,8 @@ def test_numbers_read_well(value: float | None, told: str) -> None:
 
 
 def test_columns_without_anything_are_left_out() -> None:
-    sparse = Table(("a", "b", "c"), [["1", "", "2"], ["3", "–", ""]])
-    assert compact(sparse) == Table(["a", "c"], [["1", "2"], ["3", ""]])
+    sparse = ReportTable(("a", "b", "c"), [["1", "", "2"], ["3", "–", ""]])
+    assert compact(sparse) == ReportTable(["a", "c"], [["1", "2"], ["3", ""]])
 
 
 def test_what_cannot_be_reported_is_said(run: Run, tmp_path: Path) -> None:
