@@ -1,5 +1,6 @@
-"""How a scene is run: as it is, with error bars, or to the accuracy asked, its hang-off solved first. What isn't needed
-isn't imported.
+"""How a scene is run: its hang-off solved first, as it is, with error bars, or to the accuracy asked.
+
+What isn't needed isn't imported.
 """
 
 from __future__ import annotations

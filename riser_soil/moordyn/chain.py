@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from riser_soil.errors import SceneError
-from riser_soil.moordyn.deck import Deck, Row
+from riser_soil.moordyn.deck import Deck, DeckRow
 
 FREE = ("free", "point", "connect")
 FIXED, COUPLED = ("fix", "anchor"), ("vessel", "coupled", "cpld", "pinned")  # how their words begin
@@ -16,7 +16,7 @@ FIXED, COUPLED = ("fix", "anchor"), ("vessel", "coupled", "cpld", "pinned")  # h
 class Chain:
     """Rows of the lines from start to end, and the names of what they end at, as the lines have them: one more."""
 
-    lines: tuple[Row, ...]
+    lines: tuple[DeckRow, ...]
     joints: tuple[str, ...]
 
     def reversed(self) -> Chain:
@@ -37,9 +37,9 @@ def chain_with(deck: Deck, number: str | None) -> Chain:
     return Chain(lines, joints)
 
 
-def _followed(deck: Deck, row: Row, joint: str) -> list[tuple[Row, str]]:
+def _followed(deck: Deck, row: DeckRow, joint: str) -> list[tuple[DeckRow, str]]:
     """Lines from a joint of a line on, each with the joint at its far end."""
-    found, seen = list[tuple[Row, str]](), {row.line}
+    found, seen = list[tuple[DeckRow, str]](), {row.line}
     while is_free(deck, joint):
         others = [each for each in deck.of("lines") if joint in each.words[2:4] and each.line not in seen]
         if not others:
@@ -53,7 +53,7 @@ def _followed(deck: Deck, row: Row, joint: str) -> list[tuple[Row, str]]:
     return found
 
 
-def point(deck: Deck, name: str) -> Row | None:
+def point(deck: Deck, name: str) -> DeckRow | None:
     """The row of a point; None for a rod's end."""
     return next((row for row in deck.of("points") if row.words[0] == name), None)
 
@@ -63,7 +63,7 @@ def is_free(deck: Deck, name: str) -> bool:
     return row is not None and row.words[1].lower() in FREE
 
 
-def place(deck: Deck, name: str, line: Row) -> tuple[float, float, float]:
+def place(deck: Deck, name: str, line: DeckRow) -> tuple[float, float, float]:
     """Where a point or a rod's end is [m]; SceneError where that can't be known."""
     row = point(deck, name)
     if row is not None:
@@ -75,7 +75,7 @@ def place(deck: Deck, name: str, line: Row) -> tuple[float, float, float]:
     raise deck.error(line.line, f"line {line.words[0]} ends at {name}, which the deck does not have; correct it")
 
 
-def _in_global(deck: Deck, row: Row, kind: str, first: int) -> tuple[float, float, float]:
+def _in_global(deck: Deck, row: DeckRow, kind: str, first: int) -> tuple[float, float, float]:
     x, y, z = (deck.number(row, first + n, "a coordinate") for n in range(3))
     if kind.startswith((*FIXED, *COUPLED, *FREE)):
         return x, y, z
@@ -88,7 +88,7 @@ def _in_global(deck: Deck, row: Row, kind: str, first: int) -> tuple[float, floa
     return tuple(a + deck.number(body, 2 + n, "a coordinate") for n, a in enumerate((x, y, z)))  # type: ignore[return-value]
 
 
-def elsewhere(deck: Deck, chain: Chain) -> Iterator[Row]:
+def elsewhere(deck: Deck, chain: Chain) -> Iterator[DeckRow]:
     """Lines that the chain does not have."""
     own = {row.line for row in chain.lines}
     yield from (row for row in deck.of("lines") if row.line not in own)

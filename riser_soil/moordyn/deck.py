@@ -25,7 +25,7 @@ MOST_BYTES = 10_000_000
 
 
 @dataclass(frozen=True)
-class Row:
+class DeckRow:
     """One row of a section: number of its line, and its words."""
 
     line: int
@@ -38,15 +38,15 @@ class Deck:
 
     name: str
     title: str
-    rows: dict[str, list[Row]] = field(default_factory=dict)
+    rows: dict[str, list[DeckRow]] = field(default_factory=dict)
 
-    def of(self, section: str) -> list[Row]:
+    def of(self, section: str) -> list[DeckRow]:
         return self.rows.get(section, [])
 
     def error(self, line: int, text: str) -> SceneError:
         return SceneError(f"{self.name}:{line}: {text}")
 
-    def number(self, row: Row, column: int, what: str) -> float:
+    def number(self, row: DeckRow, column: int, what: str) -> float:
         """A number of a row; SceneError where it is none."""
         try:
             return float(row.words[column].replace("d", "e").replace("D", "e"))
@@ -70,7 +70,7 @@ def read_deck(file: Path) -> Deck:
 
 
 def _in_sections(lines: list[str], name: str) -> Deck:
-    section, heads, title, rows = "", 0, "", dict[str, list[Row]]()
+    section, heads, title, rows = "", 0, "", dict[str, list[DeckRow]]()
     for number, line in enumerate(lines, start=1):
         words = tuple(line.split("#")[0].split())
         if line.lstrip().startswith("---"):
@@ -85,7 +85,7 @@ def _in_sections(lines: list[str], name: str) -> Deck:
             if len(words) < COLUMNS.get(section, 1):
                 told = f"{len(words)} entries, where a row of {section.upper()} has {COLUMNS[section]} or more"
                 raise SceneError(f"{name}:{number}: {told}; give a deck of MoorDyn v2")
-            rows.setdefault(section, []).append(Row(number, words))
+            rows.setdefault(section, []).append(DeckRow(number, words))
     return Deck(name, title, rows)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from riser_soil.moordyn.chain import COUPLED, Chain, chain_with, elsewhere, is_free, place, point
-from riser_soil.moordyn.deck import Deck, Row
+from riser_soil.moordyn.deck import Deck, DeckRow
 
 DEFAULTS = {"g": 9.81, "rho": 1025.0, "wtrdpth": 0.0, "kbot": 3.0e6, "frictioncoefficient": 0.0}
 ALIASES = {"rhow": "rho", "gravity": "g", "depth": "wtrdpth", "mu_ka": "frictioncoefficient"}
@@ -49,7 +49,7 @@ def scene_of(deck: Deck, line: str | None = None) -> ImportedScene:
     return ImportedScene(data, sorted(remarks))
 
 
-def _ends(chain: Chain) -> tuple[tuple[str, Row], tuple[str, Row]]:
+def _ends(chain: Chain) -> tuple[tuple[str, DeckRow], tuple[str, DeckRow]]:
     return (chain.joints[0], chain.lines[0]), (chain.joints[-1], chain.lines[-1])
 
 
@@ -81,7 +81,7 @@ def _seabed(
     return data, [(chain.lines[0].line, told)] if len(set(diameters)) > 1 else []
 
 
-def _type_row(deck: Deck, row: Row) -> Row:
+def _type_row(deck: Deck, row: DeckRow) -> DeckRow:
     name = row.words[1]
     for each in deck.of("line types"):
         if each.words[0] == name:
@@ -90,7 +90,7 @@ def _type_row(deck: Deck, row: Row) -> Row:
     raise deck.error(row.line, f"line type {name} is not among the LINE TYPES ({known}); correct the name")
 
 
-def _diameter(deck: Deck, row: Row) -> float:
+def _diameter(deck: Deck, row: DeckRow) -> float:
     return deck.number(_type_row(deck, row), 1, "Diam")
 
 
@@ -99,7 +99,7 @@ def _line_types(deck: Deck, chain: Chain) -> tuple[dict[str, Any], list[tuple[in
     for row in dict.fromkeys(_type_row(deck, line) for line in chain.lines):
         name, *stiffnesses = row.words[0], row.words[3], row.words[5]
         first, *more = stiffnesses[0].split("|")
-        stiffness = Row(row.line, (first, stiffnesses[1]))
+        stiffness = DeckRow(row.line, (first, stiffnesses[1]))
         given = {n: deck.number(row, n, key) for n, key in ((1, "Diam"), (2, "Mass/m"), (6, "Cd"), (7, "Ca"))}
         axial = {n: deck.number(row, n, key) for n, key in ((8, "CdAx"), (9, "CaAx"))}
         types[name] = {
@@ -145,7 +145,7 @@ def _held(deck: Deck, joint: str) -> dict[str, float]:
     return {key: value for key, value in values.items() if value != 0.0}
 
 
-def _end(deck: Deck, joint: str, line: Row) -> Any:
+def _end(deck: Deck, joint: str, line: DeckRow) -> Any:
     return "free" if is_free(deck, joint) else {"position": list(place(deck, joint, line))}
 
 

@@ -262,7 +262,7 @@ ATTACHED = [
         14,
         "riser.attachments.0.weight",
         "9.0",
-        "known are at, mass, volume, drag_area, added_mass",
+        "known are at, from, to, spacing, mass, volume, drag_area, added_mass",
     ),
 ]
 
