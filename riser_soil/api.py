@@ -24,7 +24,7 @@ from riser_soil.scene.scene import Scene as CheckedScene
 __all__ = ["Run", "Scene", "run"]
 
 
-class Scene:
+class WrittenScene:
     """A scene as it was written, and checked: from a file, or from a dict with the keys of a scene file.
 
     `model` is the checked scene with its defaults, typed and read-only: `scene.model.riser.segments[0].length`. A wrong
@@ -73,6 +73,9 @@ class Scene:
             yield
         except (SceneError, MeshError) as err:
             raise type(err)(with_place_in(self._document, str(err))) from err
+
+
+Scene = WrittenScene
 
 
 def run(

@@ -1,8 +1,7 @@
-"""Time series for ParaView and VTK, readable at any moment: numbers in a VTKHDF file, which opens by itself, and
-beside it XDMF that refers to the same numbers.
+"""Time series for ParaView and VTK: a VTKHDF file, which opens by itself, and XDMF that refers to its numbers.
 
-The XDMF is one temporal collection of uniform grids. The numbers are written before the XML that refers to them, so
-that the XML never refers to missing data.
+Readable at any moment. The XDMF is one temporal collection of uniform grids. Numbers are written before the XML that
+refers to them, so that the XML never refers to missing data.
 """
 
 from __future__ import annotations
