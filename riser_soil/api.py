@@ -85,12 +85,14 @@ def run(
     force: bool = False,
     quiet: bool = False,
     error_bars: bool = False,
+    restart: bool = False,
 ) -> Run:
     """Compute a scene and leave its results in a folder; they come back as `Run`. Collective under MPI.
 
     scene: also a file's name, or a dict, see `Scene`. folder: by default the scene's name in the current folder.
     force: overwrite a finished run, which is refused otherwise. quiet: print nothing; warnings after the stages stand
     in `Run.summary`, too. error_bars: estimate by coarser companions how far headline quantities may be off.
+    restart: go on from the folder's last checkpoint; begin where there is none.
     Raises SceneError or MeshError before anything is computed; SolveError, MemoryShortageError, WriteError or
     KeyboardInterrupt (Ctrl-C) later: the folder then keeps the results until there, marked unfinished.
     """
@@ -100,7 +102,7 @@ def run(
         if quiet:
             for redirect in (redirect_stdout, redirect_stderr):
                 silence.enter_context(redirect(io.StringIO()))
-        run_as_asked(scene.model, folder, force, error_bars)
+        run_as_asked(scene.model, folder, force, error_bars, restart)
     return Run(folder)
 
 

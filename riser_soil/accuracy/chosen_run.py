@@ -18,6 +18,8 @@ def run_as_asked(
     """Leaves the results in a folder; collective. error_bars: wanted, whether the scene asks for them or not. restart:
     go on from the folder's last checkpoint.
     """
+    if restart and force:
+        raise SceneError("--restart and --force: one goes on with a run, the other overwrites it; leave one out")
     scene, more = in_numbers(scene)
     if scene.accuracy is not None:
         from riser_soil.accuracy.target_run import run_to_accuracy

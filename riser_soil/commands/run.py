@@ -8,7 +8,6 @@ import typer
 from riser_soil.commands.arguments import Overrides, SceneFile
 from riser_soil.commands.endings import expected_errors, rank
 from riser_soil.commands.scenes import guessed, placed, read, read_begun, result_folder
-from riser_soil.errors import SceneError
 
 
 def run(
@@ -39,8 +38,6 @@ def run(
 ) -> None:
     """Compute a scene and leave its results in a folder."""
     with expected_errors():
-        if restart and force:
-            raise SceneError("--restart and --force: one goes on with a run, the other overwrites it; leave one out")
         checked = read(scene, overrides)
         folder = result_folder(scene, checked, output, force)
         from riser_soil.accuracy.chosen_run import run_as_asked
