@@ -23,6 +23,7 @@ from riser_soil.cases.work import Task, run_case
 from riser_soil.errors import SceneError, SolveError
 
 CONNECTING = "10s"
+_HERE = "127.0.0.1"  # all that listens, does so here alone, at ports that are free
 KILLED = 128 + signal.SIGKILL
 SETTINGS = {"distributed.scheduler.worker-saturation": 1.0}  # a worker gets a case when it is free for it
 
@@ -77,8 +78,9 @@ def _client(jobs: int, scheduler: str | None) -> Iterator[Client]:
             return
         with (
             LocalCluster(
-                n_workers=jobs, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None,
-                memory_limit=0, silence_logs=logging.CRITICAL,
+                n_workers=jobs, threads_per_worker=1, processes=True, memory_limit=0, silence_logs=logging.CRITICAL,
+                host=_HERE, dashboard_address=f"{_HERE}:0", worker_dashboard_address=f"{_HERE}:0",
+                scheduler_kwargs={"dashboard": False},
             ) as cluster,
             Client(cluster) as client,
         ):  # fmt: skip
