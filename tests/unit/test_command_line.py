@@ -32,11 +32,13 @@ class Calls:
         self.folders: list[Path] = []
         self.scenes: list[Scene] = []
         self.forces: list[bool] = []
+        self.restarts: list[bool] = []
 
-    def run(self, scene: Scene, folder: Path, force: bool) -> None:
+    def run(self, scene: Scene, folder: Path, force: bool, restart: bool) -> None:
         self.scenes.append(scene)
         self.folders.append(folder)
         self.forces.append(force)
+        self.restarts.append(restart)
         if self.failure:
             raise self.failure
 
@@ -60,6 +62,13 @@ def invoke(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Invoke:
         return CliRunner().invoke(app, list(arguments)), calls
 
     return call
+
+
+@pytest.mark.parametrize("restart", [False, True])
+def test_run_hands_over_whether_it_goes_on(restart: bool, invoke: Invoke) -> None:
+    result, calls = invoke("run", str(SCENE), *(["--restart"] if restart else []))
+    assert result.exit_code == 0
+    assert calls.restarts == [restart]
 
 
 def test_run_hands_over_scene_folder_and_force(invoke: Invoke) -> None:

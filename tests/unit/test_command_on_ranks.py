@@ -24,7 +24,7 @@ import riser_soil.commands.endings as endings
 from riser_soil.__main__ import main
 from riser_soil.errors import SolveError
 
-def compute(scene, folder, force):
+def compute(scene, folder, force, restart):
     if MPI.COMM_WORLD.rank in FAILING:
         raise FAILURE
     MPI.COMM_WORLD.Barrier()
