@@ -48,7 +48,7 @@ Overrides = dict[str, Any]
 CaseName = Annotated[Text, AfterValidator(_name)]
 
 
-class Row(BaseModel):
+class TableRow(BaseModel):
     """One row of the table."""
 
     model_config = FROZEN
@@ -113,7 +113,7 @@ class Cases(BaseModel):
 
     base: NamedFile = Field(description="scene file of all cases")
     values: Overrides = Field(default={}, alias="set", description="values that all cases have in place of the base's")
-    table: Annotated[tuple[Row, ...], BeforeValidator(_rows)] = Field(
+    table: Annotated[tuple[TableRow, ...], BeforeValidator(_rows)] = Field(
         default=(),
         description="cases one by one, [{name: …, set: {path: value}}, …], or a CSV file with a column for each path",
     )
