@@ -19,6 +19,7 @@ pytestmark = pytest.mark.xdist_group("readme")
 
 PAGES = [README, *DOCS]
 EXPLAINED = ROOT / "docs/first_scene.md"
+TUTORIAL = ROOT / "docs/tutorial_riser.md"
 FIRST_SCENE = ROOT / "demos/first_scene.yaml"
 CLOSE = 1e-3
 
@@ -96,12 +97,13 @@ def test_first_scene_is_the_file() -> None:
     assert blocks(README, "yaml") == [FIRST_SCENE.read_text(encoding="utf-8")]
 
 
-def quoted(row: str) -> list[float]:
-    """The numbers of a row of the first scene's table."""
-    line = next(line for line in text(README).splitlines() if line.startswith(f"| {row} |"))
-    return [float(number) for number in re.findall(r"\d+\.\d+", line)]
+def quoted(page: Path, row: str) -> list[float]:
+    """The numbers of a row of a page's table, without error bars."""
+    line = next(line for line in text(page).splitlines() if line.startswith(f"| {row} |"))
+    return [float(number) for number in re.findall(r"(?<!± )\b\d+\.\d+", line)]
 
 
+@pytest.mark.parametrize(("page", "folder"), [(README, "results/first"), (TUTORIAL, "results/steel_catenary")])
 @pytest.mark.parametrize(
     ("row", "path", "unit"),
     [
@@ -110,11 +112,13 @@ def quoted(row: str) -> list[float]:
         ("largest bending moment", ("max_bending_moment",), 1e3),
     ],
 )
-def test_first_scene_gives_the_quoted_numbers(first: Run, row: str, path: tuple[str, ...], unit: float) -> None:
-    hang, heave = first.summary["stages"]
+def test_scenes_give_the_quoted_numbers(
+    done: object, newcomer: Path, page: Path, folder: str, row: str, path: tuple[str, ...], unit: float
+) -> None:
+    hang, heave = Run(newcomer / folder).summary["stages"]
     final, extremes = below(hang["final"], path), below(heave["extremes"], path)
     static = final["value"] if isinstance(final, dict) else final
-    at_rest, *dynamic = quoted(row)
+    at_rest, *dynamic = quoted(page, row)
     assert at_rest == pytest.approx(static / unit, rel=CLOSE)
     assert dynamic[-1] == pytest.approx(extremes["max"] / unit, rel=CLOSE)
     assert len(dynamic) == 1 or dynamic[0] == pytest.approx(extremes["min"] / unit, rel=CLOSE)
