@@ -13,6 +13,9 @@ steps have cut.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cached_property
+
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
@@ -25,7 +28,7 @@ class TimeResolution:
     """Estimates of the time step's error in the extremes of n figures."""
 
     def __init__(self, n: int) -> None:
-        from riser_soil.results.course import Course, following  # compiled: where there are steps
+        from riser_soil.results.course import Course  # compiled code is imported where there are stages
 
         none, unknown = np.zeros((2, n)), np.full((2, n), -np.inf)
         course = Course(
@@ -46,7 +49,13 @@ class TimeResolution:
             rival_steps=none.copy(),
         )
         self._course, self._next = course, np.empty(n + 1)
-        self._follow = following(course, self._next)
+
+    @cached_property
+    def _follow(self) -> Callable[[], None]:
+        """Takes in what is next; bound where there are steps."""
+        from riser_soil.results.course import following
+
+        return following(self._course, self._next)
 
     def update(self, t: float, values: Array) -> None:
         """t: s; values (n,) after a step. nan does not count."""

@@ -16,6 +16,7 @@ from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.scene import Scene
 from tests.support.on_ranks import ROOT
 from tests.support.pages import DEMOS, DOCS, README, blocks, text
+from tests.support.small_scene import BASE
 
 PAGES = [README, *DOCS]
 LIST = ROOT / "docs" / "README.md"
@@ -42,29 +43,6 @@ def joined(base: Any, piece: Any) -> Any:
     if not isinstance(base, dict) or not isinstance(piece, dict):
         return piece
     return base | {key: joined(base.get(key), value) for key, value in piece.items()}
-
-
-BASE = {
-    "water": {"density": 1025.0},
-    "line_types": {
-        "pipe": {
-            "outer_diameter": 0.3,
-            "inner_diameter": 0.2,
-            "mass": 120.0,
-            "EA": 3e8,
-            "EI": 5e4,
-            "GJ": 4e4,
-            "drag": {"normal": 1.1},
-        }
-    },
-    "riser": {
-        "segments": [{"line_type": "pipe", "length": 140.0, "elements": 70}],
-        "start": {"position": [0.0, 0.0, 0.15]},
-        "end": {"position": [80.0, 0.0, 100.0]},
-    },
-    "seabed": {"kind": "rigid"},
-    "stages": [{"name": "move", "kind": "dynamic", "duration": 1.0, "time_step": 0.1}],
-}
 
 
 @pytest.mark.parametrize(("page", "n"), [(page, n) for page in DOCS for n, _ in enumerate(pieces(page))])

@@ -159,7 +159,7 @@ def test_sizes_read_well() -> None:
     assert drawn_radius(0.15, 10.0) == 0.15
 
 
-COMMANDS = [command.callback.__name__ for command in app.registered_commands if command.callback]
+COMMANDS = [command.name or command.callback.__name__ for command in app.registered_commands if command.callback]
 
 
 @pytest.mark.parametrize("command", COMMANDS)

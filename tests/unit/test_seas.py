@@ -20,7 +20,7 @@ from riser_soil.sea import given_spectrum, jonswap
 from riser_soil.sea.components import Components
 from riser_soil.sea.flows import motion_room
 from riser_soil.sea.wave_field import WaveField
-from tests.scenes.test_docs import BASE
+from tests.support.small_scene import BASE
 
 SEA = {"Hs": 4.0, "Tp": 10.0, "components": 60}
 DEPTH = 100.0

@@ -31,7 +31,7 @@ def invoke(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., Any
     monkeypatch.chdir(tmp_path)
     (tmp_path / "small.yaml").write_text(SMALL, encoding="utf-8")
 
-    def compute(scene: object, folder: Path, force: bool, error_bars: bool) -> None:
+    def compute(*given: object) -> None:
         print("this takes about 3 s")
         print("compiling kernels (once, about a minute)", file=sys.stderr)
         with Progress(enabled=True) as progress:

@@ -115,7 +115,7 @@ def test_xarray_opens_the_series(demo: WatchedRun) -> None:
 
 def test_summary_is_as_documented(demo: WatchedRun) -> None:
     summary = json.loads((demo.folder / "summary.json").read_text(encoding="utf-8"))
-    assert set(summary) == {"title", "finished", "version", "ranks", "parts", "dofs", "stages", "seconds"}
+    assert set(summary) == {"title", "finished", "version", "ranks", "parts", "dofs", "stages", "seconds", "warnings", "versions"}
     assert (summary["finished"], summary["version"], summary["ranks"]) == (True, __version__, 1)
     assert set(summary["parts"]) == {"built", "left_out"}
     assert {"riser", "soil", "contact", "morison", "inertia"} <= set(summary["parts"]["built"])
