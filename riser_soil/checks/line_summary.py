@@ -95,7 +95,7 @@ def _of_cable(assembly: Assembly, cable: Catenary) -> Iterator[str]:
 
 def _by_weight(weight: Array, climb: Array) -> list[tuple[float, float]]:
     """Height climbed (m) in pipe of each weight per length (N/m), in the order along the riser."""
-    distinct = dict.fromkeys(weight.tolist())
+    distinct = dict.fromkeys(float(w) for w in weight)
     return [(w, float(climb[weight == w].sum())) for w in distinct]
 
 

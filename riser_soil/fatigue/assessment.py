@@ -94,7 +94,8 @@ def assess(file: Path, given: Fatigue) -> YearlyDamage:
         given.thickness,
     )
     runs = [Run(run_folder(file, case)) for case in given.cases]
-    first, chosen = None, np.empty(0, dtype=int)
+    chosen: IntArray = np.empty(0, dtype=int)
+    first: StressHistory | None = None
     rates, histories = [], []
     for run, case in zip(runs, given.cases, strict=True):
         history = stress_history(run, case.stage, given.skip if case.skip is None else case.skip)
@@ -102,7 +103,7 @@ def assess(file: Path, given: Fatigue) -> YearlyDamage:
             first, chosen = history, _chosen(file, history, given.arcs)
         if not same_sections(first, history):
             raise ResultsError(f"{run.folder}: has other nodes or walls than {runs[0].folder}; cases share one riser")
-        rates.append(damage_rates(history, how, chosen.tolist()) * case.share * YEAR)
+        rates.append(damage_rates(history, how, [int(i) for i in chosen]) * case.share * YEAR)
         histories.append(history)
     assert first is not None  # a fatigue file has a case at least
     section, point = _largest(np.sum(rates, axis=0))

@@ -51,7 +51,7 @@ def write_checkpoint(path: Path, about: About, shares: Sequence[Saved]) -> None:
     for rank, share in enumerate(shares):
         arrays |= {f"{rank}/{name}": value for name, value in share.items()}
     content = io.BytesIO()  # a zip that a full disk cuts short can't be closed
-    np.savez(content, **arrays)
+    np.savez(content, **dict[str, Any](arrays))
     write_atomically(path, content.getbuffer(), lasting=True)
     synchronise(path.parent)
 

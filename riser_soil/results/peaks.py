@@ -57,7 +57,7 @@ class StagePeaks:
         self.sampled, self.of_nodes, self.peaks, self.smooth = Extremes(), Extremes(), Extremes(), Extremes()
         self._seen: Instant | None = None
         self._final: dict[str, Any] | None = None
-        self._latest = np.empty(0)
+        self._latest: Array = np.empty(0)
         self.soil: dict[str, Any] = {}
         self._t: list[float] = []
         self._last: list[Array] = []

@@ -107,7 +107,7 @@ def _neutral_turns(system: System, line: LineField, state: State, least: float) 
 
 def _products(system: System, increments: Array) -> list[Array]:
     """The assembled matrix times increments (k, size)."""
-    found = [np.zeros(system.numbering.size) for _ in increments]
+    found: list[Array] = [np.zeros(system.numbering.size) for _ in increments]
     for met, increment in zip(found, increments, strict=True):
         system.numbering.to_local(system.matrix.stored.times(system.numbering.to_global(increment)), met)
     return found

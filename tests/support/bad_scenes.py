@@ -579,7 +579,7 @@ WATER = [
     water("current: {profile: [[0, 1, 0], [0, 2, 0]]}", "current.profile", "[[0, 1, 0], [0", "heights z must increase"),
     water("waves: {airy: {height: 2, period: 9}}", "surface_level", "missing", "waves need a surface"),
     water("surface_level: 9.0, waves: {}", "waves.airy", "missing", "no wave is given"),
-    water("surface_level: 9.0, waves: {stokes: {}}", "waves.stokes", "{}", "known are airy, jonswap, pierson_moskowitz, "),
+    water("surface_level: 9.0, waves: {stokes: {}}", "waves.stokes", "{}", "known are airy, jonswap, pierson_mosk"),
     water(
         "surface_level: 9.0, waves: {airy: {height: 2, period: 9}, jonswap: {Hs: 2, Tp: 9}}",
         "waves.jonswap",

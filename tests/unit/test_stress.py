@@ -96,6 +96,7 @@ def test_extremes_of_the_first_scene() -> None:
     assert not [name for name in found if "soil" in name or "penalty" in name], "it has springs alone"
 
 
+@pytest.mark.verify
 def test_the_cheapest_cases_end_as_they_are_to() -> None:
     call = [sys.executable, "-m", "tests.stress.run", "--quick", "--workers", "1"]
     done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, check=False)

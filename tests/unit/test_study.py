@@ -237,6 +237,7 @@ def _started(folder: Path) -> subprocess.Popen[str]:
     return subprocess.Popen(COMMAND, cwd=folder, env=environment(), text=True, stdout=pipe, stderr=pipe)
 
 
+@pytest.mark.verify
 def test_a_study_that_was_interrupted_goes_on(tmp_path: Path) -> None:
     """A run of each rung, and of those that were done before the signal none again."""
     (tmp_path / "small.yaml").write_text(SMALL, encoding="utf-8")

@@ -94,6 +94,7 @@ def test_the_count_knows_the_load_to_a_hundredth(elements: int, dimension: int, 
     assert unstable_modes(column(elements, 1.02, 1e7, dimension, axis)) == modes
 
 
+@pytest.mark.verify
 def test_two_ranks_count_as_one() -> None:
     """By MUMPS, where one rank has PETSc's own factorisation."""
     script = (

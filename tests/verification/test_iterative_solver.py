@@ -39,7 +39,7 @@ def ran(scene: Mapping, folder: Path, ranks: int = 1) -> Run:
     return Run(folder / "out")
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.verify)])
 def test_states_are_those_of_the_direct_solver(ranks: int, tmp_path: Path) -> None:
     """Clay that yields, touched by the riser, at rest and in motion."""
     direct = ran(on_clay("direct"), tmp_path / "direct")

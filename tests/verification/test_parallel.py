@@ -156,7 +156,8 @@ def test_a_riser_alone_agrees_on_two_ranks(name: str) -> None:
     assert_same(name, 2)
 
 
-@pytest.mark.parametrize("ranks", [2, pytest.param(4, marks=pytest.mark.verify)])
+@pytest.mark.verify
+@pytest.mark.parametrize("ranks", [2, 4])
 def test_demo_agrees_on_several_ranks(ranks: int) -> None:
     assert_same("demo", ranks)
 

@@ -49,7 +49,9 @@ def settled(kind: str) -> Soil:
     return soil
 
 
-@pytest.mark.parametrize(("kind", "cells", "far"), [("hex", 16, 0.25), ("tet", 8, 0.5)])
+@pytest.mark.parametrize(
+    ("kind", "cells", "far"), [("hex", 16, 0.25), pytest.param("tet", 8, 0.5, marks=pytest.mark.verify)]
+)
 def test_strip_collapses_at_prandtl_load(kind: str, cells: int, far: float) -> None:
     strip = press_strip(kind, cells, far=far)
     assert 0.0 < strip.load[-1] / PRANDTL - 1.0 < 0.05
@@ -101,8 +103,12 @@ def assert_quadratic(norms: list[float]) -> None:
 
 @pytest.mark.parametrize(
     ("ranks", "kind", "size"),
-    [(2, "hex", 0.4), (2, "tet", 0.4), (2, "layers", 0.4), (3, "layers", 9.0)],
-    ids=["hex", "tet", "layers", "two cells"],
+    [
+        pytest.param(2, "hex", 0.4, id="hex"),
+        pytest.param(2, "tet", 0.4, id="tet", marks=pytest.mark.verify),
+        pytest.param(2, "layers", 0.4, id="layers", marks=pytest.mark.verify),
+        pytest.param(3, "layers", 9.0, id="two cells", marks=pytest.mark.verify),
+    ],
 )
 def test_any_number_of_ranks_agrees(ranks: int, kind: str, size: float) -> None:
     """Also where some ranks have no cell."""
