@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.contact import Contact
+from riser_soil.scene.plane import positions
 from riser_soil.scene.problem import Path, Problem
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
@@ -18,6 +19,7 @@ def ground_conflicts(scene: Scene) -> Iterator[Problem]:
     for check in (
         _contact_with_something,
         _seabed_has_one_shape,
+        _grid_under_the_riser,
         _ground_can_do_so,
         _surface_of_a_pipe_and_soil,
         _ends_above_seabed,
@@ -36,9 +38,23 @@ def _seabed_has_one_shape(scene: Scene) -> Iterator[Problem]:
         return
     if seabed.profile is not None and (seabed.level or seabed.slope_deg):
         yield Problem(("seabed", "profile"), "is given beside level or slope_deg", "give either")
-    if scene.soil is not None and (seabed.profile is not None or seabed.slope_deg):
-        key = "slope_deg" if seabed.slope_deg else "profile"
+    if seabed.grid is not None and (seabed.level or seabed.slope_deg or seabed.profile is not None):
+        yield Problem(("seabed", "grid"), "is given beside level, slope_deg or profile", "give one of them")
+    if scene.soil is not None and (seabed.profile is not None or seabed.grid is not None or seabed.slope_deg):
+        key = "slope_deg" if seabed.slope_deg else "profile" if seabed.profile is not None else "grid"
         yield Problem(("seabed", key), "the soil's top is level, and so must be the seabed beside it", "leave it out")
+
+
+def _grid_under_the_riser(scene: Scene) -> Iterator[Problem]:
+    """Between the points that the scene names the riser's way in the plan is nearly straight."""
+    if scene.seabed is None or scene.seabed.grid is None:
+        return
+    heights = scene.seabed.grid.heights
+    for path, (x, y, _) in positions(scene):
+        if not heights.holds(x, y):
+            allowed = f"{'.'.join(map(str, path))}, x = {x:g}, y = {y:g} m, lies beyond the grid: {heights.extent}"
+            yield Problem(("seabed", "grid"), allowed, "take a grid that reaches farther")
+            return
 
 
 def _ground_can_do_so(scene: Scene) -> Iterator[Problem]:
