@@ -12,6 +12,8 @@ from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed
 
 # Part of its radius by which a prescribed end may lie in a rigid seabed.
 _SUNK = 0.02
+# How far an end may lie below the seabed for the round-off of its height [m].
+_ROUND_OFF = 1e-9
 
 
 def ground_conflicts(scene: Scene) -> Iterator[Problem]:
@@ -101,7 +103,7 @@ def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
         ground = ground_height(scene, end.position)
         sunk = ground - end.position[2]
         radius = 0.5 * (line.outer_diameter or 0.0) if scene.contact_at == "outer" else 0.0
-        if sunk > 0.0:
+        if sunk > _ROUND_OFF:
             allowed = f"must not lie below the seabed (z = {ground:g} m)"
             yield Problem(("riser", key, "position"), allowed, "raise the position or lower the seabed")
         elif isinstance(scene.seabed, RigidSeabed) and scene.soil is None and sunk + radius > _SUNK * radius:

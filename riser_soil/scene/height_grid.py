@@ -2,6 +2,7 @@
 
 from bisect import bisect_right
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from riser_soil.core.quantities import SHORTEST
@@ -48,7 +49,7 @@ def read_heights(file: Path) -> HeightGrid:
     for name, points in (("x", x), ("y", y)):
         if len(points) < 2:
             raise wrong_file(f"{file}: the points have {len(points)} different {name}; a grid needs two at least")
-        if min(b - a for a, b in zip(points, points[1:], strict=False)) < SHORTEST:
+        if min(b - a for a, b in pairwise(points)) < SHORTEST:
             raise wrong_file(f"{file}: two {name} are nearer than {SHORTEST:g} m; round them to the same number")
     if len(found) < len(x) * len(y):
         missing = next((a, b) for a in x for b in y if (a, b) not in found)

@@ -56,8 +56,8 @@ def vertical_plane(scene: Scene) -> VerticalPlane:
 
 
 def resolved_dimension(scene: Scene) -> Literal[2, 3]:
-    """2 when the scene says so, or says auto and nothing leaves the vertical plane; else 3, as over a grid of heights, which may slope
-    across.
+    """2 when the scene says so, or says auto and nothing leaves the vertical plane; else 3, as over a grid of heights,
+    which may slope across.
     """
     if scene.dimension != "auto":
         return scene.dimension

@@ -95,6 +95,7 @@ def grid_file(folder: Path, text: str) -> None:
 
 
 HEADER = "x [m], y [m], z [m]\n"
+SUNK = {"start": prescribed(0.0, 0.0, -0.1), "end": prescribed(24.0, 0.0, 17.9)}
 ROWS = "0, -5, -1\n0, 5, 1\n30, -5, 2\n30, 5, 4\n"
 
 
@@ -123,14 +124,14 @@ def test_a_scene_reads_its_grid(tmp_path: Path) -> None:
     [
         (HEADER, {}, "seabed.csv: the points have 0 different x; a grid needs two at least"),
         (HEADER + "0, 0, 0\n1, 0, 0\n", {}, "the points have 1 different y"),
-        (HEADER + ROWS[:-9], {}, "its 3 points have 2 different x and 2 different y, but there is none at x = 30, y = "),
+        (HEADER + ROWS[:-9], {}, "its 3 points have 2 different x and 2 different y, but there is none at x = 30"),
         (HEADER + ROWS + "0, 5, 1\n", {}, "seabed.csv:6: there is a row for x = 0, y = 5 m already; remove one"),
         (HEADER + ROWS.replace("30, 5, 4", "29, 5, 4"), {}, "there is none at x = 29, y = -5 m; a grid has a row for"),
         (HEADER + ROWS.replace("4\n", "nan\n"), {}, 'seabed.csv:5: z: "nan" is not a finite number'),
         ("x [m], z [m]\n0, 0\n", {}, "there is no column y"),
         (HEADER + ROWS.replace("30", "20"), {}, "riser.end.position, x = 24, y = 0 m, lies beyond the grid: x from 0"),
         (HEADER + ROWS, {"seabed": {"level": 1.0}}, "is given beside level, slope_deg or profile; give one of them"),
-        (HEADER + ROWS, {"ends": {"start": prescribed(0.0, 0.0, -0.1), "end": prescribed(24.0, 0.0, 17.9)}}, "must not lie below the seabed (z = 0 m)"),
+        (HEADER + ROWS, {"ends": SUNK}, "riser.start.position: value [0.0, 0.0, -0.1]: must not lie below the seabed"),
     ],
 )
 def test_refused_grids(text: str, more: dict[str, Any], says: str, tmp_path: Path) -> None:
