@@ -7,7 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
+from riser_soil.assembly import build
+from riser_soil.checks.ground_plausibility import ground_warnings
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
 from riser_soil.scene.bathymetry import ground_height
@@ -117,6 +120,16 @@ def test_a_scene_reads_its_grid(tmp_path: Path) -> None:
     folder.mkdir()
     (folder / "scene.yaml").write_text(dump_scene(found), encoding="utf-8")
     assert read_scene(folder / "scene.yaml") == found
+
+
+@pytest.mark.parametrize(("reach", "told"), [("31", 0), ("25", 1)])
+def test_a_free_end_beyond_the_grid_is_told(reach: str, told: int, tmp_path: Path) -> None:
+    """30 m along x in three elements."""
+    ends = {"start": prescribed(0.0, 0.0, 5.0, rotation="fixed"), "end": "free"}
+    found = scene(tmp_path, HEADER + ROWS.replace("30", reach), ends=ends)
+    warnings = [warning for warning in ground_warnings(build(found, MPI.COMM_SELF)) if "seabed.grid" in warning]
+    assert len(warnings) == told
+    assert all("1 nodes of the riser's first shape, from arc 30 to 30 m" in warning for warning in warnings)
 
 
 @pytest.mark.parametrize(
