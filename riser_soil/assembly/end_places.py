@@ -10,7 +10,7 @@ import numpy as np
 from riser_soil.assembly.motions import set_motion, vessels_of
 from riser_soil.core.arrays import Array
 from riser_soil.riser.ends import End
-from riser_soil.scene.motions import ArcMotion, EndMotion, Harmonic, Rotation, Table, Vessel
+from riser_soil.scene.motions import ArcMotion, EndMotion, Harmonic, Rotation, Table, Vessel, VesselHistory
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
@@ -47,7 +47,8 @@ def instants(scene: Scene, stage: Stage) -> Array:
     count = PER_PERIOD * stage.duration / min(periods, default=stage.duration)
     even = np.linspace(0.0, stage.duration, int(np.clip(count, LOOKS, MOST_LOOKS)))
     motions = stage.motion.by_end.values() if stage.motion is not None else ()
-    rows = [np.array(motion.table.columns.values["t"]) for motion in motions if motion.table is not None]
+    given = [history for motion in motions for history in (motion.table, motion.vessel_history) if history is not None]
+    rows = [np.array(history.columns.values["t"]) for history in given]
     times = np.unique(np.concatenate([even, *rows]))
     return np.asarray(times[times <= stage.duration])
 
@@ -66,7 +67,7 @@ def _own_periods(motion: EndMotion) -> Iterator[tuple[str, float]]:
         match way:
             case Harmonic() | ArcMotion() | Rotation():
                 yield key, way.period
-            case Table() | Vessel():  # as fast as its file, or as the waves
+            case Table() | Vessel() | VesselHistory():  # as fast as its file, or as the waves
                 pass
             case _:
                 assert_never(way)

@@ -15,7 +15,7 @@ from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements, larger_beside
 from riser_soil.scene.contact import Contact as ContactScene
 from riser_soil.scene.contact import Friction, Suction
-from riser_soil.scene.plane import vertical_plane
+from riser_soil.scene.plane import resolved_dimension, vertical_plane
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed, Seabed, SpringSeabed
 from riser_soil.scene.soil import GeneratedMesh, MeshFile, SoilScene
@@ -248,6 +248,11 @@ def _ground(scene: Scene, seabed: Seabed) -> Ground:
         from riser_soil.seabed.profile import Profile
 
         return Profile(origin[:2], direction[:2], *np.array(seabed.profile).T)
+    if seabed.grid is not None:
+        from riser_soil.seabed.height_field import HeightField
+
+        heights, section = seabed.grid.heights, direction[:2] if resolved_dimension(scene) == 2 else None
+        return HeightField(np.array(heights.x), np.array(heights.y), np.array(heights.z), section)
     if seabed.slope_deg == 0.0:
         return Plane.level(seabed.level)
     towards = float(np.arctan2(direction[1], direction[0]))

@@ -12,7 +12,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.quantities import Vector
 from riser_soil.riser.ends import End, Motion, SupportRotation
 from riser_soil.riser.line import Line
-from riser_soil.scene.motions import ArcMotion, Harmonic, MotionKind, Rotation, Table, Vessel
+from riser_soil.scene.motions import ArcMotion, Harmonic, MotionKind, Rotation, Table, Vessel, VesselHistory
+from riser_soil.scene.rao import TRANSLATIONS
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 
@@ -77,6 +78,8 @@ def _set(end: End, name: str, origin: Array, stage: Stage, way: MotionKind, vess
             end.turning = _rocking(way)
         case Table():
             _carry(end, origin, _table(way))
+        case VesselHistory():
+            _sail(end, origin, way)
         case Vessel():
             assert vessels is not None
             vessel = vessels.motion(stage, name, origin)
@@ -105,11 +108,20 @@ def _rocking(given: Rotation) -> Callable[[float], SupportRotation]:
     return RockingSupport(np.array(given.axis) / np.linalg.norm(given.axis), swing)
 
 
-def _table(given: Table) -> SixDegreeMotion:
+def _table(given: Table | VesselHistory) -> SixDegreeMotion:
     from riser_soil.motion.table import TabulatedMotion
 
     values = np.hstack([given.displacements, given.rotations])
     return TabulatedMotion(np.array(given.columns.values["t"]), values, given.ramp)
+
+
+def _sail(end: End, origin: Array, given: VesselHistory) -> None:
+    """With a vessel at which the end is at origin (3,) as the stage begins."""
+    from riser_soil.motion.rigid_body import CarriedFrame, CarriedPoint, RigidBody
+
+    once = lru_cache(maxsize=2)(_table(given))  # a step asks again and again for its beginning and its end
+    body = RigidBody(once, np.array([given.axes(mode) for mode in TRANSLATIONS]).T)
+    end.motion, end.turning = CarriedPoint(body, origin, np.array(given.reference)), CarriedFrame(body)
 
 
 def _carry(end: End, origin: Array, six: SixDegreeMotion) -> None:

@@ -30,6 +30,7 @@ def ground_warnings(assembly: Assembly) -> Iterator[str]:
     """Warnings about seabed, soil and contact, each with its numbers."""
     yield from _penalty_against_soil(assembly)
     yield from _corner_against_weight(assembly)
+    yield from _beyond_the_grid(assembly)
     if assembly.soil is not None:
         from riser_soil.checks.soil_edge import edge_warnings
         from riser_soil.checks.soil_mesh import quality_warnings
@@ -42,6 +43,21 @@ def ground_warnings(assembly: Assembly) -> Iterator[str]:
         yield from mesh_warnings(assembly)
         yield from _top_off_the_seabed(assembly)
         yield from _out_of_reach(assembly)
+
+
+def _beyond_the_grid(assembly: Assembly) -> Iterator[str]:
+    """Nodes of the first shape, as of a free end, above no heights of the seabed."""
+    seabed = assembly.scene.seabed
+    if seabed is None or seabed.grid is None:
+        return
+    line, heights = assembly.line, seabed.grid.heights
+    beyond = [s for s, x in zip(line.arc, line.to_global(line.x), strict=True) if not heights.holds(x[0], x[1])]
+    if beyond:
+        yield (
+            f"seabed.grid: {len(beyond)} nodes of the riser's first shape, from arc {beyond[0]:.4g} to "
+            f"{beyond[-1]:.4g} m, lie beyond the grid, {heights.extent}, where the seabed goes straight on: take a "
+            "grid that reaches farther"
+        )
 
 
 def _nothing_below(assembly: Assembly) -> Iterator[str]:

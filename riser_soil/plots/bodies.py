@@ -39,7 +39,7 @@ def flat_seabed(run: Run) -> float | None:
     """m, the level of a seabed that is flat; None where there is none, or it slopes, or the scene cannot be read."""
     try:
         seabed = run.scene["seabed"]
-        flat = not seabed["slope_deg"] and seabed["profile"] is None
+        flat = not seabed["slope_deg"] and seabed["profile"] is None and seabed.get("grid") is None
         return float(seabed["level"]) if flat else None
     except (ResultsError, KeyError, TypeError, ValueError):
         return None

@@ -10,9 +10,11 @@ from riser_soil.scene.vectors import dot, minus
 
 
 def ground_height(scene: Scene, point: Vector) -> float:
-    """Height z [m] of the ground below a point; straight between the points of a profile."""
+    """Height z [m] of the ground below a point; straight between the points of a profile or grid."""
     if scene.seabed is None or _over_block(scene, point):
         return scene.seabed_level + feature_height(scene, point)
+    if scene.seabed.grid is not None:
+        return scene.seabed.grid.heights.height(point[0], point[1])
     s = distance_along(scene, point)
     if scene.seabed.profile is None:
         return scene.seabed.level + math.tan(math.radians(scene.seabed.slope_deg)) * s

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.contact import Contact
+from riser_soil.scene.plane import positions
 from riser_soil.scene.problem import Path, Problem
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
@@ -11,6 +12,8 @@ from riser_soil.scene.seabed import HystereticSeabed, RigidSeabed
 
 # Part of its radius by which a prescribed end may lie in a rigid seabed.
 _SUNK = 0.02
+# How far an end may lie below the seabed for the round-off of its height [m].
+_ROUND_OFF = 1e-9
 
 
 def ground_conflicts(scene: Scene) -> Iterator[Problem]:
@@ -18,6 +21,7 @@ def ground_conflicts(scene: Scene) -> Iterator[Problem]:
     for check in (
         _contact_with_something,
         _seabed_has_one_shape,
+        _grid_under_the_riser,
         _ground_can_do_so,
         _surface_of_a_pipe_and_soil,
         _ends_above_seabed,
@@ -36,9 +40,23 @@ def _seabed_has_one_shape(scene: Scene) -> Iterator[Problem]:
         return
     if seabed.profile is not None and (seabed.level or seabed.slope_deg):
         yield Problem(("seabed", "profile"), "is given beside level or slope_deg", "give either")
-    if scene.soil is not None and (seabed.profile is not None or seabed.slope_deg):
-        key = "slope_deg" if seabed.slope_deg else "profile"
+    if seabed.grid is not None and (seabed.level or seabed.slope_deg or seabed.profile is not None):
+        yield Problem(("seabed", "grid"), "is given beside level, slope_deg or profile", "give one of them")
+    if scene.soil is not None and (seabed.profile is not None or seabed.grid is not None or seabed.slope_deg):
+        key = "slope_deg" if seabed.slope_deg else "profile" if seabed.profile is not None else "grid"
         yield Problem(("seabed", key), "the soil's top is level, and so must be the seabed beside it", "leave it out")
+
+
+def _grid_under_the_riser(scene: Scene) -> Iterator[Problem]:
+    """Between the points that the scene names the riser's way in the plan is nearly straight."""
+    if scene.seabed is None or scene.seabed.grid is None:
+        return
+    heights = scene.seabed.grid.heights
+    for path, (x, y, _) in positions(scene):
+        if not heights.holds(x, y):
+            allowed = f"{'.'.join(map(str, path))}, x = {x:g}, y = {y:g} m, lies beyond the grid: {heights.extent}"
+            yield Problem(("seabed", "grid"), allowed, "take a grid that reaches farther")
+            return
 
 
 def _ground_can_do_so(scene: Scene) -> Iterator[Problem]:
@@ -85,7 +103,7 @@ def _ends_above_seabed(scene: Scene) -> Iterator[Problem]:
         ground = ground_height(scene, end.position)
         sunk = ground - end.position[2]
         radius = 0.5 * (line.outer_diameter or 0.0) if scene.contact_at == "outer" else 0.0
-        if sunk > 0.0:
+        if sunk > _ROUND_OFF:
             allowed = f"must not lie below the seabed (z = {ground:g} m)"
             yield Problem(("riser", key, "position"), allowed, "raise the position or lower the seabed")
         elif isinstance(scene.seabed, RigidSeabed) and scene.soil is None and sunk + radius > _SUNK * radius:

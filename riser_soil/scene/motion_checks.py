@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 
-from riser_soil.scene.motions import EndMotion, Table, Vessel
+from riser_soil.scene.motions import EndMotion, Table, Vessel, VesselHistory
 from riser_soil.scene.problem import Path, Problem
 from riser_soil.scene.riser import Support
 from riser_soil.scene.scene import Scene
@@ -20,6 +20,8 @@ def motion_conflicts(scene: Scene, path: Path, motion: EndMotion, duration: floa
     yield from _jumps(path, motion)
     if motion.table:
         yield from _table((*path, "table"), motion.table, duration)
+    if motion.vessel_history:
+        yield from _table((*path, "vessel_history", "file"), motion.vessel_history, duration)
     if motion.vessel:
         yield from _vessel(scene, (*path, "vessel"), motion.vessel)
     end = scene.riser.start if path[-1] == "start" else scene.riser.end
@@ -64,7 +66,7 @@ def _jumps(path: Path, motion: EndMotion) -> Iterator[Problem]:
                 yield _jump((*path, key, "phase_deg"), f"{angle:.4g} deg")
 
 
-def _table(path: Path, table: Table, duration: float) -> Iterator[Problem]:
+def _table(path: Path, table: Table | VesselHistory, duration: float) -> Iterator[Problem]:
     """Times count from the stage's beginning, to its end."""
     time = table.columns.values["t"]
     if time[0] != 0.0 or time[-1] < duration * (1.0 - _LATE):
@@ -74,12 +76,12 @@ def _table(path: Path, table: Table, duration: float) -> Iterator[Problem]:
         yield from _table_jumps(path, table)
 
 
-def _table_jumps(path: Path, table: Table) -> Iterator[Problem]:
+def _table_jumps(path: Path, table: Table | VesselHistory) -> Iterator[Problem]:
     x, angle = math.hypot(*table.displacements[0]), math.degrees(math.hypot(*table.rotations[0]))
     if x > _AT_ZERO or angle > _AT_ZERO:
         how_far = f"{x:.4g} m" if x > _AT_ZERO else f"{angle:.4g} deg"
         allowed = f"{table.file}:{table.columns.lines[0]}: {_jump(path, how_far).allowed}"
-        yield Problem(path, allowed, "give {file, ramp}, or a first row of zeros")
+        yield Problem(path, allowed, "give a ramp [s] beside the file, or a first row of zeros")
 
 
 def _jump(path: Path, how_far: str) -> Problem:

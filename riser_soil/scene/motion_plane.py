@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import assert_never
 
 from riser_soil.core.quantities import Vector
-from riser_soil.scene.motions import ArcMotion, Harmonic, MotionKind, Rotation, Table, Vessel
+from riser_soil.scene.motions import ArcMotion, Harmonic, MotionKind, Rotation, Table, Vessel, VesselHistory
 from riser_soil.scene.problem import Path
 from riser_soil.scene.rao import ROTATIONS, TRANSLATIONS
 from riser_soil.scene.scene import Scene
@@ -26,6 +26,8 @@ def displacements(scene: Scene) -> Iterator[tuple[Path, Vector]]:
                 yield from ((path, row) for row in _felt(way.displacements))
             case Vessel():
                 yield from _modes(scene, path, way, TRANSLATIONS)
+            case VesselHistory():
+                yield from (((*path, "file"), way.axes(mode)) for mode in TRANSLATIONS if mode in way.moving)
             case ArcMotion() | Rotation():  # their axes tell
                 pass
             case _:
@@ -44,6 +46,8 @@ def rotation_axes(scene: Scene) -> Iterator[tuple[Path, Vector]]:
                 yield from ((path, row) for row in _felt(way.rotations))
             case Vessel():
                 yield from _modes(scene, path, way, ROTATIONS)
+            case VesselHistory():
+                yield from (((*path, "file"), way.axes(mode)) for mode in ROTATIONS if mode in way.moving)
             case Harmonic():
                 pass
             case _:

@@ -2,7 +2,6 @@
 
 import math
 from functools import cached_property
-from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
@@ -10,7 +9,6 @@ from pydantic import BaseModel, Discriminator, Field, Tag, model_validator
 from riser_soil.core.quantities import (
     FLATTEST,
     FROZEN,
-    NEAREST,
     Angle,
     Angles,
     Axis,
@@ -20,15 +18,16 @@ from riser_soil.core.quantities import (
     Vector,
     wrong,
 )
-from riser_soil.scene.columns import ANGLE, LENGTH, TIME, CsvColumns, read_columns
+from riser_soil.scene.columns import ANGLE, LENGTH, CsvColumns
 from riser_soil.scene.files import NamedFile, wrong_file
-from riser_soil.scene.rao import MODES, Rao, read_rao
+from riser_soil.scene.rao import MODES, ROTATIONS, TRANSLATIONS, Rao, read_rao, vessel_axis
+from riser_soil.scene.time_history import read_history
 
 PLANES: dict[str, Vector] = {"xz": (0.0, -1.0, 0.0), "yz": (1.0, 0.0, 0.0), "xy": (0.0, 0.0, 1.0)}
 """Axes about which an end turns from a plane's first axis towards its second."""
 
-# A cubic spline without knots beside its ends needs this many rows.
-_LEAST_ROWS = 4
+# A vessel's angles beyond this [rad] are no motion about its heading.
+_WIDEST_ANGLE = 0.5 * math.pi
 
 _RAMP = "time over which the motion grows smoothly to its full size [s]"
 _PHASE = "phase at the stage's beginning [deg]"
@@ -120,20 +119,14 @@ class Table(BaseModel):
 
     @model_validator(mode="after")
     def _can_be_read(self) -> Self:
-        rows, time = self.columns, self.columns.values["t"]
-        if rows.rows < _LEAST_ROWS:
-            raise wrong_file(f"{self.file}: a table of {rows.rows} rows; cubic splines need at least {_LEAST_ROWS}")
-        for line, (a, b) in zip(rows.lines[1:], pairwise(time), strict=True):
-            if b - a < NEAREST:
-                how = f"times must increase, but {b:g} s follows {a:g} s"
-                raise wrong_file(f"{self.file}:{line}: {how}; sort the rows, {NEAREST:g} s apart or more")
+        assert self.columns.rows
         return self
 
     @cached_property
     def columns(self) -> CsvColumns:
         """What the file holds."""
-        known = {"t": TIME, **dict.fromkeys("xyz", LENGTH), **dict.fromkeys(("rx", "ry", "rz"), ANGLE)}
-        return read_columns(self.file, known, required=("t", "x", "y", "z"))
+        known = {**dict.fromkeys("xyz", LENGTH), **dict.fromkeys(("rx", "ry", "rz"), ANGLE)}
+        return read_history(self.file, known, required=("x", "y", "z"))
 
     @property
     def displacements(self) -> list[Vector]:
@@ -181,17 +174,73 @@ class Vessel(BaseModel):
 
     def axes(self, mode: str) -> Vector:
         """Global direction of a mode's displacement, or axis of its rotation."""
-        heading = math.radians(self.heading_deg)
-        forward, across = math.cos(heading), math.sin(heading)
-        return ((forward, across, 0.0), (-across, forward, 0.0), (0.0, 0.0, 1.0))[MODES.index(mode) % 3]
+        return vessel_axis(mode, self.heading_deg)
 
 
-MotionKind = Harmonic | ArcMotion | Table | Vessel | Rotation
+class VesselHistory(BaseModel):
+    """The end is part of a vessel whose six motions at a reference point a CSV file tells; cubic splines in time.
+
+    Vessel axes: x forward along the heading, y to port, z up; rotations are right-handed (roll lowers starboard, pitch
+    the bow; yaw turns the bow to port) and may be large: yaw first, then pitch about the axis turned by yaw, then roll.
+    """
+
+    model_config = FROZEN
+
+    file: NamedFile = Field(
+        description="CSV file with columns t [s] and, of the modes that move, surge, sway, heave [m] and roll, pitch, "
+        "yaw [deg] (or min, ms; mm, cm, ft; rad), from the vessel's place at the stage's beginning; a relative name is "
+        "sought beside the scene file"
+    )
+    reference: Position = Field(
+        description="point of the vessel that the motions belong to, at the stage's beginning, [x, y, z] [m]"
+    )
+    heading_deg: Angle = Field(default=0.0, description="direction of the vessel's bow, from x towards y [deg]")
+    ramp: TimeOrNone = Field(default=0.0, description=_RAMP)
+
+    @model_validator(mode="after")
+    def _can_be_read(self) -> Self:
+        for mode in ROTATIONS:
+            for line, angle in zip(self.columns.lines, self.columns.get(mode), strict=True):
+                if abs(angle) > _WIDEST_ANGLE:
+                    how = f"{mode} must be within 90 deg of the heading and the level, but is {math.degrees(angle):g}"
+                    raise wrong_file(f"{self.file}:{line}: {how}; correct it, or give the heading as heading_deg")
+        if not self.moving:
+            place = f"{self.file}:{self.columns.header}"
+            raise wrong_file(f"{place}: nothing moves; give surge [m], sway [m], heave [m], roll [deg] and so on")
+        return self
+
+    @cached_property
+    def columns(self) -> CsvColumns:
+        """What the file holds."""
+        known = {**dict.fromkeys(TRANSLATIONS, LENGTH), **dict.fromkeys(ROTATIONS, ANGLE)}
+        return read_history(self.file, known, required=())
+
+    @property
+    def displacements(self) -> list[Vector]:
+        """Surge, sway and heave [m] of each row."""
+        return list(zip(*(self.columns.get(name) for name in ("surge", "sway", "heave")), strict=True))
+
+    @property
+    def rotations(self) -> list[Vector]:
+        """Roll, pitch and yaw [rad] of each row."""
+        return list(zip(*(self.columns.get(name) for name in ("roll", "pitch", "yaw")), strict=True))
+
+    @cached_property
+    def moving(self) -> tuple[str, ...]:
+        """Modes that are not zero throughout."""
+        return tuple(mode for mode in MODES if any(self.columns.get(mode)))
+
+    def axes(self, mode: str) -> Vector:
+        """Global direction of a mode's displacement, or axis of its rotation."""
+        return vessel_axis(mode, self.heading_deg)
+
+
+MotionKind = Harmonic | ArcMotion | Table | Vessel | VesselHistory | Rotation
 
 
 class EndMotion(BaseModel):
-    """The prescribed motion of one end: one of harmonic, arc, table and vessel; rotation beside the first three or
-    alone.
+    """The prescribed motion of one end: one of harmonic, arc, table, vessel and vessel_history; rotation beside the
+    first three or alone.
     """
 
     model_config = FROZEN
@@ -208,20 +257,24 @@ class EndMotion(BaseModel):
     vessel: Vessel | None = Field(
         default=None, description="motion with a vessel in the scene's waves: rao, reference, heading_deg, ramp"
     )
+    vessel_history: VesselHistory | None = Field(
+        default=None, description="motion with a vessel that a CSV file moves: file, reference, heading_deg, ramp"
+    )
     rotation: Rotation | None = Field(
         default=None, description="rotation of the support: axis, amplitude_deg, period, ramp, phase_deg"
     )
 
     @model_validator(mode="after")
     def _moves_in_one_way(self) -> Self:
-        given = [key for key in ("harmonic", "arc", "table", "vessel") if getattr(self, key) is not None]
+        given = [key for key in self.ways if key != "rotation"]
         if len(given) > 1:
             raise wrong(given[1], f"the end moves by {given[0]} already", "leave one of the two out")
         if not given and self.rotation is None:
-            raise wrong("harmonic", "there is no motion", "give harmonic, arc, table, vessel or rotation")
+            remedy = "give harmonic, arc, table, vessel, vessel_history or rotation"
+            raise wrong("harmonic", "there is no motion", remedy)
         if self.rotation and self.table and any(map(any, self.table.rotations)):
             raise wrong("rotation", "the table has rotations already", "leave one of the two out")
-        if self.rotation and self.vessel:
+        if self.rotation and (self.vessel or self.vessel_history):
             raise wrong("rotation", "the vessel turns the end already", "leave one of the two out")
         return self
 
@@ -234,7 +287,8 @@ class EndMotion(BaseModel):
     def turns(self) -> bool:
         """Whether the support turns."""
         by_table = self.table is not None and any(map(any, self.table.rotations))
-        return by_table or self.rotation is not None or self.vessel is not None
+        by_history = self.vessel_history is not None and any(map(any, self.vessel_history.rotations))
+        return by_table or by_history or self.rotation is not None or self.vessel is not None
 
 
 class Motion(BaseModel):
@@ -242,8 +296,12 @@ class Motion(BaseModel):
 
     model_config = FROZEN
 
-    start: EndMotion | None = Field(default=None, description="motion of the start, {harmonic, arc, table or vessel}")
-    end: EndMotion | None = Field(default=None, description="motion of the end, {harmonic, arc, table or vessel}")
+    start: EndMotion | None = Field(
+        default=None, description="motion of the start, {harmonic, arc, table, vessel or vessel_history}"
+    )
+    end: EndMotion | None = Field(
+        default=None, description="motion of the end, {harmonic, arc, table, vessel or vessel_history}"
+    )
 
     @property
     def by_end(self) -> dict[str, EndMotion]:

@@ -56,16 +56,19 @@ def vertical_plane(scene: Scene) -> VerticalPlane:
 
 
 def resolved_dimension(scene: Scene) -> Literal[2, 3]:
-    """2 when the scene says so, or says auto and nothing leaves the vertical plane; else 3."""
+    """2 when the scene says so, or says auto and nothing leaves the vertical plane; else 3, as over a grid of heights,
+    which may slope across.
+    """
     if scene.dimension != "auto":
         return scene.dimension
-    return 3 if any(leaving_the_plane(scene)) else 2
+    over_a_grid = scene.seabed is not None and scene.seabed.grid is not None
+    return 3 if over_a_grid or any(leaving_the_plane(scene)) else 2
 
 
 def leaving_the_plane(scene: Scene) -> Iterator[Path]:
     """Paths of the values that lead out of the vertical plane."""
     plane = vertical_plane(scene)
-    yield from (path for path, point in _points(scene) if not plane.holds_point(point))
+    yield from (path for path, point in positions(scene) if not plane.holds_point(point))
     yield from (path for path, vector in _vectors(scene) if not plane.holds_vector(vector))
     yield from (path for path, axis in _axes(scene) if not plane.holds_axis(axis))
 
@@ -92,8 +95,8 @@ def _direction(points: tuple[Vector, ...]) -> Vector:
     return (chord[0] / span, chord[1] / span, 0.0)
 
 
-def _points(scene: Scene) -> Iterator[tuple[Path, Vector]]:
-    """Positions in the scene."""
+def positions(scene: Scene) -> Iterator[tuple[Path, Vector]]:
+    """Positions of the riser in the scene."""
     riser = scene.riser
     for key, end in {"start": riser.start, "end": riser.end}.items():
         if isinstance(end, Support):

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from riser_soil.core.quantities import NEAREST
+from riser_soil.core.quantities import NEAREST, Vector
 from riser_soil.scene.columns import ANGLE, CsvColumns, Known, read_columns
 from riser_soil.scene.files import wrong_file
 
@@ -65,6 +65,13 @@ class Rao:
         hit = abs(_wrapped(direction - first)) < _SAME_DIRECTION
         wide = (last - first) % TURN > _WIDEST or first == last
         return None if hit or not wide else (first, last)
+
+
+def vessel_axis(mode: str, heading_deg: float) -> Vector:
+    """Global direction of a mode's displacement, or axis of its rotation, of a vessel with this heading."""
+    heading = math.radians(heading_deg)
+    forward, across = math.cos(heading), math.sin(heading)
+    return ((forward, across, 0.0), (-across, forward, 0.0), (0.0, 0.0, 1.0))[MODES.index(mode) % 3]
 
 
 def read_rao(file: Path) -> Rao:

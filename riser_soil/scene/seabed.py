@@ -1,9 +1,10 @@
 """Scene language: rigid, spring and hysteretic seabeds."""
 
+from functools import cached_property
 from itertools import pairwise
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, Discriminator, Field, Tag
+from pydantic import AfterValidator, BaseModel, Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from riser_soil.core.kinds import OneOf
@@ -14,6 +15,8 @@ from riser_soil.core.quantities import (
     Coordinate,
     by_kind,
 )
+from riser_soil.scene.files import NamedFile
+from riser_soil.scene.height_grid import HeightGrid, read_heights
 from riser_soil.seabed.law import SeabedLaw
 from riser_soil.seabed.laws import LAWS
 
@@ -54,6 +57,41 @@ Profile = Annotated[
 ]
 
 
+class HeightFile(BaseModel):
+    """Heights of the seabed at the points of a grid; a smooth surface goes through them."""
+
+    model_config = FROZEN
+
+    file: NamedFile = Field(
+        description="CSV file with a header such as x [m], y [m], z [m] and a row for each point of a grid along x "
+        "and y, in any order; a relative name is sought beside the scene file"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_name(cls, data: Any) -> Any:
+        return {"file": data} if isinstance(data, str) else data
+
+    @model_validator(mode="after")
+    def _can_be_read(self) -> Self:
+        assert self.heights.z
+        return self
+
+    @cached_property
+    def heights(self) -> HeightGrid:
+        """What the file holds."""
+        return read_heights(self.file)
+
+
+Grid = Annotated[
+    HeightFile | None,
+    Field(
+        description="heights of the seabed over x and y from a CSV file: its name, or {file}; instead of level, "
+        "slope_deg and profile"
+    ),
+]
+
+
 KIND = Field(description="rigid, spring or hysteretic")
 
 
@@ -66,6 +104,7 @@ class SeabedScene(BaseModel):
     level: Level = 0.0
     slope_deg: Slope = 0.0
     profile: Profile = None
+    grid: Grid = None
     contact_at: Toucher = "outer"
 
 

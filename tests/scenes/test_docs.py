@@ -46,8 +46,11 @@ def joined(base: Any, piece: Any) -> Any:
 
 
 @pytest.mark.parametrize(("page", "n"), [(page, n) for page in DOCS for n, _ in enumerate(pieces(page))])
-def test_pieces_of_scenes_are_valid(page: Path, n: int) -> None:
-    scene_from_mapping(joined(BASE, list(pieces(page))[n]))
+def test_pieces_of_scenes_are_valid(page: Path, n: int, tmp_path: Path) -> None:
+    """With the tables that the page shows, each named in its first line."""
+    for table in blocks(page, "csv"):
+        (tmp_path / table.splitlines()[0].removeprefix("# ")).write_text(table, encoding="utf-8")
+    scene_from_mapping(joined(BASE, list(pieces(page))[n]), tmp_path)
 
 
 def anchors(page: Path) -> set[str]:

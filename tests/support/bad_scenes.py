@@ -494,6 +494,9 @@ NOT_YET = [
     Bad("level: 0.0", "slope_deg: 60.0", 20, "seabed.slope_deg", "60.0", "must be"),
     Bad("level: 0.0", "profile: [[0, 0]]", 20, "seabed.profile", "[[0, 0]]", "at least two points"),
     Bad("level: 0.0", "profile: [[0, 0], [0, 1]]", 20, "seabed.profile", "[[0, 0], [0, 1]]", "must increase"),
+    Bad("level: 0.0", "grid: t.csv", 20, "seabed.grid", '"t.csv"', "there is no such file as"),
+    Bad("level: 0.0", "grid: case.yaml", 20, "seabed.grid", '"case.yaml"', "names no column with its unit"),
+    Bad("level: 0.0", "grid: 3", 20, "seabed.grid", "3", "mapping with the keys file"),
     Bad("level: 0.0", "slope_deg: 1.0", 20, "seabed.slope_deg", "1.0", "the soil's top is level"),
     Bad(
         "kind: spring, level: 0.0, stiffness: 1.0e5",
@@ -524,6 +527,7 @@ MOTIONS = [
     Bad(HEAVE, "{table: t.csv}", 34, f"{MOTION}.table", '"t.csv"', "there is no such file as"),
     Bad(HEAVE, "{table: {file: t.csv}}", 34, f"{MOTION}.table.file", '"t.csv"', "there is no such file as"),
     Bad(HEAVE, "{table: case.yaml}", 34, f"{MOTION}.table", '"case.yaml"', "names no column with its unit"),
+    Bad(HEAVE, "{vessel_history: t.csv}", 34, f"{MOTION}.vessel_history", '"t.csv"', "must be a mapping with the keys"),
     Bad(HEAVE, "{table: 3}", 34, f"{MOTION}.table", "3", "mapping with the keys file, ramp"),
     Bad(HEAVE, "{arc: {period: 9, amplitude_deg: 5}}", 34, f"{MOTION}.arc.hub", "missing", "add it: the hub"),
     Bad(HEAVE, f"{{arc: {{{ARC}, plane: zx}}}}", 34, f"{MOTION}.arc.plane", '"zx"', "must be one of xz, yz, xy"),

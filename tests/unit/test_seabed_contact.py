@@ -12,6 +12,7 @@ from riser_soil.core.part import Forces, State
 from riser_soil.riser import hermite, shapes, stations
 from riser_soil.riser.line import End, Line
 from riser_soil.seabed.grounds import Ground, Plane
+from riser_soil.seabed.height_field import HeightField
 from riser_soil.seabed.profile import Profile
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error, no_operation
@@ -20,10 +21,12 @@ from tests.support.sample_line import DIRECTION, START, Sample, sample
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 ROUND = Penalty(4.0e4, smoothing=30.0)  # its rounded corner holds the whole sample, so that differences are smooth
 HILL = Profile(START[:2], DIRECTION[:2], np.array([-1.0, 2.0, 4.0, 8.0]), START[2] + np.array([0.5, -0.6, 0.3, 1.0]))
+AT = np.array([-9.0, -4.0, -1.0, 1.5, 4.0, 9.0])
 GROUNDS: dict[str, Ground] = {
     "level": Plane.level(START[2] - 0.1),
     "slope": Plane.sloping(START, 0.2, np.arctan2(DIRECTION[1], DIRECTION[0])),
     "profile": HILL,
+    "grid": HeightField(START[0] + AT, START[1] + AT, START[2] + 0.3 * np.sin(AT + 0.7 * AT[:, None])),
 }
 RULES = {"ends": stations.ENDS, "three points": stations.THREE_POINTS, "five points": stations.gauss(5)}
 

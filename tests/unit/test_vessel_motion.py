@@ -10,7 +10,7 @@ import pytest
 from mpi4py import MPI
 
 from riser_soil.assembly import Assembly, build
-from riser_soil.assembly.sea import components_of, water_of
+from riser_soil.assembly.sea import components_of
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
@@ -24,45 +24,8 @@ from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import distance, dynamic, prescribed, riser_scene, stage_histories, static
-
-PIPE = {"EA": 1.0e7, "EI": 1.0e5, "GJ": 1.0e5, "mass": 50.0, "submerged_weight": 200.0, "outer_diameter": 0.2}
-END, REFERENCE = [40.0, 0.0, 3.0], [55.0, 4.0, -2.0]
-AIRY = {"airy": {"height": 3.0, "period": 9.0, "direction_deg": 35.0, "phase_deg": 70.0}}
-JONSWAP = {"jonswap": {"Hs": 3.0, "Tp": 9.0, "components": 40, "direction_deg": 180.0}}
-W = 2.0 * np.pi / 9.0
-MODES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
-
-
-def table(frequencies: Any, directions: Any, **modes: Any) -> str:
-    """A file of given responses, (amplitude, lag in degrees) or a function of frequency and direction in degrees."""
-    lines = ["frequency [rad/s], direction [deg]"]
-    units = {mode: "m/m" if n < 3 else "rad/m" for n, mode in enumerate(MODES)}
-    lines[0] += "".join(f", {mode} [{units[mode]}], {mode} phase [deg]" for mode in modes)
-    for w in frequencies:
-        for direction in directions:
-            pairs = [given(w, direction) if callable(given) else given for given in modes.values()]
-            row = [w, direction, *(value for pair in pairs for value in pair)]
-            lines.append(", ".join(repr(float(value)) for value in row))
-    return "\n".join(lines) + "\n"
-
-
-EVERYWHERE = ([0.2, 0.5, 1.0, 2.0, 4.0], range(0, 360, 45))
-
-
-def mapping(*stages: Mapping, rotation: Any = "free", waves: Mapping = AIRY, **more: Any) -> Mapping:
-    """A hanging pipe under the sea's surface; its end moves in the stages as they say."""
-    return riser_scene(
-        *stages,
-        pipe=PIPE,
-        length=60.0,
-        elements=6,
-        start=prescribed(0.0, 0.0, -30.0),
-        end=prescribed(*END, rotation=rotation),
-        gravity=9.81,
-        water={"surface_level": 10.0, "waves": waves},
-        **more,
-    )
+from tests.support.riser_scenes import distance, dynamic, stage_histories, static
+from tests.support.vessel_scenes import AIRY, END, EVERYWHERE, JONSWAP, MODES, REFERENCE, mapping, surface, table
 
 
 def aboard(duration: float = 20.0, name: str = "sail", **vessel: Any) -> Mapping:
@@ -89,13 +52,6 @@ def displaced(assembly: Assembly, t: float) -> Array:
 def turned(assembly: Assembly, t: float) -> SupportRotation:
     assert assembly.line.end.turning is not None
     return assembly.line.end.turning(t)
-
-
-def surface(scene: Scene, t: float) -> float:
-    """Rise of the surface at the reference."""
-    water = water_of(scene, scene.stages[0])
-    assert water is not None
-    return float(water(t, np.array([[*REFERENCE[:2], 10.0]])).immersion[0])
 
 
 @pytest.mark.parametrize(("surge", "told"), [(6.0, 0), (14.0, 1)])

@@ -1,0 +1,88 @@
+"""Prescribed motion of an end on a rigid body, as on a vessel, by the six motions of the body's reference point."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.riser import rotations
+from riser_soil.riser.ends import Kinematics, SupportRotation
+from riser_soil.riser.vectors import matrix
+
+
+class Attitude(NamedTuple):
+    """How a body is turned: R (3, 3) from its rest, angular velocity [rad/s] and acceleration [rad/s2] (3,)."""
+
+    R: Array
+    w: Array
+    dw: Array
+
+
+@dataclass(frozen=True, eq=False)
+class RigidBody:
+    """A body's displacement and attitude in global axes.
+
+    six: seconds since the stage began -> surge, sway, heave [m], roll, pitch, yaw [rad], and their first two
+    derivatives. axes: (3, 3), columns: forward, to port and up, the body at rest. The rotation is yaw about the body's
+    upward axis, then pitch about the axis to port that yaw has turned, then roll about the forward axis that both have:
+    R = Rz(yaw) Ry(pitch) Rx(roll), right-handed. Displacements are along the axes at rest.
+    """
+
+    six: Callable[[float], Kinematics]
+    axes: Array
+
+    def displacement(self, t: float) -> Kinematics:
+        """Of the reference point (3,) [m], its velocity and acceleration."""
+        x, v, a = (self.axes @ values[:3] for values in self.six(t))
+        return x, v, a
+
+    def attitude(self, t: float) -> Attitude:
+        """With spins e1 yaw', e2 pitch', e3 roll' about axes that turn: e2' = w1 x e2, e3' = (w1 + w2) x e3."""
+        angles, rates, accelerations = (values[3:] for values in self.six(t))
+        forward, port, up = self.axes.T
+        yawed = _turn(up, angles[2])
+        pitched = _turn(yawed @ port, angles[1]) @ yawed
+        port, forward = yawed @ port, pitched @ forward
+        yawing, pitching, rolling = rates[2] * up, rates[1] * port, rates[0] * forward
+        turned = accelerations[2] * up + accelerations[1] * port + accelerations[0] * forward
+        turned = turned + np.cross(yawing, pitching) + np.cross(yawing + pitching, rolling)
+        return Attitude(_turn(forward, angles[0]) @ pitched, yawing + pitching + rolling, turned)
+
+
+def _turn(axis: Array, angle: float) -> Array:
+    """Rotation matrix (3, 3) about a unit vector."""
+    x, y, z = (float(value) for value in angle * axis)
+    return np.array(rotations.exp((x, y, z)))
+
+
+@dataclass(frozen=True, eq=False)
+class CarriedPoint:
+    """A point of a body, where the body is at rest at `origin` (3,), its reference then at `reference` (3,) [m]."""
+
+    body: RigidBody
+    origin: Array
+    reference: Array
+
+    def __call__(self, t: float) -> Kinematics:
+        """Position, velocity and acceleration: x = reference + d + R r, x'' = d'' + w' x R r + w x (w x R r)."""
+        (x, v, a), (R, w, dw) = self.body.displacement(t), self.body.attitude(t)
+        arm = R @ (self.origin - self.reference)
+        spun: Array = np.cross(w, arm)
+        hurled: Array = np.cross(dw, arm) + np.cross(w, spun)
+        return self.reference + x + arm, v + spun, a + hurled
+
+
+@dataclass(frozen=True, eq=False)
+class CarriedFrame:
+    """A support that turns with a body."""
+
+    body: RigidBody
+
+    def __call__(self, t: float) -> SupportRotation:
+        """Turning at t [s]."""
+        R, w, dw = self.body.attitude(t)
+        return SupportRotation(np.array(rotations.log(matrix(R))), w, dw)
