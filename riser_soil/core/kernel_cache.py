@@ -10,10 +10,13 @@ from __future__ import annotations
 import hashlib
 import sys
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from numba.core import config
 from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.runtime import rtsys
 
 PACKAGE = Path(__file__).parents[1]
 
@@ -24,18 +27,21 @@ class KernelCache(FunctionCache):
     """
 
     def __init__(self, function: Callable[..., object], caller: str = "called") -> None:
-        super().__init__(function)
-        self._caller = caller
+        """Looks for nothing on disk before the function is called, as most of them are not."""
+        self._function, self._caller, self._folder = function, caller, config.CACHE_DIR
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         self._choose_index(sig)
-        return super().load_overload(sig, target_context)
+        return _loaded(self, sig, target_context)
 
     def save_overload(self, sig: Any, data: Any) -> None:
         self._choose_index(sig)
         super().save_overload(sig, data)
 
     def _choose_index(self, sig: Any) -> None:
+        if not hasattr(self, "_impl"):
+            with caching_in(self._folder):
+                super().__init__(self._function)
         base = "-".join([self._impl.filename_base, self._caller, *_marks(sig)])
         self._cache_file = IndexDataCacheFile(self._cache_path, base, self._impl.locator.get_source_stamp())
 
@@ -43,8 +49,29 @@ class KernelCache(FunctionCache):
 class EntryCache(FunctionCache):
     """Cache of a function whose name says all of what it depends on, see `mark`."""
 
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        return _loaded(self, sig, target_context)
+
     def _index_key(self, sig: Any, codegen: Any) -> Any:
         return codegen.magic_tuple()
+
+
+def _loaded(cache: FunctionCache, sig: Any, target_context: Any) -> Any:
+    """What a cache on disk holds for some types. Machine code needs the memory of arrays alone, not all that numba would
+    import to compile, which it does when it compiles.
+    """
+    rtsys.initialize(target_context)
+    return cache._load_overload(sig, target_context)
+
+
+@contextmanager
+def caching_in(folder: str) -> Iterator[None]:
+    """Caches that are made meanwhile are in this folder."""
+    before, config.CACHE_DIR = config.CACHE_DIR, folder
+    try:
+        yield
+    finally:
+        config.CACHE_DIR = before
 
 
 def mark(kinds: Iterable[Any]) -> str:
