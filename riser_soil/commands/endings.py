@@ -19,6 +19,7 @@ EXTRAS = {
     "pyvista": "plots",
     "fatpack": "fatigue",
     "xarray": "cases",
+    "dask": "cases",
     "distributed": "cases",
     "jinja2": "report",
 }
