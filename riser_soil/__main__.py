@@ -28,6 +28,7 @@ def main() -> None:
         with failsafe_output():
             print(f"standard output: cannot be written: {told.failure.strerror}", file=sys.stderr)
         status = status or WriteError.exit_status
+    gc.disable()  # the process ends: nothing is gained by a last look
     sys.exit(status)
 
 
