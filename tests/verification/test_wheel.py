@@ -14,7 +14,7 @@ import pytest
 
 from tests.support.on_ranks import ROOT
 
-# MB that pip adds to an empty environment. Of 331, 179 are LLVM, which llvmlite brings, 73 numpy, 58 compiled Python.
+# MB that pip adds to an empty environment. Of 334, 179 are LLVM, which llvmlite brings, 73 numpy, 58 compiled Python.
 LARGEST = {"": 350.0, "[small]": 250.0}
 ABSENT = ("petsc4py", "mpi4py", "dolfinx", "gmsh", "scipy", "matplotlib", "pyvista", "xarray")
 
