@@ -16,14 +16,16 @@ from riser_soil.interruption import default_signal_handlers, unmasked
 EXTRAS = {
     "scipy": "tables",
     "matplotlib": "plots",
+    "PIL": "plots",
     "pyvista": "plots",
     "fatpack": "fatigue",
     "xarray": "cases",
+    "dask": "cases",
     "distributed": "cases",
     "jinja2": "report",
 }
 # Packages that PyPI has none of that work together.
-ELSEWHERE = ("petsc4py", "mpi4py", "dolfinx", "gmsh")
+ELSEWHERE = ("petsc4py", "mpi4py", "dolfinx", "basix", "gmsh")
 
 # Seconds that a rank leaves to the first one to tell an error that both have met.
 _PATIENCE = 5.0

@@ -17,8 +17,8 @@ from numba.core.ccallback import CFunc
 from numba.extending import intrinsic
 
 from riser_soil.core.arrays import IntArray
-from riser_soil.core.compiled import OPTIONS, caching, njit
-from riser_soil.core.kernel_cache import EntryCache, mark
+from riser_soil.core.compiled import FOLDER, OPTIONS, njit
+from riser_soil.core.kernel_cache import EntryCache, caching_in, mark
 from riser_soil.core.packed import Packed
 
 _entries: dict[tuple[Any, ...], Any] = {}
@@ -90,7 +90,7 @@ def _compiled(kernel: Any, kinds: Any) -> Any:
     calling.__module__ = kernel.py_func.__module__
     calling.__qualname__ = calling.__name__ = f"{kernel.py_func.__name__}_{mark(kinds)}"
     entry: Any = CFunc(calling, ((types.intp,), types.void), {}, OPTIONS)
-    with caching(), event.trigger_event("numba:compile"):
+    with caching_in(str(FOLDER)), event.trigger_event("numba:compile"):
         entry._cache = EntryCache(calling)
         entry.compile()
     return entry

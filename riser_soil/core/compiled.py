@@ -19,8 +19,8 @@ import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +30,7 @@ import numba
 from numba.core import event
 
 from riser_soil.core.kernel import kernel
-from riser_soil.core.kernel_cache import PACKAGE
+from riser_soil.core.kernel_cache import PACKAGE, caching_in
 
 NAME = PACKAGE.name
 KEPT = 4  # cache folders of other versions, the latest ones, for those who go back and forth
@@ -45,18 +45,8 @@ def njit(function: Callable[..., object], apart: bool = False) -> Any:
 
     apart: not inlined where others call it, so that those that call many are compiled in a bearable time.
     """
-    with caching():
+    with caching_in(str(FOLDER)):
         return kernel(function, {**OPTIONS, "forceinline": not apart})
-
-
-@contextmanager
-def caching() -> Iterator[None]:
-    """Functions that are made meanwhile have their cache in this version's folder."""
-    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(FOLDER)
-    try:
-        yield
-    finally:
-        numba.config.CACHE_DIR = before
 
 
 def fixed(n: int) -> tuple[int, ...]:

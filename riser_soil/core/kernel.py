@@ -12,7 +12,7 @@ from typing import Any
 
 from numba.core.registry import CPUDispatcher
 
-from riser_soil.core.kernel_cache import KernelCache
+from riser_soil.core.kernel_cache import BareCache, KernelCache
 
 BARE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
@@ -43,5 +43,5 @@ def kernel(function: Callable[..., object], options: dict[str, Any]) -> Kernel:
     given = {"nopython": True, "boundscheck": None, **options}
     made = Kernel(function, targetoptions={**given, **BARE})
     made.called = CPUDispatcher(function, targetoptions={**given, "no_cfunc_wrapper": True})
-    made._cache, made.called._cache = KernelCache(function, "bare"), KernelCache(function)
+    made._cache, made.called._cache = BareCache(function), KernelCache(function)
     return made

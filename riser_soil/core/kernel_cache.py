@@ -10,41 +10,99 @@ from __future__ import annotations
 import hashlib
 import sys
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from numba.core.caching import FunctionCache, IndexDataCacheFile
+from llvmlite import ir
+from llvmlite.binding import parse_assembly
+from numba.core import config
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
+from numba.core.runtime import rtsys
 
 PACKAGE = Path(__file__).parents[1]
 
 
-class KernelCache(FunctionCache):
-    """Cache of one function as it is compiled for one kind of caller; in the place of that of numba's dispatcher,
-    `_cache`.
+class MachineCode(CompileResultCacheImpl):
+    """Keeps the machine code of a function that no compiled code is linked with, without its intermediate code, which
+    takes longer to read.
     """
 
-    def __init__(self, function: Callable[..., object], caller: str = "called") -> None:
-        super().__init__(function)
-        self._caller = caller
+    def reduce(self, cres: Any) -> Any:
+        (name, kind, (machine_code, _)), *rest = super().reduce(cres)
+        return (name, kind, (machine_code, _names(cres))), *rest
+
+
+class KernelCache(FunctionCache):
+    """Cache of one function as Python calls it; in the place of that of numba's dispatcher, `_cache`."""
+
+    _impl_class, _caller = MachineCode, "called"
+
+    def __init__(self, function: Callable[..., object]) -> None:
+        """Looks for nothing on disk before the function is called, as most of them are not."""
+        self._function, self._folder = function, config.CACHE_DIR
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         self._choose_index(sig)
-        return super().load_overload(sig, target_context)
+        return _loaded(self, sig, target_context)
 
     def save_overload(self, sig: Any, data: Any) -> None:
         self._choose_index(sig)
         super().save_overload(sig, data)
 
     def _choose_index(self, sig: Any) -> None:
+        if not hasattr(self, "_impl"):
+            with caching_in(self._folder):
+                super().__init__(self._function)
         base = "-".join([self._impl.filename_base, self._caller, *_marks(sig)])
         self._cache_file = IndexDataCacheFile(self._cache_path, base, self._impl.locator.get_source_stamp())
 
 
+class BareCache(KernelCache):
+    """Cache of one function as compiled code calls it, which links it."""
+
+    _impl_class, _caller = CompileResultCacheImpl, "bare"
+
+
 class EntryCache(FunctionCache):
-    """Cache of a function whose name says all of what it depends on, see `mark`."""
+    """Cache of a function that is called by address, and whose name says all of what it depends on, see `mark`."""
+
+    _impl_class = MachineCode
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        return _loaded(self, sig, target_context)
 
     def _index_key(self, sig: Any, codegen: Any) -> Any:
         return codegen.magic_tuple()
+
+
+def _loaded(cache: FunctionCache, sig: Any, target_context: Any) -> Any:
+    """What a cache on disk holds for some types. Machine code needs numba's memory of arrays alone; all else that numba
+    would import here it imports when it compiles.
+    """
+    rtsys.initialize(target_context)
+    return cache._load_overload(sig, target_context)
+
+
+def _names(cres: Any) -> bytes:
+    """Intermediate code of empty functions of the same names, by which numba knows what the machine code has."""
+    told, empty = cres.fndesc, ir.Module()
+    wanted = {told.llvm_func_name, told.llvm_cpython_wrapper_name, told.llvm_cfunc_wrapper_name}
+    for found in cres.library._get_module_for_linking().functions:
+        if found.name in wanted and not found.is_declaration:
+            function = ir.Function(empty, ir.FunctionType(ir.VoidType(), ()), found.name)
+            ir.IRBuilder(function.append_basic_block()).ret_void()
+    return bytes(parse_assembly(str(empty)).as_bitcode())
+
+
+@contextmanager
+def caching_in(folder: str) -> Iterator[None]:
+    """Caches that are made meanwhile are in this folder."""
+    before, config.CACHE_DIR = config.CACHE_DIR, folder
+    try:
+        yield
+    finally:
+        config.CACHE_DIR = before
 
 
 def mark(kinds: Iterable[Any]) -> str:

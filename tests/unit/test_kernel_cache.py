@@ -33,6 +33,28 @@ for name in sys.argv[1:]:
     print(twice(((getattr(__import__(name), name.title()))(1.5),)))
 print(sum(twice.stats.cache_hits.values()), sum(twice.stats.cache_misses.values()), "soft" in sys.modules)
 """
+KERNELS = """
+import sys
+import numpy as np
+from riser_soil.core.compiled import njit
+
+@njit
+def pair(x):
+    both = np.empty(2)
+    both[0], both[1] = x, 2.0 * x
+    return both
+
+@njit
+def largest(x):
+    return pair(x)[1]
+
+@njit
+def least(x):
+    return pair(x)[0]
+
+for name in sys.argv[1:]:
+    print(globals()[name](1.5), "numba.np.linalg" in sys.modules)
+"""
 
 
 @pytest.fixture
@@ -45,9 +67,14 @@ def folder(tmp_path: Path) -> Path:
 
 def called(folder: Path, *names: str) -> list[str]:
     """Results of calls with the numbers of some modules; hits and misses of the cache, whether `soft` was imported."""
+    return printed(folder, "-c", CALL, *names)
+
+
+def printed(folder: Path, *words: str) -> list[str]:
+    """What Python prints, with a cache of its own."""
     around = environment() | {"NUMBA_CACHE_DIR": str(folder / "cache")}
     around["PYTHONPATH"] = os.pathsep.join([str(folder), *sys.path])
-    call = [sys.executable, "-c", CALL, *names]
+    call = [sys.executable, *words]
     done = subprocess.run(call, env=around, cwd=folder, capture_output=True, text=True, timeout=HANGS, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout.split()
@@ -65,3 +92,13 @@ def test_a_source_outside_the_package_that_was_edited_is_compiled_anew(folder: P
     with (folder / "soft.py").open("a", encoding="utf-8") as file:
         file.write("# edited\n")
     assert called(folder, "hard", "soft") == ["3.0", "3.0", "1", "1", "True"]
+
+
+def test_a_kernel_that_is_read_is_no_compiler_and_is_compiled_into_others(folder: Path) -> None:
+    (folder / "kernels.py").write_text(KERNELS, encoding="utf-8")
+    assert printed(folder, "kernels.py", "largest", "pair") == ["3.0", "True", "[1.5", "3.", "]", "True"]
+    assert printed(folder, "kernels.py", "pair", "largest", "least") == [
+        *("[1.5", "3.", "]", "False"),
+        *("3.0", "False"),
+        *("1.5", "True"),
+    ]
