@@ -16,7 +16,6 @@ from riser_soil.riser.line_part import acting_on, overrides
 from riser_soil.riser.section_forces import (
     SectionForces,
     at_most,
-    element_residual,
     end_reactions,
     nodal_residual,
     section_forces,
@@ -34,7 +33,7 @@ def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
     residual, viscous = _residuals(assembly, stepper)
     inside = section_forces(line, assembly.elements, state, residual, viscous)
     start, end = end_reactions(line, state, residual, nodal_residual(line, parts, state))
-    tangent, position = line.trial(state).turn.tangent @ line.basis.T, line.positions3(state)
+    tangent, position = line.trial(state).turn.tangent, line.positions3(state)
     most_used, tightest = _tightest_bend(assembly, inside)
     return RiserSnapshot(
         position=position,
@@ -53,8 +52,8 @@ def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
         end_force=end.force,
         start_moment=start.moment,
         end_moment=end.moment,
-        start_tangent=tangent[0, 0],
-        end_tangent=tangent[-1, 1],
+        start_tangent=line.basis @ tangent[0, 0],
+        end_tangent=line.basis @ tangent[-1, 1],
         tension_utilisation=_tension_utilisation(assembly, inside.effective_tension),
         wall=_wall(assembly, line.trial(state), inside, position[:, 2]),
     )
@@ -75,7 +74,7 @@ def _residuals(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array |
 
     def compute(_: Trial) -> tuple[Array, Array | None]:
         damped = [part for part in parts if overrides(part, "viscous_forces")]
-        return element_residual(line, parts, state), viscous_residual(line, damped, state) if damped else None
+        return stepper.newton.element_residual(line, state), viscous_residual(line, damped, state) if damped else None
 
     found: tuple[Array, Array | None] = line.trial(state).once("residuals of elements", compute)
     return found
