@@ -82,8 +82,9 @@ def _residuals(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array |
 
 def _bend_utilisation(assembly: Assembly, curvature: Array) -> Array:
     """curvature (ne, 2): at the elements' ends."""
-    allowed = assembly.elements.min_bend_radius
-    return at_most(allowed[:, None] * curvature) if allowed.any() else np.full(assembly.line.nodes, np.nan)
+    if not assembly.elements.limits_bending:
+        return np.full(assembly.line.nodes, np.nan)
+    return at_most(assembly.elements.min_bend_radius[:, None] * curvature)
 
 
 def _largest(line: Line, values: Array, slopes: Array) -> LargestAlong:
@@ -101,9 +102,9 @@ def _beside(at_nodes: Array) -> Array:
 
 def _tightest_bend(assembly: Assembly, inside: SectionForces) -> tuple[LargestAlong, float]:
     """The largest bend utilisation, and the radius [m] there; nan where no least radius is given."""
-    allowed = assembly.elements.min_bend_radius[:, None]
-    if not allowed.any():
+    if not assembly.elements.limits_bending:
         return LargestAlong(math.nan, math.nan), math.nan
+    allowed = assembly.elements.min_bend_radius[:, None]
     used, arc, e = bending_peaks.largest(
         assembly.line.arc, allowed * inside.curvature_beside, allowed * inside.curvature_slope
     )
@@ -120,9 +121,9 @@ def _tension_utilisation(assembly: Assembly, tension: Array) -> Array | None:
     """Of the nodes (nn,), nan where any tension is allowed; None where it is everywhere. A node has the smaller tension
     allowed beside it.
     """
-    allowed = assembly.elements.max_tension
-    if not allowed.any():
+    if not assembly.elements.limits_tension:
         return None
+    allowed = assembly.elements.max_tension
     share = larger_beside(np.divide(1.0, allowed, out=np.zeros_like(allowed), where=allowed > 0.0))
     return np.where(share > 0.0, tension * share, np.nan)
 

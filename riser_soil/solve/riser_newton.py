@@ -103,7 +103,8 @@ class RiserNewton:
 
     def element_residual(self, line: Line, state: State) -> Array:
         """Of the line's elements (ne, 2 ndof) at an accepted state."""
-        self._bring(state.t, state.t)
+        if self._t != state.t or not self.system.smooth:  # contact has a new history since the step was solved
+            self._bring(state.t, state.t)
         return self._element_forces.residual(state)
 
     def turned_over(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
