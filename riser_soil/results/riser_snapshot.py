@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 
@@ -83,8 +84,16 @@ def _residuals(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array |
 def _bend_utilisation(assembly: Assembly, curvature: Array) -> Array:
     """curvature (ne, 2): at the elements' ends."""
     if not assembly.elements.limits_bending:
-        return np.full(assembly.line.nodes, np.nan)
+        return _unknown(assembly.line.nodes)
     return at_most(assembly.elements.min_bend_radius[:, None] * curvature)
+
+
+@cache
+def _unknown(nodes: int) -> Array:
+    """nan at the nodes (nn,), not to be written to."""
+    values = np.full(nodes, np.nan)
+    values.flags.writeable = False
+    return values
 
 
 def _largest(line: Line, values: Array, slopes: Array) -> LargestAlong:
@@ -113,7 +122,7 @@ def _tightest_bend(assembly: Assembly, inside: SectionForces) -> tuple[LargestAl
 
 def _wall_tension(assembly: Assembly, effective: Array, z: Array) -> Array:
     if assembly.pressures is None:
-        return np.full(assembly.line.nodes, np.nan)
+        return _unknown(assembly.line.nodes)
     return assembly.pressures.wall_tension(effective, z)
 
 
