@@ -191,9 +191,7 @@ class SeabedContact(LineContact):
 
     def at_nodes(self, values: Array) -> Array:
         """Means at the nodes (nn,) of values at the stations (ne, ng), which count with their share of arc length."""
-        shares = (self.share * values) @ self._linear.T
-        total = np.append(shares[:, 0], 0.0) + np.append(0.0, shares[:, 1])
-        return np.asarray(total / self.line.tributary_length)
+        return np.asarray(seabed_stations.shared(self.share * values, self._linear) / self.line.tributary_length)
 
     def depth(self, state: State) -> Array:
         """The same: this ground is where it lay at first."""

@@ -112,6 +112,17 @@ def answers(law: Any, elements: IntArray, penetration: Array, memory: Array, nor
 
 
 @njit
+def shared(values: Array, linear: Array) -> Array:
+    """Values at stations (ne, ng) shared by the nodes beside them (nn,); linear (2, ng): the shares."""
+    out = np.zeros(values.shape[0] + 1)
+    for e in range(values.shape[0]):
+        for g in range(values.shape[1]):
+            out[e] += linear[0, g] * values[e, g]
+            out[e + 1] += linear[1, g] * values[e, g]
+    return out
+
+
+@njit
 def by_positions(force: Array, slope: Array, normal: Array, bend: Array | None) -> Array:
     """`by_position` (m, ng, d, d) of elements; bend: None where it is zero."""
     out = np.empty((*normal.shape, normal.shape[2]))

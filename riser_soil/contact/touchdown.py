@@ -113,22 +113,24 @@ def _runs(clearance: Array, force: Array) -> IntArray:
     return runs[: pressing if pressing > 0 else k]
 
 
+@njit
 def _leaving(arc: Array, share: Array, clearance: Array, force: Array, last: int) -> float:
     """Arc length [m] at which the stretch whose last point is given ends."""
     end = _edge(arc, clearance, last)
     near, weight, middle = _layer(arc, share, force)
     if math.isnan(middle):
         return end
-    d: float = _equivalent(arc, share, near, force, _resting(weight, force))
+    d = _equivalent(arc, share, near, force, _resting(weight, force))
     return min(max(d, middle), end)
 
 
+@njit
 def _edge(arc: Array, clearance: Array, last: int) -> float:
     """Arc length at which the clearance vanishes beyond the last point in contact."""
-    if last == len(arc) - 1 or clearance[last] >= 0.0 or not np.isfinite(clearance[last + 1]):
-        return float(arc[last])
+    if last == len(arc) - 1 or clearance[last] >= 0.0 or not math.isfinite(clearance[last + 1]):
+        return arc[last]
     here, there = clearance[last], clearance[last + 1]
-    return float(arc[last] + (arc[last + 1] - arc[last]) * here / (here - there))
+    return arc[last] + (arc[last + 1] - arc[last]) * here / (here - there)
 
 
 @njit
@@ -164,16 +166,18 @@ def _rise(x: float) -> float:
     return x**3 * (10.0 - 15.0 * x + 6.0 * x**2)
 
 
+@njit
 def _resting(weight: Array, force: Array) -> float:
     """Mean of the middle half of forces, by weight: stations loaded by a clump or bridging a dip do not count."""
-    counting = weight > 0.0
-    weight, force = weight[counting], force[counting]
-    order = force.argsort()
-    total = float(weight.sum())
-    upto = np.minimum(np.maximum(weight[order].cumsum(), 0.25 * total), 0.75 * total)
-    upto[1:] -= upto[:-1].copy()
-    upto[:1] -= 0.25 * total
-    return float(upto @ force[order]) / (0.5 * total) if total > 0.0 else 0.0
+    total = 0.0
+    for own in weight:
+        total += own
+    upto, reached, mean = 0.0, 0.25 * total, 0.0
+    for i in force.argsort():
+        before, upto = reached, upto + weight[i]
+        reached = min(max(upto, 0.25 * total), 0.75 * total)
+        mean += (reached - before) * force[i]
+    return mean / (0.5 * total) if total > 0.0 else 0.0
 
 
 @njit

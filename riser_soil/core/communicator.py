@@ -36,6 +36,8 @@ class Communicator(Protocol):
 
     def gather(self, value: Any, root: int = 0) -> Any: ...
 
+    def scatter(self, values: Any, root: int = 0) -> Any: ...
+
     def allgather(self, value: Any) -> Any: ...
 
     def allreduce(self, value: Any) -> Any:
@@ -57,6 +59,9 @@ class Alone:
 
     def gather(self, value: Any, root: int = 0) -> list[Any]:
         return [value]
+
+    def scatter(self, values: Any, root: int = 0) -> Any:
+        return values[0]
 
     def allgather(self, value: Any) -> list[Any]:
         return [value]

@@ -152,9 +152,9 @@ class System:
         first, last: forces where the step begins and in its balance; bulk: F where it begins, in the step's own axes.
         share: of the means, what is there as the step begins.
         """
-        supports = _work_of(self.prescribed_dofs, share, tuple(vars(first).values()), tuple(vars(last).values()), u)
-        against = float((share * bulk + (1.0 - share) * last.force + last.end) @ u)
-        put_in, taken = self.sum([float(supports), against])
+        begun, ended = ((forces.inertia, forces.force, forces.end) for forces in (first, last))
+        work = _work_of(self.prescribed_dofs, share, begun, bulk, ended, u)
+        put_in, taken = self.sum([float(joules) for joules in work])
         return put_in, taken
 
     def reactions(self, forces: Forces) -> Array:
@@ -193,13 +193,17 @@ class System:
 
 
 @njit
-def _work_of(dofs: IntArray, share: float, first: Groups, last: Groups, u: Array) -> float:
-    """Work of the mean of all groups on some of the dofs."""
-    work = 0.0
+def _work_of(
+    dofs: IntArray, share: float, first: Groups, bulk: Array, last: Groups, u: Array
+) -> tuple[float, float]:
+    """Work of the mean of all groups on some of the dofs, and of the mean F and of E on all."""
+    work, against = 0.0, 0.0
     for i in dofs:
         begun, ended = first[0][i] + first[1][i] + first[2][i], last[0][i] + last[1][i] + last[2][i]
         work += (share * begun + (1.0 - share) * ended) * u[i]
-    return work
+    for i in range(u.size):
+        against += (share * bulk[i] + (1.0 - share) * last[1][i] + last[2][i]) * u[i]
+    return work, against
 
 
 def total(forces: Forces) -> Array:

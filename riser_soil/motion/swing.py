@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -43,12 +44,17 @@ class SwingingEnd:
     def __call__(self, t: float) -> Kinematics:
         """Position [m], velocity [m/s] and acceleration [m/s2] at t [s]."""
         phi, rate, acceleration = self.swing(t)
-        arm = self.origin - self.hub
-        along = float(arm @ self.axis) * self.axis
-        arm, across = arm - along, np.asarray(np.cross(self.axis, arm), dtype=float)
+        middle, arm, across = self._circle
         turned: Array = arm * math.cos(phi) + across * math.sin(phi)
         ahead = across * math.cos(phi) - arm * math.sin(phi)
-        return self.hub + along + turned, rate * ahead, acceleration * ahead - rate * rate * turned
+        return middle + turned, rate * ahead, acceleration * ahead - rate * rate * turned
+
+    @cached_property
+    def _circle(self) -> tuple[Array, Array, Array]:
+        """Its middle (3,) [m], the arm to the origin, and the arm a quarter turn on."""
+        arm = self.origin - self.hub
+        along = float(arm @ self.axis) * self.axis
+        return self.hub + along, arm - along, np.asarray(np.cross(self.axis, arm), dtype=float)
 
 
 @dataclass(frozen=True, eq=False)

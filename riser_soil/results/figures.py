@@ -51,19 +51,28 @@ _PLACES: list[tuple[str, int | slice, Callable[[Any], Any]]] = [
 ]
 # Those that sit somewhere along the riser.
 _PLACED = [(output.name, figure) for output, figure in _FIGURES if figure.placed]
+# Of each output: how it follows from what is seen, and its figures, as in _PLACES and with their place behind them.
+_PACKED = [
+    (
+        get,
+        [(at, of) for owner, at, of in _PLACES if owner == name],
+        [(at, figure) for at, (owner, figure) in enumerate(_PLACED, start=_SIZE) if owner == name],
+    )
+    for name, get in _OUTPUTS
+]
 
 
 def pack(seen: Instant) -> Array:
     """All figures of one instant as one vector, in the order of the summary, and behind them the arc lengths [m] of
     those that sit somewhere along the riser; nan for what is not known.
     """
-    values, vector = _values(seen), np.full(_SIZE + len(_PLACED), np.nan)
-    for name, at, of in _PLACES:
-        if (value := values[name]) is not None:
-            vector[at] = of(value)
-    for n, (name, figure) in enumerate(_PLACED, start=_SIZE):
-        if (value := values[name]) is not None:
-            vector[n] = _arc(figure, value, seen.arc)
+    vector = np.full(_SIZE + len(_PLACED), np.nan)
+    for get, figures, placed in _PACKED:
+        if (value := get(seen)) is not None:
+            for at, of in figures:
+                vector[at] = of(value)
+            for n, figure in placed:
+                vector[n] = _arc(figure, value, seen.arc)
     return vector
 
 

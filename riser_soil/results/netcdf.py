@@ -7,6 +7,7 @@ file on disk is whole at every moment.
 from __future__ import annotations
 
 import io
+import math
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -117,9 +118,10 @@ class SeriesFile:
         self._of_step = HEALTH | dict(ledger or {})
         wanted = {name: v for name, v in SERIES.items() if name not in left_out}
         self._variables = {name: v for name, v in wanted.items() if sections or "section" not in v.dims} | self._of_step
-        self._of_instant = [name for name in self._variables if name in SERIES]
+        self._of_instant = [name for name in self._variables if name in SERIES and name != "stage"]
         self._sizes = {"arc": arc.size, "component": 3, "section": sections, "offset": len(offsets)}
         self._offsets = np.array(offsets)
+        self.row_size = sum(8 * _values_in(self._variables[name], self._sizes) for name in self._of_instant)  # bytes
         self._rows: defaultdict[str, list[object]] = defaultdict(list)
         self._records = self._steps = 0
         self._stages: list[str] = []
@@ -131,10 +133,10 @@ class SeriesFile:
 
     def record(self, values: Mapping[str, object]) -> None:
         """Adds one output time. values: by the names of SERIES except `stage`; those left out are ignored."""
-        row = dict(values, stage=len(self._stages) - 1)
         self._records += 1
         for name in self._of_instant:
-            self._rows[name].append(_kept(row[name]))
+            self._rows[name].append(_kept(values[name]))
+        self._rows["stage"].append(len(self._stages) - 1)
 
     def step(self, values: Mapping[str, object]) -> None:
         """Adds one accepted step. values: by the names of HEALTH and the ledger, without `step` and `step_stage`."""
@@ -211,11 +213,16 @@ def _describe(
     return made
 
 
+def _values_in(variable: Variable, sizes: Mapping[str, int]) -> int:
+    """Of one row."""
+    return math.prod(sizes[d] for d in variable.dims[1:])
+
+
 def _chunks(variable: Variable, sizes: Mapping[str, int]) -> tuple[int, ...] | None:
     if variable.dims[0] not in ("time", "step"):
         return None
     row = tuple(sizes[d] for d in variable.dims[1:])
-    rows = _CHUNK_BYTES // (8 * max(1, int(np.prod(row))))
+    rows = _CHUNK_BYTES // (8 * max(1, _values_in(variable, sizes)))
     return (min(1024, max(1, rows)), *row)
 
 

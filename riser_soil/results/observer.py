@@ -266,8 +266,8 @@ def _known_fields(assembly: Assembly) -> tuple[str, ...]:
     """Fields that the scene requests, as far as they can be computed."""
     has = {
         "pressures": assembly.pressures is not None,
-        "min_bend_radius": bool(assembly.elements.min_bend_radius.any()),
-        "max_tension": bool(assembly.elements.max_tension.any()),
+        "min_bend_radius": assembly.elements.limits_bending,
+        "max_tension": assembly.elements.limits_tension,
         "wall": assembly.wall_sections is not None,
         "wall in space": assembly.wall_sections is not None and assembly.line.dimension == 3,
         "yield stress": bool(assembly.elements.allowable_stress.any()),

@@ -324,7 +324,7 @@ class Recorder:
         if due.series:
             self._last.stamp = self._time.stamp()
             row = series_row(self._last.stamp, seen, self._fields)
-            self._waiting += _size(row)
+            self._waiting += self._series.row_size
             self._series.record(row)
             if due.pictures:
                 self._picture(self._last.stamp, row, soil)

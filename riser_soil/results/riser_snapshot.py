@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 
@@ -16,7 +17,6 @@ from riser_soil.riser.line_part import acting_on, overrides
 from riser_soil.riser.section_forces import (
     SectionForces,
     at_most,
-    element_residual,
     end_reactions,
     nodal_residual,
     section_forces,
@@ -34,7 +34,7 @@ def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
     residual, viscous = _residuals(assembly, stepper)
     inside = section_forces(line, assembly.elements, state, residual, viscous)
     start, end = end_reactions(line, state, residual, nodal_residual(line, parts, state))
-    tangent, position = line.trial(state).turn.tangent @ line.basis.T, line.positions3(state)
+    tangent, position = line.trial(state).turn.tangent, line.positions3(state)
     most_used, tightest = _tightest_bend(assembly, inside)
     return RiserSnapshot(
         position=position,
@@ -53,8 +53,8 @@ def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
         end_force=end.force,
         start_moment=start.moment,
         end_moment=end.moment,
-        start_tangent=tangent[0, 0],
-        end_tangent=tangent[-1, 1],
+        start_tangent=line.basis @ tangent[0, 0],
+        end_tangent=line.basis @ tangent[-1, 1],
         tension_utilisation=_tension_utilisation(assembly, inside.effective_tension),
         wall=_wall(assembly, line.trial(state), inside, position[:, 2]),
     )
@@ -75,7 +75,7 @@ def _residuals(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array |
 
     def compute(_: Trial) -> tuple[Array, Array | None]:
         damped = [part for part in parts if overrides(part, "viscous_forces")]
-        return element_residual(line, parts, state), viscous_residual(line, damped, state) if damped else None
+        return stepper.newton.element_residual(line, state), viscous_residual(line, damped, state) if damped else None
 
     found: tuple[Array, Array | None] = line.trial(state).once("residuals of elements", compute)
     return found
@@ -83,8 +83,17 @@ def _residuals(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array |
 
 def _bend_utilisation(assembly: Assembly, curvature: Array) -> Array:
     """curvature (ne, 2): at the elements' ends."""
-    allowed = assembly.elements.min_bend_radius
-    return at_most(allowed[:, None] * curvature) if allowed.any() else np.full(assembly.line.nodes, np.nan)
+    if not assembly.elements.limits_bending:
+        return _unknown(assembly.line.nodes)
+    return at_most(assembly.elements.min_bend_radius[:, None] * curvature)
+
+
+@cache
+def _unknown(nodes: int) -> Array:
+    """nan at the nodes (nn,), not to be written to."""
+    values = np.full(nodes, np.nan)
+    values.flags.writeable = False
+    return values
 
 
 def _largest(line: Line, values: Array, slopes: Array) -> LargestAlong:
@@ -102,9 +111,9 @@ def _beside(at_nodes: Array) -> Array:
 
 def _tightest_bend(assembly: Assembly, inside: SectionForces) -> tuple[LargestAlong, float]:
     """The largest bend utilisation, and the radius [m] there; nan where no least radius is given."""
-    allowed = assembly.elements.min_bend_radius[:, None]
-    if not allowed.any():
+    if not assembly.elements.limits_bending:
         return LargestAlong(math.nan, math.nan), math.nan
+    allowed = assembly.elements.min_bend_radius[:, None]
     used, arc, e = bending_peaks.largest(
         assembly.line.arc, allowed * inside.curvature_beside, allowed * inside.curvature_slope
     )
@@ -113,7 +122,7 @@ def _tightest_bend(assembly: Assembly, inside: SectionForces) -> tuple[LargestAl
 
 def _wall_tension(assembly: Assembly, effective: Array, z: Array) -> Array:
     if assembly.pressures is None:
-        return np.full(assembly.line.nodes, np.nan)
+        return _unknown(assembly.line.nodes)
     return assembly.pressures.wall_tension(effective, z)
 
 
@@ -121,9 +130,9 @@ def _tension_utilisation(assembly: Assembly, tension: Array) -> Array | None:
     """Of the nodes (nn,), nan where any tension is allowed; None where it is everywhere. A node has the smaller tension
     allowed beside it.
     """
-    allowed = assembly.elements.max_tension
-    if not allowed.any():
+    if not assembly.elements.limits_tension:
         return None
+    allowed = assembly.elements.max_tension
     share = larger_beside(np.divide(1.0, allowed, out=np.zeros_like(allowed), where=allowed > 0.0))
     return np.where(share > 0.0, tension * share, np.nan)
 

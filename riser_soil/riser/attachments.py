@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -119,6 +119,9 @@ class Attachments(LinePart):
 
     def numbers(self) -> GivenForces:
         return GivenForces(self._F, np.empty(0), potential=True)
+
+    def numbers_within(self, numbers: tuple[Any, ...]) -> GivenForces:
+        return GivenForces(self._along, np.empty(0), potential=True)
 
     def energy(self, state: State) -> Energy:
         """Potential of weight less buoyancy, zero at the origin of the axes."""

@@ -36,9 +36,8 @@ def _planar_forces(part: PlanarBeam, at: PlanarConfiguration, out: LineForces) -
     f, first, second = np.empty(6), at.end_angle[:, 0], at.end_angle[:, 1]
     for e in range(part.length.size):
         beam2d.put_element_forces(e, at.chord, first, second, part.reference, part.section, f)
-        for i in range(3):
-            out.force[e, i] += f[i]
-            out.force[e + 1, i] += f[3 + i]
+        for i in range(6):
+            out.force_e[e, i] += f[i]
     uniform_load.add_residual(at.D, at.chord, at.tangent, part.length, part.load, out.force_q)
 
 
@@ -48,9 +47,8 @@ def _spatial_forces(part: SpatialBeam, at: SpatialConfiguration, out: LineForces
     for e in range(part.length.size):
         beam3d.put_element_forces(e, at.chord, at.frame1, at.frame2, part.reference, part.section, f)
         increments.element_to_increments(e, f, at.H)
-        for i in range(6):
-            out.force[e, i] += f[i]
-            out.force[e + 1, i] += f[6 + i]
+        for i in range(12):
+            out.force_e[e, i] += f[i]
     uniform_load.add_residual(at.D, at.chord, at.tangent, part.length, part.load, out.force_q)
 
 

@@ -47,9 +47,8 @@ def _planar_forces(part: PlanarViscosity, at: PlanarConfiguration, out: LineForc
         damping2d.put_element_forces(
             e, at.chord, first, second, part.reference, part.viscosity, part.chord_rate, at.v[:, 2], f
         )
-        for i in range(3):
-            out.force[e, i] += f[i]
-            out.force[e + 1, i] += f[3 + i]
+        for i in range(6):
+            out.force_e[e, i] += f[i]
 
 
 @add_tangent.of(PlanarViscosity)
@@ -85,9 +84,8 @@ def _spatial_forces(part: SpatialViscosity, at: SpatialConfiguration, out: LineF
             e, at.chord, at.frame1, at.frame2, part.reference, part.viscosity, part.chord_rate, part.spin, f
         )
         increments.element_to_increments(e, f, at.H)
-        for i in range(6):
-            out.force[e, i] += f[i]
-            out.force[e + 1, i] += f[6 + i]
+        for i in range(12):
+            out.force_e[e, i] += f[i]
 
 
 @add_tangent.of(SpatialViscosity)

@@ -107,15 +107,16 @@ def add_weighed(M: Array, q: Array, F: Array, D: Size) -> None:
 
 def pull_back(F: Array, P: Array) -> Array:
     """Element residual in the dofs, (ne, 2 (d + r)), of F (ne, 4, d) conjugate to q."""
-    pulled: Array = _pull_back(F, P, fixed(P.shape[2]), fixed(P.shape[3]))
+    pulled = np.empty((P.shape[0], 2 * (P.shape[2] + P.shape[3])))
+    put_pulled_back(F, P, pulled, fixed(P.shape[2]), fixed(P.shape[3]))
     return pulled
 
 
 @njit
-def _pull_back(F: Array, P: Array, D: Size, R: Size) -> Array:
-    ne, d, r = P.shape[0], len(D), len(R)
-    out = np.empty((ne, 2 * (d + r)))
-    for e in range(ne):
+def put_pulled_back(F: Array, P: Array, out: Array, D: Size, R: Size) -> None:
+    """Write what `pull_back` returns."""
+    d, r = len(D), len(R)
+    for e in range(P.shape[0]):
         for side in range(2):
             at = side * (d + r)
             for i in range(d):
@@ -125,12 +126,21 @@ def _pull_back(F: Array, P: Array, D: Size, R: Size) -> Array:
                 for i in range(d):
                     total += P[e, side, i, k] * F[e, 2 * side + 1, i]
                 out[e, at + d + k] = total
-    return out
 
 
 def collect(F: Array, P: Array, nodal: Array) -> None:
     """Add F (ne, 4, d) conjugate to q, pulled back and summed along the chain, to nodal (nn, d + r)."""
     collect_nodal(F, P, nodal, fixed(P.shape[2]), fixed(P.shape[3]))
+
+
+@njit
+def scatter(element: Array, nodal: Array) -> None:
+    """Add element arrays (ne, 2 ndof) along the chain to nodal (nn, ndof)."""
+    ndof = nodal.shape[1]
+    for e in range(element.shape[0]):
+        for i in range(ndof):
+            nodal[e, i] += element[e, i]
+            nodal[e + 1, i] += element[e, ndof + i]
 
 
 @njit

@@ -1,5 +1,7 @@
 """Consistent mass of the line: the part "inertia" of dynamic stages."""
 
+from typing import Any
+
 import numpy as np
 
 from riser_soil.core.arrays import Array
@@ -41,18 +43,20 @@ class Inertia(LinePart):
         forces: Array = self.line.trial(state).once((self, "element forces"), self._element_forces)
         return forces
 
-    def _end_forces(self, state: State) -> Array | float:
-        """Share (ne, 2 ndof) of what sits at the line's ends."""
+    def _end_forces(self, state: State) -> Array | None:
+        """Share (ne, 2 ndof) of what sits at the line's ends, if anything."""
         trial = self.line.trial(state)
-        return 0.0 if self._at_ends is None else trial.pull_back(weigh(self._at_ends, trial.q_acceleration))
+        return None if self._at_ends is None else trial.pull_back(weigh(self._at_ends, trial.q_acceleration))
 
     def element_forces(self, state: State) -> tuple[Array, None]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None, without what sits at the line's ends."""
-        return self._all_forces(state) - self._end_forces(state), None
+        every, ends = self._all_forces(state), self._end_forces(state)
+        return every if ends is None else every - ends, None
 
-    def nodal_forces(self, state: State) -> Array:
-        """Residual (nn, ndof) of what sits at the line's ends."""
-        return self.line.gathered(self._end_forces(state) + np.zeros((self.line.length.size, 2 * self.line.ndof)))
+    def nodal_forces(self, state: State) -> Array | None:
+        """Residual (nn, ndof) of what sits at the line's ends, if anything."""
+        ends = self._end_forces(state)
+        return None if ends is None else self.line.gathered(ends)
 
     def residual(self, state: State, forces: Forces) -> None:
         trial = self.line.trial(state)
@@ -66,6 +70,9 @@ class Inertia(LinePart):
 
     def numbers(self) -> Mass:
         return Mass(self.M)
+
+    def numbers_within(self, numbers: tuple[Any, ...]) -> Mass:
+        return Mass(self.M if self._at_ends is None else self.M - self._at_ends)
 
     def energy(self, state: State) -> Energy:
         rate = self.line.trial(state).q_rate

@@ -46,7 +46,7 @@ def _spatial_forces(part: SpatialRotaryMass, at: SpatialConfiguration, out: Line
         for side in range(2):
             moment = rotary_moments.end_moment(part.J, e, side, at.Theta, W, A)
             for i in range(3):
-                out.inertia[e + side, 3 + i] += moment[i]
+                out.inertia_e[e, 6 * side + 3 + i] += moment[i]
 
 
 @add_tangent.of(SpatialRotaryMass)
@@ -61,7 +61,7 @@ def _spatial_tangent(
 def _planar_forces(part: PlanarRotaryMass, at: PlanarConfiguration, out: LineForces) -> None:
     for e in range(part.inertia.size):
         for side in range(2):
-            out.inertia[e + side, 2] += part.inertia[e] * at.a[e + side, 2]
+            out.inertia_e[e, 3 * side + 2] += part.inertia[e] * at.a[e + side, 2]
 
 
 @add_tangent.of(PlanarRotaryMass)

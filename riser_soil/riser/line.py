@@ -142,12 +142,12 @@ class Line:
 
     def scatter(self, element: Array, values: Array) -> None:
         """Add element arrays (ne, 2 ndof) along the chain to the riser's slice of a local array."""
-        _scatter(element, self.nodal(values))
+        hermite.scatter(element, self.nodal(values))
 
     def gathered(self, element: Array) -> Array:
         """Sums at the nodes (nn, ndof) of element arrays (ne, 2 ndof)."""
         nodal = np.zeros((self.nodes, self.ndof))
-        _scatter(element, nodal)
+        hermite.scatter(element, nodal)
         return nodal
 
     def element_block(self) -> MatrixBlock:
@@ -330,11 +330,11 @@ class Line:
         not physical for a pipe, and an end spring would count the turns.
         """
         trial = self.trial(state)
-        faulty = _folded(trial.chord, trial.turn.tangent) | trial.turn.wound
-        if not faulty.any():
+        folded = min(_first_folded(trial.chord, trial.turn.tangent), trial.turn.first_wound)
+        if folded == self.length.size:
             return ""
         return (
-            f"the riser is folded at arc {self.arc[faulty.argmax()]:.6g} m, where an element's end turns by more than "
+            f"the riser is folded at arc {self.arc[folded]:.6g} m, where an element's end turns by more than "
             "90 degrees from its chord; start nearer to the shape sought, or take shorter elements or steps"
         )
 
@@ -392,25 +392,16 @@ def _moved(x: Array, chord: Array, u: Array) -> tuple[Array, Array]:
 
 
 @njit
-def _folded(chord: Array, tangent: Array) -> BoolArray:
-    """Elements (ne,) with an end whose tangent points against the chord."""
-    folded = np.zeros(chord.shape[0], dtype=np.bool_)
+def _first_folded(chord: Array, tangent: Array) -> int:
+    """First element with an end whose tangent points against the chord; ne without any."""
     for e in range(chord.shape[0]):
         for side in range(2):
             ahead = 0.0
             for i in range(chord.shape[1]):
                 ahead += chord[e, i] * tangent[e, side, i]
-            folded[e] |= ahead <= 0.0
-    return folded
-
-
-@njit
-def _scatter(element: Array, nodal: Array) -> None:
-    ndof = nodal.shape[1]
-    for e in range(element.shape[0]):
-        for i in range(ndof):
-            nodal[e, i] += element[e, i]
-            nodal[e + 1, i] += element[e, ndof + i]
+            if ahead <= 0.0:
+                return e
+    return chord.shape[0]
 
 
 def _planar_frames(layout: Layout, direction: Array) -> PlanarFrames:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -143,6 +144,9 @@ class PointLoads(LinePart):
         else:
             self._numbers = GivenForces(F, np.zeros(self.line.nodes if self._moments else 0), potential=False)
         return self._numbers
+
+    def numbers_within(self, numbers: tuple[Any, ...]) -> None:
+        """Those have what acts on nodes, too."""
 
     def renew_numbers(self, start: float, end: float) -> None:
         self._numbers.F[:] = self._F(end, self._loads)

@@ -100,8 +100,8 @@ class MidpointInertia(LinePart):
         """Element residuals (inertia, force), each (ne, 2 ndof) or None, at an accepted state."""
         return self.instant.element_forces(state)
 
-    def nodal_forces(self, state: State) -> Array:
-        """Residual (nn, ndof) of what sits at the line's ends, at an accepted state."""
+    def nodal_forces(self, state: State) -> Array | None:
+        """Residual (nn, ndof) of what sits at the line's ends, if anything, at an accepted state."""
         return self.instant.nodal_forces(state)
 
     def energy(self, state: State) -> Energy:

@@ -19,11 +19,15 @@ from riser_soil.riser.line import Line
 
 
 class LineForces(NamedTuple):
-    """Residuals by group, see `core.part`: conjugate to q (ne, 4, d), and to the dofs of the nodes (nn, ndof)."""
+    """Residuals by group, see `core.part`: conjugate to q (ne, 4, d), to the dofs of the elements (ne, 2 ndof), and to
+    those of the nodes (nn, ndof): what acts on nodes, until the others are collected there.
+    """
 
     inertia_q: Array
     force_q: Array
     end_q: Array
+    inertia_e: Array
+    force_e: Array
     inertia: Array
     force: Array
     end: Array
@@ -38,8 +42,10 @@ class LineWeights(NamedTuple):
 
 def forces_of(line: Line) -> LineForces:
     """Room for the residuals of a line."""
-    conjugate = (np.zeros((line.length.size, 4, line.dimension)) for _ in range(3))
-    return LineForces(*conjugate, *(np.zeros((line.nodes, line.ndof)) for _ in range(3)))
+    ne = line.length.size
+    conjugate = (np.zeros((ne, 4, line.dimension)) for _ in range(3))
+    of_elements = (np.zeros((ne, 2 * line.ndof)) for _ in range(2))
+    return LineForces(*conjugate, *of_elements, *(np.zeros((line.nodes, line.ndof)) for _ in range(3)))
 
 
 def bound(stub: Any, numbers: tuple[Any, ...], *arguments: Packed) -> Bound:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.saved_state import Saved
 
@@ -33,9 +33,9 @@ class PlanarOrientation:
         return np.maximum(np.abs(self.angle), 1.0)[:, None]
 
     @property
-    def wound(self) -> BoolArray:
-        """Elements (ne,) whose ends differ by more than half a turn."""
-        return np.asarray(np.abs(self.end_angle[:, 1] - self.end_angle[:, 0]) > np.pi)
+    def first_wound(self) -> int:
+        """First element whose ends differ by more than half a turn; ne without any."""
+        return int(_first_wound(self.end_angle))
 
     def motion(self, v: Array, a: Array) -> tuple[Array, Array]:
         """q' and q'' (ne, 4, 2) from rates and accelerations of the dofs (nn, 3)."""
@@ -123,6 +123,14 @@ def put_ends(angle: Array, alpha0: Array, end_angle: Array, tangent: Array, norm
             cosine, sine = math.cos(end_angle[e, side]), math.sin(end_angle[e, side])
             tangent[e, side, 0], tangent[e, side, 1] = cosine, sine
             normal[e, side, 0], normal[e, side, 1] = -sine, cosine
+
+
+@njit
+def _first_wound(end_angle: Array) -> int:
+    for e in range(end_angle.shape[0]):
+        if abs(end_angle[e, 1] - end_angle[e, 0]) > math.pi:
+            return e
+    return end_angle.shape[0]
 
 
 @njit

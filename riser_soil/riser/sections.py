@@ -107,6 +107,16 @@ class Elements:
         return np.asarray(self.EI_y > 0.0)
 
     @cached_property
+    def limits_bending(self) -> bool:
+        """Whether any least bend radius is given."""
+        return bool(self.min_bend_radius.any())
+
+    @cached_property
+    def limits_tension(self) -> bool:
+        """Whether any largest tension is given."""
+        return bool(self.max_tension.any())
+
+    @cached_property
     def bends_beside(self) -> Array:
         """1 at nodes (nn,) beside an element with bending stiffness, else 0."""
         return larger_beside(self.bends.astype(float))

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser import rotations
@@ -53,9 +53,9 @@ class SpatialOrientation:
         return np.ones(self.Theta.shape)
 
     @property
-    def wound(self) -> BoolArray:
-        """Elements (ne,) whose ends turn by increments that differ by more than half a turn."""
-        return _wound(self.Theta)
+    def first_wound(self) -> int:
+        """First element whose ends turn by increments that differ by more than half a turn; ne without any."""
+        return int(_first_wound(self.Theta))
 
     def motion(self, v: Array, a: Array) -> tuple[Array, Array]:
         """q' and q'' (ne, 4, 3) from rates and accelerations of the dofs (nn, 6), angular ones in body axes."""
@@ -166,12 +166,13 @@ def _turned(Rn: Array, Theta: Array) -> Array:
 
 
 @njit
-def _wound(Theta: Array) -> BoolArray:
-    wound = np.empty(Theta.shape[0] - 1, dtype=np.bool_)
-    for e in range(wound.size):
+def _first_wound(Theta: Array) -> int:
+    ne = Theta.shape[0] - 1
+    for e in range(ne):
         turn = sub(vector(Theta[e + 1]), vector(Theta[e]))
-        wound[e] = dot(turn, turn) > math.pi**2
-    return wound
+        if dot(turn, turn) > math.pi**2:
+            return e
+    return ne
 
 
 @njit

@@ -14,6 +14,9 @@ from riser_soil.core.part import Energy, Forces, State, Work, local
 from riser_soil.core.roles import Adaptive, with_role
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
+from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import acting_on
+from riser_soil.riser.section_forces import element_residual
 from riser_soil.solve.chain import is_chain
 from riser_soil.solve.failed_step import place_of_largest
 from riser_soil.solve.line_search import step_length
@@ -77,6 +80,10 @@ class Newton:
     def bulk_forces(self, state: State) -> Forces:
         """Forces of groups I and F at an accepted state, those of group E zero; collective."""
         return self.system.forces(state, "IF")
+
+    def element_residual(self, line: Line, state: State) -> Array:
+        """Of a line's elements (ne, 2 ndof) at an accepted state; on the rank that has it."""
+        return element_residual(line, acting_on(line, self.system.model.parts), state)
 
     def _continues(self) -> bool:
         """Whether a static step goes on as those before: its guess leaves less out of balance than its loads put there.

@@ -15,7 +15,7 @@ from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Calls, call_each
 from riser_soil.core.compiled import njit
 from riser_soil.riser.configuration import Configuration, Maps
-from riser_soil.riser.hermite import Size, add_geometric, collect_nodal
+from riser_soil.riser.hermite import Size, add_geometric, collect_nodal, scatter
 from riser_soil.riser.part_kernels import LineForces, LineWeights
 from riser_soil.solve.round_off import ROUND_OFF, STALLED
 
@@ -134,16 +134,20 @@ def clear(forces: LineForces) -> None:
     """Write zero."""
     for conjugate in (forces.inertia_q, forces.force_q, forces.end_q):
         conjugate[:] = 0.0
+    for elementwise in (forces.inertia_e, forces.force_e):
+        elementwise[:] = 0.0
     for nodal in (forces.inertia, forces.force, forces.end):
         nodal[:] = 0.0
 
 
 @njit
 def collect(at: Configuration, forces: LineForces) -> None:
-    """Add what is conjugate to q to what is conjugate to the dofs."""
+    """Add what is conjugate to q and to the elements' dofs to what is conjugate to the nodes'."""
     collect_nodal(forces.inertia_q, at.P, forces.inertia, at.D, at.R)
     collect_nodal(forces.force_q, at.P, forces.force, at.D, at.R)
     collect_nodal(forces.end_q, at.P, forces.end, at.D, at.R)
+    scatter(forces.inertia_e, forces.inertia)
+    scatter(forces.force_e, forces.force)
 
 
 @njit

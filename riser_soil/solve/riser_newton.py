@@ -18,6 +18,7 @@ from riser_soil.riser.line_part import LinePart, overrides
 from riser_soil.riser.part_kernels import add_work
 from riser_soil.solve import riser_loop
 from riser_soil.solve.compiled_mass import CompiledMass
+from riser_soil.solve.element_forces import ElementForces
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, largest_at, told
 
@@ -96,6 +97,16 @@ class RiserNewton:
         """Forces of groups I and F at an accepted state, those of group E zero."""
         return self.mass.bulk_forces(state)
 
+    @cached_property
+    def _element_forces(self) -> ElementForces:
+        return ElementForces(self._line, self._numbered)
+
+    def element_residual(self, line: Line, state: State) -> Array:
+        """Of the line's elements (ne, 2 ndof) at an accepted state."""
+        if self._t != state.t or not self.system.smooth:  # contact has a new history since the step was solved
+            self._bring(state.t, state.t)
+        return self._element_forces.residual(state)
+
     def turned_over(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
         """Energy stored at the end of the step solved last, and what each part turned over in it."""
         since = time.perf_counter()
@@ -109,7 +120,7 @@ class RiserNewton:
 
     def _guess(self, step: Step) -> State:
         """The first guess, with the rates of no increments but those that are prescribed."""
-        still = step.scheme.trial(step.before, step.t, step.dt, np.zeros_like(step.guess))
+        still = step.scheme.trial(step.before, step.t, step.dt, np.zeros(step.guess.size))
         state = State(step.t, step.guess.copy(), still.v, still.a)
         self.system.prescribe(state)
         return state

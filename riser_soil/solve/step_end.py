@@ -33,7 +33,7 @@ class CommittedStep:
     def state(self) -> State:
         """Increments zero, rates as solved."""
         solved = self.solved
-        return State(solved.t, np.zeros_like(solved.u), solved.v, solved.a)
+        return State(solved.t, np.zeros(solved.u.size), solved.v, solved.a)
 
     @cached_property
     def contact(self) -> Array | None:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.system import System
+from riser_soil.riser.line import Line
 from riser_soil.solve.chain import is_chain
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.riser_mass import InverseMass
@@ -35,6 +37,10 @@ class StepSolver(Protocol):
 
     def bulk_forces(self, state: State) -> Forces:
         """Forces of groups I and F at an accepted state, those of group E zero; collective."""
+        ...
+
+    def element_residual(self, line: Line, state: State) -> Array:
+        """Of a line's elements (ne, 2 ndof) at an accepted state, see `section_forces`; on the rank that has it."""
         ...
 
     def require_stable(self, solution: Solution) -> None: ...

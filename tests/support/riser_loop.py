@@ -14,6 +14,9 @@ from benchmarks.stage import TimedStage, last_stage
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, Model, State
 from riser_soil.core.system import System, Timer
+from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import acting_on
+from riser_soil.riser.section_forces import element_residual
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.riser_loop import StopLimits
@@ -132,7 +135,16 @@ def require_mass(at: Sample, parts: list[Any]) -> None:
     for name, group in vars(newton.bulk_forces(accepted)).items():
         scale = np.abs(forces.force).max()
         np.testing.assert_allclose(group, getattr(forces, name), rtol=0.0, atol=1e-12 * scale)
+    for instant in (accepted, at.state(5, size=0.0, t=0.7)):
+        require_element_residual(newton, at.line, parts, instant)
     system.destroy()
+
+
+def require_element_residual(newton: RiserNewton, line: Line, parts: list[Any], accepted: State) -> None:
+    """What acts within the elements is what the parts' methods tell."""
+    expected = element_residual(line, parts, accepted)
+    found, scale = newton.element_residual(line, accepted), np.abs(expected).max()
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-12 * scale)
 
 
 def require_steps_of_snes(case: str) -> None:
@@ -144,6 +156,8 @@ def require_steps_of_snes(case: str) -> None:
     place, expected_place = (stage.assembly.line.positions3(stage.stepper.before) for stage in (compiled, snes))
     np.testing.assert_allclose(place, expected_place, rtol=0.0, atol=1e-9)
     found, expected = compiled.stepper, snes.stepper
+    parts = acting_on(compiled.assembly.line, found.system.model.parts)
+    require_element_residual(compiled.newton, compiled.assembly.line, parts, found.now)
     np.testing.assert_allclose(found.before.v, expected.before.v, rtol=0.0, atol=1e-7)
     assert found.energy.total == pytest.approx(expected.energy.total, rel=1e-9)
     assert compiled._taken.turned.keys() == snes._taken.turned.keys()
