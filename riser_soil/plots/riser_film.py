@@ -62,7 +62,7 @@ def _pictures(run: Run, records: IntArray) -> Iterator[Array]:
     figure.colorbar(line, ax=axes, label="bending moment [kN m]")
     for n in records:
         points = np.column_stack([x[n], z[n]])
-        line.set_segments(np.stack([points[:-1], points[1:]], axis=1))
+        line.set_segments(list(np.stack([points[:-1], points[1:]], axis=1)))
         line.set_array(0.5 * (moment[n, :-1] + moment[n, 1:]))
         axes.set_title(f"{run.summary['title']}, t = {run.time[n]:.5g} s")
         canvas.draw()
