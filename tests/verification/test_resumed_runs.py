@@ -80,7 +80,11 @@ SHORT = {
 }
 
 
-@pytest.mark.parametrize("name", SHORT)
+LONG = "waves", "plastic clay in space"  # whose kernels take long to compile
+NAMES = [pytest.param(name, marks=[pytest.mark.verify] if name in LONG else []) for name in SHORT]
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_a_resumed_run_goes_on_to_the_last_bit(name: str, tmp_path: Path) -> None:
     make, after = SHORT[name]
     scene = make()

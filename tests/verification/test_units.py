@@ -105,6 +105,7 @@ def test_same_hose_in_any_size(seabed: str, s: float) -> None:
     np.testing.assert_allclose(told(s, seabed), usual(seabed), rtol=1e-6, atol=1e-9)
 
 
+@pytest.mark.verify
 @pytest.mark.parametrize("s", SCALES)
 def test_same_hose_in_space(s: float) -> None:
     np.testing.assert_allclose(told(s, "rigid", dimension=3), usual("rigid", 3), rtol=1e-6, atol=1e-9)
