@@ -60,8 +60,9 @@ def initial_shape(
             assert start is not None, "the scene's checks let no catenary start without two prescribed ends"
             assert end is not None
             catenary = catenary_between(scene, elements, attachments, start, end)
-            if catenary.slack > 0.0 and is_taut(scene.riser):  # so steep that no cable's bend counts
-                return None, _pulled_straight(elements, start, end)
+            tension = tensions_of_taut(elements, start, end)
+            if catenary.slack > 0.0 and tension is not None:  # so steep that no cable's bend counts
+                return None, _pulled_straight(elements, tension, start, end)
             return catenary, catenary.curve
         case PointsShape(points=points):
             return None, shapes.through(elements.arc, points)
@@ -73,27 +74,23 @@ def initial_shape(
             assert_never(given)
 
 
-def is_taut(riser: Riser) -> bool:
-    """Whether the ends are prescribed, and at least as far apart as the riser is long."""
-    start, end = _ends(riser)
-    return start is not None and end is not None and float(np.linalg.norm(end - start)) >= riser.length
-
-
-def tensions_of_taut(elements: sections.Elements, distance: float, rise: float) -> Array:
-    """Tensions (ne,) [N] amid the elements of a straight line that is pulled to a distance [m], its end higher by
-    `rise` [m]: each stretches by T l/EA, and T grows by w dz.
+def tensions_of_taut(elements: sections.Elements, start: Array, end: Array) -> Array | None:
+    """Tensions (ne,) [N] amid the elements of a line that is pulled straight between two places: each stretches by
+    T l/EA, and T grows by w dz. None where not all of it is in tension, as where its own weight stretches it enough.
     """
+    distance, rise = float(np.linalg.norm(end - start)), float(end[2] - start[2])
+    if distance <= elements.length.sum():
+        return None
     gained = elements.weight * elements.length * (rise / distance)
     above_start = np.cumsum(gained) - 0.5 * gained
     flexibility = elements.length / elements.EA
     at_start = (distance - elements.length.sum() - (above_start * flexibility).sum()) / flexibility.sum()
-    return np.asarray(at_start + above_start)
+    tension: Array = at_start + above_start
+    return tension if tension.min() > 0.0 else None
 
 
-def _pulled_straight(elements: sections.Elements, start: Array, end: Array) -> shapes.Curve:
-    """Straight between the ends, stretched by the tension that this takes and by the line's weight."""
-    distance = float(np.linalg.norm(end - start))
-    tension = tensions_of_taut(elements, distance, float(end[2] - start[2]))
+def _pulled_straight(elements: sections.Elements, tension: Array, start: Array, end: Array) -> shapes.Curve:
+    """Straight between the ends, stretched by the tensions (ne,) that this takes."""
     along = np.append(0.0, np.cumsum(elements.length * (1.0 + tension / elements.EA)))
     return shapes.between(along, start, end)
 

@@ -8,7 +8,7 @@ from itertools import accumulate
 import numpy as np
 
 from riser_soil.assembly import Assembly
-from riser_soil.assembly.shape import is_taut, tensions_of_taut
+from riser_soil.assembly.shape import tensions_of_taut
 from riser_soil.core.arrays import Array
 from riser_soil.riser.catenary import Catenary
 from riser_soil.riser.sections import Elements
@@ -67,13 +67,14 @@ def _whole(assembly: Assembly) -> Iterator[str]:
 
 def tensions_by_hand(assembly: Assembly) -> Iterator[str]:
     """Effective tensions at the ends, at rest: of the cable without bending stiffness, and by formula beside it."""
-    ends = assembly.scene.riser.start, assembly.scene.riser.end
-    if not all(isinstance(end, Support) for end in ends):
+    start, end = assembly.scene.riser.start, assembly.scene.riser.end
+    if not (isinstance(start, Support) and isinstance(end, Support)):
         return
+    places = np.array(start.position), np.array(end.position)
     if assembly.catenary is not None and assembly.catenary.slack == 0.0:
         yield from _of_cable(assembly, assembly.catenary)
-    elif is_taut(assembly.scene.riser):
-        yield _of_taut(assembly.elements, *(np.array(end.position) for end in ends if isinstance(end, Support)))
+    elif (tension := tensions_of_taut(assembly.elements, *places)) is not None:
+        yield _of_taut(assembly.elements, tension, *places)
 
 
 def _of_cable(assembly: Assembly, cable: Catenary) -> Iterator[str]:
@@ -107,9 +108,8 @@ def _held(assembly: Assembly, cable: Catenary, low: int, towards_end: bool) -> f
     return float(sum(each.net_weight * steep[assembly.line.place(each.arc)[0]] for each in here))
 
 
-def _of_taut(elements: Elements, start: Array, end: Array) -> str:
+def _of_taut(elements: Elements, tension: Array, start: Array, end: Array) -> str:
     distance, rise = float(np.linalg.norm(end - start)), float(end[2] - start[2])
-    tension = tensions_of_taut(elements, distance, rise)
     half = 0.5 * elements.weight * elements.length * rise / distance
     first, last = tension[0] - half[0], tension[-1] + half[-1]
     return (
