@@ -91,7 +91,7 @@ def test_a_taut_vertical_riser_begins_in_balance() -> None:
 
 
 def test_a_riser_that_its_weight_stretches_to_its_ends_is_not_taut() -> None:
-    """Pulled straight, its lower part would be pressed: w L^2/(2 EA) = 12 mm are more than the 5 that the ends ask for."""
+    """Pulled straight, its lower part would be pressed: w L^2/(2 EA) = 12 mm, more than the 5 that the ends ask for."""
     assembly = build(scene(part(100.0), end=(0.0, 0.0, 100.155)), MPI.COMM_SELF)
     assert WET * 100.0**2 / (2.0 * PIPE["EA"]) > 0.005
     assert assembly.catenary is not None
