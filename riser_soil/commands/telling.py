@@ -40,7 +40,7 @@ def telling(command: Callable[..., None]) -> Callable[..., None]:
     own = inspect.signature(command, eval_str=True)
     kind = inspect.Parameter.KEYWORD_ONLY
     more = [inspect.Parameter(name, kind, default=d, annotation=a) for name, (a, d) in _OPTIONS.items()]
-    with_options.__signature__ = own.replace(parameters=[*own.parameters.values(), *more])  # type: ignore[attr-defined]
+    vars(with_options)["__signature__"] = own.replace(parameters=[*own.parameters.values(), *more])
     with_options.__annotations__ = command.__annotations__ | {name: a for name, (a, _) in _OPTIONS.items()}
     return with_options
 

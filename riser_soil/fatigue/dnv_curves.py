@@ -7,6 +7,8 @@ three decimals: where slopes change the branches meet to a few thousandths. T cu
 
 from __future__ import annotations
 
+from typing import Literal, get_args
+
 from riser_soil.fatigue.sn_curve import SNCurve
 
 SOURCE = "DNVGL-RP-C203 (April 2016)"
@@ -17,10 +19,12 @@ _CATHODIC = (
     *(11.455, 11.299, 11.146, 10.998, 10.861, 10.707, 10.570),
 )
 _FREE = (12.436, 12.262, 12.115, 11.972, 11.824, 11.687, 11.533, 11.378, 11.222, 11.068, 10.921, 10.784, 10.630, 10.493)
-CLASSES = ("B1", "B2", "C", "C1", "C2", "D", "E", "F", "F1", "F3", "G", "W1", "W2", "W3")
+CurveClass = Literal["B1", "B2", "C", "C1", "C2", "D", "E", "F", "F1", "F3", "G", "W1", "W2", "W3"]
+Environment = Literal["air", "cathodic-protection", "free-corrosion"]
+CLASSES: tuple[CurveClass, ...] = get_args(CurveClass)
 _K = (0.0, 0.0, 0.05, 0.10, 0.15, 0.20, 0.20, *(0.25,) * 7)
 _K_FREE = (0.0, 0.0, 0.15, 0.15, 0.15, 0.20, 0.20, *(0.25,) * 7)
-_TABLES = {
+_TABLES: dict[Environment, tuple[str, tuple[float, ...], float | None, tuple[float, ...]]] = {
     "air": ("Table 2-1", _AIR, 1e7, _K),
     "cathodic-protection": ("Table 2-2", _CATHODIC, 1e6, _K),
     "free-corrosion": ("Table 2-4", _FREE, None, _K_FREE),
@@ -28,8 +32,8 @@ _TABLES = {
 ENVIRONMENTS = tuple(_TABLES)
 
 
-def dnv_curve(name: str, environment: str) -> SNCurve:
-    """A curve by its class, of `CLASSES`, in one of `ENVIRONMENTS`."""
+def dnv_curve(name: CurveClass, environment: Environment) -> SNCurve:
+    """A curve by its class."""
     table, few, change, exponents = _TABLES[environment]
     n = CLASSES.index(name)
     told = f"DNV {name}, {environment.replace('-', ' ')}", f"{SOURCE}, {table}"

@@ -23,7 +23,7 @@ from riser_soil.core.quantities import (
     wrong,
 )
 from riser_soil.errors import SceneError
-from riser_soil.fatigue.dnv_curves import CLASSES, ENVIRONMENTS, dnv_curve
+from riser_soil.fatigue.dnv_curves import CurveClass, Environment, dnv_curve
 from riser_soil.fatigue.sn_curve import REFERENCE_THICKNESS, SNCurve, curve_through
 from riser_soil.scene.document import parse, read_text
 from riser_soil.scene.explain import problems_in
@@ -39,8 +39,8 @@ class DNVCurve(BaseModel):
 
     model_config = FROZEN
 
-    dnv: Literal[CLASSES] = Field(description="class of DNVGL-RP-C203, April 2016")  # type: ignore[valid-type]
-    environment: Literal[ENVIRONMENTS] = Field(description="what surrounds the wall")  # type: ignore[valid-type]
+    dnv: CurveClass = Field(description="class of DNVGL-RP-C203, April 2016")
+    environment: Environment = Field(description="what surrounds the wall")
 
     def curve(self) -> SNCurve:
         return dnv_curve(self.dnv, self.environment)

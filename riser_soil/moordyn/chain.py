@@ -85,7 +85,8 @@ def _in_global(deck: Deck, row: DeckRow, kind: str, first: int) -> tuple[float, 
     turned = [deck.number(body, n, "an angle") for n in range(5, 8)]
     if any(turned):
         raise deck.error(body.line, f"body {body.words[0]} is turned; give what sits on it as Coupled, in global axes")
-    return tuple(a + deck.number(body, 2 + n, "a coordinate") for n, a in enumerate((x, y, z)))  # type: ignore[return-value]
+    at = [deck.number(body, 2 + n, "a coordinate") for n in range(3)]
+    return at[0] + x, at[1] + y, at[2] + z
 
 
 def elsewhere(deck: Deck, chain: Chain) -> Iterator[DeckRow]:

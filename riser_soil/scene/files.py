@@ -1,10 +1,19 @@
 """Paths of the files that a scene names."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import AfterValidator, ValidationInfo
+from pydantic import AfterValidator, BaseModel, ValidationInfo, model_validator
 from pydantic_core import PydanticCustomError
+
+
+class GivenByName(BaseModel):
+    """Something from a file, for which the file's name alone may stand."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_name(cls, data: Any) -> Any:
+        return {"file": data} if isinstance(data, str) else data
 
 
 def wrong_file(text: str) -> PydanticCustomError:

@@ -19,7 +19,7 @@ from riser_soil.core.quantities import (
     wrong,
 )
 from riser_soil.scene.columns import ANGLE, LENGTH, CsvColumns
-from riser_soil.scene.files import NamedFile, wrong_file
+from riser_soil.scene.files import GivenByName, NamedFile, wrong_file
 from riser_soil.scene.rao import MODES, ROTATIONS, TRANSLATIONS, Rao, read_rao, vessel_axis
 from riser_soil.scene.time_history import read_history
 
@@ -98,7 +98,7 @@ class Rotation(BaseModel):
         return self
 
 
-class Table(BaseModel):
+class Table(GivenByName):
     """Displacements (and rotations) from the stage's beginning, read from a CSV file; cubic splines between its rows.
 
     Columns: t, x, y, z and, if wanted, the components rx, ry, rz of a rotation vector; the header gives their units.
@@ -111,11 +111,6 @@ class Table(BaseModel):
         "min, ms; mm, cm, ft; rad); a relative name is sought beside the scene file"
     )
     ramp: TimeOrNone = Field(default=0.0, description=_RAMP)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _by_name(cls, data: Any) -> Any:
-        return {"file": data} if isinstance(data, str) else data
 
     @model_validator(mode="after")
     def _can_be_read(self) -> Self:

@@ -2,7 +2,7 @@
 
 from functools import cached_property
 from itertools import pairwise
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
@@ -15,7 +15,7 @@ from riser_soil.core.quantities import (
     Coordinate,
     by_kind,
 )
-from riser_soil.scene.files import NamedFile
+from riser_soil.scene.files import GivenByName, NamedFile
 from riser_soil.scene.height_grid import HeightGrid, read_heights
 from riser_soil.seabed.law import SeabedLaw
 from riser_soil.seabed.laws import LAWS
@@ -57,7 +57,7 @@ Profile = Annotated[
 ]
 
 
-class HeightFile(BaseModel):
+class HeightFile(GivenByName):
     """Heights of the seabed at the points of a grid; a smooth surface goes through them."""
 
     model_config = FROZEN
@@ -66,11 +66,6 @@ class HeightFile(BaseModel):
         description="CSV file with a header such as x [m], y [m], z [m] and a row for each point of a grid along x "
         "and y, in any order; a relative name is sought beside the scene file"
     )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _by_name(cls, data: Any) -> Any:
-        return {"file": data} if isinstance(data, str) else data
 
     @model_validator(mode="after")
     def _can_be_read(self) -> Self:

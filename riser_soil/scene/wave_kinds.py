@@ -64,81 +64,52 @@ class Airy(BaseModel):
         return (math.radians(self.direction_deg),)
 
 
-class Jonswap(BaseModel):
+class PeakedSea(BaseModel):
+    """What irregular seas have whose spectrum is told by its height and peak."""
+
+    model_config = FROZEN
+
+    Hs: Length = Field(description="significant wave height [m]")
+    Tp: Time = Field(description="period of the spectrum's peak [s]")
+    seed: Seed = Field(default=1, description=_SEED)
+    components: Components = Field(default=100, description=_COMPONENTS)
+    direction_deg: Angle = Field(default=0.0, description=_TOWARD)
+    spreading: Spreading | None = Field(default=None, description=_SPREADING)
+
+    @model_validator(mode="after")
+    def _even(self) -> Self:
+        _check_even(self.components, self.spreading)
+        return self
+
+    @property
+    def height(self) -> float:
+        """Significant height [m]."""
+        return self.Hs
+
+    @property
+    def period(self) -> float:
+        """Of the peak [s]."""
+        return self.Tp
+
+    @property
+    def count(self) -> int:
+        """Number of linear waves."""
+        return self.components
+
+    @property
+    def toward(self) -> tuple[float, ...]:
+        """Directions [rad]."""
+        return _toward(self.direction_deg, self.spreading)
+
+
+class Jonswap(PeakedSea):
     """An irregular sea with a JONSWAP spectrum."""
 
-    model_config = FROZEN
-
-    Hs: Length = Field(description="significant wave height [m]")
-    Tp: Time = Field(description="period of the spectrum's peak [s]")
     gamma: Annotated[Real, Field(ge=1.0, le=7.0)] = Field(default=3.3, description="peak enhancement factor [-]")
-    seed: Seed = Field(default=1, description=_SEED)
-    components: Components = Field(default=100, description=_COMPONENTS)
-    direction_deg: Angle = Field(default=0.0, description=_TOWARD)
-    spreading: Spreading | None = Field(default=None, description=_SPREADING)
-
-    @model_validator(mode="after")
-    def _even(self) -> Self:
-        _check_even(self.components, self.spreading)
-        return self
-
-    @property
-    def height(self) -> float:
-        """Significant height [m]."""
-        return self.Hs
-
-    @property
-    def period(self) -> float:
-        """Of the peak [s]."""
-        return self.Tp
-
-    @property
-    def count(self) -> int:
-        """Number of linear waves."""
-        return self.components
-
-    @property
-    def toward(self) -> tuple[float, ...]:
-        """Directions [rad]."""
-        return _toward(self.direction_deg, self.spreading)
 
 
-class PiersonMoskowitz(BaseModel):
+class PiersonMoskowitz(PeakedSea):
     """An irregular, fully developed sea with a Pierson-Moskowitz spectrum."""
-
-    model_config = FROZEN
-
-    Hs: Length = Field(description="significant wave height [m]")
-    Tp: Time = Field(description="period of the spectrum's peak [s]")
-    seed: Seed = Field(default=1, description=_SEED)
-    components: Components = Field(default=100, description=_COMPONENTS)
-    direction_deg: Angle = Field(default=0.0, description=_TOWARD)
-    spreading: Spreading | None = Field(default=None, description=_SPREADING)
-
-    @model_validator(mode="after")
-    def _even(self) -> Self:
-        _check_even(self.components, self.spreading)
-        return self
-
-    @property
-    def height(self) -> float:
-        """Significant height [m]."""
-        return self.Hs
-
-    @property
-    def period(self) -> float:
-        """Of the peak [s]."""
-        return self.Tp
-
-    @property
-    def count(self) -> int:
-        """Number of linear waves."""
-        return self.components
-
-    @property
-    def toward(self) -> tuple[float, ...]:
-        """Directions [rad]."""
-        return _toward(self.direction_deg, self.spreading)
 
 
 class GivenSpectrum(BaseModel):

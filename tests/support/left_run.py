@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -20,9 +21,9 @@ def leave_after(
     """Run the scene; SIGTERM comes while so many steps have been recorded."""
     usual, taken = Observer.record, 0
 
-    def record(self: Observer, *told: object, **more: object) -> None:
+    def record(self: Observer, *told: Any, **more: Any) -> None:
         nonlocal taken
-        usual(self, *told, **more)  # type: ignore[arg-type]
+        usual(self, *told, **more)
         taken += 1
         if taken == steps:
             signal.raise_signal(signal.SIGTERM)

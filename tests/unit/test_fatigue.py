@@ -11,7 +11,7 @@ import pytest
 from riser_soil.core.arrays import Array
 from riser_soil.fatigue.assessment import CaseDamage, YearlyDamage
 from riser_soil.fatigue.damage import StressRanges, damage_rates, records_per_period, standard_error
-from riser_soil.fatigue.dnv_curves import CLASSES, ENVIRONMENTS, dnv_curve
+from riser_soil.fatigue.dnv_curves import CLASSES, ENVIRONMENTS, CurveClass, Environment, dnv_curve
 from riser_soil.fatigue.fatigue_file import Fatigue
 from riser_soil.fatigue.rainflow import mean_period, rainflow_ranges
 from riser_soil.fatigue.sn_curve import SNCurve, curve_through
@@ -32,14 +32,14 @@ def irregular(n: int = 4000) -> Array:
 
 @pytest.mark.parametrize("environment", ["air", "cathodic-protection"])
 @pytest.mark.parametrize(("name", "limit"), [*zip(CLASSES, LIMITS, strict=True)])
-def test_curves_have_their_printed_fatigue_limits(name: str, limit: float, environment: str) -> None:
+def test_curves_have_their_printed_fatigue_limits(name: CurveClass, limit: float, environment: Environment) -> None:
     """At 1e7 cycles; limits are printed to four digits, and N falls with their fifth power."""
     assert dnv_curve(name, environment).endurance(np.array(0.999 * limit)) == pytest.approx(1e7, rel=0.008)
 
 
 @pytest.mark.parametrize("name", CLASSES)
 @pytest.mark.parametrize("environment", ENVIRONMENTS)
-def test_branches_of_the_curves_meet(name: str, environment: str) -> None:
+def test_branches_of_the_curves_meet(name: CurveClass, environment: Environment) -> None:
     """To the three decimals that logarithms are printed with."""
     curve = dnv_curve(name, environment)
     for log_a, m, change in zip(curve.log_a, curve.m, curve.change, strict=False):

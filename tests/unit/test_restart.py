@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -165,12 +165,12 @@ def test_results_that_lack_what_they_had_are_refused(tmp_path: Path) -> None:
 def test_a_full_disk_leaves_the_last_checkpoint(alone: Alone, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     often, usual, written = scene_of("output.checkpoint.every=1e-6"), record.write_checkpoint, 0
 
-    def full(*told: object) -> None:
+    def full(*told: Any) -> None:
         nonlocal written
         written += 1
         if written == 3:
             raise OSError(28, "No space left on device")
-        usual(*told)  # type: ignore[arg-type]
+        usual(*told)
 
     with monkeypatch.context() as patch:
         patch.setattr(record, "write_checkpoint", full)
