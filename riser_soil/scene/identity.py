@@ -37,9 +37,8 @@ def first_difference(
     for key, before, after in _differences(then["values"], now["values"], but):
         return Difference(dotted(key), _told(before), _told(after))
     for key in sorted({*then["files"], *now["files"]}):
-        if not any(_below(tuple(key.split(".")), free) for free in but) and then["files"].get(key) != now["files"].get(
-            key
-        ):
+        free = any(_below(tuple(key.split(".")), each) for each in but)
+        if not free and then["files"].get(key) != now["files"].get(key):
             return Difference(key, "a file of other content", "changed since")
     return None
 
