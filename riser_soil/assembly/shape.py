@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 # needs to bend under its own weight: sharper than elements and pipe can follow.
 SHARPEST_IN_ELEMENTS = 0.5
 SHARPEST_BEND = 0.4
+ROUND_OFF = 1e-12  # strain of a line as long as its ends are apart
 
 
 def _ends(riser: Riser) -> tuple[Array | None, Array | None]:
@@ -76,17 +77,17 @@ def initial_shape(
 
 def tensions_of_taut(elements: sections.Elements, start: Array, end: Array) -> Array | None:
     """Tensions (ne,) [N] amid the elements of a line that is pulled straight between two places: each stretches by
-    T l/EA, and T grows by w dz. None where not all of it is in tension, as where its own weight stretches it enough.
+    T l/EA, and T grows by w dz. None where some of it is pressed, as where its own weight stretches it enough.
     """
     distance, rise = float(np.linalg.norm(end - start)), float(end[2] - start[2])
-    if distance <= elements.length.sum():
+    if distance == 0.0:
         return None
     gained = elements.weight * elements.length * (rise / distance)
     above_start = np.cumsum(gained) - 0.5 * gained
     flexibility = elements.length / elements.EA
     at_start = (distance - elements.length.sum() - (above_start * flexibility).sum()) / flexibility.sum()
     tension: Array = at_start + above_start
-    return tension if tension.min() > 0.0 else None
+    return tension if (tension > -ROUND_OFF * elements.EA).all() else None
 
 
 def _pulled_straight(elements: sections.Elements, tension: Array, start: Array, end: Array) -> shapes.Curve:

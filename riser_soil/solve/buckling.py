@@ -9,6 +9,7 @@ for all risers, and the largest displacement is positive, so that the direction 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 
 import numpy as np
 
@@ -44,15 +45,16 @@ def buckling_mode(system: System, part: Relaxation, line: Line, state: State, we
     system.assemble(state, weights, [part])
     drag = system.matrix.stored.diagonal()
     system.assemble(state, weights, parts)
-    mode = _iterate(system, _exact_solver(system), drag, _start(system, line))
+    with _exact_solver(system) as solve:
+        mode = _iterate(system, solve, drag, _start(system, line))
     found = np.zeros(system.numbering.size)
     system.numbering.to_local(mode, found)
     return np.asarray(found / _largest(line.nodal(found)[:, : line.dimension]))
 
 
-def _exact_solver(system: System) -> Callable[[Array], Array]:
+def _exact_solver(system: System) -> AbstractContextManager[Callable[[Array], Array]]:
     if is_chain(system):
-        return ChainFactors(system.matrix).solve
+        return nullcontext(ChainFactors(system.matrix).solve)
     from riser_soil.solve.linear_solver import exact_solver
 
     return exact_solver(system)

@@ -108,8 +108,9 @@ def complaint(err: PETSc.Error | SingularError) -> str:
     return f"the linear solver failed (MUMPS{where})"
 
 
-def exact_solver(system: System) -> Callable[[Array], Array]:
-    """What the matrix makes of loads (owned,), factorised at once; collective."""
+@contextmanager
+def exact_solver(system: System) -> Iterator[Callable[[Array], Array]]:
+    """What the matrix makes of loads (owned,), factorised at once, as long as the block lasts; collective."""
     solver = PETSc.PC().create(system.comm)
     factorise_directly(solver, system, Room())
     solver.setUp()
@@ -123,7 +124,10 @@ def exact_solver(system: System) -> Callable[[Array], Array]:
             vector.destroy()
         return answer
 
-    return solve
+    try:
+        yield solve
+    finally:
+        solver.destroy()
 
 
 def negative_pivots(system: System) -> int:

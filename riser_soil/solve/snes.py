@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Callable
 
 import numpy as np
@@ -100,7 +101,7 @@ class SnesLoop:
         if not complained and not unsolved():
             return ""
         why, self.again = self.linear.failed(self._snes.getKSP())
-        self._snes.destroy()
+        self._drop()
         self._snes = self._create()
         return complained or why or NOT_SOLVED
 
@@ -139,8 +140,17 @@ class SnesLoop:
 
     def release(self) -> None:
         """Let go of the matrix, in whose place another is to come."""
-        for thing in (self._snes, self._x, self._f, self._levers):
+        self._drop()
+        for thing in (self._x, self._f, self._levers):
             thing.destroy()
+
+    def _drop(self) -> None:
+        """Destroy SNES; its factors go with it, on all ranks at once: MUMPS waits for the others. Frames that an
+        exception keeps, as numba's do on the rank that compiles a kernel, would hold it until Python collects them.
+        """
+        if self._system.comm.size > 1:
+            gc.collect()
+        self._snes.destroy()
 
 
 def _ending(reason: int) -> str:

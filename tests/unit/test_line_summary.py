@@ -10,6 +10,7 @@ import pytest
 from mpi4py import MPI
 
 from riser_soil.assembly import build
+from riser_soil.assembly.shape import tensions_of_taut
 from riser_soil.checks.line_summary import line_summary
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.errors import SceneError
@@ -95,6 +96,14 @@ def test_a_riser_that_its_weight_stretches_to_its_ends_is_not_taut() -> None:
     assembly = build(scene(part(100.0), end=(0.0, 0.0, 100.155)), MPI.COMM_SELF)
     assert WET * 100.0**2 / (2.0 * PIPE["EA"]) > 0.005
     assert assembly.catenary is not None
+
+
+def test_a_level_riser_as_long_as_its_span_is_taut_whatever_the_round_off() -> None:
+    elements = build(scene(part(100.0)), MPI.COMM_SELF).elements
+    for span in (100.0 - 2e-14, 100.0, 100.0 + 2e-14):
+        tension = tensions_of_taut(elements, np.zeros(3), np.array([span, 0.0, 0.0]))
+        assert tension == pytest.approx(0.0, abs=1e-6)
+    assert tensions_of_taut(elements, np.zeros(3), np.array([99.999, 0.0, 0.0])) is None
 
 
 def floating(given: Scene) -> list[str]:
