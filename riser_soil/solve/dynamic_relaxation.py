@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import Communicator
 from riser_soil.core.part import Model, State
 from riser_soil.core.roles import with_role
@@ -64,11 +65,17 @@ def relax(
 class EquilibriumAttempts:
     """Attempts at an equilibrium without drag. After n failures for want of stability the next comes n steps later, and
     after an unstable equilibrium was left not before the tangent is stable.
+
+    left: places (nn, 3) [m] of the nodes in the unstable equilibrium that is being left.
     """
 
     failures: int = 0
     wait: int = 0
-    leaving: bool = False
+    left: Array | None = None
+
+    @property
+    def leaving(self) -> bool:
+        return self.left is not None
 
     def due(self) -> bool:
         self.wait -= 1
@@ -85,7 +92,7 @@ def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: fl
     stiffest, done, moved, attempts = part.drag * STIFFEST, RelaxationResult(), np.inf, EquilibriumAttempts()
     for _ in range(MOST_STEPS):
         slow = moved < NEARLY_THERE * line.length.min()
-        if slow and attempts.due() and not _still_leaving(newton, part, t, attempts):
+        if slow and attempts.due() and not _still_leaving(newton, part, line, t, attempts):
             found = _without_drag(system, newton, part, line, t, attempts)
             done.branch_switches += attempts.leaving
             if found is not None:
@@ -101,7 +108,7 @@ def _descend(system: System, newton: Newton, part: Relaxation, line: Line, t: fl
                 raise SolveError(f"dynamic relaxation fails even in tiny pseudo-time steps: {failure}") from failure
             continue
         done.iterations += solution.iterations
-        moved = _largest_increment(system, line, solution)
+        moved = _largest_increment(line, solution)
         part.drag *= 0.4 if solution.iterations <= QUICK else 1.0
     raise SolveError(f"dynamic relaxation finds no equilibrium in {MOST_STEPS} pseudo-time steps")
 
@@ -114,15 +121,19 @@ def _without_drag(
         return _step(system, newton, part, t, drag=0.0)
     except NotConvergedError as failure:
         attempts.count(failure)
-        if isinstance(failure, UnstableError) and _is_near(system, line, failure.solution):
-            _leave(system, newton, part, line, failure.solution)
-            attempts.leaving, attempts.wait = True, 0
+        if isinstance(failure, UnstableError) and _is_near(line, failure.solution):
+            attempts.left, attempts.wait = _leave(system, newton, part, line, failure.solution), 0
     return None
 
 
-def _still_leaving(newton: Newton, part: Relaxation, t: float, attempts: EquilibriumAttempts) -> bool:
-    """Whether the tangent is unstable where the riser is since it left an unstable equilibrium."""
-    attempts.leaving = attempts.leaving and not _stable(newton, part, t, 0.0)
+def _still_leaving(newton: Newton, part: Relaxation, line: Line, t: float, attempts: EquilibriumAttempts) -> bool:
+    """Whether the tangent is unstable where the riser is since it left an unstable equilibrium. Near that one, to which
+    an attempt would return, it counts as unstable where round-off may make it stable.
+    """
+    if attempts.left is not None:
+        near = float(np.abs(line.x - attempts.left).max()) < NEAR * line.length.min()
+        if _stable(newton, part, t, 0.0, surely=near):
+            attempts.left = None
     return attempts.leaving
 
 
@@ -177,21 +188,24 @@ def _pass_through(system: System, state: State) -> None:
         part.restore(saved)
 
 
-def _is_near(system: System, line: Line, solution: Solution) -> bool:
-    return _largest_increment(system, line, solution) < NEAR * float(line.length.min())
+def _is_near(line: Line, solution: Solution) -> bool:
+    return _largest_increment(line, solution) < NEAR * float(line.length.min())
 
 
-def _leave(system: System, newton: Newton, part: Relaxation, line: Line, unstable: Solution) -> None:
-    """Commit an unstable equilibrium, and a small move from there in the mode in which it is left fastest."""
+def _leave(system: System, newton: Newton, part: Relaxation, line: Line, unstable: Solution) -> Array:
+    """Commit an unstable equilibrium, and a small move from there in the mode in which it is left fastest; the nodes'
+    places in that equilibrium.
+    """
     _pass_through(system, unstable.state)
-    t = unstable.state.t
+    t, left = unstable.state.t, line.x.copy()
     _stabilise(newton, part, t, least=True)
     mode = buckling_mode(system, part, line, _still(system, t), Static().weights(0.0))
     moved = _still(system, t)
     moved.u[:] = NUDGE * line.length.min() * mode
     _pass_through(system, moved)
+    return left
 
 
-def _largest_increment(system: System, line: Line, solution: Solution) -> float:
+def _largest_increment(line: Line, solution: Solution) -> float:
     """Longest translation [m] of the step, the same on all ranks, as every rank holds the riser."""
     return float(np.abs(line.nodal(solution.state.u)[:, : line.dimension]).max())
