@@ -9,6 +9,7 @@ agree on the step after which all leave. A second signal takes effect at once.
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -38,6 +39,11 @@ class _Pending:
         self.latest, self.number = Interruption(self.number, together), 0
         raise self.latest
 
+    def untell(self) -> None:
+        """What was raised has got lost: it is told at the end of the next block that no signal interrupts."""
+        if self.latest is not None:
+            self.number, self.latest = self.latest.number, None
+
 
 def latest() -> Interruption | None:
     """The last that was raised: who takes it for a common KeyboardInterrupt may have swallowed it."""
@@ -60,11 +66,31 @@ def handling_signals() -> Iterator[None]:
         _pending.number, _pending.latest = 0, None
     former = {number: signal.signal(number, _pending.take) for number in mine}
     try:
-        with unmasked():
+        with unmasked(), _unraisable_kept():
             yield
     finally:
         for number, handler in former.items():
             signal.signal(number, handler)
+
+
+@contextmanager
+def _unraisable_kept() -> Iterator[None]:
+    """Keeps signals that come within a function that C calls back, as LLVM does when a kernel is compiled or read: it
+    can raise nothing, and Python prints what it would have raised.
+    """
+    usual = sys.unraisablehook
+
+    def keep(lost: Any) -> None:
+        if isinstance(lost.exc_value, Interruption):
+            _pending.untell()
+        else:
+            usual(lost)
+
+    sys.unraisablehook = keep
+    try:
+        yield
+    finally:
+        sys.unraisablehook = usual
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import signal
 import subprocess
 import sys
@@ -258,3 +259,21 @@ def test_an_interruption_that_a_library_takes_for_its_own_is_told(number: signal
     assert done.returncode == 128 + number
     assert done.stdout == ""
     assert done.stderr == f"ended by {number.name} before the first stage; nothing was computed\n"
+
+
+def test_a_signal_in_what_c_calls_back_is_told_at_the_next_step(capsys: pytest.CaptureFixture[str]) -> None:
+    """As LLVM calls numba: an exception ends nothing there."""
+    called_back = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGTERM))
+    reached = []
+
+    def begin() -> None:
+        called_back()
+        reached.append("what follows")
+        with uninterrupted():
+            reached.append("the step")
+        reached.append("another step")
+
+    with pytest.raises(Interruption, match="SIGTERM"), handling_signals():
+        begin()
+    assert reached == ["what follows", "the step"]
+    assert capsys.readouterr().err == ""
