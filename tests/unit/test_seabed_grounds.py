@@ -65,7 +65,10 @@ def test_profile_of_a_straight_slope_is_the_plane() -> None:
     assert profile.distance(X).gradient == pytest.approx(np.asarray(plane.distance(X).gradient), abs=1e-12)
 
 
-@pytest.mark.parametrize("seabed", [{"slope_deg": -3.0}, {"profile": [[0.0, 0.0], [80.0, -80.0 * np.tan(np.radians(3.0))]]}])
+FALL = 80.0 * np.tan(np.radians(3.0))
+
+
+@pytest.mark.parametrize("seabed", [{"slope_deg": -3.0}, {"profile": [[0.0, 0.0], [80.0, -FALL]]}])
 def test_a_riser_is_first_laid_on_the_ground_below_its_lower_end(seabed: dict[str, object]) -> None:
     """Written from the floater down, along a seabed that falls: its anchor lies below the seabed under its start."""
     pipe = {"EA": 3.0e8, "EI": 0.0, "submerged_weight": 500.0, "outer_diameter": 0.3}
@@ -76,4 +79,4 @@ def test_a_riser_is_first_laid_on_the_ground_below_its_lower_end(seabed: dict[st
     )
     start, end = np.array([0.0, 0.0, 100.0]), np.array([80.0, 0.0, -4.0])
     height = catenary_between(scene, elements_of(scene), (), start, end).curve.position[:, 2]
-    assert height.min() == pytest.approx(0.15 - 80.0 * np.tan(np.radians(3.0)), abs=1e-4)
+    assert height.min() == pytest.approx(0.15 - FALL, abs=1e-4)
