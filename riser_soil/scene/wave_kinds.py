@@ -199,15 +199,20 @@ class Record(BaseModel):
         least = math.ceil(whole / self.longest_period * (1.0 - 1e-9)) if self.longest_period else 1
         return range(max(1, least), min(most, (rows - 1) // 2) + 1)
 
+    @cached_property
+    def waves(self) -> ElevationRecord:
+        """The record without what is left out of it."""
+        return self.record.of_waves(self.harmonics)
+
     @property
     def height(self) -> float:
         """Significant height, four standard deviations [m]."""
-        return self.record.significant_height
+        return self.waves.significant_height
 
     @property
     def period(self) -> float:
         """Mean time between crossings of the mean, upwards [s]."""
-        return self.record.mean_period
+        return self.waves.mean_period
 
     @property
     def count(self) -> int:
