@@ -165,3 +165,23 @@ def test_the_command_writes_a_scene_once(tmp_path: Path) -> None:
     assert "# LINE.dat:41: not carried over" in (tmp_path / "scene.yaml").read_text()
     again = CliRunner().invoke(app, arguments)
     assert (again.exit_code, "--force" in again.output) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("rows", "friction"),
+    [
+        ("0.4 mu_kA\n0.6 mu_kT", (0.4, 0.6)),
+        ("0.3 FrictionCoefficient", (0.3, 0.3)),
+    ],
+)
+def test_friction_along_and_across(rows: str, friction: tuple[float, float], tmp_path: Path) -> None:
+    """Of MoorDyn-F two coefficients; of MoorDyn-C one."""
+    found = read(deck(tmp_path, DECK.replace("0.3           FrictionCoefficient", rows)))["contact"]["friction"]
+    assert (found["axial"], found["lateral"]) == friction
+
+
+def test_friction_in_one_direction_alone_is_told(tmp_path: Path) -> None:
+    """Of the two coefficients of MoorDyn-F each is 0 where it is not given."""
+    found = scene_of(deck(tmp_path, DECK.replace("0.3           FrictionCoefficient", "0.6 MU_KT")))
+    assert "contact" not in found.data
+    assert (38, "friction of 0 along and 0.6 across: neither may be 0 here") in found.remarks
