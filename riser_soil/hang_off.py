@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from riser_soil.assembly import Assembly, build, sized
-from riser_soil.assembly.hang_off import HungEnd, by_cable, hung_end, told, with_value
+from riser_soil.assembly.hang_off import HungEnd, by_cable, hung_end, settled, told, with_value
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import Communicator
@@ -70,7 +70,7 @@ def hung(scene: Scene) -> HungScene | None:
         found = with_value(wanted, value)
         off = _reached(wanted, found, comm) - asked
         if abs(off) <= close:
-            return HungScene(found, wanted, value, asked + off, solves)
+            return HungScene(settled(wanted, value), wanted, value, asked + off, solves)
         before, value = (value, off), min(max(_next(wanted, before, (value, off)), low), high)
     raise SolveError(
         f"{wanted.path}: {wanted.told} was not reached in {MOST} static solves: with {before[0]:.6g} m it is off by "

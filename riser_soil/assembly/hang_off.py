@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -12,8 +11,13 @@ from riser_soil.assembly.riser import attachments_of, elements_of
 from riser_soil.assembly.shape import catenary_between
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
+from riser_soil.scene.bathymetry import ground_height
+from riser_soil.scene.cross_checks import conflicts
 from riser_soil.scene.hang_off import HangOff
-from riser_soil.scene.riser import Riser, Segment, Support
+from riser_soil.scene.problem import message
+from riser_soil.scene.relocated import with_end_at
+from riser_soil.scene.resized import with_segment_as_long
+from riser_soil.scene.riser import Riser, Support
 from riser_soil.scene.scene import Scene
 
 NEAREST = 1e-3  # of the riser's length: the least layback or segment that is looked at
@@ -96,26 +100,30 @@ def hung_end(scene: Scene) -> HungEnd | None:
 
 def with_value(hung: HungEnd, value: float) -> Scene:
     """The scene with a value of what is solved for [m], and no hang-off asked any more."""
-    riser = hung.scene.riser
-    plain: dict[str, Any] = {hung.name: getattr(riser, hung.name).model_copy(update={"hang_off": None})}
-    riser = riser.model_copy(update=plain)
+    plain = getattr(hung.scene.riser, hung.name).model_copy(update={"hang_off": None})
+    scene = hung.scene.model_copy(update={"riser": hung.scene.riser.model_copy(update={hung.name: plain})})
     if hung.asked.by == "length":
-        changed: dict[str, Any] = {"segments": _with_length(riser.segments, hung.segment, value)}
-    else:
-        name, sign = (hung.name, 1.0) if hung.asked.by == "layback" else (hung.other, -1.0)
-        ahead = hung.span * [1.0, 1.0, 0.0] * (sign * (value / hung.layback - 1.0))
-        place = tuple(float(x) for x in _position(riser, name) + ahead)
-        changed = {name: getattr(riser, name).model_copy(update={"position": place})}
-    return hung.scene.model_copy(update={"riser": riser.model_copy(update=changed)})
+        return with_segment_as_long(scene, hung.segment, value)
+    name, sign = (hung.name, 1.0) if hung.asked.by == "layback" else (hung.other, -1.0)
+    ahead = hung.span * [1.0, 1.0, 0.0] * (sign * (value / hung.layback - 1.0))
+    x, y, z = (float(each) for each in _position(scene.riser, name) + ahead)
+    return _as_high_over_the_ground(with_end_at(scene, name, (x, y, z)), scene, hung.other)
 
 
-def _with_length(segments: tuple[Segment, ...], number: int, length: float) -> tuple[Segment, ...]:
-    """One segment longer or shorter, in as many elements."""
-    segment = segments[number]
-    given, by = segment.element_length, length / segment.length
-    scaled = None if given is None else tuple(by * x for x in given) if isinstance(given, tuple) else by * given
-    longer = segment.model_copy(update={"length": length, "element_length": scaled})
-    return (*segments[:number], longer, *segments[number + 1 :])
+def _as_high_over_the_ground(scene: Scene, before: Scene, name: str) -> Scene:
+    """With the lower end as high over the ground as before: it moved, or the ground below it with the riser's start."""
+    x, y, z = getattr(scene.riser, name).position
+    rise = ground_height(scene, (x, y, z)) - ground_height(before, getattr(before.riser, name).position)
+    return with_end_at(scene, name, (x, y, z + rise)) if rise else scene
+
+
+def settled(hung: HungEnd, value: float) -> Scene:
+    """The same, once the value is found; SceneError where the scene can't be with it."""
+    scene = with_value(hung, value)
+    for problem in conflicts(scene):
+        wrong = message(problem, scene.model_dump(by_alias=True))
+        raise SceneError(f"{hung.path}: {told(hung, value)} but then {wrong}")
+    return scene
 
 
 def by_cable(hung: HungEnd, asked: float) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 from riser_soil.assembly.scales import contact_radius
 from riser_soil.core.arrays import Array
 from riser_soil.riser import sections, shapes
+from riser_soil.scene.bathymetry import ground_height
 from riser_soil.scene.riser import Riser, Support
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.shapes import ArcShape, PointsShape
@@ -116,17 +117,21 @@ def catenary_between(
         end,
         elements.weight,
         elements.EA,
-        level=resting_level(scene, elements),
+        level=resting_level(scene, elements, np.array([start, end])),
         points=np.array([(attachment.arc, attachment.net_weight) for attachment in attachments]).reshape(-1, 2),
         least_H=_least_tension(elements),
     )
 
 
-def resting_level(scene: Scene, elements: sections.Elements) -> float:
-    """Height z [m] of the axis where the thinnest of the riser rests; -inf where there is nothing to rest on."""
+def resting_level(scene: Scene, elements: sections.Elements, ends: Array) -> float:
+    """Height z [m] of the axis where the thinnest of the riser rests, below the lower of its ends (2, 3) [m]; -inf
+    where there is nothing to rest on. A trench in soil doesn't count.
+    """
     if scene.contact is None:
         return -np.inf
-    return scene.seabed_level + float(contact_radius(scene, elements).min())
+    x, y, z = (float(value) for value in ends[np.argmin(ends[:, 2])])
+    ground = ground_height(scene, (x, y, z)) if scene.soil is None else scene.seabed_level
+    return ground + float(contact_radius(scene, elements).min())
 
 
 def least_bend(elements: sections.Elements) -> float:

@@ -72,7 +72,7 @@ def _touchdown(
 
 def _in_plan(scene: Scene, elements: Elements, found: Catenary) -> tuple[Array, float] | None:
     position = found.curve.position
-    height = position[:, 2] - resting_level(scene, elements)
+    height = position[:, 2] - resting_level(scene, elements, position[[0, -1]])
     diameter = float(elements.outer_diameter.max())
     hangs = height > max(OFF_GROUND * diameter, 1e-6 * float(elements.arc[-1]))
     changes = np.flatnonzero(np.diff(hangs))

@@ -93,7 +93,8 @@ def _lengths(scene: Scene, elements: Elements, shapes: Sequence[Catenary]) -> Ar
 
 def _hangs(scene: Scene, elements: Elements, shape: Catenary) -> BoolArray:
     """Whether elements hang free (ne,)."""
-    above = shape.curve.position[:, 2] > resting_level(scene, elements) + LIFTED * elements.arc[-1]
+    position = shape.curve.position
+    above = position[:, 2] > resting_level(scene, elements, position[[0, -1]]) + LIFTED * elements.arc[-1]
     return above[1:] | above[:-1]
 
 

@@ -26,15 +26,16 @@ def guessed(scene: "Scene", file: str, overrides: list[str] | None) -> "Scene":
     """The scene with its hang-off as a cable would have it, where it asks for one."""
     if not scene.riser.hangs_off:
         return scene
-    from riser_soil.assembly.hang_off import by_cable, hung_end, told, with_value
+    from riser_soil.assembly.hang_off import by_cable, hung_end, settled, told
 
     with placed(file, overrides):
         wanted = hung_end(scene)
         assert wanted is not None
         value = by_cable(wanted, wanted.asked.asked)
+        found = settled(wanted, value)
     if rank() == 0:
         print(f"{told(wanted, value)} by the cable without bending stiffness; a run solves it on the riser itself")
-    return with_value(wanted, value)
+    return found
 
 
 def read_begun(scene: str, overrides: list[str] | None) -> "Scene":

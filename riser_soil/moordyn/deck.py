@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -47,11 +48,14 @@ class Deck:
         return SceneError(f"{self.name}:{line}: {text}")
 
     def number(self, row: DeckRow, column: int, what: str) -> float:
-        """A number of a row; SceneError where it is none."""
+        """A finite number of a row; SceneError where it is none."""
         try:
-            return float(row.words[column].replace("d", "e").replace("D", "e"))
-        except ValueError as err:
-            raise self.error(row.line, f"{what} is {row.words[column]!r}, not a number; correct it") from err
+            value = float(row.words[column].replace("d", "e").replace("D", "e"))
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise self.error(row.line, f"{what} is {row.words[column]!r}, not a finite number; correct it")
+        return value
 
 
 def read_deck(file: Path) -> Deck:

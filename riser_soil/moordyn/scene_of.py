@@ -10,13 +10,13 @@ from riser_soil.moordyn.chain import COUPLED, Chain, chain_with, elsewhere, is_f
 from riser_soil.moordyn.deck import Deck, DeckRow
 
 DEFAULTS = {"g": 9.81, "rho": 1025.0, "wtrdpth": 0.0, "kbot": 3.0e6, "frictioncoefficient": 0.0}
-ALIASES = {"rhow": "rho", "gravity": "g", "depth": "wtrdpth", "mu_ka": "frictioncoefficient"}
+ALONG_AND_ACROSS = ("mu_ka", "mu_kt")  # in MoorDyn-F in the place of one coefficient of friction
+ALIASES = {"rhow": "rho", "gravity": "g", "depth": "wtrdpth", "mc": "statdynfricscale", "cv": "fricdamp"}
 PHYSICAL = {
     "cbot": "the seabed's damping",
     "wavekin": "waves from files",
     "waterkin": "waves and currents from a file",
     "currents": "currents from files",
-    "mu_kt": "friction across the line",
     "fricdamp": "friction's damping; it is elastic below its limit here",
     "statdynfricscale": "static friction larger than dynamic friction",
     "seafloorfile": "the seabed's shape; it is level here",
@@ -54,14 +54,14 @@ def _ends(chain: Chain) -> tuple[tuple[str, DeckRow], tuple[str, DeckRow]]:
 
 
 def _options(deck: Deck) -> tuple[dict[str, float], list[tuple[int, str]]]:
-    values, remarks = dict(DEFAULTS), list[tuple[int, str]]()
+    values, remarks, known = dict(DEFAULTS), list[tuple[int, str]](), (*DEFAULTS, *ALONG_AND_ACROSS)
     for row in deck.of("options"):
         key = ALIASES.get(row.words[1].lower(), row.words[1].lower())
         if key in PHYSICAL and row.words[0] not in ("0", "0.0"):
             remarks.append((row.line, f"{row.words[1]} {row.words[0]}: {PHYSICAL[key]}"))
-        elif key not in PHYSICAL and key not in DEFAULTS:
+        elif key not in PHYSICAL and key not in known:
             remarks.append((row.line, f"{row.words[1]} {row.words[0]}: a setting of MoorDyn's own"))
-        elif key in DEFAULTS:
+        elif key in known:
             values[key] = deck.number(row, 0, row.words[1])
     return values, remarks
 
@@ -75,10 +75,17 @@ def _seabed(
     diameters = [_diameter(deck, row) for row in chain.lines]
     bed = {"kind": "spring", "stiffness": options["kbot"] * diameters[0], "level": -options["wtrdpth"]}
     data: dict[str, Any] = {"seabed": bed | {"contact_at": "axis"}}
-    if friction := options["frictioncoefficient"]:
-        data["contact"] = {"friction": {"axial": friction, "lateral": friction}}
+    axial, lateral = (options.get(key, options["frictioncoefficient"]) for key in ALONG_AND_ACROSS)
+    remarks = list[tuple[int, str]]()
+    if axial and lateral:
+        data["contact"] = {"friction": {"axial": axial, "lateral": lateral}}
+    elif axial or lateral:
+        row = next(row for row in deck.of("options") if row.words[1].lower() in ALONG_AND_ACROSS)
+        remarks.append((row.line, f"friction of {axial:g} along and {lateral:g} across: neither may be 0 here"))
     told = f"kBot times the diameter differs along the riser; the seabed has that of line {chain.lines[0].words[0]}"
-    return data, [(chain.lines[0].line, told)] if len(set(diameters)) > 1 else []
+    if len(set(diameters)) > 1:
+        remarks.append((chain.lines[0].line, told))
+    return data, remarks
 
 
 def _type_row(deck: Deck, row: DeckRow) -> DeckRow:

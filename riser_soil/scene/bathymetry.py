@@ -1,11 +1,11 @@
 """Height of the seabed below a point, for the checks of a scene; `riser_soil.seabed.grounds` has its shape."""
 
 import math
-from itertools import pairwise
 
 from riser_soil.core.quantities import Vector
 from riser_soil.scene.plane import vertical_plane
 from riser_soil.scene.scene import Scene
+from riser_soil.scene.seabed import profile_height
 from riser_soil.scene.vectors import dot, minus
 
 
@@ -18,9 +18,7 @@ def ground_height(scene: Scene, point: Vector) -> float:
     s = distance_along(scene, point)
     if scene.seabed.profile is None:
         return scene.seabed.level + math.tan(math.radians(scene.seabed.slope_deg)) * s
-    pairs = list(pairwise(scene.seabed.profile))
-    (s0, z0), (s1, z1) = next((pair for pair in pairs if s <= pair[1][0]), pairs[-1])
-    return z0 + (z1 - z0) * (s - s0) / (s1 - s0)
+    return profile_height(scene.seabed.profile, s)
 
 
 def feature_height(scene: Scene, point: Vector) -> float:

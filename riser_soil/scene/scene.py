@@ -12,7 +12,7 @@ from riser_soil.scene.initial import Initial
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.output import Output
 from riser_soil.scene.riser import Riser, Support
-from riser_soil.scene.seabed import ContactAt, Seabed
+from riser_soil.scene.seabed import ContactAt, Seabed, profile_height
 from riser_soil.scene.soil import SoilScene
 from riser_soil.scene.solver import Solver
 from riser_soil.scene.stages import Stage
@@ -62,9 +62,13 @@ class Scene(BaseModel):
 
     @property
     def seabed_level(self) -> float:
-        """Height z of the seabed and of the soil's top face [m]; of a grid that below the riser's start."""
-        if self.seabed is None or self.seabed.grid is None:
-            return self.seabed.level if self.seabed else 0.0
+        """Height z of the seabed and of the soil's top face [m]; of a profile or grid that below the riser's start."""
+        if self.seabed is None:
+            return 0.0
+        if self.seabed.profile is not None:
+            return profile_height(self.seabed.profile, 0.0)
+        if self.seabed.grid is None:
+            return self.seabed.level
         ends = [end.position for end in (self.riser.start, self.riser.end) if isinstance(end, Support)]
         x, y, _ = ends[0] if ends else (0.0, 0.0, 0.0)
         return self.seabed.grid.heights.height(x, y)

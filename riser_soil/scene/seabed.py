@@ -57,6 +57,13 @@ Profile = Annotated[
 ]
 
 
+def profile_height(profile: tuple[tuple[float, float], ...], s: float) -> float:
+    """Height z [m] at a distance s [m], straight between the points [s, z] and beyond them."""
+    pairs = list(pairwise(profile))
+    (s0, z0), (s1, z1) = next((pair for pair in pairs if s <= pair[1][0]), pairs[-1])
+    return z0 + (z1 - z0) * (s - s0) / (s1 - s0)
+
+
 class HeightFile(GivenByName):
     """Heights of the seabed at the points of a grid; a smooth surface goes through them."""
 

@@ -22,7 +22,7 @@ def water_conflicts(scene: Scene) -> Iterator[Problem]:
         return
     if scene.has_ground and scene.water.surface_level <= scene.seabed_level:
         allowed = f"must lie above the seabed (z = {scene.seabed_level:g} m)"
-        yield Problem(("water", "surface_level"), allowed, "raise it, lower seabed.level, or leave out water")
+        yield Problem(("water", "surface_level"), allowed, "raise it, lower the seabed, or leave out water")
     elif scene.water.waves is not None:
         yield from _possible(scene, scene.water.waves)
 

@@ -5,10 +5,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from riser_soil.core.lazy import LazyModule
 from riser_soil.core.quantities import NEAREST
 from riser_soil.scene.columns import LENGTH, TIME, CsvColumns, read_columns
 from riser_soil.scene.files import wrong_file
+
+if TYPE_CHECKING:
+    import numpy as np
+else:
+    np = LazyModule("numpy")
 
 _FREQUENCY = {"Hz": 2.0 * math.pi, "rad/s": 1.0}
 _DENSITY = {"m2/Hz": 1.0 / (2.0 * math.pi), "m2 s/rad": 1.0}
@@ -56,6 +63,12 @@ class ElevationRecord:
     def mean_period(self) -> float:
         """Duration over the number of times that the mean is crossed upwards [s]."""
         return self.duration / max(1, sum(a < 0.0 <= b for a, b in pairwise(self.elevation)))
+
+    def of_waves(self, numbers: range) -> "ElevationRecord":
+        """With the waves alone that have these numbers of periods in the record."""
+        waves = np.fft.rfft(self.elevation)
+        waves[: numbers.start] = waves[numbers.stop :] = 0.0
+        return ElevationRecord(self.step, tuple(np.fft.irfft(waves, len(self.elevation)).tolist()))
 
 
 def read_spectrum(file: Path) -> SpectrumTable:

@@ -18,9 +18,6 @@ _MOST_DIRECTIONS = 36
 Seed = Annotated[int, Field(strict=True, ge=0)]
 Components = Annotated[Count, Field(le=MOST_COMPONENTS)]
 _TOWARD = "direction towards which it travels, from x towards y [deg]"
-_SEED = "which of all seas with this spectrum; the same seed gives the same sea [-]"
-_COMPONENTS = "number of linear waves that make up the sea [-]"
-_SPREADING = "spreading about direction_deg, {s, directions}; long-crested by default"
 
 
 class Spreading(BaseModel):
@@ -48,7 +45,7 @@ class Airy(BaseModel):
 
     height: Length = Field(description="height from trough to crest [m]")
     period: Time = Field(description="period [s]")
-    direction_deg: Angle = Field(default=0.0, description="direction towards which it travels, from x towards y [deg]")
+    direction_deg: Angle = Field(default=0.0, description=_TOWARD)
     phase_deg: Angle = Field(
         default=0.0, description="phase of the crest at x = y = 0 as the waves' clock starts [deg]"
     )
@@ -64,22 +61,44 @@ class Airy(BaseModel):
         return (math.radians(self.direction_deg),)
 
 
-class PeakedSea(BaseModel):
-    """What irregular seas have whose spectrum is told by its height and peak."""
+class DrawnSea(BaseModel):
+    """What irregular seas have that are drawn from a spectrum."""
 
     model_config = FROZEN
 
-    Hs: Length = Field(description="significant wave height [m]")
-    Tp: Time = Field(description="period of the spectrum's peak [s]")
-    seed: Seed = Field(default=1, description=_SEED)
-    components: Components = Field(default=100, description=_COMPONENTS)
+    seed: Seed = Field(
+        default=1, description="which of all seas with this spectrum; the same seed gives the same sea [-]"
+    )
+    components: Components = Field(default=100, description="number of linear waves that make up the sea [-]")
     direction_deg: Angle = Field(default=0.0, description=_TOWARD)
-    spreading: Spreading | None = Field(default=None, description=_SPREADING)
+    spreading: Spreading | None = Field(
+        default=None, description="spreading about direction_deg, {s, directions}; long-crested by default"
+    )
 
     @model_validator(mode="after")
-    def _even(self) -> Self:
-        _check_even(self.components, self.spreading)
+    def _as_many_in_each_direction(self) -> Self:
+        if self.spreading is not None and self.components % (count := self.spreading.directions):
+            allowed = f"must be a multiple of spreading.directions, {count}, for an equal energy of all"
+            raise wrong("components", allowed, "change one of the two")
         return self
+
+    @property
+    def count(self) -> int:
+        """Number of linear waves."""
+        return self.components
+
+    @property
+    def toward(self) -> tuple[float, ...]:
+        """Directions [rad]."""
+        relative = (0.0,) if self.spreading is None else self.spreading.relative
+        return tuple(math.radians(self.direction_deg) + angle for angle in relative)
+
+
+class PeakedSea(DrawnSea):
+    """What irregular seas have whose spectrum is told by its height and peak."""
+
+    Hs: Length = Field(description="significant wave height [m]")
+    Tp: Time = Field(description="period of the spectrum's peak [s]")
 
     @property
     def height(self) -> float:
@@ -90,16 +109,6 @@ class PeakedSea(BaseModel):
     def period(self) -> float:
         """Of the peak [s]."""
         return self.Tp
-
-    @property
-    def count(self) -> int:
-        """Number of linear waves."""
-        return self.components
-
-    @property
-    def toward(self) -> tuple[float, ...]:
-        """Directions [rad]."""
-        return _toward(self.direction_deg, self.spreading)
 
 
 class Jonswap(PeakedSea):
@@ -112,23 +121,16 @@ class PiersonMoskowitz(PeakedSea):
     """An irregular, fully developed sea with a Pierson-Moskowitz spectrum."""
 
 
-class GivenSpectrum(BaseModel):
+class GivenSpectrum(DrawnSea):
     """An irregular sea with a spectrum from a file, linear between its rows, nothing beyond them."""
-
-    model_config = FROZEN
 
     file: NamedFile = Field(
         description="CSV file with the columns frequency [Hz] (or rad/s) and density [m2/Hz] (or m2 s/rad); a relative "
         "name is sought beside the scene file"
     )
-    seed: Seed = Field(default=1, description=_SEED)
-    components: Components = Field(default=100, description=_COMPONENTS)
-    direction_deg: Angle = Field(default=0.0, description=_TOWARD)
-    spreading: Spreading | None = Field(default=None, description=_SPREADING)
 
     @model_validator(mode="after")
     def _can_be_read(self) -> Self:
-        _check_even(self.components, self.spreading)
         _ = self.table
         return self
 
@@ -146,16 +148,6 @@ class GivenSpectrum(BaseModel):
     def period(self) -> float:
         """Of the peak [s]."""
         return 2.0 * math.pi / self.table.peak
-
-    @property
-    def count(self) -> int:
-        """Number of linear waves."""
-        return self.components
-
-    @property
-    def toward(self) -> tuple[float, ...]:
-        """Directions [rad]."""
-        return _toward(self.direction_deg, self.spreading)
 
 
 class Record(BaseModel):
@@ -199,15 +191,20 @@ class Record(BaseModel):
         least = math.ceil(whole / self.longest_period * (1.0 - 1e-9)) if self.longest_period else 1
         return range(max(1, least), min(most, (rows - 1) // 2) + 1)
 
+    @cached_property
+    def waves(self) -> ElevationRecord:
+        """The record without what is left out of it."""
+        return self.record.of_waves(self.harmonics)
+
     @property
     def height(self) -> float:
         """Significant height, four standard deviations [m]."""
-        return self.record.significant_height
+        return self.waves.significant_height
 
     @property
     def period(self) -> float:
         """Mean time between crossings of the mean, upwards [s]."""
-        return self.record.mean_period
+        return self.waves.mean_period
 
     @property
     def count(self) -> int:
@@ -221,15 +218,3 @@ class Record(BaseModel):
 
 
 WaveKind = Airy | Jonswap | PiersonMoskowitz | GivenSpectrum | Record
-
-
-def _check_even(components: int, spreading: Spreading | None) -> None:
-    """As many waves in each direction."""
-    if spreading is not None and components % spreading.directions:
-        allowed = f"must be a multiple of spreading.directions, {spreading.directions}, for an equal energy of all"
-        raise wrong("components", allowed, "change one of the two")
-
-
-def _toward(direction_deg: float, spreading: Spreading | None) -> tuple[float, ...]:
-    relative = (0.0,) if spreading is None else spreading.relative
-    return tuple(math.radians(direction_deg) + angle for angle in relative)

@@ -11,13 +11,15 @@ import pytest
 from scipy.optimize import brentq
 from typer.testing import CliRunner
 
-from riser_soil.assembly.hang_off import by_cable, hung_end
+from riser_soil.assembly.hang_off import by_cable, hung_end, settled, with_value
 from riser_soil.commands.app import app
 from riser_soil.errors import SceneError
 from riser_soil.hang_off import HungScene, from_vertical, hung
+from riser_soil.scene.cross_checks import conflicts
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.scene import Scene
 from tests.support.coupled_scenes import Mapping
-from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
+from tests.support.riser_scenes import dynamic, prescribed, riser_scene, stage_histories, static
 
 W, L, RISE = 200.0, 60.0, 40.0
 CHAIN: Mapping = {"EA": 1.0e10, "EI": 0.0, "submerged_weight": W}
@@ -126,3 +128,71 @@ def test_commands_tell_what_was_found(tmp_path: Path) -> None:
     assert told["asked"] == {"angle_deg": 20.0}
     assert final["end"]["angle_deg"] == pytest.approx(90.0 - told["reached"], abs=1e-6)
     assert final["end"]["position"][0] == pytest.approx(told["value"], rel=1e-12)
+
+
+def guessed(scene: Mapping, value: float, folder: Path = Path()) -> Scene:
+    wanted = hung_end(scene_from_mapping(scene, folder))
+    assert wanted is not None
+    return with_value(wanted, value)
+
+
+@pytest.mark.parametrize("end", ["end", "start"])
+def test_what_has_its_place_along_the_riser_stays_in_its_segment(end: str) -> None:
+    """20 m that become 25 m at the lower end: what lies above is carried along, what lies on them by their share."""
+    scene = hanging(end=end, angle=20.0, by="length")
+    lower, upper = ({"line_type": "pipe", "length": length, "elements": 10} for length in (20.0, 40.0))
+    scene["riser"]["segments"] = [lower, upper] if end == "end" else [upper, lower]
+    row = {"from": 30.0, "to": 50.0, "spacing": 10.0, "mass": 1.0}
+    scene["riser"]["attachments"] = [{"at": 10.0, "mass": 5.0}, row]
+    scene["stages"] = [static(), static("pulled", loads=[{"at": 50.0, "force": [1.0, 0.0, 0.0]}])]
+    found = guessed(scene, 25.0)
+    places = [each.arcs for each in found.riser.attachments]
+    assert found.riser.length == pytest.approx(65.0)
+    if end == "end":
+        assert places == [pytest.approx((12.5,)), pytest.approx((35.0, 45.0, 55.0))]
+        assert found.stages[1].loads[0].at == pytest.approx(55.0)
+    else:
+        assert places == [(10.0,), pytest.approx((30.0, 40.0, 52.5))]
+        assert found.stages[1].loads[0].at == pytest.approx(52.5)
+
+
+def test_what_carries_an_end_comes_along(tmp_path: Path) -> None:
+    """A vessel that it hangs from, and the hub that it swings about, until it is moved to a place of its own."""
+    (tmp_path / "vessel.csv").write_text("t [s], heave [m]\n0, 0\n1, 1\n2, 0\n3, 0\n")
+    vessel = {"vessel_history": {"file": "vessel.csv", "reference": [60.0, 0.0, 45.0]}}
+    arc = {"arc": {"hub": [30.0, 0.0, 50.0], "amplitude_deg": 1.0, "period": 2.0}}
+    scene = hanging(CHAIN | {"mass": 20.0}, angle=20.0)
+    scene["stages"] = [
+        static(),
+        dynamic(2.0, 0.1, "sail", motion={"end": vessel}),
+        dynamic(2.0, 0.1, "swing", motion={"end": arc}),
+        static("tow", move={"end": [31.0, 0.0, 40.0]}),
+        dynamic(2.0, 0.1, "there", motion={"end": vessel}),
+    ]
+    stages = guessed(scene, 33.0, tmp_path).model_dump()["stages"]
+    sail, swing, there = (stages[n]["motion"]["end"] for n in (1, 2, 4))
+    assert sail["vessel_history"]["reference"] == pytest.approx((63.0, 0.0, 45.0))
+    assert swing["arc"]["hub"] == pytest.approx((33.0, 0.0, 50.0))
+    assert there["vessel_history"]["reference"] == (60.0, 0.0, 45.0)
+
+
+@pytest.mark.parametrize("by", ["anchor", "layback"])
+@pytest.mark.parametrize(("end", "ground", "after"), [("end", 0.0, 0.0), ("start", 3.0, 3.5)])
+def test_the_anchor_stays_on_its_ground(end: str, ground: float, after: float, by: str) -> None:
+    """However the ground rises from below the start: 1 in 10."""
+    scene = hanging(end=end, angle=20.0, by=by)
+    scene |= {"seabed": {"kind": "rigid", "contact_at": "axis", "profile": [[0.0, 0.0], [50.0, 5.0]]}}
+    lower = "start" if end == "end" else "end"
+    scene["riser"][lower]["position"] = [0.0, 0.0, ground]
+    found = guessed(scene, 35.0)
+    assert getattr(found.riser, lower).position[2] == pytest.approx(after)
+    assert not conflicts(found)
+
+
+def test_a_scene_that_cannot_be_with_what_was_found_is_told(tmp_path: Path) -> None:
+    (tmp_path / "seabed.csv").write_text("x [m], y [m], z [m]\n-5, -5, 0\n-5, 5, 0\n30, -5, 0\n30, 5, 0\n")
+    scene = hanging(angle=20.0) | {"seabed": {"kind": "rigid", "contact_at": "axis", "grid": "seabed.csv"}}
+    wanted = hung_end(scene_from_mapping(scene | {"dimension": 2}, tmp_path))
+    assert wanted is not None
+    with pytest.raises(SceneError, match=r"^riser.end.hang_off: .* but then seabed.grid: .* lies beyond the grid"):
+        settled(wanted, 35.0)

@@ -141,7 +141,8 @@ def test_the_deck_of_the_comparison_with_moordyn(tmp_path: Path) -> None:
     [
         ("3     cable       4        3", "3     cable       4        2", r"LINE.dat:25: a third line at point 2"),
         ("1     cable       1        2", "1     chain       1        2", r"LINE.dat:23: line type chain is not among"),
-        ("6.0e8    -0.8", "stiff.dat    -0.8", r"LINE.dat:6: EA .* is 'stiff.dat', not a number"),
+        ("6.0e8    -0.8", "stiff.dat    -0.8", r"LINE.dat:6: EA .* is 'stiff.dat', not a finite number"),
+        ("80        40", "80        nan", r"LINE.dat:23: NumSegs is 'nan', not a finite number"),
         ("150      0   -100      0      0       0      0", "150 0 -100", r"LINE.dat:18: 5 entries, where a row"),
         ("1     cable       1        2", "1     cable       9        2", r"LINE.dat:23: line 1 ends at 9, which"),
         ("5     0      -10     0", "5     0      -10     5", "LINE.dat:11: body 1 is"),
@@ -165,3 +166,23 @@ def test_the_command_writes_a_scene_once(tmp_path: Path) -> None:
     assert "# LINE.dat:41: not carried over" in (tmp_path / "scene.yaml").read_text()
     again = CliRunner().invoke(app, arguments)
     assert (again.exit_code, "--force" in again.output) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("rows", "friction"),
+    [
+        ("0.4 mu_kA\n0.6 mu_kT", (0.4, 0.6)),
+        ("0.3 FrictionCoefficient", (0.3, 0.3)),
+    ],
+)
+def test_friction_along_and_across(rows: str, friction: tuple[float, float], tmp_path: Path) -> None:
+    """Of MoorDyn-F two coefficients; of MoorDyn-C one."""
+    found = read(deck(tmp_path, DECK.replace("0.3           FrictionCoefficient", rows)))["contact"]["friction"]
+    assert (found["axial"], found["lateral"]) == friction
+
+
+def test_friction_in_one_direction_alone_is_told(tmp_path: Path) -> None:
+    """Of the two coefficients of MoorDyn-F each is 0 where it is not given."""
+    found = scene_of(deck(tmp_path, DECK.replace("0.3           FrictionCoefficient", "0.6 MU_KT")))
+    assert "contact" not in found.data
+    assert (38, "friction of 0 along and 0.6 across: neither may be 0 here") in found.remarks

@@ -5,9 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from riser_soil.assembly.riser import elements_of
+from riser_soil.assembly.shape import catenary_between
 from riser_soil.core.arrays import Array
+from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.profile import Profile
+from tests.support.riser_scenes import prescribed, riser_scene, static
 
 X = np.random.default_rng(4).uniform(-3.0, 12.0, size=(40, 3))
 HILL = Profile(
@@ -59,3 +63,20 @@ def test_profile_of_a_straight_slope_is_the_plane() -> None:
     plane = Plane.sloping(np.array([1.0, 2.0, -3.0]), slope, 0.0)
     assert profile.distance(X).value == pytest.approx(plane.distance(X).value, abs=1e-12)
     assert profile.distance(X).gradient == pytest.approx(np.asarray(plane.distance(X).gradient), abs=1e-12)
+
+
+FALL = 80.0 * np.tan(np.radians(3.0))
+
+
+@pytest.mark.parametrize("seabed", [{"slope_deg": -3.0}, {"profile": [[0.0, 0.0], [80.0, -FALL]]}])
+def test_a_riser_is_first_laid_on_the_ground_below_its_lower_end(seabed: dict[str, object]) -> None:
+    """Written from the floater down, along a seabed that falls: its anchor lies below the seabed under its start."""
+    pipe = {"EA": 3.0e8, "EI": 0.0, "submerged_weight": 500.0, "outer_diameter": 0.3}
+    ends = {"start": prescribed(0.0, 0.0, 100.0), "end": prescribed(80.0, 0.0, -4.0)}
+    ground = {"kind": "spring", "stiffness": 1e5, **seabed}
+    scene = scene_from_mapping(
+        riser_scene(static(), pipe=pipe, length=160.0, elements=40, **ends, seabed=ground, gravity=9.81)
+    )
+    start, end = np.array([0.0, 0.0, 100.0]), np.array([80.0, 0.0, -4.0])
+    height = catenary_between(scene, elements_of(scene), (), start, end).curve.position[:, 2]
+    assert height.min() == pytest.approx(0.15 - FALL, abs=1e-4)

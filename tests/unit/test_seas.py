@@ -166,3 +166,18 @@ def test_mistakes(waves: dict[str, Any], told: str, tmp_path: Path) -> None:
         (tmp_path / f"{name}.csv").write_text("t [s], elevation [m]\n" + rows)
     with pytest.raises(SceneError, match=told):
         scene(waves, tmp_path)
+
+
+def test_a_record_is_judged_by_the_waves_left_in(tmp_path: Path) -> None:
+    """Noise crosses the mean more often than the waves do, which would break with so short a period."""
+    t = np.arange(0.0, 200.0, 0.25)
+    noise = 0.4 * np.cos(np.pi * np.arange(t.size) * 0.9)
+    rows = "".join(f"{a:.6f}, {b:.6f}\n" for a, b in zip(t, np.cos(2.0 * np.pi * t / 8.0) + noise, strict=True))
+    (tmp_path / "noisy.csv").write_text("t [s], elevation [m]\n" + rows)
+    record = {"file": "noisy.csv", "shortest_period": 2.0}
+    given = scene({"record": record}, tmp_path).water
+    assert given is not None
+    assert given.waves is not None
+    ((_, train),) = given.waves.each
+    assert train.height == pytest.approx(4.0 / np.sqrt(2.0), rel=1e-5)
+    assert given.waves.ramp == pytest.approx(8.0, rel=0.05)

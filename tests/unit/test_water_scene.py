@@ -139,7 +139,11 @@ def test_components_follow_the_scene() -> None:
 
 @pytest.mark.parametrize(
     ("more", "depth"),
-    [({}, np.inf), ({"seabed": {"kind": "rigid", "level": 0.5, "contact_at": "axis"}}, 99.5)],
+    [
+        ({}, np.inf),
+        ({"seabed": {"kind": "rigid", "level": 0.5, "contact_at": "axis"}}, 99.5),
+        ({"seabed": {"kind": "spring", "stiffness": 1e5, "profile": [[-50.0, -24.0], [50.0, -26.0]]}}, 125.0),
+    ],
 )
 def test_depth_is_that_of_the_scene(more: Any, depth: float) -> None:
     scene = scene_in({"surface_level": 100.0, "waves": AIRY}, **more)
