@@ -18,6 +18,7 @@ from typer.testing import CliRunner, Result
 from riser_soil.__main__ import app
 from riser_soil.core.arrays import Array
 from riser_soil.fatigue.damage import YEAR
+from riser_soil.fatigue.stress_history import stress_history
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
@@ -127,6 +128,22 @@ def test_factors_surface_and_shares(folder: Path) -> None:
     pulled = inner["angle_deg"] == 0.0
     assert inner["damage_per_year"][pulled] == pytest.approx(plain[pulled], rel=1e-6)
     assert np.all(inner["damage_per_year"][inner["angle_deg"] == 90.0] < plain[inner["angle_deg"] == 90.0])
+
+
+def test_in_a_bend_stiffener_it_is_the_run_s_own_wall(tmp_path: Path) -> None:
+    """The largest bending stress around is what the run has recorded: the stiffener bears two thirds of the moment."""
+    scene = shaken(elements=12)
+    cone = {"length": 3.0, "base_diameter": 0.9, "tip_diameter": 0.4, "E": 2.0e11}
+    scene["riser"]["start"]["bend_stiffener"] = cone
+    scene["stages"][0]["duration"] = 0.5
+    run(scene_from_mapping(scene), tmp_path)
+    done, angles = Run(tmp_path), np.array([0.5 * np.pi, 1.5 * np.pi])
+    history = stress_history(done)
+    bending = np.array([0.5 * np.ptp(history.at(n, angles, "outer"), axis=1) for n in range(history.arc.size)])
+    recorded = done["wall_bending_stress"][done["stage"] == 0]
+    for arc, largest in zip(done.arc, recorded.T, strict=True):
+        assert bending[history.arc == arc].max(axis=0) == pytest.approx(largest, rel=1e-9)
+    assert recorded[:, 0].max() < 0.4 * recorded[:, -1].max()
 
 
 def test_what_is_doubtful_is_told(folder: Path) -> None:
