@@ -17,6 +17,7 @@ from riser_soil.riser.wall_stress import Loads, Wall, axial_stress_at
 from riser_soil.scene.line_types import LineType
 from riser_soil.scene.riser import Riser
 
+FEWEST = 4  # records: one in each of the quarters whose damage is compared
 NEEDED = ("effective_tension", "bending_moment_y", "internal_pressure", "external_pressure")
 IN_SPACE = "bending_moment_z"
 SURFACES = {"outer": 0, "inner": 1}
@@ -51,7 +52,7 @@ def stress_history(run: Run, stage: str | None = None, skip: float = 0.0) -> Str
     number = dynamic_stage(run, stage)
     since = beginning(run, number) + skip
     rows = np.flatnonzero((run["stage"] == number) & (run.time >= since * (1.0 - 1e-12)))
-    if rows.size < 3:
+    if rows.size < FEWEST:
         left = f"{rows.size} record(s) of stage {run.stage_names[number]} from {since:g} s on"
         raise ResultsError(f"{run.folder}: {left}; record more (output.interval), or skip less")
     sections = sections_of(run)

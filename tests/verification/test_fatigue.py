@@ -158,6 +158,8 @@ def test_what_is_doubtful_is_told(folder: Path) -> None:
     assert f"times 10 is {used:.4g}, more than 1" in texts
     assert "uncertain by some" in texts
     assert all(f"warning: {text}" in done.output for text in told["warnings"])
+    short = assessed(folder, given(skip=7.5)).output
+    assert "warning: shaken: the stress goes up through its mean less than twice in 0.5 s, too short" in short
 
 
 def test_the_picture_is_drawn(folder: Path) -> None:
@@ -174,10 +176,15 @@ def test_the_picture_is_drawn(folder: Path) -> None:
         ({"curve": {"dnv": "D"}}, "curve.environment: missing: the key is required here"),
         ({"curve": {}}, r"must be \{dnv, environment\}, \{log_a, m, change\} or \{table"),
         ({"curve": {"log_a": [12.0, 15.0], "m": [3.0]}}, "branches do not fit: 2 log_a, 1 m, 0 change"),
+        (
+            {"curve": CURVE | {"change": [1.0e7]}},
+            "curve.change: .*branches do not meet: one ends with log10 N = 7, there the next begins with 7.666",
+        ),
         ({"curve": {"table": [[1e4, 1e8], [1e3, 1e7]]}}, "cycles must grow and stress ranges fall"),
         ({"cases": [{"run": "shaken", "share": 0.6}] * 2}, "have shares of 1.2 in all, more than a year"),
         ({"cases": [{"run": "gone", "share": 0.6}]}, "there is no folder .*gone; run the case first"),
         ({"cases": [{"run": "shaken", "share": 0.6, "stage": "lay"}]}, '"lay" is no dynamic stage of the run'),
+        ({"cases": [{"run": "shaken", "share": 0.6, "skip": 7.75}]}, r"3 record\(s\) of stage shake from 7.75 s on"),
         ({"cases": [{"run": "shaken", "share": 0.6, "skip": 9.0}]}, r"0 record\(s\) of stage shake from 9 s on"),
         ({"arcs": [7.0, 8.0]}, "no node of a wall lies from 7 to 8 m; walls lie from 0 to 6 m"),
         ({"point": 8}, r"point: value 8: no such key here.*did you mean \"points\""),
