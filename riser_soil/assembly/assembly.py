@@ -135,17 +135,11 @@ class Assembly:
     @cached_property
     def wall_sections(self) -> WallSections | None:
         """Sections of the walls that bear stress; None where no line type has one."""
-        each = self.elements
-        if not each.wall_outer_diameter.any():
+        if not self.elements.wall_outer_diameter.any():
             return None
-        from riser_soil.riser.wall_sections import wall_sections
-        from riser_soil.riser.wall_stress import Wall
+        from riser_soil.riser.wall_sections import walls_of
 
-        wall, pressed = (
-            Wall(each.wall_outer_diameter, each.wall_inner_diameter),
-            Wall(each.outer_diameter, each.inner_diameter),
-        )
-        return wall_sections(wall, pressed, each.allowable_stress)
+        return walls_of(self.elements)
 
     def error_tolerance(self, stage: DynamicStage) -> float:
         """Largest local error of an automatic step [m]."""

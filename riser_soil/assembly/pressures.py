@@ -30,7 +30,7 @@ def pressures_of(scene: Scene, line: Line, elements: Elements) -> Pressures | No
         return None
     from riser_soil.riser.wall_tension import Pressures
 
-    return Pressures(_inside(scene, line), _outside(scene), elements.inner_diameter, elements.outer_diameter)
+    return Pressures(_inside(scene, line), _outside(scene), elements.inner_diameter, elements.pipe_diameter)
 
 
 def _inside(scene: Scene, line: Line) -> HydrostaticPressure | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
@@ -32,9 +32,16 @@ def elements_of(scene: Scene) -> sections.Elements:
         contents=scene.riser.contents.density if scene.riser.contents else 0.0,
         water=scene.water.density if scene.water else 0.0,
     )
-    types = {name: _line_type(t) for name, t in scene.used_line_types.items()}
-    segments = [sections.MeshedSegment(types[s.line_type], s.element_lengths) for s in scene.riser.segments]
-    return _stiffened(scene.riser, sections.elements(segments, around), around)
+    return elements_along(scene.riser, scene.used_line_types, around)
+
+
+def elements_along(
+    riser: Riser, line_types: Mapping[str, LineType], around: sections.Surroundings
+) -> sections.Elements:
+    """The same of a riser of these line types; what is around changes mass and weight alone."""
+    types = {name: _line_type(t) for name, t in line_types.items()}
+    segments = [sections.MeshedSegment(types[s.line_type], s.element_lengths) for s in riser.segments]
+    return _stiffened(riser, sections.elements(segments, around), around)
 
 
 def _stiffened(riser: Riser, elements: sections.Elements, around: sections.Surroundings) -> sections.Elements:

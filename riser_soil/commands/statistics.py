@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from riser_soil.commands.arguments import StageName, positive
-from riser_soil.commands.endings import expected_errors
+from riser_soil.commands.endings import expected_errors, rank
 from riser_soil.errors import ResultsError
 
 if TYPE_CHECKING:
@@ -31,7 +31,8 @@ def statistics(
     since: Annotated[float, typer.Option("--since", help="seconds of the stage that are cut off, its transient")] = 0.0,
     duration: Annotated[float, typer.Option("--duration", help="time that extremes are foretold for [s]")] = 10800.0,
     block: Annotated[
-        float | None, typer.Option("--block", help="blocks whose extremes Gumbel's fit takes [s]; by default runs")
+        float | None,
+        typer.Option("--block", help="blocks whose extremes Gumbel's fit takes [s]; by default the shortest run"),
     ] = None,
     minima: Annotated[bool, typer.Option("--minima", help="smallest values in the place of largest ones")] = False,
     above: Annotated[
@@ -52,6 +53,8 @@ def statistics(
 ) -> None:
     """Statistics of outputs in time: deviation, period, spectra, most probable extremes by three distributions."""
     with expected_errors():
+        if rank() > 0:
+            return
         from riser_soil.results.read import Run
         from riser_soil.statistics.analysis import Wanted, statistics_of
         from riser_soil.statistics.records import records_of

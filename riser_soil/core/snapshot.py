@@ -36,6 +36,7 @@ class WallSnapshot:
     hoop_stress: Array  # Pa, at the inner surface, positive in tension
     von_mises_stress: Array  # Pa, largest around, inside and outside
     stress_utilisation: Array | None  # over the allowable stress; None where none is given
+    most_used_stress: Array | None  # Pa, von Mises', of the side with the larger utilisation
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,9 +27,8 @@ class CaseDamage:
     """A case's part of the year's damage (ns, np).
 
     seconds: counted. period [s] and records: of the stress where all cases together damage most: its mean time between
-    upward crossings of its mean, and how many records that has; scatter: relative standard error of the damage
-    there. touchdown: least and greatest arc length [m], nan
-    where nothing touches.
+    upward crossings of its mean, inf for fewer than two of them, and how many records that has; scatter: relative
+    standard error of the damage there. touchdown: least and greatest arc length [m], nan where nothing touches.
     """
 
     case: FatigueCase
@@ -144,6 +143,11 @@ def _case(
 
 def _doubts(each: CaseDamage) -> Iterator[str]:
     name = each.case.run
+    if np.isinf(each.period) and each.per_year.any():
+        yield (
+            f"{name}: the stress goes up through its mean less than twice in {each.seconds:.4g} s, too short for whole "
+            "cycles; simulate longer or skip less"
+        )
     if each.records < FEW_RECORDS:
         yield (
             f"{name}: {each.records:.3g} records in the mean period of the stress, {each.period:.4g} s: turns between "

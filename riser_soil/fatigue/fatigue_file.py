@@ -29,6 +29,7 @@ from riser_soil.scene.document import parse, read_text
 from riser_soil.scene.explain import problems_in
 from riser_soil.scene.reader import error_of
 
+APART = 0.04  # of log10 N, 10 %, by which branches may miss each other: logarithms are printed to few decimals
 _NEEDS = "the fatigue file is empty; it needs curve and cases"
 _EXPONENT = Field(default=0.0, description="exponent k of walls thicker than reference_thickness [-]")
 _REFERENCE = Field(default=REFERENCE_THICKNESS, description="thickness up to which the curve holds as it is [m]")
@@ -66,6 +67,13 @@ class GivenCurve(BaseModel):
             raise wrong("m", f"branches do not fit: {told}", "give as many log_a as m, and one change fewer")
         if any(not second > first for first, second in pairwise(self.change)):
             raise wrong("change", "cycles must grow", "sort the branches from few to many cycles")
+        branches = pairwise(zip(self.log_a, self.m, strict=True))
+        for N, ((log_a, m), (next_log_a, next_m)) in zip(self.change, branches, strict=True):
+            log_N = math.log10(N)
+            after = next_log_a - next_m * (log_a - log_N) / m
+            if abs(after - log_N) > APART:
+                told = f"one ends with log10 N = {log_N:.4g}, there the next begins with {after:.4g}"
+                raise wrong("change", f"branches do not meet: {told}", "correct log_a, m or change")
         return self
 
     def curve(self) -> SNCurve:

@@ -6,14 +6,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from riser_soil.assembly.riser import elements_along
 from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
 from riser_soil.results.cycles import beginning, dynamic_stage
-from riser_soil.riser.wall_sections import WallSections, wall_sections
+from riser_soil.riser.sections import Surroundings
+from riser_soil.riser.wall_sections import WallSections, walls_of
 from riser_soil.riser.wall_stress import Loads, Wall, axial_stress_at
 from riser_soil.scene.line_types import LineType
+from riser_soil.scene.riser import Riser
 
+FEWEST = 4  # records: one in each of the quarters whose damage is compared
 NEEDED = ("effective_tension", "bending_moment_y", "internal_pressure", "external_pressure")
 IN_SPACE = "bending_moment_z"
 SURFACES = {"outer": 0, "inner": 1}
@@ -48,7 +52,7 @@ def stress_history(run: Run, stage: str | None = None, skip: float = 0.0) -> Str
     number = dynamic_stage(run, stage)
     since = beginning(run, number) + skip
     rows = np.flatnonzero((run["stage"] == number) & (run.time >= since * (1.0 - 1e-12)))
-    if rows.size < 3:
+    if rows.size < FEWEST:
         left = f"{rows.size} record(s) of stage {run.stage_names[number]} from {since:g} s on"
         raise ResultsError(f"{run.folder}: {left}; record more (output.interval), or skip less")
     sections = sections_of(run)
@@ -78,20 +82,10 @@ def in_space(run: Run) -> bool:
 def sections_of(run: Run) -> WallSections:
     """Sections of the walls, by the line types and segments of the run's scene."""
     types = {name: LineType.model_validate(given) for name, given in run.scene["line_types"].items()}
-    ends = np.cumsum([segment["length"] for segment in run.scene["riser"]["segments"]])
-    middle = 0.5 * (run.arc[1:] + run.arc[:-1])
-    segment = np.minimum(np.searchsorted(ends, middle), ends.size - 1)
-    numbers = np.array([_numbers(types[each["line_type"]]) for each in run.scene["riser"]["segments"]])[segment]
-    outer, inner, outside, bore, allowable = numbers.T
-    found = wall_sections(Wall(outer, inner), Wall(outside, bore), allowable)
+    found = walls_of(elements_along(Riser.model_validate(run.scene["riser"]), types, Surroundings()))
     if not found.node.size:
         raise ResultsError(f"{run.folder}: no line type has a wall, from whose stress fatigue follows; add one")
     return found
-
-
-def _numbers(line: LineType) -> tuple[float, ...]:
-    allowable = line.wall.allowable_stress if line.wall else 0.0
-    return (*line.wall_diameters, line.outer_diameter or 0.0, line.inner_diameter, allowable)
 
 
 def same_sections(one: StressHistory, other: StressHistory) -> bool:

@@ -1,8 +1,8 @@
 """Lowest eigenpairs of K φ = ω² M φ, with factors of K - σ M by MUMPS and SciPy's solvers for the rest.
 
-M may be singular, as soil has no mass: what has none follows what has. Where few dofs have mass, the flexibility
-between them makes a small dense problem, else the pairs are found by the shift-invert Lanczos method (ARPACK). Modes
-are normalised by φᵀ M φ = 1.
+M may be singular, as soil has no mass: what has none follows what has. Where few dofs have mass, or nearly all modes
+are asked for, the flexibility between them makes a small dense problem, else the pairs are found by the shift-invert
+Lanczos method (ARPACK). Modes are normalised by φᵀ M φ = 1.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def lowest(K: csr_array, M: csr_array, count: int, shift: float) -> Eigenpairs:
     symmetric = csr_array(0.5 * (K + K.T))
     with _inverse(csr_array(symmetric - shift * M)) as inverse:
         massive = np.flatnonzero(M.diagonal())
-        few = massive.size <= FEW
+        few = massive.size <= max(FEW, count + SPARE)  # Lanczos' method finds fewer than there are
         shares, modes = _dense(inverse, M, massive) if few else _lanczos(inverse, symmetric, M, count + SPARE, shift)
     squares = shift + 1.0 / shares
     order = np.argsort(squares)[: count + SPARE]

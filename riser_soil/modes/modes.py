@@ -18,9 +18,11 @@ from riser_soil.riser.spatial_directors import SpatialFrames
 from riser_soil.scene.scene import Scene
 
 DIRECTIONS = ("in plane", "out of plane", "axial", "twist")
+BETWEEN = "at no node"  # moves: the direction of a mode that elements are too long for
 NEAR_ZERO = 1e-6  # of g over the riser's length: a mode whose square is not larger is one that nothing holds
 MOST_ASYMMETRY = 0.01  # by which the part of the tangent that is not symmetric may change a frequency
 GRAVITY = 9.81  # m/s2
+UNSEEN = 1e-8  # of the nodes' turns times an element's length: displacements that are round-off
 PLUMB = 1e-9  # of the distance of the ends: in plan, of ends above each other
 
 
@@ -31,7 +33,8 @@ class Modes(NamedTuple):
     axis, global axes, and twist (n, nn) [rad/m]: rotation about the pipe's axis, both for a largest displacement of 1
     of the axis or, where the pipe twists, of its surface. share (n, 4): of the squared displacement along the riser, by
     DIRECTIONS: across the pipe in the vertical plane from start to end, across it out of this plane, along it, and of
-    the pipe's surface as it twists. asymmetry: see `Eigenpairs`. stage: name of the static stage.
+    the pipe's surface as it twists; nan, and no shape, where the nodes turn but stay in place, in half waves as short
+    as elements. asymmetry: see `Eigenpairs`. stage: name of the static stage.
     """
 
     frequency: Array
@@ -51,7 +54,7 @@ class Modes(NamedTuple):
     @property
     def direction(self) -> list[str]:
         """Words for the largest share."""
-        return [DIRECTIONS[k] for k in self.share.argmax(axis=1)]
+        return [DIRECTIONS[share.argmax()] if np.isfinite(share).all() else BETWEEN for share in self.share]
 
 
 def modes_of(scene: Scene, count: int = 10, stage: str | None = None) -> Modes:
@@ -90,7 +93,8 @@ def _seen(rest: RiserAtRest, squares: Array, found: Eigenpairs) -> Modes:
     moved = nodal[..., : line.dimension] @ line.basis.T
     twist = _twist(line.frames, nodal[..., line.dimension :])
     radius = 0.5 * larger_beside(line.outer_diameter)
-    scale = _scale(moved, radius * twist)
+    turned = np.abs(nodal[..., line.dimension :]).max(axis=(1, 2)) * line.length.max()
+    scale = _scale(moved, radius * twist, UNSEEN * turned)
     moved, twist = scale[:, None, None] * moved, scale[:, None] * twist
     position = line.positions3(state)
     share = _shares(moved, radius * twist, _axes(tangents, position), line.tributary_length)
@@ -106,12 +110,14 @@ def _twist(frames: Frames, rotation: Array) -> Array:
     return np.asarray(np.einsum("mni,ni->mn", rotation, tangent))
 
 
-def _scale(moved: Array, of_surface: Array) -> Array:
-    """Factors (n,) that make the largest displacement 1, and positive where it is of the axis."""
+def _scale(moved: Array, of_surface: Array, least: Array) -> Array:
+    """Factors (n,) that make the largest displacement 1, and positive where it is of the axis; 0 where it is not more
+    than `least` (n,).
+    """
     values = np.concatenate([moved.reshape(len(moved), -1), of_surface], axis=1)
     sizes = np.maximum(np.linalg.norm(moved, axis=2), np.abs(of_surface)).max(axis=1)
     largest = np.take_along_axis(values, np.abs(values).argmax(axis=1)[:, None], axis=1)[:, 0]
-    return np.asarray(np.sign(largest) / sizes)
+    return np.divide(np.sign(largest), sizes, out=np.zeros_like(sizes), where=sizes > least)
 
 
 def _axes(tangents: Array, position: Array) -> Array:
@@ -136,4 +142,5 @@ def _shares(moved: Array, of_surface: Array, axes: Array, length: Array) -> Arra
     """Of the squared displacement along the riser (n, 4), by DIRECTIONS."""
     of_axis = np.einsum("n,mnk->mk", length, np.einsum("nki,mni->mnk", axes, moved) ** 2)
     parts = np.column_stack([of_axis, of_surface**2 @ length])
-    return np.asarray(parts / parts.sum(axis=1)[:, None])
+    total = parts.sum(axis=1)[:, None]
+    return np.divide(parts, total, out=np.full_like(parts, np.nan), where=total > 0.0)

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from riser_soil.core.arrays import Array
 from riser_soil.plots.curves import save, sheet
 from riser_soil.statistics.analysis import PlaceStatistics
-from riser_soil.statistics.extremes import plotting_positions
+from riser_soil.statistics.extremes import plotting_positions, rayleigh_exceedance
 
 MOST = 6  # places in one picture
 
@@ -45,7 +45,7 @@ def _draw_peaks(axes: Axes, found: PlaceStatistics, unit: str) -> None:
     axes.semilogy(sign * values, exceeded, ".", markersize=4, color="0.4", label="peaks")
     heights = np.linspace(0.0, 1.2 * float((values - sign * found.mean).max(initial=found.deviation)), 200)
     at = found.mean + sign * heights
-    axes.semilogy(at, np.exp(-0.5 * (heights / found.deviation) ** 2), "C0--", label="Rayleigh, by the st. dev.")
+    axes.semilogy(at, rayleigh_exceedance(found.deviation, heights), "C0--", label="Rayleigh, by the st. dev.")
     axes.semilogy(at, found.weibull_fit.exceedance(heights), "C3-", label="Weibull, fitted")
     axes.set_ylim(0.3 / max(len(values), 1), 1.5)
     axes.set(xlabel=f"peak [{unit}]", ylabel="share of peaks beyond [-]")

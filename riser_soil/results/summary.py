@@ -93,8 +93,8 @@ class StageTally:
         """arc (nn,): m, of the nodes. t: s (static stages: load factor)."""
         wall = riser.wall
         self.pulled = self.pulled.or_more(riser.tension_utilisation, riser.effective_tension, arc, t)
-        if wall is not None:
-            self.stressed = self.stressed.or_more(wall.stress_utilisation, wall.von_mises_stress, arc, t)
+        if wall is not None and wall.most_used_stress is not None:
+            self.stressed = self.stressed.or_more(wall.stress_utilisation, wall.most_used_stress, arc, t)
 
     def count(self, health: StepStatistics) -> None:
         self.steps += 1

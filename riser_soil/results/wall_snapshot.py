@@ -25,6 +25,7 @@ def wall_snapshot(
     torque, moment_y, moment_z = moments.T
     loads = sections.loads(forces.effective_tension, moment_y, moment_z, torque, inside, outside)
     von_mises = largest_von_mises(loads, wall)
+    used, most_used = _utilisation(sections, von_mises, nodes)
 
     def governing(stress: Array) -> Array:
         return sections.at_nodes(stress, von_mises, nodes)
@@ -39,15 +40,17 @@ def wall_snapshot(
         bending_stress=governing(bending_stress(loads.moment, wall.outer_diameter, wall)),
         hoop_stress=governing(hoop_and_radial_stress(loads, wall.inner_diameter, wall)[0]),
         von_mises_stress=governing(von_mises),
-        stress_utilisation=_utilisation(sections, von_mises, nodes),
+        stress_utilisation=used,
+        most_used_stress=most_used,
     )
 
 
-def _utilisation(sections: WallSections, von_mises: Array, nodes: int) -> Array | None:
-    """Of the nodes (nn,), nan where no stress is allowed; None where none is anywhere."""
+def _utilisation(sections: WallSections, von_mises: Array, nodes: int) -> tuple[Array, Array] | tuple[None, None]:
+    """Of the nodes (nn,), and the stress that it is of; nan where no stress is allowed, None where none is anywhere."""
     limited = sections.allowable > 0.0
     if not limited.any():
-        return None
+        return None, None
     used = np.divide(von_mises, sections.allowable, out=np.full(von_mises.size, -np.inf), where=limited)
-    found = sections.at_nodes(used, used, nodes)
-    return np.where(np.isfinite(found), found, np.nan)
+    found, stress = (sections.at_nodes(values, used, nodes) for values in (used, von_mises))
+    there = np.isfinite(found)
+    return np.where(there, found, np.nan), np.where(there, stress, np.nan)

@@ -34,7 +34,7 @@ def with_taper(elements: Elements, taper: Taper, from_end: bool, around: Surroun
     """The elements with a bend stiffener at the riser's end, or at its start.
 
     EI grows by E pi (D^4 - d^4)/64, d the pipe's diameter, mass and weight less buoyancy by pi (D^2 - d^2)/4, each in
-    the mean over an element.
+    the mean over an element. The pipe in it stays what it was (`pipe_diameter`, `pipe_EI_y`, `pipe_EI_z`).
     """
     arc, pipe = elements.arc, elements.outer_diameter
     near, far = (arc[:-1], arc[1:]) if not from_end else (arc[-1] - arc[1:], arc[-1] - arc[:-1])

@@ -49,6 +49,18 @@ class SectionProperties:
     wall_inner_diameter: float = 0.0
     allowable_stress: float = 0.0
 
+    @property
+    def pipe_diameter(self) -> float:
+        return self.outer_diameter
+
+    @property
+    def pipe_EI_y(self) -> float:
+        return self.EI_y
+
+    @property
+    def pipe_EI_z(self) -> float:
+        return self.EI_z
+
 
 @dataclass(frozen=True)
 class MeshedSegment:
@@ -79,6 +91,7 @@ class Elements:
     over elastic stiffness.
     min_bend_radius: m, the least that is allowed, max_tension: N and allowable_stress: Pa, the largest; 0 for any.
     wall_outer_diameter, wall_inner_diameter: m, of the wall that bears the stress, 0 where there is none.
+    pipe_diameter: m, pipe_EI_y and pipe_EI_z: N m2, of the pipe without a bend stiffener around it.
     """
 
     length: Array
@@ -100,6 +113,9 @@ class Elements:
     wall_outer_diameter: Array
     wall_inner_diameter: Array
     allowable_stress: Array
+    pipe_diameter: Array
+    pipe_EI_y: Array
+    pipe_EI_z: Array
 
     @property
     def bends(self) -> BoolArray:
@@ -126,6 +142,12 @@ class Elements:
         """1/EI (ne,) about both section axes [1/(N.m2)], 0 of a chain: no moment bends it."""
         y, z = (np.divide(1.0, EI, out=np.zeros_like(EI), where=self.bends) for EI in (self.EI_y, self.EI_z))
         return y, z
+
+    @property
+    def borne_by_pipe(self) -> Array:
+        """Share (ne, 2) of the moments about both section axes that the pipe bears, a bend stiffener the rest."""
+        pipe, both = (np.column_stack(EI) for EI in ((self.pipe_EI_y, self.pipe_EI_z), (self.EI_y, self.EI_z)))
+        return np.divide(pipe, both, out=np.ones_like(both), where=both > 0.0)
 
     def stiffness(self) -> tuple[Array, Array]:
         """EI (ne,) about both section axes as the elements have it; of a chain too little to count, for each node's

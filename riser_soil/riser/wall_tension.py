@@ -33,7 +33,8 @@ class HydrostaticPressure:
 class Pressures:
     """Fluids inside and outside a pipe, None where there is none.
 
-    inner_diameter, outer_diameter: (ne,) m. At a joint the areas are the means of both sides, as section forces are.
+    inner_diameter, outer_diameter: (ne,) m, of the pipe without a bend stiffener. At a joint the areas are the means of
+    both sides, as section forces are.
     """
 
     inside: HydrostaticPressure | None

@@ -17,6 +17,7 @@ from riser_soil.statistics.extremes import (
     Weibull,
     fit_gumbel,
     fit_weibull,
+    rayleigh_exceedance,
     rayleigh_height,
 )
 from riser_soil.statistics.records import Records
@@ -30,8 +31,9 @@ class Wanted:
     """What the extremes are those of.
 
     duration: over which the largest value is foretold [s]. block: length of the blocks that Gumbel's distribution is
-    fitted to [s]; None for whole runs. minima: smallest values in the place of largest ones. confidence: of intervals.
-    segment: length of the pieces that a spectrum is averaged over [s]; None for an eighth of each run.
+    fitted to [s]; None for as long as the shortest run. minima: smallest values in the place of largest ones.
+    confidence: of intervals. segment: length of the pieces that a spectrum is averaged over [s]; None for an eighth of
+    the shortest run.
     """
 
     duration: float
@@ -111,7 +113,7 @@ class PlaceStatistics:
     @cached_property
     def maxima(self) -> Array:
         """Extremes (n,) of the blocks of all runs, in the output's unit."""
-        of_runs = [block_maxima(self.wanted.sign * x, self.step, self.wanted.block) for x in self.runs]
+        of_runs = [block_maxima(self.wanted.sign * x, self.step, self._block) for x in self.runs]
         return np.asarray(self.wanted.sign * np.concatenate(of_runs))
 
     @cached_property
@@ -125,10 +127,14 @@ class PlaceStatistics:
         return self._signed(self.gumbel_fit.at(self._blocks_foretold, self.wanted.confidence))
 
     @property
+    def _block(self) -> float:
+        """Length of a block [s]: maxima of unlike times follow no distribution in common."""
+        return self.step * min(len(x) for x in self.runs) if self.wanted.block is None else self.wanted.block
+
+    @property
     def _blocks_foretold(self) -> float:
         """Logarithm of the time foretold over that of a block."""
-        block = self.step * min(len(x) for x in self.runs) if self.wanted.block is None else self.wanted.block
-        return float(np.log(self.wanted.duration / block))
+        return float(np.log(self.wanted.duration / self._block))
 
     def exceeded(self, level: float) -> dict[str, float]:
         """Share of time beyond a level, and by each distribution the probability that it is exceeded in the time
@@ -136,7 +142,7 @@ class PlaceStatistics:
         """
         sign, height = self.wanted.sign, self.wanted.sign * (level - self.mean)
         of_peak = {
-            "rayleigh": float(np.exp(-0.5 * (max(height, 0.0) / self.deviation) ** 2)),
+            "rayleigh": float(rayleigh_exceedance(self.deviation, np.array(height))),
             "weibull": float(self.weibull_fit.exceedance(np.array(height))),
         }
         fit = self.gumbel_fit

@@ -62,7 +62,7 @@ class LocationScale(NamedTuple):
 
 def fit_gumbel(maxima: Array, left: bool = False) -> LocationScale:
     """To largest values, or smallest ones; nan for fewer than three, or all of one value."""
-    if len(maxima) < FEWEST or np.ptp(maxima) <= SAME * np.abs(maxima).max():
+    if _indistinct(maxima):
         return LocationScale(np.nan, np.nan, len(maxima), left)
     location, scale = _family(left).fit(maxima)
     return LocationScale(float(location), float(scale), len(maxima), left)
@@ -93,7 +93,9 @@ class Weibull(NamedTuple):
 
 
 def fit_weibull(heights: Array) -> Weibull:
-    """To heights of peaks (n,), all > 0."""
+    """To heights of peaks (n,), all > 0; nan for fewer than three, or all of one height."""
+    if _indistinct(heights):
+        return Weibull(LocationScale(np.nan, np.nan, len(heights), left=True))
     return Weibull(fit_gumbel(np.log(heights), left=True))
 
 
@@ -102,9 +104,19 @@ def rayleigh_height(deviation: float, peaks: float) -> float:
     return float(deviation * np.sqrt(2.0 * np.log(peaks))) if peaks > 1.0 else np.nan
 
 
+def rayleigh_exceedance(deviation: float, heights: Array) -> Array:
+    """Probability that a peak of a Gaussian process of this standard deviation is higher; nan where nothing varies."""
+    return np.asarray(np.exp(-0.5 * (np.maximum(heights, 0.0) / (deviation or np.nan)) ** 2))
+
+
 def plotting_positions(samples: Array) -> tuple[Array, Array]:
     """Samples (n,) from the largest down, and the probability that each is exceeded, k/(n + 1)."""
     return np.sort(samples)[::-1], np.arange(1, len(samples) + 1) / (len(samples) + 1.0)
+
+
+def _indistinct(samples: Array) -> bool:
+    """Whether samples are too few for a fit, or all of one value."""
+    return len(samples) < FEWEST or bool(np.ptp(samples) <= SAME * np.abs(samples).max())
 
 
 def _family(left: bool) -> stats.rv_continuous:

@@ -21,8 +21,9 @@ SIZE = "size"  # of a vector
 class Records(NamedTuple):
     """An output of several runs, such as one for each seed of the waves.
 
-    name: with its component. units. step: between values [s], the same in all runs. arc (m,): of the places along the
-    riser [m]; one that is nan of an output of the riser as a whole. values: of each run (n, m).
+    name: with its component. units. step: between values [s], the same in all runs: that between most records of the
+    coarsest. arc (m,): of the places along the riser [m]; one that is nan of an output of the riser as a whole. values:
+    of each run (n, m).
     """
 
     name: str
@@ -62,8 +63,15 @@ def records_of(
         raise ResultsError(f"--of {name}: {variable} is {'a vector' if output.vector else 'a number'}; {remedy}")
     places = _places(runs, arcs) if output.where == "nodes" else np.array([np.nan])
     sampled = [_sampled(run, variable, component, places, stage, since) for run in runs]
-    step = max(float(each.time[-1] - each.time[0]) / (len(each.time) - 1) for each in sampled)
-    return Records(name, output.units, step, places, [_even(each, step) for each in sampled])
+    step = max(float(np.median(np.diff(each.time))) for each in sampled)
+    evened = [_even(each, step) for each in sampled]
+    for run, values in zip(runs, evened, strict=True):
+        if len(values) < FEWEST:
+            raise ResultsError(
+                f"{run.folder}: has {len(values)} values at the step of the coarsest run, {step:g} s, fewer than "
+                f"{FEWEST}; take runs of like output.interval together"
+            )
+    return Records(name, output.units, step, places, evened)
 
 
 def _places(runs: Sequence[Run], arcs: Sequence[float] | None) -> Array:
@@ -103,7 +111,7 @@ def _component(values: Array, component: str) -> Array:
 
 
 def _even(sampled: _Sampled, step: float) -> Array:
-    """Values (n, m) at multiples of the step, linear between records."""
+    """Values (n, m) at multiples of the step, linear between records: these themselves where they are even."""
     time, values = sampled
     count = int(np.floor((time[-1] - time[0]) / step + SLACK)) + 1
     at = time[0] + step * np.arange(count)

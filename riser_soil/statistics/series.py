@@ -28,8 +28,9 @@ class Spectrum(NamedTuple):
 
     @property
     def period(self) -> float:
-        """Zero-crossing period of a Gaussian process of this spectrum, √(m0/m2) [s]."""
-        return float(np.sqrt(self.moment(0) / self.moment(2)))
+        """Zero-crossing period of a Gaussian process of this spectrum, √(m0/m2) [s]; nan where nothing varies."""
+        m2 = self.moment(2)
+        return float(np.sqrt(self.moment(0) / m2)) if m2 > 0.0 else np.nan
 
 
 def spectrum(x: Array, step: float, segment: float | None = None) -> Spectrum:
@@ -39,8 +40,8 @@ def spectrum(x: Array, step: float, segment: float | None = None) -> Spectrum:
 
 
 def up_crossings(x: Array, level: float) -> IntArray:
-    """Numbers of the values after which x goes up through a level."""
-    return np.flatnonzero((x[:-1] < level) & (x[1:] >= level))
+    """Numbers of the values after which x goes above a level."""
+    return np.flatnonzero((x[:-1] <= level) & (x[1:] > level))
 
 
 class Cycles(NamedTuple):

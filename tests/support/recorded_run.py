@@ -48,7 +48,7 @@ def _largest(arc: Array, values: Array) -> LargestAlong:
 def _wall(tension: Array, moment: Array) -> WallSnapshot:
     axial, bending, nothing = tension / 0.02, moment / 1.0e-3, np.zeros_like(moment)
     loads = nothing, nothing, -moment, nothing, nothing
-    return WallSnapshot(*loads, axial, bending, nothing, axial + bending, (axial + bending) / 3.0e8)
+    return WallSnapshot(*loads, axial, bending, nothing, axial + bending, (axial + bending) / 3.0e8, axial + bending)
 
 
 @dataclass(frozen=True)

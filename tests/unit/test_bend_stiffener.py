@@ -48,6 +48,25 @@ def test_a_cantilever_bends_by_its_varying_stiffness(at: str) -> None:
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.2)
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_wall_in_it_bends_by_the_curvature_and_is_pressed_on_the_pipe(dimension: int) -> None:
+    """E D/2 times the curvature, E the wall's own; where elements of a stiffener meet, that of the softer one."""
+    wet: Mapping = {"density": 1000.0, "surface_level": 10.0}
+    given = scene(dimension=dimension, gravity=9.81, water=wet)
+    wall: Mapping = {"wall": {"outer_diameter": 0.18, "inner_diameter": 0.16}, "GJ": 2.0e4, "submerged_weight": 0.0}
+    given["line_types"]["pipe"] |= wall
+    (run,) = stage_histories(given)
+    assembly = build(scene_from_mapping(given), MPI.COMM_SELF)
+    I = np.pi / 64.0 * (0.18**4 - 0.16**4)
+    softer = np.minimum(np.append(np.inf, assembly.elements.EI_y), np.append(assembly.elements.EI_y, np.inf))
+    assert run.end.wall is not None
+    expected = PIPE["EI"] / I * 0.09 * run.end.bending_moment / softer
+    assert run.end.wall.bending_stress == pytest.approx(expected, rel=1e-9, abs=1e-6 * expected.max())
+    assert run.end.wall.bending_stress[0] < 0.1 * run.end.bending_moment[0] * 0.09 / I, "bent as the stiffener lets it"
+    pressed = 9.81 * 1000.0 * (10.0 - run.end.position[:, 2]) * 0.25 * np.pi * 0.2**2
+    assert run.end.wall_tension == pytest.approx(run.end.effective_tension - pressed, rel=1e-9)
+
+
 def test_it_weighs_its_volume_less_the_water() -> None:
     """pi/4 (D^2 - d^2) over the cone's length; also where an element ends beyond its tip."""
     given = scene(elements=25, gravity=9.81, water={"density": 1000.0})

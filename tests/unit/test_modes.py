@@ -217,6 +217,23 @@ def test_sparse_and_dense_problems_have_the_same_modes() -> None:
         assert np.abs(K @ pairs.modes[2] - pairs.squares[2] * pairs.modes[2]).max() < 1e-9
 
 
+def test_more_modes_than_there_are_may_be_asked_for() -> None:
+    n = FEW + 1
+    K = csr_array(diags([-1.0, 2.0, -1.0], [-1, 0, 1], shape=(n, n)))
+    pairs = lowest(K, csr_array(eye(n)), 2 * n, -1e-9)
+    assert np.sqrt(pairs.squares) == pytest.approx(2.0 * np.sin(np.pi * np.arange(1, n + 1) / (2.0 * (n + 1))))
+
+
+def test_half_waves_as_short_as_elements_have_no_shape() -> None:
+    """Of a hinged beam of two elements the second mode, and of one element all: the nodes turn where they are."""
+    modes = found(stretched(2), 2)
+    assert modes.direction == ["in plane", "at no node"]
+    assert not modes.shape[1].any()
+    assert np.isnan(modes.share[1]).all()
+    assert modes.frequency == pytest.approx(tensioned_beam([1, 2]), rel=0.12)
+    assert found(stretched(1), 1).direction == ["at no node"]
+
+
 def moment_at_the_tip(moment: float) -> Mapping:
     """A cantilever in space, whose tip is turned about an axis that stays: its tangent is not symmetric."""
     return riser_scene(

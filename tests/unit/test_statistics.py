@@ -62,6 +62,21 @@ def test_crossings_and_peaks_of_a_broken_line() -> None:
     assert np.isnan(cycles(np.ones(9), 2.0, 0.0).period)
 
 
+def test_peaks_are_above_the_level() -> None:
+    """A value that touches the level from below is none, nor are peaks of one height a distribution."""
+    assert cycles(np.array([-1.0, 0.0, -1.0, 2.0] * 3), 2.0, 0.0).peaks.tolist() == [2.0, 2.0]
+    for height in (1.0, 3.0):
+        assert np.isnan(fit_weibull(height * (1.0 + 1e-16 * np.arange(20.0))).shape)
+
+
+def test_runs_of_unlike_lengths_make_blocks_of_the_shortest() -> None:
+    x = gaussian(3, 2**13)
+    pieces = seen(*x.reshape(8, -1))
+    unlike = seen(x[:1024], x[1024:3072], x[3072:])
+    assert unlike.maxima == pytest.approx(pieces.maxima)
+    assert unlike.gumbel == pytest.approx(pieces.gumbel)
+
+
 def test_blocks_are_whole() -> None:
     x = np.array([1.0, 5.0, 2.0, 7.0, 0.0, 3.0, 9.0])
     assert block_maxima(x, 2.0, 4.0).tolist() == [5.0, 7.0, 3.0]
@@ -168,6 +183,17 @@ def test_records_of_places_and_components(tmp_path: Path) -> None:
     assert records_of([run], "end_force.size", [5.0]).values[0][:, 0] == pytest.approx(5.0 * x)
 
 
+def test_what_does_not_vary_has_no_extremes(tmp_path: Path) -> None:
+    file, run = tmp_path / "still.json", run_of(tmp_path / "run", np.full(40, 7.0))
+    asked = "--of", "end_force.y", "--above", "1", "-o", str(file), "--plot", str(tmp_path / "still.png")
+    done = called(str(run), *asked)
+    assert done.exit_code == 0, done.output
+    assert done.output.splitlines()[-1].split()[1:] == ["N", "1", "0", "-", "-", "-"]
+    (still,) = json.loads(file.read_text())
+    assert still["spectrum"]["period_sqrt_m0_over_m2_s"] is None
+    assert still["rayleigh"] is None
+
+
 def test_transient_is_cut_off(tmp_path: Path) -> None:
     run = Run(run_of(tmp_path / "run", np.arange(40.0)))
     assert records_of([run], "end_force.x", None, since=2.5).values[0][0, 0] == pytest.approx(3.0 * 9.0)
@@ -176,7 +202,23 @@ def test_transient_is_cut_off(tmp_path: Path) -> None:
 def test_uneven_records_are_evened(tmp_path: Path) -> None:
     t = np.cumsum(np.where(np.arange(60) % 2, 0.2, 0.3))
     found = records_of([Run(run_of(tmp_path / "run", 7.0 * t, t))], "effective_tension", [0.0])
-    assert np.diff(found.values[0][:, 0]) == pytest.approx(np.full(59, 7.0 * found.step))
+    assert found.step == pytest.approx(0.2)
+    assert np.diff(found.values[0][:, 0]) == pytest.approx(np.full(73, 7.0 * found.step))
+
+
+def test_even_records_stay_what_they_are_beside_an_odd_last_one(tmp_path: Path) -> None:
+    """The end of a stage is recorded, too, though it is no multiple of the interval."""
+    t = np.append(STEP * np.arange(1, 401), 400.3 * STEP)
+    x = np.sin(2.0 * np.pi * t / PERIOD)
+    found = records_of([Run(run_of(tmp_path / "run", x, t))], "effective_tension", [0.0])
+    assert found.values[0][:, 0] == pytest.approx(x[:-1], abs=1e-9)
+
+
+def test_too_few_values_at_the_step_of_another_run(tmp_path: Path) -> None:
+    fine = run_of(tmp_path / "fine", np.zeros(40))
+    coarse = run_of(tmp_path / "coarse", np.zeros(40), 10.0 * STEP * np.arange(1, 41))
+    with pytest.raises(ResultsError, match=r"fine: has 4 values at the step of the coarsest run, 2.5 s, fewer than 20"):
+        records_of([Run(fine), Run(coarse)], "effective_tension", None)
 
 
 def test_runs_of_unlike_steps_get_the_longest(tmp_path: Path) -> None:

@@ -83,7 +83,8 @@ def test_the_largest_is_what_looking_around_finds(tension: float, pressures: tup
 def test_at_a_joint_both_walls_have_a_section() -> None:
     """Thick, thin, none, thin: what the side with the larger stress has is told at the node."""
     wall = Wall(np.array([0.30, 0.28, 0.0, 0.28]), np.array([0.20, 0.25, 0.0, 0.25]))
-    found = wall_sections(wall, Wall(wall.outer_diameter + 0.1, wall.inner_diameter), np.array([3.0, 2.0, 0.0, 2.0]))
+    coated, allowed = Wall(wall.outer_diameter + 0.1, wall.inner_diameter), np.array([3.0, 2.0, 0.0, 2.0])
+    found = wall_sections(wall, coated, allowed, np.ones((4, 2)))
     assert found.node.tolist() == [0, 1, 1, 2, 3, 4]
     assert found.wall.outer_diameter.tolist() == [0.30, 0.30, 0.28, 0.28, 0.28, 0.28]
     assert found.allowable.tolist() == [3.0, 3.0, 2.0, 2.0, 2.0, 2.0]
@@ -97,7 +98,7 @@ def test_at_a_joint_both_walls_have_a_section() -> None:
 
 def test_nodes_between_no_walls_have_none() -> None:
     wall = Wall(np.array([0.3, 0.0, 0.0]), np.array([0.2, 0.0, 0.0]))
-    found = wall_sections(wall, wall, np.zeros(3))
+    found = wall_sections(wall, wall, np.zeros(3), np.ones((3, 2)))
     assert found.node.tolist() == [0, 1]
     told = found.at_nodes(np.array([1.0, 2.0]), np.array([1.0, 2.0]), 4)
     assert np.isnan(told).tolist() == [False, False, True, True]

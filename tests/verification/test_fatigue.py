@@ -18,6 +18,7 @@ from typer.testing import CliRunner, Result
 from riser_soil.__main__ import app
 from riser_soil.core.arrays import Array
 from riser_soil.fatigue.damage import YEAR
+from riser_soil.fatigue.stress_history import stress_history
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
@@ -129,6 +130,22 @@ def test_factors_surface_and_shares(folder: Path) -> None:
     assert np.all(inner["damage_per_year"][inner["angle_deg"] == 90.0] < plain[inner["angle_deg"] == 90.0])
 
 
+def test_in_a_bend_stiffener_it_is_the_run_s_own_wall(tmp_path: Path) -> None:
+    """The largest bending stress around is what the run has recorded: the stiffener bears two thirds of the moment."""
+    scene = shaken(elements=12)
+    cone = {"length": 3.0, "base_diameter": 0.9, "tip_diameter": 0.4, "E": 2.0e11}
+    scene["riser"]["start"]["bend_stiffener"] = cone
+    scene["stages"][0]["duration"] = 0.5
+    run(scene_from_mapping(scene), tmp_path)
+    done, angles = Run(tmp_path), np.array([0.5 * np.pi, 1.5 * np.pi])
+    history = stress_history(done)
+    bending = np.array([0.5 * np.ptp(history.at(n, angles, "outer"), axis=1) for n in range(history.arc.size)])
+    recorded = done["wall_bending_stress"][done["stage"] == 0]
+    for arc, largest in zip(done.arc, recorded.T, strict=True):
+        assert bending[history.arc == arc].max(axis=0) == pytest.approx(largest, rel=1e-9)
+    assert recorded[:, 0].max() < 0.4 * recorded[:, -1].max()
+
+
 def test_what_is_doubtful_is_told(folder: Path) -> None:
     done = assessed(folder, given(design_life=25.0, design_fatigue_factor=10.0, skip=0.5, arcs=[0.0, 3.0]))
     told = json.loads((folder / "damage" / "fatigue.json").read_text(encoding="utf-8"))
@@ -141,6 +158,8 @@ def test_what_is_doubtful_is_told(folder: Path) -> None:
     assert f"times 10 is {used:.4g}, more than 1" in texts
     assert "uncertain by some" in texts
     assert all(f"warning: {text}" in done.output for text in told["warnings"])
+    short = assessed(folder, given(skip=7.5)).output
+    assert "warning: shaken: the stress goes up through its mean less than twice in 0.5 s, too short" in short
 
 
 def test_the_picture_is_drawn(folder: Path) -> None:
@@ -157,10 +176,15 @@ def test_the_picture_is_drawn(folder: Path) -> None:
         ({"curve": {"dnv": "D"}}, "curve.environment: missing: the key is required here"),
         ({"curve": {}}, r"must be \{dnv, environment\}, \{log_a, m, change\} or \{table"),
         ({"curve": {"log_a": [12.0, 15.0], "m": [3.0]}}, "branches do not fit: 2 log_a, 1 m, 0 change"),
+        (
+            {"curve": CURVE | {"change": [1.0e7]}},
+            "curve.change: .*branches do not meet: one ends with log10 N = 7, there the next begins with 7.666",
+        ),
         ({"curve": {"table": [[1e4, 1e8], [1e3, 1e7]]}}, "cycles must grow and stress ranges fall"),
         ({"cases": [{"run": "shaken", "share": 0.6}] * 2}, "have shares of 1.2 in all, more than a year"),
         ({"cases": [{"run": "gone", "share": 0.6}]}, "there is no folder .*gone; run the case first"),
         ({"cases": [{"run": "shaken", "share": 0.6, "stage": "lay"}]}, '"lay" is no dynamic stage of the run'),
+        ({"cases": [{"run": "shaken", "share": 0.6, "skip": 7.75}]}, r"3 record\(s\) of stage shake from 7.75 s on"),
         ({"cases": [{"run": "shaken", "share": 0.6, "skip": 9.0}]}, r"0 record\(s\) of stage shake from 9 s on"),
         ({"arcs": [7.0, 8.0]}, "no node of a wall lies from 7 to 8 m; walls lie from 0 to 6 m"),
         ({"point": 8}, r"point: value 8: no such key here.*did you mean \"points\""),

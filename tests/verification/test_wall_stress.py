@@ -148,6 +148,21 @@ def test_utilisations_and_their_warnings(tmp_path: Path, capsys: pytest.CaptureF
     assert "stress over what is allowed" in screen
 
 
+def test_the_stress_that_is_warned_of_is_that_of_the_weaker_steel(tmp_path: Path) -> None:
+    """Where a thin strong wall meets a thick weak one, stressed less but used more."""
+    scene = hanging()
+    weak, strong = ({"outer_diameter": D, "yield_stress": y} for D, y in ((OUTER, 5.0e7), (0.26, 1.0e9)))
+    scene["line_types"] = {"strong": STEEL | {"wall": strong}, "weak": STEEL | {"wall": weak}}
+    half = {"length": 0.5 * L, "elements": 4}
+    scene["riser"]["segments"] = [{"line_type": name} | half for name in ("strong", "weak")]
+    done = finished(scene, tmp_path)
+    used, stress = done["stress_utilisation"][-1], done["wall_von_mises_stress"][-1]
+    assert int(np.argmax(used)) == 4
+    assert stress[4] > 1.1 * used[4] * 5.0e7
+    (told,) = done.summary["stages"][0]["warnings"]
+    assert told.endswith(f"arc 20 m and 1 of the load, where von Mises' stress is {used[4] * 5.0e7:.4g} Pa")
+
+
 def test_without_a_wall_nothing_of_it_is_recorded(tmp_path: Path) -> None:
     plain = {key: value for key, value in STEEL.items() if key != "wall"}
     done = finished(hanging(plain), tmp_path)
