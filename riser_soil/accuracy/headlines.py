@@ -21,6 +21,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from riser_soil.core.outputs import upper_end
+
 FORCE_FLOOR = 0.1  # of the largest headline force
 MOMENT_FLOOR, CURVATURE_FLOOR, SETTLEMENT_FLOOR = 1e-9, 1e-6, 1e-7
 
@@ -85,7 +87,7 @@ Known = tuple[str, str, float, str, str]
 
 def _values(stage: Told) -> Iterator[Known]:
     """Name, unit, value, figure, and min or max of the known ones."""
-    upper = _upper_end(stage["final"])
+    upper = upper_end(stage["final"])
     for name, unit, path, which in (
         ("top tension", "N", (upper, "effective_tension"), "max"),
         ("force at start", "N", ("start", "resultant_force"), "max"),
@@ -126,8 +128,3 @@ def _value(stage: Told, path: tuple[str, ...], which: str) -> float | None:
     if isinstance(found, dict):
         found = found["value" if static else which]
     return found
-
-
-def _upper_end(final: Told) -> str:
-    """Of two ends at one height the last."""
-    return "start" if final["start"]["position"][2] > final["end"]["position"][2] else "end"

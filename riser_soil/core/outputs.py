@@ -6,7 +6,7 @@ from it. Each part of the table is in the order of results.nc, and of the list o
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from riser_soil.core.output import (
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 _ON_RISER = "exerted by the support on the riser; global axes, z up"
 _ON_START = "right-hand rule; exerted by the part towards the end on the part towards the start"
 _RIGHT_HAND = "right-hand rule; " + _ON_RISER
+_TOP = Row("top tension", "kN", 1e-3)
 
 ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
     OutputQuantity(
@@ -41,8 +42,8 @@ ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
         "effective_tension", "T", "N", "effective tension", "nodes",
         lambda i: i.riser.effective_tension, "positive in tension",
         figures=(
-            Figure("start.effective_tension", lambda T: T[0]),
-            Figure("end.effective_tension", lambda T: T[-1], row=Row("top tension", "kN", 1e-3)),
+            Figure("start.effective_tension", lambda T: T[0], row=_TOP),
+            Figure("end.effective_tension", lambda T: T[-1], row=_TOP),
             least("min_effective_tension", Row("least effective tension", "kN", 1e-3)),
         ),
     ),
@@ -328,3 +329,16 @@ def figures(order: Sequence[str]) -> list[tuple[OutputQuantity[Instant], Figure]
     found = [(output, figure) for output in of_instant() for figure in output.figures]
     rank = {name: place for place, name in enumerate(order)}
     return sorted(found, key=lambda item: rank.get(item[1].name, len(rank)))
+
+
+def upper_end(final: Mapping[str, Any]) -> str:
+    """"start" or "end" of a riser, by its figures at an instant; of two ends at one height the last."""
+    return "start" if final["start"]["position"][2] > final["end"]["position"][2] else "end"
+
+
+def row_of(figure: Figure, final: Mapping[str, Any]) -> Row | None:
+    """Its row on the screen, None for none: of the tensions at the ends the upper one's alone.
+
+    final: all figures at an instant.
+    """
+    return figure.row if figure.row is not _TOP or figure.path[0] == upper_end(final) else None

@@ -7,7 +7,7 @@ from typing import Any
 
 from riser_soil.accuracy.headlines import headlines
 from riser_soil.core import outputs
-from riser_soil.core.output import Figure, OutputQuantity
+from riser_soil.core.output import Figure, OutputQuantity, Row
 from riser_soil.plots.units import shown
 from riser_soil.report.tables import NOTHING, ReportTable, compact, found, number
 
@@ -68,9 +68,10 @@ def _table(stage: Mapping[str, Any], headline: bool, bars: Mapping[tuple[str, st
     signs: dict[str, list[str]] = {}
     for output, figure in outputs.figures(()):
         final, extremes = found(stage["final"], figure.path), found(stage["extremes"], figure.path)
-        if final is None or (figure.row is not None) != headline:
+        row = outputs.row_of(figure, stage["final"])
+        if final is None or (row is not None) != headline:
             continue
-        words, unit, scale = _words(output, figure)
+        words, unit, scale = _words(output, figure, row)
         bar = {which: bars.get((figure.name, which)) for which in ("min", "max")}
         rows += list(_rows(stage["kind"], (words, unit, scale), final, extremes, bar))
         if output.sign:
@@ -79,9 +80,9 @@ def _table(stage: Mapping[str, Any], headline: bool, bars: Mapping[tuple[str, st
     return compact(ReportTable(_HEADS[stage["kind"]], rows, _NOTE + ("" if headline else _LEFT_OUT) + " ".join(told)))
 
 
-def _words(output: OutputQuantity[Any], figure: Figure) -> tuple[str, str, float]:
-    if figure.row is not None:
-        return figure.row.words, figure.row.unit, figure.row.scale
+def _words(output: OutputQuantity[Any], figure: Figure, row: Row | None) -> tuple[str, str, float]:
+    if row is not None:
+        return row.words, row.unit, row.scale
     unit, scale = shown(output.units)
     end = f", {figure.path[0]}" if output.where == "nodes" and len(figure.path) > 1 else ""
     size = ", resultant" if "resultant" in figure.name else ""

@@ -15,6 +15,7 @@ Row = tuple[str, str]
 
 # Figures from above; what the table of outputs has beyond them comes below.
 _ORDER = (
+    "start.effective_tension",
     "end.effective_tension",
     "min_effective_tension",
     "max_wall_tension",
@@ -82,15 +83,16 @@ def _figure_rows(stage: dict[str, Any]) -> Iterator[Row]:
     """Rows of the known figures."""
     for _, figure in outputs.figures(_ORDER):
         final, extremes = (_found(stage[key], figure.path) for key in ("final", "extremes"))
-        if figure.row is None or final is _NOTHING:
+        row = outputs.row_of(figure, stage["final"])
+        if row is None or final is _NOTHING:
             continue
-        unit, scale = figure.row.unit, figure.row.scale
+        unit, scale = row.unit, row.scale
         if figure.size > 1:
-            yield figure.row.words, _place(final, unit, scale)
+            yield row.words, _place(final, unit, scale)
         elif figure.placed:
-            yield figure.row.words, _at(final, extremes, unit, scale)
+            yield row.words, _at(final, extremes, unit, scale)
         else:
-            yield figure.row.words, _span(final, extremes, unit, scale)
+            yield row.words, _span(final, extremes, unit, scale)
 
 
 def _soil_rows(stage: dict[str, Any]) -> Iterator[Row]:

@@ -337,6 +337,18 @@ def test_warnings_are_told_on_the_screen(tmp_path: Path) -> None:
     assert "warning: heave: the energy [J] is 5.1% off: take a smaller time_step\n" in shown(summary)
 
 
+@pytest.mark.parametrize("upper", ["start", "end"])
+def test_top_tension_is_the_upper_ends(upper: str, tmp_path: Path) -> None:
+    record(tmp_path, mesh=block(4, 3, 2))
+    summary = Run(tmp_path).summary
+    summary["stages"] = summary["stages"][:1]
+    for tension, end in enumerate(("start", "end"), start=1):
+        final = summary["stages"][0]["final"][end]
+        final["effective_tension"], final["position"][2] = 1e3 * tension, float(end == upper)
+    (told,) = (line for line in shown(summary).splitlines() if "top tension" in line)
+    assert f" {1 if upper == 'start' else 2} kN" in told
+
+
 def shown(summary: dict[str, Any]) -> str:
     console = Console(width=120, record=True, file=io.StringIO())
     print_summary(summary, console)
