@@ -95,7 +95,7 @@ def _shares(folder: Path, scene: Scene, with_peaks: bool, ranks: int) -> list[Sa
 
 def _refuse_another(about: About, path: Path, scene: Scene, ranks: int) -> None:
     """SceneError where a checkpoint is not of this version, number of ranks and scene."""
-    anew = "or leave out --restart, which begins anew"
+    anew = "or begin anew by --force in the place of --restart"
     if about.version != __version__:
         raise SceneError(
             f"{path}: was written by riser_soil {about.version}, and this is {__version__}; go on with that one, {anew}"

@@ -129,7 +129,7 @@ def reading(path: Path) -> h5py.File:
 
 def behind(path: Path) -> ResultsError:
     """The error of a file that lacks what its run had written when it was saved."""
-    return ResultsError(f"{path}: lacks records made before the checkpoint beside it; run the scene from its beginning")
+    return ResultsError(f"{path}: lacks records made before the checkpoint beside it; begin anew by --force")
 
 
 class _MemoryFile:

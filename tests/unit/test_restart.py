@@ -122,6 +122,20 @@ def test_a_checkpoint_of_another_scene_is_refused(override: str, checkpoint: Pat
     assert checkpoint.exists()
 
 
+def test_a_run_that_can_go_on_is_not_overwritten_by_mistake(tmp_path: Path) -> None:
+    leave_after(3, scene_of(), tmp_path)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    told = "holds an unfinished run; go on with it by --restart, overwrite it by --force, or choose another folder"
+    with pytest.raises(SceneError, match=told):
+        run(scene_of(), tmp_path)
+    by_command = CliRunner().invoke(app, ["run", str(tmp_path / "scene.yaml"), "-o", str(tmp_path)])
+    assert by_command.exit_code == 2
+    assert "go on with it by --restart" in by_command.stderr
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+    run(scene_of(), tmp_path, force=True)
+    assert run_folder.is_finished(tmp_path)
+
+
 @pytest.mark.parametrize(
     ("about", "says"),
     [
