@@ -33,9 +33,9 @@ def run(
 
     force: overwrite a finished run, or one with a checkpoint. peaks: gathered on the way, where they are wanted.
     restart: go on from the folder's last checkpoint, or begin where there is none.
-    Raises SceneError or MeshError before anything is computed. After
-    SolveError, MemoryShortageError and Interruption (Ctrl-C, SIGTERM) the folder keeps everything up to the last
-    accepted step, after WriteError what went in; it is marked unfinished.
+    Raises SceneError or MeshError before anything is computed. After SolveError, MemoryShortageError and Interruption
+    (Ctrl-C, SIGTERM) the folder keeps everything up to the last accepted step, after WriteError what went in; it is
+    marked unfinished.
     """
     folder = Path(folder)
     with handling_signals():
