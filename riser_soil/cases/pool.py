@@ -8,7 +8,7 @@ from __future__ import annotations
 import logging
 import os
 import signal
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
 from typing import Any
@@ -28,12 +28,16 @@ KILLED = 128 + signal.SIGKILL
 SETTINGS = {"distributed.scheduler.worker-saturation": 1.0}  # a worker gets a case when it is free for it
 
 
-def outcomes(tasks: Sequence[Task], jobs: int, scheduler: str | None) -> Iterator[Outcome]:
+def outcomes(
+    tasks: Sequence[Task], jobs: int, scheduler: str | None, begin: Callable[[], None]
+) -> Iterator[Outcome]:
     """What becomes of the cases, as they end. When the caller leaves, cases that run are stopped.
 
     scheduler: address of a Dask scheduler, whose workers are taken; None: `jobs` worker processes on this machine.
+    begin: called when the workers are there, before they get a case.
     """
     with dask.config.set(SETTINGS), _client(jobs, scheduler) as client:
+        begin()
         mark = uuid4().hex
         futures = {client.submit(on_worker, t, key=f"{t['name']}-{mark}", pure=False): t for t in tasks}
         try:
