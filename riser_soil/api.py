@@ -90,9 +90,9 @@ def run(
     """Compute a scene and leave its results in a folder; they come back as `Run`. Collective under MPI.
 
     scene: also a file's name, or a dict, see `Scene`. folder: by default the scene's name in the current folder.
-    force: overwrite a finished run, which is refused otherwise. quiet: print nothing; warnings after the stages stand
-    in `Run.summary`, too. error_bars: estimate by coarser companions how far headline quantities may be off.
-    restart: go on from the folder's last checkpoint; begin where there is none.
+    force: overwrite a run that is finished or can go on, which is refused otherwise. quiet: print nothing; warnings
+    after the stages stand in `Run.summary`, too. error_bars: estimate by coarser companions how far headline quantities
+    may be off. restart: go on from the folder's last checkpoint; begin where there is none.
     Raises SceneError or MeshError before anything is computed; SolveError, MemoryShortageError, WriteError or
     KeyboardInterrupt (Ctrl-C) later: the folder then keeps the results until there, marked unfinished.
     """

@@ -31,15 +31,16 @@ def run(
 ) -> None:
     """Run a scene and leave its results in a folder; collective over all ranks.
 
-    force: overwrite a finished run. peaks: gathered on the way, where they are wanted. restart: go on from the folder's
-    last checkpoint, or begin where there is none. Raises SceneError or MeshError before anything is computed. After
-    SolveError, MemoryShortageError and Interruption (Ctrl-C, SIGTERM) the folder keeps everything up to the last
-    accepted step, after WriteError what went in; it is marked unfinished.
+    force: overwrite a finished run, or one with a checkpoint. peaks: gathered on the way, where they are wanted.
+    restart: go on from the folder's last checkpoint, or begin where there is none.
+    Raises SceneError or MeshError before anything is computed. After SolveError, MemoryShortageError and Interruption
+    (Ctrl-C, SIGTERM) the folder keeps everything up to the last accepted step, after WriteError what went in; it is
+    marked unfinished.
     """
     folder = Path(folder)
     with handling_signals():
         comm, clock, since = communicator_of(scene), Timer.new(), time.perf_counter()
-        refuse_together(folder, force, comm)
+        refuse_together(folder, force, comm, goes_on=restart)
         saved = last_checkpoint(folder, scene, peaks is not None, comm) if restart else None
         scene = sized(scene)
         size = size_that_fits(scene, folder, comm)

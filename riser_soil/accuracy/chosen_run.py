@@ -46,8 +46,8 @@ def _refuse_restart(restart: bool, folder: Path) -> None:
     """An accuracy is reached by several runs, of which the folder has the last one alone."""
     if restart:
         raise SceneError(
-            f"--restart: an accuracy is sought anew; leave --restart out, or run {folder}/scene.yaml, the setting that "
-            "was computed last"
+            f"--restart: an accuracy is sought anew; take --force in its place, or run {folder}/scene.yaml, the "
+            "setting that was computed last"
         )
 
 

@@ -95,5 +95,7 @@ def settle(made: Path, folder: Path, outcome: Outcome) -> Outcome:
 
 
 def clear_attempts(folder: Path) -> None:
-    """Remove what workers that died have left."""
+    """Remove what workers that died have left; the folder of the cases, too, where none has ended."""
     shutil.rmtree(folder / CASES / ATTEMPTS, ignore_errors=True)
+    with suppress(OSError):  # holds cases, or isn't there
+        (folder / CASES).rmdir()

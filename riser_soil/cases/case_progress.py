@@ -55,7 +55,6 @@ class CaseProgress:
         if not (outcome.done and self._on_terminal):
             print(f"{self._ended} of {self._count}: {outcome.name}: {_told(outcome)}", flush=True)
 
-
     def _left(self) -> str:
         """By the mean over this call: cases that run side by side end in bunches."""
         seconds = (time.monotonic() - self._begun) / (self._ended - self._known) * (self._count - self._ended)

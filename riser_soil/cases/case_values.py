@@ -82,5 +82,3 @@ def _series(run: Run) -> Iterator[tuple[str, str, Array]]:
         except ResultsError:  # not recorded
             continue
         yield name, unit, of(values)
-
-

@@ -6,7 +6,7 @@ import hashlib
 import math
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import cache
@@ -17,8 +17,10 @@ from typing import Any
 from riser_soil import __version__
 from riser_soil.cases.case_file import MOST_LETTERS, Cases, Overrides, is_name, read_case_file
 from riser_soil.errors import SceneError
+from riser_soil.results.folder import CHECKPOINT
 from riser_soil.scene.document import Document
 from riser_soil.scene.dump import dump_scene
+from riser_soil.scene.identity import paths_in
 from riser_soil.scene.overrides import override, put
 from riser_soil.scene.problem import shown
 from riser_soil.scene.reader import checked, read_document
@@ -146,21 +148,11 @@ def _resolved(case: Case, document: Document, folder: Path) -> Case:
 
 def _key(scene: Scene, text: str) -> str:
     told = hashlib.sha256(f"{__version__}\n{text}".encode())
-    for file in _files(scene.model_dump()):
-        told.update(_digest(file, file.stat().st_mtime_ns))
+    for _, at in paths_in(scene):
+        file = at / CHECKPOINT if at.is_dir() else at  # of a run that the case begins with the end of
+        if file.is_file():
+            told.update(_digest(file, file.stat().st_mtime_ns))
     return told.hexdigest()
-
-
-def _files(value: Any) -> Iterator[Path]:
-    """The files that a scene names."""
-    if isinstance(value, Path):
-        yield value
-    elif isinstance(value, Mapping):
-        for each in value.values():
-            yield from _files(each)
-    elif isinstance(value, list | tuple):
-        for each in value:
-            yield from _files(each)
 
 
 @cache

@@ -8,9 +8,10 @@ from __future__ import annotations
 import logging
 import os
 import signal
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
+from pkgutil import get_data
 from typing import Any
 from uuid import uuid4
 
@@ -18,22 +19,28 @@ import dask
 from distributed import Client, LocalCluster, as_completed, get_worker
 from distributed.scheduler import KilledWorker
 
+from riser_soil import __version__
 from riser_soil.cases.case_folder import Outcome
 from riser_soil.cases.work import Task, run_case
 from riser_soil.errors import SceneError, SolveError
 
 CONNECTING = "10s"
+PACKAGE = "riser_soil"
 _HERE = "127.0.0.1"  # all that listens, does so here alone, at ports that are free
 KILLED = 128 + signal.SIGKILL
 SETTINGS = {"distributed.scheduler.worker-saturation": 1.0}  # a worker gets a case when it is free for it
 
 
-def outcomes(tasks: Sequence[Task], jobs: int, scheduler: str | None) -> Iterator[Outcome]:
+def outcomes(
+    tasks: Sequence[Task], jobs: int, scheduler: str | None, begin: Callable[[], None]
+) -> Iterator[Outcome]:
     """What becomes of the cases, as they end. When the caller leaves, cases that run are stopped.
 
     scheduler: address of a Dask scheduler, whose workers are taken; None: `jobs` worker processes on this machine.
+    begin: called when the workers are there, before they get a case.
     """
     with dask.config.set(SETTINGS), _client(jobs, scheduler) as client:
+        begin()
         mark = uuid4().hex
         futures = {client.submit(on_worker, t, key=f"{t['name']}-{mark}", pure=False): t for t in tasks}
         try:
@@ -74,6 +81,7 @@ def _client(jobs: int, scheduler: str | None) -> Iterator[Client]:
     with _quiet_logs():
         if scheduler is not None:
             with _connected(scheduler) as client:
+                _refuse_strangers(client, scheduler)
                 yield client
             return
         with (
@@ -93,6 +101,16 @@ def _connected(address: str) -> Client:
     except (OSError, ValueError) as err:
         told = " ".join(str(err).split())
         raise SceneError(f"--scheduler {address}: nobody answers there ({told}); start one by: dask scheduler") from err
+
+
+def _refuse_strangers(client: Client, address: str) -> None:
+    """SceneError where a worker lacks this package: it could not read what it is sent, and would fall silent."""
+    found = client.run(get_data, PACKAGE, "py.typed")  # a question in terms that all workers know
+    for worker, content in found.items():
+        if content is None:
+            raise SceneError(
+                f"--scheduler {address}: its worker {worker} has no {PACKAGE}; install {__version__} there, or end it"
+            )
 
 
 @contextmanager

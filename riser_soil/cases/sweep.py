@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -45,7 +45,7 @@ def run_cases(
         outcomes = {case.name: known for case in cases if (known := found(folder, case.name, case.key))}
         todo = [_task(case, folder, workers.limit) for case in cases if case.name not in outcomes]
         says(f"{len(cases)} cases, {len(outcomes)} of them done already" if outcomes else f"{len(cases)} cases")
-        outcomes |= _computed(todo, workers, len(cases), folder)
+        outcomes |= _computed(todo, workers, len(cases), folder) if todo else {}
         table = case_table(f"Load cases of {file.name}", folder, cases, outcomes, told.statistics.since)
         from riser_soil.cases.case_files import write_files
 
@@ -54,14 +54,23 @@ def run_cases(
 
 
 def _computed(todo: Sequence[Task], workers: Workers, count: int, folder: Path) -> dict[str, Outcome]:
-    if not todo:
-        return {}
     from riser_soil.cases.pool import outcomes
 
     found = {}
+
+    def begin() -> None:
+        """The tables of an earlier call go before the first case changes."""
+        try:
+            clear_attempts(folder)
+            (folder / CASES / ATTEMPTS).mkdir(parents=True)
+            for name in FILES:
+                (folder / name).unlink(missing_ok=True)
+        except OSError as err:
+            raise unusable(folder, err) from err
+
     with CaseProgress(count, count - len(todo)) as progress:
         try:
-            for outcome in outcomes(todo, min(workers.jobs, len(todo)), workers.scheduler):
+            for outcome in outcomes(todo, min(workers.jobs, len(todo)), workers.scheduler, begin):
                 found[outcome.name] = outcome
                 progress.take(outcome)
         except Interruption as end:
@@ -77,24 +86,23 @@ def _task(case: Case, folder: Path, limit: float | None) -> Task:
 
 @contextmanager
 def _held(folder: Path, cases: Sequence[Case]) -> Iterator[None]:
-    """The folder for this call alone, without the tables of an earlier one and what its workers may have left."""
+    """The folder for this call alone. Attempts do not outlast it; nor does a folder that it has made, if empty."""
     _refuse(folder, cases)
+    there = folder.is_dir()
     try:
         lock = FolderLock(folder)
     except OSError as err:
         raise unusable(folder, err) from err
-    with lock:
-        try:
-            clear_attempts(folder)
-            (folder / CASES / ATTEMPTS).mkdir(parents=True)
-            for name in FILES:
-                (folder / name).unlink(missing_ok=True)
-        except OSError as err:
-            raise unusable(folder, err) from err
-        try:
-            yield
-        finally:
-            clear_attempts(folder)
+    try:
+        with lock:
+            try:
+                yield
+            finally:
+                clear_attempts(folder)
+    finally:
+        if not there:
+            with suppress(OSError):  # holds something
+                folder.rmdir()
 
 
 def _refuse(folder: Path, cases: Sequence[Case]) -> None:

@@ -26,7 +26,7 @@ def run(
         bool, typer.Option("--restart", help="go on from the folder's last checkpoint; begin where there is none")
     ] = False,
     force: Annotated[
-        bool, typer.Option("--force", help="overwrite a finished run, which is refused otherwise")
+        bool, typer.Option("--force", help="overwrite a run that is finished or can go on, which is refused otherwise")
     ] = False,
     error_bars: Annotated[
         bool,
@@ -39,7 +39,7 @@ def run(
     """Compute a scene and leave its results in a folder."""
     with expected_errors():
         checked = read(scene, overrides)
-        folder = result_folder(scene, checked, output, force)
+        folder = result_folder(scene, checked, output, force, restart)
         from riser_soil.accuracy.chosen_run import run_as_asked
 
         with placed(scene, overrides):

@@ -60,15 +60,15 @@ def read_solved(scene: str, overrides: list[str] | None) -> "Scene":
         return in_numbers(checked)[0]
 
 
-def result_folder(file: str, scene: "Scene", output: Path | None, force: bool) -> Path:
-    """The folder for the results; a finished run in it is only overwritten by force."""
+def result_folder(file: str, scene: "Scene", output: Path | None, force: bool, goes_on: bool) -> Path:
+    """The folder for the results; a run in it that is finished, or can go on, is only overwritten by force."""
     from riser_soil.results.ownership import refuse
     from riser_soil.results.whole_file import refuse_file
 
     folder = output or Path(scene.output.directory or Path(file).stem)
     refuse_file(folder)
     if rank() == 0:
-        refuse(folder, force)
+        refuse(folder, force, goes_on)
     return folder
 
 

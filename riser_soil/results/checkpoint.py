@@ -5,10 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 from riser_soil import __version__
 from riser_soil.assembly import Assembly, sized
+from riser_soil.core.communicator import Communicator
 from riser_soil.core.saved_state import Saved
 from riser_soil.errors import RiserSoilError, SceneError
 from riser_soil.results.checkpoint_file import About, read_checkpoint
@@ -27,7 +27,7 @@ class CheckpointSchedule:
     asked: None for no checkpoints at all.
     """
 
-    def __init__(self, asked: Checkpoint | None, comm: Any) -> None:
+    def __init__(self, asked: Checkpoint | None, comm: Communicator) -> None:
         self._asked, self._comm = asked, comm
         self.written()
 
@@ -45,12 +45,12 @@ class CheckpointSchedule:
         self._last = time.monotonic()
 
 
-def about(assembly: Assembly, ended: str | None = None) -> About:
-    """What a checkpoint of a run is of. ended: name of the stage whose end it is the state at."""
-    return About(__version__, assembly.comm.size, identity_of(assembly.scene), ended)
+def about(assembly: Assembly) -> About:
+    """What the checkpoints of a run are of; to be asked as it begins: files that the scene names may change later."""
+    return About(__version__, assembly.comm.size, identity_of(assembly.scene))
 
 
-def last_checkpoint(folder: Path, scene: Scene, with_peaks: bool, comm: Any) -> Saved | None:
+def last_checkpoint(folder: Path, scene: Scene, with_peaks: bool, comm: Communicator) -> Saved | None:
     """This rank's state of the folder's run, from which it goes on; None where there is no checkpoint. Collective.
 
     with_peaks: whether the run follows peaks, for its error bars. Raises SceneError where the run was another one,
@@ -62,7 +62,7 @@ def last_checkpoint(folder: Path, scene: Scene, with_peaks: bool, comm: Any) -> 
     return saved
 
 
-def mine_of(comm: Any, read: Callable[[], list[Saved] | None]) -> Saved | None:
+def mine_of(comm: Communicator, read: Callable[[], list[Saved] | None]) -> Saved | None:
     """This rank's share of what the first one reads, or the error that it meets; collective."""
     shares: list[Saved] | None = None
     failure: RiserSoilError | None = None
@@ -95,7 +95,7 @@ def _shares(folder: Path, scene: Scene, with_peaks: bool, ranks: int) -> list[Sa
 
 def _refuse_another(about: About, path: Path, scene: Scene, ranks: int) -> None:
     """SceneError where a checkpoint is not of this version, number of ranks and scene."""
-    anew = "or leave out --restart, which begins anew"
+    anew = "or begin anew by --force in the place of --restart"
     if about.version != __version__:
         raise SceneError(
             f"{path}: was written by riser_soil {about.version}, and this is {__version__}; go on with that one, {anew}"

@@ -63,7 +63,7 @@ def read_checkpoint(path: Path) -> CheckpointFile:
             about = _about(file[_ABOUT], path)
             arrays: Saved = {name: file[name] for name in file.files if name != _ABOUT}
     except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error) as err:
-        raise ResultsError(f"{path}: is not a whole checkpoint ({err}); run the scene from its beginning") from err
+        raise ResultsError(f"{path}: is not a whole checkpoint ({err}); begin anew by --force") from err
     return CheckpointFile(about, [within(arrays, str(rank)) for rank in range(about.ranks)])
 
 
@@ -81,6 +81,6 @@ def _about(array: AnyArray, path: Path) -> About:
     if told["format"] != FORMAT:
         raise ResultsError(
             f"{path}: was written by riser_soil {told['version']} in format {told['format']}, and this one reads "
-            f"{FORMAT}; run the scene from its beginning"
+            f"{FORMAT}; begin anew by --force"
         )
     return About(**told)

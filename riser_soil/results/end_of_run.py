@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from riser_soil import __version__
 from riser_soil.assembly import Assembly
@@ -51,17 +52,22 @@ def _shares(folder: Path, assembly: Assembly) -> list[Saved]:
     if not is_finished(folder):
         raise SceneError(f"{KEY}: {folder}: holds no finished run; run it to its end first")
     path = folder / CHECKPOINT
-    if not path.exists():
+    found = read_checkpoint(path) if path.exists() else None
+    if found is None or found.about.ended != _last_stage(found.about)["name"]:
         remedy = "run it again with output: {checkpoint: {keep: true}}"
         raise SceneError(f"{KEY}: {folder}: its run has not kept the state at its end; {remedy}")
-    found = read_checkpoint(path)
     _refuse(found.about, folder, assembly)
     return found.shares
 
 
+def _last_stage(about: About) -> dict[str, Any]:
+    last: dict[str, Any] = about.scene["values"]["stages"][-1]
+    return last
+
+
 def _refuse(about: About, folder: Path, assembly: Assembly) -> None:
     """SceneError for the end of a run that is no beginning of this one."""
-    last = about.scene["values"]["stages"][-1]
+    last = _last_stage(about)
     if about.version != __version__:
         raise SceneError(f"{KEY}: {folder}: is a run of riser_soil {about.version}, not {__version__}; run it again")
     if about.ranks != assembly.comm.size:

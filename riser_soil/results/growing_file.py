@@ -25,7 +25,7 @@ _PAGE = 4096
 
 class GrowingFile:
     """Owner of the file at `path`, which it makes anew with this content, or takes over as it is; `close` removes the
-    second copy.
+    second copy. ResultsError where there is none to take over.
 
     A reader that holds an HDF5 file open, and so keeps HDF5's lock on it, is not disturbed: it keeps its copy, and the
     writer makes itself another. Raises OSError where the disk does; the file is then whole as before the update.
@@ -37,6 +37,8 @@ class GrowingFile:
         self._lasting = False
         if content is not None:
             write_atomically(path, content)
+        elif not path.exists():
+            raise behind(path)
         self.size = path.stat().st_size
 
     def outlast_power(self) -> None:
@@ -129,7 +131,7 @@ def reading(path: Path) -> h5py.File:
 
 def behind(path: Path) -> ResultsError:
     """The error of a file that lacks what its run had written when it was saved."""
-    return ResultsError(f"{path}: lacks records made before the checkpoint beside it; run the scene from its beginning")
+    return ResultsError(f"{path}: lacks records made before the checkpoint beside it; begin anew by --force")
 
 
 class _MemoryFile:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -61,6 +62,7 @@ class Observer:
         self._zone = TouchdownZone(assembly, _known_fields(assembly))
         self._plausibility = Plausibility(assembly)
         self._checkpoints = CheckpointSchedule(_asked(assembly), assembly.comm)
+        self._about = about(assembly) if recorder is not None and _asked(assembly) is not None else None
 
     @classmethod
     @contextmanager
@@ -171,7 +173,8 @@ class Observer:
             shares = self._assembly.comm.gather(gather())
             if self._recorder is not None:
                 assert shares is not None
-                self._recorder.checkpoint(about(self._assembly, self._stage.name if last else None), shares)
+                assert self._about is not None
+                self._recorder.checkpoint(replace(self._about, ended=self._stage.name if last else None), shares)
         self._checkpoints.written()
         self._clock.add("checkpoints", since)
 

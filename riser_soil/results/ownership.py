@@ -11,10 +11,10 @@ import json
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import h5py
 
+from riser_soil.core.communicator import Communicator
 from riser_soil.errors import SceneError, WriteError
 from riser_soil.results.checkpoint_file import is_checkpoint
 from riser_soil.results.folder import (
@@ -56,11 +56,11 @@ def sealed(text: str) -> str:
     return _SEAL.format(hashlib.sha256(text.encode()).hexdigest()) + text
 
 
-def refuse(folder: Path, force: bool) -> None:
+def refuse(folder: Path, force: bool, goes_on: bool = False) -> None:
     """Raises SceneError when a run may not have the folder. Touches nothing.
 
     It may not while another run writes there; where it would replace what the program has not written; and without
-    `force` where a finished run is.
+    `force` where a finished run is, or one with a checkpoint, unless the run goes on from that.
     """
     try:
         if not force and is_finished(folder):
@@ -68,16 +68,21 @@ def refuse(folder: Path, force: bool) -> None:
         FolderLock.try_out(folder)
         for name in NAMES:
             _refuse_foreign(folder / name)
+        if not (force or goes_on) and (folder / CHECKPOINT).exists():
+            raise SceneError(
+                f"{folder}: holds an unfinished run; go on with it by --restart, overwrite it by --force, or choose "
+                "another folder (-o)"
+            )
     except OSError as err:
         raise unusable(folder, err, "; nothing was computed") from err
 
 
-def refuse_together(folder: Path, force: bool, comm: Any) -> None:
+def refuse_together(folder: Path, force: bool, comm: Communicator, goes_on: bool = False) -> None:
     """`refuse` on all ranks by what the first one sees; collective."""
     failure = None
     if comm.rank == 0:
         try:
-            refuse(folder, force)
+            refuse(folder, force, goes_on)
         except (SceneError, WriteError) as err:
             failure = err
     if failure := comm.bcast(failure):
@@ -90,7 +95,7 @@ def prepare(folder: Path, force: bool, goes_on: bool = False) -> FolderLock:
     The old summary goes first, so that a kill in between cannot leave a folder that looks finished. The scene stays
     until there is another: it may be the one that is run. goes_on: that run goes on, and its files stay.
     """
-    refuse(folder, force)
+    refuse(folder, force, goes_on)
     try:
         lock = FolderLock(folder)
         lock.clear()

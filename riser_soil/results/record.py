@@ -98,7 +98,7 @@ class Recorder:
             folder / run_folder.RISER_XDMF, "riser", polyline(arc.size), polyline=True, goes_on=keeping.goes_on
         )
         self._soil_frames = _soil_file(folder, soil_mesh, keeping.goes_on)
-        self._lasting, self._resumable = False, keeping.goes_on
+        self._lasting, self._resumable, self._untouched = False, keeping.goes_on, keeping.goes_on
         self._soil_places = None if soil_mesh is None else places(soil_mesh)
         self._time = SimulatedTime()
         self.now = 0.0  # s of the run at the last step; in a static stage its load factor
@@ -145,6 +145,8 @@ class Recorder:
         """Progress of the run, for the message of a run that ends early."""
         if self.summary.finished:
             return f"after the last stage; {self._folder} has the whole run"
+        if self._untouched:
+            return f"before it went on; {self._folder} is as it was{self._way_on}"
         stages = [stage for stage in self.summary.stages if stage.steps]
         if not stages:
             return f"before the first step; {self._folder} holds no results yet"
@@ -239,7 +241,12 @@ class Recorder:
         self.summary.seconds.update(seconds)
 
     def flush(self) -> None:
-        """Writes all records so far to disk: the frames, the series that gives their number, the summary."""
+        """Writes all records so far to disk: the frames, the series that gives their number, the summary.
+
+        Nothing before a run that goes on has been restored: its files tell more than is known here.
+        """
+        if self._untouched:
+            return
         begun = time.monotonic()
         with self._told_when_full():
             for frames in self._pictures:
@@ -354,6 +361,7 @@ class Recorder:
         with self._told_when_full():
             restore_all(self._owners, saved)
         self.now, self._latest = float(saved["now"]), saved.get("latest")
+        self._untouched = False
         if self._keeping.goes_on:
             self._outlast_power()
 

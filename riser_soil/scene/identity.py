@@ -26,8 +26,12 @@ class Difference(NamedTuple):
 def identity_of(scene: Scene) -> dict[str, Any]:
     """In JSON's terms: values, all defaults filled in, and by its key the SHA-256 of each file named."""
     values = scene.model_dump(mode="json", by_alias=True)
-    named = _files(scene.model_dump(by_alias=True))
-    return {"values": values, "files": {dotted(key): _digest(file) for key, file in named}}
+    return {"values": values, "files": {dotted(key): _digest(at) for key, at in paths_in(scene) if at.is_file()}}
+
+
+def paths_in(scene: Scene) -> Iterator[tuple[KeyPath, Path]]:
+    """The files and folders that a scene names, with their keys."""
+    return _paths(scene.model_dump(by_alias=True))
 
 
 def first_difference(
@@ -64,17 +68,15 @@ def _told(value: Any) -> str:
     return "missing" if value is NOTHING else shown(value)
 
 
-def _files(value: Any, at: KeyPath = ()) -> Iterator[tuple[KeyPath, Path]]:
-    """Paths of files among a scene's values, with their keys."""
+def _paths(value: Any, at: KeyPath = ()) -> Iterator[tuple[KeyPath, Path]]:
     if isinstance(value, Path):
-        if value.is_file():
-            yield at, value
+        yield at, value
     elif isinstance(value, dict):
         for name, item in value.items():
-            yield from _files(item, (*at, name))
+            yield from _paths(item, (*at, name))
     elif isinstance(value, list | tuple):
         for n, item in enumerate(value):
-            yield from _files(item, (*at, n))
+            yield from _paths(item, (*at, n))
 
 
 def _digest(file: Path) -> str:

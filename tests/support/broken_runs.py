@@ -84,7 +84,7 @@ def look(folders: list[Path]) -> list[Left]:
 
 
 def _look(folder: Path, drawn: list[float] | None) -> Left:
-    refuse(folder, force=False)  # the next run may have it
+    refuse(folder, force=False, goes_on=True)  # the next run may have it
     if not (folder / "results.nc").exists():
         assert not (folder / "summary.json").exists()
         assert _is_refused(folder)

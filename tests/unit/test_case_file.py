@@ -91,6 +91,18 @@ def test_the_key_changes_with_what_the_results_hang_on(tmp_path: Path) -> None:
     assert key(f"table: [{{name: a, set: {{stages: {pull}}}}}]") != first
 
 
+def test_a_case_is_another_one_where_the_run_that_it_begins_with_has_changed(tmp_path: Path) -> None:
+    def key() -> str:
+        return cases(tmp_path, f"product: {{initial.from: [{tmp_path / 'hung'}]}}")[0].key
+
+    (tmp_path / "hung").mkdir()
+    keys = [key()]
+    for state in (b"one", b"another"):
+        (tmp_path / "hung/checkpoint.npz").write_bytes(state)
+        keys.append(key())
+    assert len({*keys}) == 3
+
+
 def test_the_example_of_the_page_is_that_of_the_waves() -> None:
     example = ROOT / "demos/waves/cases.yaml"
     assert blocks(ROOT / "docs/cases.md", "yml") == [example.read_text(encoding="utf-8")]

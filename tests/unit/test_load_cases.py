@@ -35,6 +35,7 @@ SWEEP = "product: {line_types.pipe.EI: [100.0, 200.0], riser.end.position.0: [8.
 NAMES = ["EI=100-position_0=8", "EI=100-position_0=9", "EI=200-position_0=8", "EI=200-position_0=9"]
 FINISHED = "import sys, shutil; shutil.copytree(sys.argv[1], sys.argv[2], dirs_exist_ok=True)"
 Fake = Callable[[str], None]
+TRUE_OUTCOMES = pool.outcomes
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +63,10 @@ def invoke(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., Any
     """The command in a folder with sweep.yaml; its cases are computed in this process, one by one."""
     monkeypatch.chdir(tmp_path)
 
-    def outcomes(tasks: Sequence[Task], jobs: int, scheduler: str | None) -> Iterator[Outcome]:
+    def outcomes(
+        tasks: Sequence[Task], jobs: int, scheduler: str | None, begin: Callable[[], None]
+    ) -> Iterator[Outcome]:
+        begin()
         return (Outcome.of(run_case(task)) for task in tasks)
 
     monkeypatch.setattr(pool, "outcomes", outcomes)
@@ -286,6 +290,23 @@ def test_bad_input_is_told_in_one_line(
     (line,) = done.stderr.splitlines()
     assert says in line
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_scheduler_that_does_not_answer_leaves_all_as_it_was(
+    tmp_path: Path, fake: Fake, invoke: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case_file(tmp_path, SWEEP)
+    monkeypatch.setattr(case_files, "draw_load_cases", lambda png, title, panels: png.touch())
+    assert invoke("-o", "done").exit_code == 0
+    case_file(tmp_path, SWEEP.replace("100.0", "300.0"))
+    before = sorted(tmp_path.rglob("*"))
+    monkeypatch.setattr(pool, "CONNECTING", "0.1s")
+    monkeypatch.setattr(pool, "outcomes", TRUE_OUTCOMES)
+    for folder in ("done", "new"):
+        nobody = invoke("-o", folder, "--scheduler", "tcp://127.0.0.1:9")
+        assert nobody.exit_code == 2
+        assert nobody.stderr.startswith("--scheduler tcp://127.0.0.1:9: nobody answers there (")
+        assert sorted(tmp_path.rglob("*")) == before
 
 
 @pytest.mark.parametrize("terminal", [True, False])

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import signal
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from shutil import copytree
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,12 +15,14 @@ import pytest
 from typer.testing import CliRunner
 
 from riser_soil.__main__ import app
+from riser_soil.assembly import Assembly
 from riser_soil.core.saved_state import packed, unpacked
-from riser_soil.errors import ResultsError, SceneError, WriteError
+from riser_soil.errors import Interruption, ResultsError, SceneError, WriteError
 from riser_soil.results import folder as run_folder
 from riser_soil.results import record
 from riser_soil.results.checkpoint import CheckpointSchedule
 from riser_soil.results.checkpoint_file import About, read_checkpoint, write_checkpoint
+from riser_soil.results.observer import Observer
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.identity import first_difference, identity_of
 from riser_soil.scene.output import Checkpoint
@@ -35,6 +40,7 @@ ALL_KINDS = (  # seabed with memory, friction, waves, steps found on the way
     "water.surface_level=95.0",
     "water.waves={airy: {height: 2.0, period: 6.0}, ramp: 0.5}",
 )
+WAY = "t [s], x [m], y [m], z [m]\n0, 0, 0, 0\n1, 0, 0, 0\n2, 0, 0, 0\n3, 0, 0, {}\n"
 
 
 @cache
@@ -89,6 +95,23 @@ def test_a_run_begins_with_another_ones_end(tmp_path: Path) -> None:
     assert not (tmp_path / "stiffer").exists()
     with pytest.raises(SceneError, match='its last stage, "heave", is dynamic'):
         run(scene_of(f"initial={{from: {tmp_path / 'whole'}}}"), tmp_path / "from motion")
+    kept = read_checkpoint(tmp_path / "lay/checkpoint.npz")
+    write_checkpoint(tmp_path / "lay/checkpoint.npz", replace(kept.about, ended=None), kept.shares)
+    with pytest.raises(SceneError, match="its run has not kept the state at its end"):
+        run(heave, tmp_path / "from the way")
+
+
+@pytest.fixture(scope="module")
+def left_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("left")
+    leave_after(3, scene_of(), folder)
+    return folder
+
+
+@pytest.fixture
+def left(left_once: Path, tmp_path: Path) -> Path:
+    """A run that was left on its way."""
+    return Path(copytree(left_once, tmp_path / "left"))
 
 
 @pytest.fixture
@@ -122,6 +145,19 @@ def test_a_checkpoint_of_another_scene_is_refused(override: str, checkpoint: Pat
     assert checkpoint.exists()
 
 
+def test_a_run_that_can_go_on_is_not_overwritten_by_mistake(left: Path) -> None:
+    before = {path.name: path.read_bytes() for path in left.iterdir()}
+    told = "holds an unfinished run; go on with it by --restart, overwrite it by --force, or choose another folder"
+    with pytest.raises(SceneError, match=told):
+        run(scene_of(), left)
+    by_command = CliRunner().invoke(app, ["run", str(left / "scene.yaml"), "-o", str(left)])
+    assert by_command.exit_code == 2
+    assert "go on with it by --restart" in by_command.stderr
+    assert {path.name: path.read_bytes() for path in left.iterdir()} == before
+    run(scene_of(), left, force=True)
+    assert run_folder.is_finished(left)
+
+
 @pytest.mark.parametrize(
     ("about", "says"),
     [
@@ -153,13 +189,53 @@ def test_error_bars_can_not_begin_on_the_way(checkpoint: Path) -> None:
         run(scene_of(), checkpoint.parent, peaks=RunPeaks(), restart=True)
 
 
-def test_results_that_lack_what_they_had_are_refused(tmp_path: Path) -> None:
+def test_results_that_lack_what_they_had_are_refused(left: Path) -> None:
     """As another run's files that somebody has put beside the checkpoint."""
-    leave_after(3, scene_of(), tmp_path)
-    leave_after(1, scene_of(), tmp_path / "shorter")
-    (tmp_path / "shorter" / "results.nc").replace(tmp_path / "results.nc")
+    leave_after(1, scene_of(), left / "shorter")
+    (left / "shorter" / "results.nc").replace(left / "results.nc")
     with pytest.raises(ResultsError, match="lacks records made before the checkpoint"):
-        run(scene_of(), tmp_path, restart=True)
+        run(scene_of(), left, restart=True)
+
+
+@pytest.mark.parametrize("name", ["results.nc", "riser.vtkhdf", "riser.xdmf"])
+def test_a_run_whose_file_has_gone_is_refused(name: str, left: Path) -> None:
+    (left / name).unlink()
+    with pytest.raises(ResultsError, match=f"{name}: lacks records made before the checkpoint beside it; begin anew"):
+        run(scene_of(), left, restart=True)
+
+
+def test_xml_that_is_cut_off_is_refused(left: Path) -> None:
+    """Its last frame is begun and has no end: what followed would stand within it."""
+    content = (left / "riser.xdmf").read_bytes()
+    (left / "riser.xdmf").write_bytes(content[: content.rindex(b"<Grid Name") + 30])
+    with pytest.raises(ResultsError, match=r"riser\.xdmf: lacks records"):
+        run(scene_of(), left, restart=True)
+
+
+def test_a_run_that_is_ended_before_it_went_on_stays_as_it_was(left: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = {path.name: path.read_bytes() for path in left.iterdir()}
+    monkeypatch.setattr(Assembly, "resume", lambda self: signal.raise_signal(signal.SIGTERM))
+    with pytest.raises(Interruption) as end:
+        run(scene_of(), left, restart=True)
+    assert str(end.value).startswith(f"ended by SIGTERM before it went on; {left} is as it was; go on with: riser-soil")
+    assert {path.name: path.read_bytes() for path in left.iterdir()} == before
+
+
+def test_a_file_that_changes_while_the_run_lasts_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The checkpoint is of the file that the run has read."""
+    way, usual = tmp_path / "way.csv", Observer.begin_stage
+
+    def begin_stage(self: Observer, *told: Any) -> None:
+        usual(self, *told)
+        way.write_text(WAY.format("0.2"), encoding="utf-8")
+
+    way.write_text(WAY.format("0.1"), encoding="utf-8")
+    scene = scene_of(f"stages.1.motion={{end: {{table: {{file: {way}}}}}}}")
+    with monkeypatch.context() as patch:
+        patch.setattr(Observer, "begin_stage", begin_stage)
+        leave_after(3, scene, tmp_path / "out")
+    with pytest.raises(SceneError, match=r"stages\.1\.motion\.end\.table\.file was a file of other content"):
+        run(scene, tmp_path / "out", restart=True)
 
 
 def test_a_full_disk_leaves_the_last_checkpoint(alone: Alone, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,6 +6,8 @@ import csv
 import json
 import os
 import signal
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -14,6 +16,7 @@ import pytest
 import xarray
 from distributed import LocalCluster
 
+from riser_soil import __version__
 from tests.support.case_files import case_file
 from tests.support.case_sweeps import Watched, sweep
 from tests.support.on_ranks import HANGS
@@ -138,3 +141,37 @@ def test_workers_of_another_scheduler(tmp_path: Path) -> None:
         assert len(cluster.scheduler_info["workers"]) == 2
     assert [row["case"] for row in rows(tmp_path)] == names(*FEW)
     assert {row["status"] for row in rows(tmp_path)} == {"0"}
+
+
+STRANGER = """
+import asyncio, sys
+from distributed import Worker
+
+sys.modules["riser_soil"] = None  # as where it is not installed
+
+async def work():
+    async with Worker(sys.argv[1], nthreads=1) as worker:
+        await worker.finished()
+
+asyncio.run(work())
+"""
+
+
+def test_a_worker_that_lacks_the_package_is_told_before_it_gets_a_case(tmp_path: Path) -> None:
+    """It could not even read what it is sent, and the command would wait for it."""
+    case_file(tmp_path, product(*FEW))
+    with LocalCluster(n_workers=0, host="127.0.0.1", dashboard_address=None) as cluster:
+        address = cluster.scheduler_address
+        with subprocess.Popen([sys.executable, "-c", STRANGER, address], stderr=subprocess.DEVNULL) as stranger:
+            try:
+                while not cluster.scheduler_info["workers"]:
+                    time.sleep(0.05)
+                with sweep(tmp_path, "--scheduler", address) as job:
+                    _, err = job.process.communicate(timeout=HANGS)
+            finally:
+                stranger.kill()
+    (line,) = err.splitlines()
+    assert job.process.returncode == 2
+    assert line.startswith(f"--scheduler {address}: its worker tcp://127.0.0.1:")
+    assert f"has no riser_soil; install {__version__} there, or end it" in line
+    assert not (tmp_path / "out").exists()
