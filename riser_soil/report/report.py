@@ -142,7 +142,7 @@ def _run_part(label: str, anchor: str, run: Run, stage: str | None) -> RunPart:
 def _scene_tables(scene: Any) -> Iterator[tuple[str, ReportTable]]:
     yield "The riser from its start to its end", scene_words.segments_table(scene)
     yield "Line types", scene_words.pipes_table(scene)
-    yield "Water, ground, contact, solver", scene_words.parts_table(scene)
+    yield "Contents, ends, water, ground, contact, solver", scene_words.parts_table(scene)
     yield "Stages", scene_words.stages_table(scene)
 
 
