@@ -84,10 +84,10 @@ def statistics(
         ]
         levels = above or []
         told = [*table(places, wanted), *exceedance_table(places, levels, wanted)]
+        if plot is not None:  # first: it refuses what it can't draw
+            _draw(plot, places)
         if output is not None:
             write(output, places, levels, wanted)
-        if plot is not None:
-            _draw(plot, places)
         typer.echo("\n".join(told))
 
 

@@ -135,8 +135,15 @@ def _run_part(label: str, anchor: str, run: Run, stage: str | None) -> RunPart:
         versions=health.versions_table(summary),
         built=built,
         left_out=left_out,
-        scene_text=(run.folder / run_folder.SCENE).read_text(encoding="utf-8"),
+        scene_text=_scene_text(run),
     )
+
+
+def _scene_text(run: Run) -> str:
+    try:
+        return (run.folder / run_folder.SCENE).read_text(encoding="utf-8")
+    except OSError as err:
+        return f"# {run_folder.SCENE} can't be read: {err.strerror}"
 
 
 def _scene_tables(scene: Any) -> Iterator[tuple[str, ReportTable]]:

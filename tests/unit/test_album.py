@@ -93,6 +93,14 @@ def test_what_acts_near_touchdown_is_shown_from_close_by(run: Run) -> None:
     assert whole.get_xlim()[1] == pytest.approx(run.arc[-1])
 
 
+def test_a_file_in_the_place_of_the_folder_is_told(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "there").write_text("mine", encoding="utf-8")
+    done = CliRunner().invoke(app, ["plot", str(run.folder), "--what", "energy", "-o", str(tmp_path / "there")])
+    assert done.exit_code == 2
+    assert f"{tmp_path / 'there'}: " in done.output
+    assert (tmp_path / "there").read_text(encoding="utf-8") == "mine"
+
+
 def test_the_names_of_energies_stand_above_their_curves(run: Run) -> None:
     figure = energy(stage_records(run))
     FigureCanvasAgg(figure).draw()

@@ -228,6 +228,15 @@ def test_columns_without_anything_are_left_out() -> None:
     assert compact(sparse) == ReportTable(["a", "c"], [["1", "2"], ["3", ""]])
 
 
+def test_a_run_whose_scene_is_gone_is_reported_without_it(run: Run, tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    shutil.copytree(run.folder, folder)
+    (folder / "scene.yaml").unlink()
+    told = write_report([folder], tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "# scene.yaml can&#39;t be read: No such file or directory" in told
+    assert "Stage heave (dynamic)" in told
+
+
 def test_what_cannot_be_reported_is_said(run: Run, tmp_path: Path) -> None:
     with pytest.raises(WriteError, match="there is no folder"):
         write_report([run.folder], tmp_path / "nowhere" / "report.html")
