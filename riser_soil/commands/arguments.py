@@ -23,7 +23,8 @@ StageName = Annotated[
     str | None, typer.Option("--stage", metavar="NAME", help="a dynamic stage; by default the last one")
 ]
 Period = Annotated[
-    float | None, typer.Option("--period", help="length of a cycle [s]; by default that of the stage's motion")
+    float | None,
+    typer.Option("--period", metavar="SECONDS", help="length of a cycle; by default that of the stage's motion"),
 ]
 
 

@@ -25,7 +25,9 @@ def cases(
         str | None,
         typer.Option("--scheduler", metavar="ADDRESS", help="of a Dask scheduler, tcp://…, whose workers compute"),
     ] = None,
-    limit: Annotated[float | None, typer.Option("--limit", help="time that one case may take [s]; else any")] = None,
+    limit: Annotated[
+        float | None, typer.Option("--limit", metavar="SECONDS", help="time that one case may take; else any")
+    ] = None,
     overrides: Overrides = None,
 ) -> None:
     """Run load cases on many cores or machines: a folder for each, a table and a plot of all; call again to go on."""

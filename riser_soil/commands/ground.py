@@ -16,7 +16,7 @@ def material(
         Path | None,
         typer.Option(
             metavar="CSV",
-            help="strains or stresses by rows, e.g. columns gamma_xz [-], sigma_zz [kPa]; else cycles of shear",
+            help=r"strains or stresses by rows, e.g. columns gamma_xz [-], sigma_zz \[kPa]; else cycles of shear",
         ),
     ] = None,
     depth: Annotated[
@@ -44,7 +44,8 @@ def material(
 
 def calibrate(
     data: Annotated[
-        Path, typer.Argument(metavar="DATA.csv", help="what was measured: columns w [m], V [N/m], in the order of time")
+        Path,
+        typer.Argument(metavar="DATA.csv", help=r"what was measured: columns w \[m], V [N/m], in the order of time"),
     ],
     scene: SceneFile,
     wanted: Annotated[

@@ -12,7 +12,7 @@ from riser_soil.commands.endings import expected_errors
 
 def stiffness(
     folder: RunFolder,
-    arc: Annotated[list[float], typer.Option("--arc", metavar="S", help="arc length [m]; may be repeated")],
+    arc: Annotated[list[float], typer.Option("--arc", metavar="METRES", help="arc length; may be repeated")],
     stage: StageName = None,
     period: Period = None,
     output: Annotated[

@@ -22,17 +22,25 @@ def statistics(
     ],
     arc: Annotated[
         list[float] | None,
-        typer.Option("--arc", metavar="S", help="arc length [m]; may be repeated; by default all nodes"),
+        typer.Option("--arc", metavar="METRES", help="arc length; may be repeated; by default all nodes"),
     ] = None,
     at: Annotated[
         list[str] | None, typer.Option("--at", metavar="END", help="start or end of the riser; may be repeated")
     ] = None,
     stage: StageName = None,
-    since: Annotated[float, typer.Option("--since", help="seconds of the stage that are cut off, its transient")] = 0.0,
-    duration: Annotated[float, typer.Option("--duration", help="time that extremes are foretold for [s]")] = 10800.0,
+    since: Annotated[
+        float, typer.Option("--since", metavar="SECONDS", help="of the stage that are cut off, its transient")
+    ] = 0.0,
+    duration: Annotated[
+        float, typer.Option("--duration", metavar="SECONDS", help="time that extremes are foretold for")
+    ] = 10800.0,
     block: Annotated[
         float | None,
-        typer.Option("--block", help="blocks whose extremes Gumbel's fit takes [s]; by default the shortest run"),
+        typer.Option(
+            "--block",
+            metavar="SECONDS",
+            help="blocks whose extremes Gumbel's fit takes; by default the shortest run",
+        ),
     ] = None,
     minima: Annotated[bool, typer.Option("--minima", help="smallest values in the place of largest ones")] = False,
     above: Annotated[
@@ -42,7 +50,9 @@ def statistics(
     confidence: Annotated[float, typer.Option("--confidence", help="of the fits' intervals")] = 0.95,
     segment: Annotated[
         float | None,
-        typer.Option("--segment", help="pieces that spectra are averaged over [s]; by default an eighth of a run"),
+        typer.Option(
+            "--segment", metavar="SECONDS", help="pieces that spectra are averaged over; by default an eighth of a run"
+        ),
     ] = None,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="FILE", help="table as .csv, or with spectra as .json")
@@ -74,10 +84,10 @@ def statistics(
         ]
         levels = above or []
         told = [*table(places, wanted), *exceedance_table(places, levels, wanted)]
+        if plot is not None:  # first: it refuses what it can't draw
+            _draw(plot, places)
         if output is not None:
             write(output, places, levels, wanted)
-        if plot is not None:
-            _draw(plot, places)
         typer.echo("\n".join(told))
 
 

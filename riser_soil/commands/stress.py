@@ -17,7 +17,9 @@ def stress(
         Path | None,
         typer.Option("-o", "--output", metavar="FOLDER", help="folder; else the scene's name and -stress"),
     ] = None,
-    limit: Annotated[int, typer.Option("--limit", help="processor time that each run may take [s]")] = 120,
+    limit: Annotated[
+        int, typer.Option("--limit", metavar="SECONDS", help="processor time that each run may take")
+    ] = 120,
     jobs: Annotated[int, typer.Option("--jobs", help="runs at a time, each a process")] = 1,
     overrides: Overrides = None,
 ) -> None:

@@ -50,7 +50,10 @@ ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
     OutputQuantity(
         "wall_tension", "T_w", "N", "tension in the pipe's wall, T + p_i A_i - p_o A_o", "nodes",
         lambda i: i.riser.wall_tension, "positive in tension", needs="pressures",
-        figures=(least("min_wall_tension"), greatest("max_wall_tension", Row("greatest wall tension", "kN", 1e-3))),
+        figures=(
+            least("min_wall_tension", Row("least wall tension", "kN", 1e-3)),
+            greatest("max_wall_tension", Row("greatest wall tension", "kN", 1e-3)),
+        ),
     ),
     OutputQuantity(
         "bending_moment", "M", "N m", "magnitude of the bending moment", "nodes",

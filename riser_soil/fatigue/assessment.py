@@ -71,7 +71,7 @@ class YearlyDamage:
         """With numbers and a remedy."""
         total = self.given.total_share
         if total < 1.0 - 1e-9:
-            yield f"the cases stand for {total:.4%} of the year; the rest counts as calm"
+            yield f"the cases stand for {100.0 * total:.4g} % of the year; the rest counts as calm"
         for each in self.cases:
             yield from _doubts(each)
         used = self.utilisation

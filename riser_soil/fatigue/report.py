@@ -123,7 +123,7 @@ def result_lines(found: YearlyDamage) -> list[str]:
     ]
     for each in found.cases:
         part = float(each.per_year[section, point])
-        lines.append(f"  {each.case.run}: {each.case.share:.4%} of the year, damage {part:.4g}")
+        lines.append(f"  {each.case.run}: {100.0 * each.case.share:.4g} % of the year, damage {part:.4g}")
     if found.utilisation is not None:
         years, factor = found.given.design_life, found.given.design_fatigue_factor
         lines.append(f"damage in {years:g} years times {factor:g}: {found.utilisation:.4g}")

@@ -17,7 +17,7 @@ from riser_soil.plots.shape import snapshots
 from riser_soil.plots.trough import has_trough, trough
 from riser_soil.results import Run
 from riser_soil.results.stage_records import StageRecords, stage_records
-from riser_soil.results.whole_file import written_whole
+from riser_soil.results.whole_file import refuse_file, written_whole
 
 FORMATS = ("png", "svg", "pdf")
 GROUPS = ("ranges", "histories", "shape", "soil", "energy", "solver", "touchdown", "film")
@@ -50,6 +50,7 @@ def album(
     of_stage = stage_records(run, stage)
     there = pictures(of_stage)
     _check(what, there)
+    refuse_file(folder)
     folder.mkdir(parents=True, exist_ok=True)
     for each in there:
         if not what or {each.group, each.name} & set(what):

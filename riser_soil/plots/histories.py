@@ -82,6 +82,8 @@ def energy(stage: StageRecords) -> Figure:
         stored.plot(t, values / size, linewidth=1.0, label=words if words != "potential" else "potential, changed by")
     residual.plot(t, 100.0 * stage.run["relative_energy_residual"][of_step], color="k", linewidth=1.0)
     _name(stored, f"energy [{unit}]")
+    above = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0)}
+    stored.legend(fontsize="small", ncols=5, frameon=False, **above)
     _name(residual, "residual, % of what\nwas turned over")
     return _in_time(figure)
 

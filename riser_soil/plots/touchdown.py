@@ -29,6 +29,7 @@ from riser_soil.results import Run, SoilFrame
 from riser_soil.results.derived import along
 
 _SIZE = (1600, 900)
+_ABOVE = 0.045  # of what is shown across: the touchdown's label stands above the riser that rises behind it
 _MOMENT = "bending moment [kN m]"
 _STRESS = "von Mises stress [kPa]"
 _MOMENT_COLOURS, _STRESS_COLOURS = "viridis", "YlOrBr"
@@ -151,7 +152,7 @@ def _draw_close(plotter: pv.Plotter, still: _Frame, factor: float) -> None:
     if not math.isnan(still.touchdown_arc):
         _mark(
             plotter,
-            still.touchdown + 4.0 * still.thickened * still.radius * UP,
+            still.touchdown + max(4.0 * still.thickened * still.radius, _ABOVE * still.across) * UP,
             f"touchdown at arc {still.touchdown_arc:.4g} m",
         )
     reach = still.across

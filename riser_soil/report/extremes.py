@@ -22,6 +22,7 @@ _HEADS = {
 _AXES, _ALL = ("x", "y", "z"), ", x, y, z"
 _NOTE = "Times are those of the run, arc lengths count from the riser's start. "
 _LEFT_OUT = "Components that stay 0 are left out. "
+_ROUND_OFF = 1e-9  # of the largest component, or of the largest bending moment
 
 
 def extremes_table(summary: Mapping[str, Any], stage: Mapping[str, Any]) -> ReportTable:
@@ -73,11 +74,31 @@ def _table(stage: Mapping[str, Any], headline: bool, bars: Mapping[tuple[str, st
             continue
         words, unit, scale = _words(output, figure, row)
         bar = {which: bars.get((figure.name, which)) for which in ("min", "max")}
-        rows += list(_rows(stage["kind"], (words, unit, scale), final, extremes, bar))
-        if output.sign:
+        if isinstance(final, list):
+            final, extremes = _without_round_off(stage, output, final, extremes)
+        told_here = list(_rows(stage["kind"], (words, unit, scale), final, extremes, bar))
+        rows += told_here
+        if output.sign and told_here:
             signs.setdefault(output.sign, []).append(words.removesuffix(_ALL))
     told = [f"{', '.join(words)}: {sign}." for sign, words in signs.items()]
     return compact(ReportTable(_HEADS[stage["kind"]], rows, _NOTE + ("" if headline else _LEFT_OUT) + " ".join(told)))
+
+
+def _without_round_off(
+    stage: Mapping[str, Any], output: OutputQuantity[Any], final: list[float], extremes: Mapping[str, Any] | None
+) -> tuple[list[float], Mapping[str, Any] | None]:
+    """A vector and its extremes with 0 for what is round-off beside its largest component, or the riser's moments."""
+    sides = {which: (extremes or {}).get(which) for which in ("min", "max")}
+    known = [abs(x) for values in (final, *sides.values()) for x in values or ()]
+    if output.units == "N m":
+        known.append(abs(found(stage["final"], ("max_bending_moment", "value")) or 0.0))
+    least = _ROUND_OFF * max(known)
+
+    def cleared(values: list[float]) -> list[float]:
+        return [x if abs(x) > least else 0.0 for x in values]
+
+    told = {which: cleared(values) for which, values in sides.items() if values is not None}
+    return cleared(final), extremes if extremes is None else {**extremes, **told}
 
 
 def _words(output: OutputQuantity[Any], figure: Figure, row: Row | None) -> tuple[str, str, float]:

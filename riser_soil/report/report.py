@@ -135,14 +135,21 @@ def _run_part(label: str, anchor: str, run: Run, stage: str | None) -> RunPart:
         versions=health.versions_table(summary),
         built=built,
         left_out=left_out,
-        scene_text=(run.folder / run_folder.SCENE).read_text(encoding="utf-8"),
+        scene_text=_scene_text(run),
     )
+
+
+def _scene_text(run: Run) -> str:
+    try:
+        return (run.folder / run_folder.SCENE).read_text(encoding="utf-8")
+    except OSError as err:
+        return f"# {run_folder.SCENE} can't be read: {err.strerror}"
 
 
 def _scene_tables(scene: Any) -> Iterator[tuple[str, ReportTable]]:
     yield "The riser from its start to its end", scene_words.segments_table(scene)
     yield "Line types", scene_words.pipes_table(scene)
-    yield "Water, ground, contact, solver", scene_words.parts_table(scene)
+    yield "Contents, ends, water, ground, contact, solver", scene_words.parts_table(scene)
     yield "Stages", scene_words.stages_table(scene)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from riser_soil.errors import RiserSoilError
-from riser_soil.report.tables import NOTHING, ReportTable, number
+from riser_soil.report.tables import NOTHING, ReportTable, compact, number
 from riser_soil.results import Run
 from riser_soil.results import folder as run_folder
 from riser_soil.scene.reader import read_scene
@@ -19,15 +19,28 @@ _UNIT = re.compile(r"\[([^\[\],\s]{1,12})\]")
 _LONG = 120  # characters
 # What stands in a table of its own, or is no part of the model.
 _ELSEWHERE = ("title", "line_types", "riser", "stages", "output", "accuracy", "error_bars")
-_PIPE = (  # key of a line type, its head
+_PIPE = (  # path of a line type's key, its head
     ("outer_diameter", "outer ⌀ [m]"),
     ("inner_diameter", "inner ⌀ [m]"),
     ("mass", "mass [kg/m]"),
     ("EA", "EA [N]"),
     ("EI", "EI [N.m²]"),
+    ("EI_y", "EI_y [N.m²]"),
+    ("EI_z", "EI_z [N.m²]"),
     ("GJ", "GJ [N.m²]"),
     ("submerged_weight", "submerged weight [N/m]"),
     ("min_bend_radius", "min bend radius [m]"),
+    ("max_tension", "max tension [N]"),
+    ("drag.normal", "normal drag [-]"),
+    ("drag.tangential", "tangential drag [-]"),
+    ("added_mass.normal", "normal added mass [-]"),
+    ("added_mass.tangential", "tangential added mass [-]"),
+    ("damping.ratio", "damping ratio [-]"),
+    ("damping.frequency", "of damping [Hz]"),
+    ("wall.outer_diameter", "outer ⌀ of the wall [m]"),
+    ("wall.inner_diameter", "inner ⌀ of the wall [m]"),
+    ("wall.yield_stress", "yield stress [Pa]"),
+    ("wall.design_factor", "design factor [-]"),
 )
 
 
@@ -41,7 +54,8 @@ def read(run: Run) -> Scene | None:
 
 def prose(scene: Scene, run: Run) -> list[str]:
     """Sentences: the riser, its ends, the ground, the water, the stages."""
-    return [sentence for sentence in (_riser(scene, run), _ground(scene), _water(scene), _stages(scene)) if sentence]
+    told = (_riser(scene, run), _hang_off(run), _ground(scene), _water(scene), _stages(scene))
+    return [sentence for sentence in told if sentence]
 
 
 def segments_table(scene: Scene) -> ReportTable:
@@ -49,7 +63,8 @@ def segments_table(scene: Scene) -> ReportTable:
     rows, begin = [], 0.0
     for segment in scene.riser.segments:
         size = segment.element_length if segment.elements is None else None
-        mesh = f"{segment.elements} elements" if size is None else f"elements of {text(size)} m"
+        graded = " to ".join(text(each) for each in (size if isinstance(size, tuple) else (size,)))
+        mesh = f"{segment.elements} elements" if size is None else f"elements of {graded} m"
         end = begin + segment.length
         rows.append([segment.line_type, number(begin), number(end), number(segment.length), mesh])
         begin = end
@@ -58,20 +73,16 @@ def segments_table(scene: Scene) -> ReportTable:
 
 def pipes_table(scene: Scene) -> ReportTable:
     """The line types' properties; those that none has are left out."""
-    pipes = scene.line_types
-    shown = [(key, head) for key, head in _PIPE if any(getattr(pipe, key) is not None for pipe in pipes.values())]
-    drags = ("drag", "normal drag [-]"), ("added_mass", "normal added mass [-]")
-    rows = []
-    for name, pipe in pipes.items():
-        cells = [_cell(getattr(pipe, key)) for key, _ in shown]
-        cells += [_cell(getattr(getattr(pipe, key), "normal", None)) for key, _ in drags]
-        rows.append([name, *cells])
-    return ReportTable(("line type", *(head for _, head in (*shown, *drags))), rows)
+    rows = [[name, *(_cell(_at(pipe, path)) for path, _ in _PIPE)] for name, pipe in scene.line_types.items()]
+    return compact(ReportTable(("line type", *(head for _, head in _PIPE)), rows))
 
 
 def parts_table(scene: Scene) -> ReportTable:
-    """All else that the scene gives, key by key, with unit and meaning."""
+    """All else that the scene gives, contents and ends of the riser first, key by key, with unit and meaning."""
     rows: list[Sequence[str]] = []
+    for name, value in scene.riser:
+        if name != "segments":
+            rows += _rows(type(scene.riser), name, value, ("riser", name))
     for name, value in scene:
         if name not in _ELSEWHERE:
             rows += _rows(type(scene), name, value, (name,))
@@ -114,13 +125,21 @@ def _rows(model: type[BaseModel], name: str, value: Any, path: tuple[str, ...]) 
             yield from _rows(model, name, inner, (*path, str(n)))
     elif name in model.model_fields:  # what a table's file holds is none of them
         meaning = model.model_fields[name].description or ""
-        unit = _UNIT.search(meaning)
+        unit = _UNIT.search(meaning) if value == "auto" or not isinstance(value, str) else None
         yield [".".join(path), text(value), unit[1] if unit else "", _clause(meaning)]
 
 
 def _clause(meaning: str) -> str:
     """A long description's first clause."""
     return meaning if len(meaning) <= _LONG else meaning.split("; ")[0]
+
+
+def _at(model: BaseModel, path: str) -> Any:
+    """The value at a dotted path; None where there is nothing on the way."""
+    value: Any = model
+    for key in path.split("."):
+        value = getattr(value, key, None)
+    return value
 
 
 def _cell(value: Any) -> str:
@@ -136,6 +155,16 @@ def _riser(scene: Scene, run: Run) -> str:
     stretches = "one segment" if count == 1 else f"{count} segments"
     meshed = f"A riser of {number(length)} m in {stretches}{filled}, in {len(run.arc) - 1} elements"
     return f"{meshed}; its start at {start} m, its end at {end} m (x, y, z; z up)."
+
+
+def _hang_off(run: Run) -> str:
+    """The hang-off asked for, and what it was solved to."""
+    told = run.summary.get("hang_off")
+    if told is None:
+        return ""
+    angle, tension = (told["asked"].get(key) for key in ("angle_deg", "tension"))
+    asked = f"at {number(angle)}° from the vertical" if angle is not None else f"with {number(1e-3 * tension)} kN"
+    return f"Its {told['end']} hangs off {asked}, as asked, by a {told['by']} of {number(told['value'])} m."
 
 
 def _ground(scene: Scene) -> str:

@@ -53,6 +53,12 @@ def test_pieces_of_scenes_are_valid(page: Path, n: int, tmp_path: Path) -> None:
     scene_from_mapping(joined(BASE, list(pieces(page))[n]), tmp_path)
 
 
+def test_the_tutorial_shows_lines_of_its_scene() -> None:
+    scene = (ROOT / "demos/steel_catenary.yaml").read_text(encoding="utf-8").splitlines()
+    (shown,) = blocks(ROOT / "docs/tutorial_riser.md", "yaml")
+    assert [line for line in scene if line in shown.splitlines()] == shown.splitlines()
+
+
 def anchors(page: Path) -> set[str]:
     """What links to a page may name in it: its headings."""
     headings = re.findall(r"^#+ (.+)$", text(page), re.MULTILINE)

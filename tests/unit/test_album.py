@@ -17,6 +17,7 @@ from riser_soil.errors import ResultsError
 from riser_soil.plots import film
 from riser_soil.plots.album import album, pictures
 from riser_soil.plots.curves import envelope, sheet
+from riser_soil.plots.histories import energy
 from riser_soil.plots.ranges import draw_range, mean_in_time, names
 from riser_soil.plots.scales import drawn_radius, metres
 from riser_soil.plots.shape import filmed_records
@@ -90,6 +91,24 @@ def test_what_acts_near_touchdown_is_shown_from_close_by(run: Run) -> None:
     draw_range(whole, stage_records(run), "bending_moment")
     assert close.get_xlim()[1] < 40.0
     assert whole.get_xlim()[1] == pytest.approx(run.arc[-1])
+
+
+def test_a_file_in_the_place_of_the_folder_is_told(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "there").write_text("mine", encoding="utf-8")
+    done = CliRunner().invoke(app, ["plot", str(run.folder), "--what", "energy", "-o", str(tmp_path / "there")])
+    assert done.exit_code == 2
+    assert f"{tmp_path / 'there'}: " in done.output
+    assert (tmp_path / "there").read_text(encoding="utf-8") == "mine"
+
+
+def test_the_names_of_energies_stand_above_their_curves(run: Run) -> None:
+    figure = energy(stage_records(run))
+    FigureCanvasAgg(figure).draw()
+    stored, _ = figure.axes
+    names_of_curves = stored.get_legend()
+    assert names_of_curves is not None
+    assert names_of_curves.get_window_extent().y0 >= stored.get_window_extent().y1
+    assert names_of_curves.get_window_extent().x0 >= 0.0
 
 
 def test_all_pictures_of_a_riser_alone(run: Run, tmp_path: Path) -> None:

@@ -8,6 +8,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from rich.markup import render
+from typer.main import get_command
+
+from riser_soil.__main__ import app
 
 ROOT = Path(__file__).parents[2]
 # VTK does not stand processes that have imported dolfinx.
@@ -44,3 +48,14 @@ def test_help_of_pictures_and_films(name: str, takes: str) -> None:
     assert done.returncode == 0
     assert f"usage: python -m riser_soil.plots.{name} {takes}" in done.stdout
     assert not done.stderr
+
+
+COMMANDS = get_command(app).commands  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_shows_units_in_brackets(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Help is read as markup, which takes a bare [s] or [m] for a style: it strikes out what follows, unseen."""
+    for option in COMMANDS[name].params:
+        written = getattr(option, "help", None) or ""
+        assert render(written).plain == written.replace("\\[", "["), option.name

@@ -6,6 +6,7 @@ import base64
 import io
 import json
 import re
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ from typer.testing import CliRunner
 from riser_soil.__main__ import app
 from riser_soil.errors import ResultsError, WriteError
 from riser_soil.report.comparison import differences_table, headlines_table
-from riser_soil.report.extremes import error_bars, extremes_table
+from riser_soil.report.extremes import ends_table, error_bars, extremes_table
 from riser_soil.report.extremes import headlines_table as headlines_of
 from riser_soil.report.health import energy_table, versions_table, warnings_of
 from riser_soil.report.report import write_report
@@ -117,6 +118,13 @@ def test_the_page_prints_on_pages(page: Path, tmp_path: Path) -> None:
     assert len(re.findall(rb"/Type\s*/Page\b", pdf)) > 3
 
 
+def test_one_run_begins_on_the_first_page(page: Path) -> None:
+    """In print a run begins a page, but for one that the title alone would stand before."""
+    text = page.read_text(encoding="utf-8")
+    assert "header + section.run { break-before: auto }" in text
+    assert re.search(r'</header>\s*<section class="run"', text)
+
+
 def test_the_browser_would_tell(tmp_path: Path) -> None:
     broken = tmp_path / "broken.html"
     broken.write_text("<script>throw new Error('no good')</script>", encoding="utf-8")
@@ -156,6 +164,42 @@ def test_the_scene_in_words(run: Run) -> None:
     assert row(stages_table(scene), "heave.motion.end.harmonic.period")["value"] == "10"
 
 
+def test_contents_ends_and_walls_of_the_scene(run: Run, tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    shutil.copytree(run.folder, folder)
+    wall = "EA: 3.0e8\n    wall: {yield_stress: 448.0e6, design_factor: 0.67}"
+    pressed = SCENE.replace("EA: 3.0e8", wall).replace("{density: 850.0}", "{density: 850.0, pressure: 2.0e7}")
+    surfaced = pressed.replace("water: {density: 1025.0}", "water: {density: 1025.0, surface_level: 110.0}")
+    graded = surfaced.replace("element_length: 2.0", "element_length: [1.0, 4.0]")
+    (folder / "scene.yaml").write_text(graded, encoding="utf-8")
+    told = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    told["hang_off"] = {"end": "end", "asked": {"tension": 9e4}, "by": "layback", "value": 81.25}
+    (folder / "summary.json").write_text(json.dumps(told), encoding="utf-8")
+    scene = read(Run(folder))
+    assert scene is not None
+    pipe = row(pipes_table(scene), "flexible")
+    assert (pipe["yield stress [Pa]"], pipe["design factor [-]"]) == ("4.48e+08", "0.67")
+    assert "damping ratio [-]" not in pipe
+    assert segments_table(scene).rows[1][-1] == "elements of 1 to 4 m"
+    assert row(parts_table(scene), "riser.contents.pressure")["unit"] == "Pa"
+    assert row(parts_table(scene), "riser.end.position")["value"] == "(80, 0, 100)"
+    assert row(parts_table(scene), "riser.end.rotation")["unit"] == "", "free has none"
+    assert "Its end hangs off with 90 kN, as asked, by a layback of 81.25 m." in prose(scene, Run(folder))
+
+
+def test_components_of_round_off_are_left_out(run: Run) -> None:
+    stage = json.loads(json.dumps(run.summary["stages"][1]))
+    largest = stage["final"]["max_bending_moment"]["value"]
+    told = {"min": [0.0, -1e-13 * largest, 0.0], "max": [0.0, 1e-3 * largest, 1e-12 * largest]}
+    stage["final"]["start"]["moment"], stage["final"]["end"]["moment"] = [0.0, 1e-13 * largest, 0.0], [0.0] * 3
+    stage["extremes"]["start"]["moment"] |= told
+    stage["extremes"]["end"]["moment"] |= {"min": told["min"], "max": [0.0] * 3}
+    table = ends_table(stage)
+    assert [words for words, *_ in table.rows if "moment" in words] == ["moment at the start, y"]
+    assert row(table, "moment at the start, y")["at the end"] == "0"
+    assert "moment at the end" not in table.note
+
+
 def test_two_runs_side_by_side(run: Run, tmp_path: Path) -> None:
     other = recorded(tmp_path / "other", SCENE.replace("1.0e5", "2.0e4"))
     runs = {"one": run, "other": other}
@@ -182,6 +226,15 @@ def test_numbers_read_well(value: float | None, told: str) -> None:
 def test_columns_without_anything_are_left_out() -> None:
     sparse = ReportTable(("a", "b", "c"), [["1", "", "2"], ["3", "–", ""]])
     assert compact(sparse) == ReportTable(["a", "c"], [["1", "2"], ["3", ""]])
+
+
+def test_a_run_whose_scene_is_gone_is_reported_without_it(run: Run, tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    shutil.copytree(run.folder, folder)
+    (folder / "scene.yaml").unlink()
+    told = write_report([folder], tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "# scene.yaml can&#39;t be read: No such file or directory" in told
+    assert "Stage heave (dynamic)" in told
 
 
 def test_what_cannot_be_reported_is_said(run: Run, tmp_path: Path) -> None:

@@ -307,3 +307,10 @@ def test_wrong_calls(seeds: list[str], words: tuple[str, ...], told: str) -> Non
     done = called(seeds[0], *words)
     assert done.exit_code == 2
     assert done.output == f"{told}\n"
+
+
+def test_no_table_is_left_where_the_picture_is_refused(seeds: list[str], tmp_path: Path) -> None:
+    table = tmp_path / "x.csv"
+    done = called(seeds[0], "--of", "end_force.x", "-o", str(table), "--plot", str(tmp_path / "x.pdf"))
+    assert done.exit_code == 2
+    assert not table.exists()

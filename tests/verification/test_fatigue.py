@@ -154,7 +154,7 @@ def test_what_is_doubtful_is_told(folder: Path) -> None:
     assert told["cases"][0]["seconds"] == pytest.approx(7.5, abs=1e-9)
     assert table(folder)["arc_m"].max() == 3.0
     texts = " ".join(told["warnings"])
-    assert "the cases stand for 40.0000% of the year" in texts
+    assert "the cases stand for 40 % of the year" in texts
     assert f"times 10 is {used:.4g}, more than 1" in texts
     assert "uncertain by some" in texts
     assert all(f"warning: {text}" in done.output for text in told["warnings"])
