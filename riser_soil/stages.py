@@ -237,13 +237,17 @@ def _static_step(run: StageRun) -> AcceptedStep:
 
 
 def _relaxed(assembly: Assembly, stepper: TimeStepper, control: Control, observer: StageObserver) -> bool:
-    """Whether an equilibrium was found at the load factor that Newton's method missed; else the step is halved."""
+    """Whether an equilibrium was found at the load factor that Newton's method missed; else the step is halved, and all
+    is as the last one left it.
+    """
     system, settings, weight = stepper.system, settings_of(assembly), assembly.scales.weight
+    left = gathered(owners(system.model))
     try:
         relaxed = relax(assembly.comm, system.model, assembly.line, weight, settings, system.clock, control.target)
     except SolveError:
         if not stepper.depends_on(control) or not control.cut():
             raise
+        restore_all(owners(system.model), left)
         return False
     finally:
         stepper.newton.renew()  # relaxation has chosen patterns of its own
