@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from riser_soil.assembly import Assembly
+from riser_soil.core.communicator import destroyed_together
 from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.solve.dynamic_relaxation import relax
@@ -24,13 +25,11 @@ def seat(assembly: Assembly, model: Model, settings: NewtonSettings, clock: Time
     alone = Model(model.lines, [part for part in model.parts if not any(part is each for each in absent)])
     system = System(assembly.comm, alone, clock)
     newton = Newton(system, replace(settings, line_search=False))
-    try:
-        size = system.numbering.size
-        solution = newton.solve(Step(Static(), State.at_rest(0.0, size), 0.0, 1.0, None, np.zeros(size)))
-        newton.require_stable(solution)
-        system.commit(solution.state)
-    except NotConvergedError:
-        relax(assembly.comm, alone, assembly.line, assembly.scales.weight, settings, clock, 0.0)
-    finally:
-        newton.destroy()
-        system.destroy()
+    with destroyed_together(assembly.comm, newton, system):
+        try:
+            size = system.numbering.size
+            solution = newton.solve(Step(Static(), State.at_rest(0.0, size), 0.0, 1.0, None, np.zeros(size)))
+            newton.require_stable(solution)
+            system.commit(solution.state)
+        except NotConvergedError:
+            relax(assembly.comm, alone, assembly.line, assembly.scales.weight, settings, clock, 0.0)

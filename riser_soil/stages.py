@@ -11,6 +11,7 @@ import numpy as np
 
 from riser_soil.assembly import Assembly
 from riser_soil.assembly.stage import scheme_of, times_to_hit
+from riser_soil.core.communicator import destroyed_together
 from riser_soil.core.part import Model, State
 from riser_soil.core.roles import Adaptive, owners, with_role
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all, within
@@ -140,14 +141,12 @@ def _take(
         _restore(system, begin)
     settings = replace(settings_of(assembly), linear_start=_starts_at_rest(assembly, stage))
     newton = solver_of(system, scheme_of(stage), settings)
-    try:
-        run = _begin_run(assembly, stage, system, newton, begin, observer)
-        return _walk(run, checkpoint)
-    except SolveError as err:
-        raise SolveError(f"{err}{_overload(assembly)}") from err
-    finally:
-        newton.destroy()
-        system.destroy()
+    with destroyed_together(assembly.comm, newton, system):
+        try:
+            run = _begin_run(assembly, stage, system, newton, begin, observer)
+            return _walk(run, checkpoint)
+        except SolveError as err:
+            raise SolveError(f"{err}{_overload(assembly)}") from err
 
 
 def _restore(system: System, saved: Saved) -> None:
@@ -237,16 +236,20 @@ def _static_step(run: StageRun) -> AcceptedStep:
 
 
 def _relaxed(assembly: Assembly, stepper: TimeStepper, control: Control, observer: StageObserver) -> bool:
-    """Whether an equilibrium was found at the load factor that Newton's method missed; else the step is halved."""
+    """Whether an equilibrium was found at the load factor that Newton's method missed; else the step is halved, and all
+    is as the last one left it.
+    """
     system, settings, weight = stepper.system, settings_of(assembly), assembly.scales.weight
+    left = gathered(owners(system.model))
     try:
         relaxed = relax(assembly.comm, system.model, assembly.line, weight, settings, system.clock, control.target)
     except SolveError:
         if not stepper.depends_on(control) or not control.cut():
             raise
+        restore_all(owners(system.model), left)
+        stepper.newton.renew()
         return False
-    finally:
-        stepper.newton.renew()  # relaxation has chosen patterns of its own
+    stepper.newton.renew()  # relaxation has chosen patterns of its own
     observer.relaxed(relaxed)
     stepper.restart()
     stepper.newton.rests = True

@@ -20,6 +20,8 @@ Ratios = Mapping[str, Sequence[float]]  # by knob, in order
 # ones whether two that agree do so by chance.
 COARSER: Ratios = {"soil_mesh": (2.0**0.5, 2.0), "time_step": (5.0,), "elements": (2.0,), "penalty": (4.0,)}
 LEAST_RATIO = 1.4  # below it two runs are too much alike
+# Errors that a companion may fail with: those that all ranks meet, and those that one may meet alone.
+OF_ALL, OF_ONE = (SolveError, MemoryShortageError, SceneError, MeshError), (ArithmeticError, ValueError)
 
 
 def companions(scene: Scene, comm: Any, coarser: Ratios = COARSER) -> list[Companion]:
@@ -88,7 +90,9 @@ def _run(step: CoarserScene, comm: Any) -> Companion:
         return Companion(step.source, step.ratio, None, step.reason)
     try:
         return Companion(step.source, step.ratio, values_of(peaks_of(step.scene, comm), "peaks"))
-    except (SolveError, MemoryShortageError, SceneError, MeshError, ArithmeticError, ValueError) as err:
+    except (*OF_ALL, *OF_ONE) as err:
+        if isinstance(err, OF_ONE) and comm.size > 1:
+            raise  # the others are within the companion still
         reason = str(err).partition("\n")[0]
         return Companion(step.source, step.ratio, None, f"its coarser companion failed: {reason}")
 

@@ -10,10 +10,11 @@ import importlib
 import importlib.util
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol
 
-from riser_soil.errors import SceneError
+from riser_soil.errors import Interruption, RiserSoilError, SceneError
 
 if TYPE_CHECKING:
     from riser_soil.core.arrays import IntArray
@@ -46,6 +47,12 @@ class Communicator(Protocol):
 
     def exscan(self, value: Any) -> Any:
         """The sum over the ranks before; None on the first one."""
+        ...
+
+
+class Destroyable(Protocol):
+    def destroy(self) -> None:
+        """Give back what the ranks hold together; collective."""
         ...
 
 
@@ -107,6 +114,26 @@ def any_of(comm: Communicator, here: bool) -> bool:
 def all_of(comm: Communicator, here: bool) -> bool:
     """Whether something is so on all ranks; collective."""
     return all(comm.allgather(bool(here)))
+
+
+@contextmanager
+def destroyed_together(comm: Communicator, *owners: Destroyable) -> Iterator[None]:
+    """Destroy what the ranks hold together, as the block ends; collective.
+
+    Not after an error that is not known to be all ranks': the one that met it would wait for the others, which are in
+    the middle of their work, and never tell.
+    """
+    together = True
+    try:
+        yield
+    except RiserSoilError:
+        raise
+    except BaseException as err:
+        together = comm.size == 1 or (isinstance(err, Interruption) and err.together)
+        raise
+    finally:
+        for owner in owners if together else ():
+            owner.destroy()
 
 
 def sum_of(comm: Communicator, values: Sequence[float]) -> list[float]:

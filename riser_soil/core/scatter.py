@@ -8,11 +8,16 @@ from petsc4py import PETSc
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.communicator import Communicator
 
+# PETSc's own copy of a communicator goes with the last object on it. Ranks would lose it at different times, as Python
+# collects what an exception or a circle has kept alive, and then wait in vain for the others to copy it again.
+_STAYING: list[tuple[Communicator, PETSc.Vec]] = []
+
 
 class Scatter:
     """Between this rank's rows (owned,) and the rows (n,) of its free local entries."""
 
     def __init__(self, comm: Communicator, owned: int, rows: IntArray) -> None:
+        _keep(comm)
         self._all = PETSc.Vec().createMPI((owned, PETSc.DETERMINE), comm=comm)
         self._mine = PETSc.Vec().createSeq(len(rows))
         at = PETSc.IS().createGeneral(rows.astype(PETSc.IntType), comm=PETSc.COMM_SELF)
@@ -35,3 +40,9 @@ class Scatter:
     def destroy(self) -> None:
         for thing in (self._scatter, self._mine, self._all):
             thing.destroy()
+
+
+def _keep(comm: Communicator) -> None:
+    """Let an object on a communicator stay; collective."""
+    if all(known != comm for known, _ in _STAYING):
+        _STAYING.append((comm, PETSc.Vec().createMPI((0, PETSc.DETERMINE), comm=comm)))

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.communicator import Communicator
+from riser_soil.core.communicator import Communicator, destroyed_together
 from riser_soil.core.part import Model, State
 from riser_soil.core.roles import with_role
 from riser_soil.core.saved_state import Stateful
@@ -54,11 +54,8 @@ def relax(
     part = Relaxation(line, weight / (FREE_FALL * line.length.min()))
     system = System(comm, replace(model, parts=[*model.parts, part]), clock)
     newton = Newton(system, replace(settings, least_iterations=1))  # a slow move's forces may pass for balance
-    try:
+    with destroyed_together(comm, newton, system):
         return _descend(system, newton, part, line, t)
-    finally:
-        newton.destroy()
-        system.destroy()
 
 
 @dataclass

@@ -14,6 +14,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.communicator import destroyed_together
 from riser_soil.core.factor_memory import Room
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
@@ -124,10 +125,8 @@ def exact_solver(system: System) -> Iterator[Callable[[Array], Array]]:
             vector.destroy()
         return answer
 
-    try:
+    with destroyed_together(system.comm, solver):
         yield solve
-    finally:
-        solver.destroy()
 
 
 def negative_pivots(system: System) -> int:

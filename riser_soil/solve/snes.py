@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 from collections.abc import Callable
 
 import numpy as np
@@ -145,11 +144,10 @@ class SnesLoop:
             thing.destroy()
 
     def _drop(self) -> None:
-        """Destroy SNES; its factors go with it, on all ranks at once: MUMPS waits for the others. Frames that an
-        exception keeps, as numba's do on the rank that compiles a kernel, would hold it until Python collects them.
+        """Destroy SNES, its factors first and on all ranks at once: MUMPS waits for the others. SNES itself may be held
+        longer by frames that an exception keeps, as numba's do on the rank that compiles a kernel.
         """
-        if self._system.comm.size > 1:
-            gc.collect()
+        self._snes.reset()
         self._snes.destroy()
 
 

@@ -60,6 +60,32 @@ def test_unexpected_error_of_one_rank_ends_all(tmp_path: Path) -> None:
     assert "ZeroDivisionError: bug" in done.stderr
 
 
+WITHIN = f"""
+import signal
+import sys
+from mpi4py import MPI
+from riser_soil.__main__ import main
+from riser_soil.solve.time_stepper import TimeStepper
+
+def commit(stepper, step, control):
+    if MPI.COMM_WORLD.rank == 1:
+        raise ZeroDivisionError("bug")
+    MPI.COMM_WORLD.Barrier()
+
+signal.alarm(120)  # s: ranks that wait for each other are ended
+TimeStepper.commit = commit
+sys.argv = ["riser-soil", "run", {str(SCENE)!r}, "-o", "results"]
+main()
+"""
+
+
+def test_unexpected_error_of_one_rank_within_a_stage_ends_all(tmp_path: Path) -> None:
+    """It holds factors then, which it can't give back without the others."""
+    done = mpirun(2, "-c", WITHIN, folder=tmp_path)
+    assert done.returncode == 1
+    assert "ZeroDivisionError: bug" in done.stderr
+
+
 STUBBORN = """
 import os, signal, time
 from pathlib import Path

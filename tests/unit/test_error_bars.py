@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -32,6 +33,7 @@ from riser_soil.accuracy.error_bars import (
 from riser_soil.accuracy.headlines import Headline
 from riser_soil.accuracy.knobs import KNOBS, settings_told
 from riser_soil.commands.app import app
+from riser_soil.core.communicator import Alone
 from riser_soil.errors import SolveError
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.scene.reader import scene_from_mapping
@@ -174,6 +176,19 @@ def test_companion_that_fails_is_told_and_its_run_stays(
     assert told["finished"]
     assert {bar["bar"] for bar in told["error_bars"]["quantities"]} == {None}
     assert "its coarser companion failed: no convergence at 3 s" in capsys.readouterr().out
+
+
+def test_error_that_one_rank_may_have_met_alone_is_no_failed_companion(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The others are within the companion still, and would not hear of the next one."""
+
+    def fails(scene: Scene, comm: object) -> None:
+        raise ValueError("math domain error")
+
+    monkeypatch.setattr(chain, "peaks_of", fails)
+    scene = scene_from_mapping(SCENES["hose swings on a rigid floor"])
+    assert [each.values for each in chain.companions(scene, Alone())] == [None, None, None]
+    with pytest.raises(ValueError, match="math domain error"):
+        chain.companions(scene, SimpleNamespace(rank=0, size=2))
 
 
 def test_companions_go_on_from_one_to_the_next(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,7 +6,9 @@ import pytest
 
 from riser_soil import stages
 from riser_soil.contact.soil_contact import SOIL
-from riser_soil.core.part import State
+from riser_soil.core.part import Field, Model, Part, State
+from riser_soil.core.roles import owners
+from riser_soil.core.saved_state import Saved, gathered
 from riser_soil.core.system import System
 from riser_soil.errors import SolveError
 from riser_soil.scene.stages import StaticStage
@@ -82,3 +84,38 @@ def test_relaxation_that_leaves_another_pattern_of_contact_does_no_harm(monkeypa
     state = take(assembly, assembly.scene.stages[0])
     assert tried[1] == 0.5 * tried[0]
     assert contact.force_on_soil(state)[2] < 0.0
+
+
+def test_relaxation_that_fails_on_its_way_leaves_clay_and_riser_as_they_were(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It has pressed the pipe into clay by a tenth of its diameter when it gives up."""
+    scene = slice_of_soil(2)
+    scene["soil"]["law"] = CLAY
+    assembly, seen, usual = built(scene), list[Saved](), TimeStepper.advance
+
+    def relaxed(comm: object, model: Model, *_: object) -> RelaxationResult:
+        seen.append(gathered(owners(model)))
+        pressed = State.at_rest(0.0, assembly.size)
+        pressed.u[assembly.line.translation_dofs[:, -1]] = -0.1 * D
+        assert assembly.soil is not None
+        pressed.u[assembly.soil.field.offset + assembly.soil.field.size - 1] = -0.1 * D
+        committing: list[Part | Field] = [*model.parts, *model.fields]
+        for owner in committing:
+            owner.commit(pressed)
+        moved = gathered(owners(model))
+        assert all((moved[name] != seen[0][name]).any() for name in ("fields/riser/x", "parts/soil/stress"))
+        raise SolveError("no rest was found")
+
+    def advance(stepper: TimeStepper, control: Control, most_cuts: int | None = None) -> AcceptedStep:
+        if not seen:
+            raise SolveError("no convergence")
+        if len(seen) == 1:
+            seen.append(gathered(owners(stepper.system.model)))
+        return usual(stepper, control, most_cuts)
+
+    monkeypatch.setattr(stages, "relax", relaxed)
+    monkeypatch.setattr(TimeStepper, "advance", advance)
+    take(assembly, assembly.scene.stages[0])
+    before, after = seen
+    assert set(before) == set(after)
+    for name, value in before.items():
+        assert after[name] == pytest.approx(value), name
