@@ -19,14 +19,14 @@ SCENE = ROOT / "demos" / "first_scene.yaml"
 # Every step is recorded, and the files grow all the time.
 ENDLESS = ("--set", "stages.1.duration=1e4", "--set", "output.interval=0.1")
 # The command, in a process that may write no file longer than so many bytes. MPI needs some when it starts. Rows go to
-# disk every tenth of a second, so that what fits does not hang on how many a fast machine gathers in a second.
+# disk every hundredth of a second, so that what fits does not hang on how many a fast machine gathers in a second.
 ON_A_SMALL_DISK = """
 import resource, sys
 import riser_soil.whole_run
 from riser_soil.__main__ import main
 from riser_soil.results import record
 
-record._FLUSH_EVERY = 0.1
+record._FLUSH_EVERY = 0.01
 resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv.pop(1)),) * 2)
 sys.argv[0] = "riser-soil"
 main()
@@ -38,7 +38,7 @@ ON_A_FILLED_DISK = """
 import contextlib, os, pathlib, shutil, subprocess, sys, time
 
 left, disk, kept = int(sys.argv.pop(1)), pathlib.Path(sys.argv.pop(1)), pathlib.Path(sys.argv[4])
-subprocess.run(["mount", "-t", "tmpfs", "-o", "size=200m", "none", disk], check=True)
+subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400m", "none", disk], check=True)
 sys.argv[4] = str(disk / "out")
 running = subprocess.Popen([sys.executable, "-m", "riser_soil", *sys.argv[1:]])
 while running.poll() is None and not (disk / "out" / "riser.xdmf").exists():

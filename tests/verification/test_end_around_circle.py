@@ -59,6 +59,8 @@ def test_both_ways_in_long_steps(way: int, off: float) -> None:
 
 @pytest.mark.verify
 @pytest.mark.parametrize("way", [1, -1])
-@pytest.mark.parametrize(("elements", "dimension"), [(60, 2), (120, 2), (60, 3)])
-def test_both_ways_converge(way: int, elements: int, dimension: int) -> None:
-    assert led_around(way, 1, 0.05, elements, dimension)[:, 0].max() == pytest.approx(LARGEST[way], rel=0.002)
+@pytest.mark.parametrize(("elements", "dimension", "time_step"), [(60, 2, 0.05), (120, 2, 0.05), (60, 3, 0.025)])
+def test_both_ways_converge(way: int, elements: int, dimension: int, time_step: float) -> None:
+    """In space the crushed bend rebounds with 49.95 kN in steps of 0.05 s; such a run warns, and asks for 0.022 s."""
+    found = led_around(way, 1, time_step, elements, dimension)[:, 0].max()
+    assert found == pytest.approx(LARGEST[way], rel=0.002)
