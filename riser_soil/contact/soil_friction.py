@@ -34,6 +34,9 @@ class SlidingState:
     gradient: Array
 
 
+Sliding = tuple[Slide, Array, Array, Array, Array]  # what a trial keeps of a SlidingState: all but what holds the trial
+
+
 class SoilFriction(LinePart):
     """Part "soil friction": Coulomb friction at the integration points of a `SurfaceContact`; group E.
 
@@ -65,13 +68,13 @@ class SoilFriction(LinePart):
 
     def evaluate(self, state: State) -> SlidingState:
         """Tractions of the points that press."""
-        found: SlidingState = self.line.trial(state).once((self, "sliding"), lambda _: self._evaluate(state))
-        return found
-
-    def _evaluate(self, state: State) -> SlidingState:
         found = self.contact.evaluate(state)
+        made: Sliding = found.trial.once((self, "sliding"), lambda _: self._evaluate(found))
+        return SlidingState(found, *made)
+
+    def _evaluate(self, found: SurfaceState) -> Sliding:
         pressed, now = found.pressed, (self.contact.axis(found.trial), self.contact.surface(found.deformed))
-        moved = slide(pressed.points, self._start(state), now, self.line.basis)
+        moved = slide(pressed.points, self._start(found.trial.state), now, self.line.basis)
         before = self._memory.at(pressed.points.number)[:, :AREA]
         elastic = before - self._stiffness * moved.moved
         t, _, _ = self._return(_along(moved.along, elastic), self._pressure(found))
@@ -79,7 +82,7 @@ class SoilFriction(LinePart):
         gradient = np.zeros_like(pressed.gradient)
         by_z = np.einsum("ni,niz->nz", pressed.points.area[:, None] * on_riser, moved.by_z)
         add_rows(gradient, pressed.pair, -np.ones(len(by_z)), by_z)
-        return SlidingState(found, moved, elastic, on_riser, by_z, gradient)
+        return moved, elastic, on_riser, by_z, gradient
 
     def _return(self, elastic: Array, pressure: Array) -> tuple[Array, Array, Array]:
         return stuck(elastic, pressure) if self._sticks else traction(elastic, pressure, self._mu)

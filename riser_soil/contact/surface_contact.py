@@ -78,18 +78,21 @@ class SurfaceContact(SoilContact):
         self._memory = PointMemory(pressure.initial_history(()))
 
     def evaluate(self, state: State) -> SurfaceState:
-        """Riser and soil at a state."""
-        found: SurfaceState = self.line.trial(state).once((self, "surface"), self._evaluate)
-        return found
+        """Riser and soil at a state. What the trial keeps does not hold the trial: Python would find so large a cycle
+        late.
+        """
+        trial = self.line.trial(state)
+        found: tuple[Array, ActivePairs] = trial.once((self, "surface"), self._evaluate)
+        return SurfaceState(trial, *found)
 
-    def _evaluate(self, trial: Trial) -> SurfaceState:
+    def _evaluate(self, trial: Trial) -> tuple[Array, ActivePairs]:
         deformed = self._seen(trial.state)
         axis, surface = self.axis(trial), self.surface(deformed)
         reach = self._pressure.reach if len(self._memory.numbers) else self.law.start
         elements, facets = self._pairs(axis, deformed, CandidateRange(reach, reach))
         near = near_points(axis, surface, elements, facets, reach)
         acting = self.law.active(-near.gap, self._memory.at(near.number))
-        return SurfaceState(trial, deformed, self._pressed(axis, surface, near.of(acting)))
+        return deformed, self._pressed(axis, surface, near.of(acting))
 
     def _pressed(self, axis: Axis, surface: Surface, near: NearPoints) -> ActivePairs:
         """Forces at points near enough to have any."""

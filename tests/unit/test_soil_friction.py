@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from functools import partial
 
 import numpy as np
@@ -96,6 +98,19 @@ def test_forces_on_riser_and_soil_sum_to_zero(kind: str, dimension: int) -> None
     parts = made.contact, friction
     total = sum(made.line.tributary_length @ part.force_on_soil_per_length(state) for part in parts)
     assert np.abs(in_plane @ total + sum(part.force_on_riser(state) for part in parts)).max() < 10.0 * small
+
+
+def test_what_is_forgotten_goes_at_once() -> None:
+    """A state of contact on soil is large, and Python looks for cycles late."""
+    made = pipe_on_surface(level(), top("quad4"))
+    friction = with_friction(made)
+    gc.disable()
+    try:
+        kept = weakref.ref(friction.evaluate(made.state()).found.trial)
+        made.line.forget()
+        assert kept() is None
+    finally:
+        gc.enable()
 
 
 def test_a_closed_way_gives_no_work() -> None:
