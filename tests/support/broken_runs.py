@@ -18,15 +18,19 @@ from tests.support.vtk_reading import times_by_vtk
 SCENE = ROOT / "demos" / "first_scene.yaml"
 # Every step is recorded, and the files grow all the time.
 ENDLESS = ("--set", "stages.1.duration=1e4", "--set", "output.interval=0.1")
-# The command, in a process that may write no file longer than so many bytes. MPI needs some when it starts. Rows go to
-# disk every hundredth of a second, so that what fits does not hang on how many a fast machine gathers in a second.
-ON_A_SMALL_DISK = """
-import resource, sys
+# Rows go to disk every hundredth of a second: what fits does not hang on how many a fast machine gathers in a second.
+OFTEN = """
+import sys
 import riser_soil.whole_run
 from riser_soil.__main__ import main
 from riser_soil.results import record
 
-record._FLUSH_EVERY = 0.01
+record._FLUSH_EVERY, record._FLUSH_SHARE = 0.01, 1.0
+"""
+# The command, in a process that may write no file longer than so many bytes. MPI needs some when it starts.
+ON_A_SMALL_DISK = f"""{OFTEN}
+import resource
+
 resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv.pop(1)),) * 2)
 sys.argv[0] = "riser-soil"
 main()
@@ -34,13 +38,15 @@ main()
 
 # The command on a disk of its own that other files fill up to so many bytes once the run has begun; what it leaves
 # there is copied, as the disk goes with its mount.
-ON_A_FILLED_DISK = """
+ON_A_FILLED_DISK = f"""
 import contextlib, os, pathlib, shutil, subprocess, sys, time
+
+OFTEN = {OFTEN + "main()"!r}
 
 left, disk, kept = int(sys.argv.pop(1)), pathlib.Path(sys.argv.pop(1)), pathlib.Path(sys.argv[4])
 subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400m", "none", disk], check=True)
 sys.argv[4] = str(disk / "out")
-running = subprocess.Popen([sys.executable, "-m", "riser_soil", *sys.argv[1:]])
+running = subprocess.Popen([sys.executable, "-c", OFTEN, *sys.argv[1:]])
 while running.poll() is None and not (disk / "out" / "riser.xdmf").exists():
     time.sleep(0.01)
 with contextlib.suppress(OSError), (disk / "others").open("wb", buffering=0) as others:
