@@ -68,7 +68,7 @@ class ElevationRecord:
         """With the waves alone that have these numbers of periods in the record."""
         waves = np.fft.rfft(self.elevation)
         waves[: numbers.start] = waves[numbers.stop :] = 0.0
-        return ElevationRecord(self.step, tuple(np.fft.irfft(waves, len(self.elevation)).tolist()))
+        return ElevationRecord(self.step, tuple(map(float, np.fft.irfft(waves, len(self.elevation)))))
 
 
 def read_spectrum(file: Path) -> SpectrumTable:
