@@ -40,8 +40,12 @@ def outcomes(cases: Iterable[StressCase], folder: Path, workers: int) -> Iterato
 
 
 def judged(case: StressCase, folder: Path) -> StressOutcome:
-    """Run a case and judge it."""
-    trial, place = case.make(), folder / case.name.replace(" ", "_")
+    """Run a case and judge it. Nothing is computed here while a process is forked: it would wait for a lock, as that of
+    numba's compiler, which nobody opens in it.
+    """
+    place = folder / case.name.replace(" ", "_")
+    with FORKING:
+        trial = case.make()
     place.mkdir(parents=True, exist_ok=True)
     for name, scene in trial.scenes.items():
         (place / f"{name}.yaml").write_text(json.dumps(scene, indent=1), encoding="utf-8")
