@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from rich.markup import render
-from typer.main import get_command
+from typer.main import get_group
 
 from riser_soil.__main__ import app
 
@@ -50,7 +50,7 @@ def test_help_of_pictures_and_films(name: str, takes: str) -> None:
     assert not done.stderr
 
 
-COMMANDS = get_command(app).commands  # type: ignore[attr-defined]
+COMMANDS = get_group(app).commands
 
 
 @pytest.mark.parametrize("name", COMMANDS)
