@@ -13,7 +13,7 @@ from benchmarks.peers.ladder import PROGRAMS, Program
 
 ROOT = Path(__file__).parents[2]
 THEIRS = ROOT / "build" / "peers" / "bin" / "python"
-REPEATS, LONG = 3, 6.0  # a run of more than so many seconds is not repeated
+REPEATS, LONG = 2, 6.0  # a run of more than so many seconds is not repeated
 
 
 class Worker:

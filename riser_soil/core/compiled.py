@@ -29,7 +29,7 @@ os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")  # colora
 import numba
 from numba.core import event
 
-from riser_soil.core.kernel import kernel
+from riser_soil.core.kernel import Kernel
 from riser_soil.core.kernel_cache import PACKAGE, caching_in
 
 NAME = PACKAGE.name
@@ -46,7 +46,7 @@ def njit(function: Callable[..., object], apart: bool = False) -> Any:
     apart: not inlined where others call it, so that those that call many are compiled in a bearable time.
     """
     with caching_in(str(FOLDER)):
-        return kernel(function, {**OPTIONS, "forceinline": not apart})
+        return Kernel(function, {**OPTIONS, "forceinline": not apart})
 
 
 def fixed(n: int) -> tuple[int, ...]:

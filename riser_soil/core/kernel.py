@@ -7,7 +7,9 @@ compiled without them, and once more with one for Python when it is first called
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
 from numba.core.registry import CPUDispatcher
@@ -18,9 +20,21 @@ BARE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 class Kernel(CPUDispatcher):
-    """A function compiled for compiled code; `called` is the one that Python calls."""
+    """A function compiled for compiled code; see `numba.njit` for the options."""
 
-    called: CPUDispatcher
+    def __init__(self, function: Callable[..., object], options: dict[str, Any]) -> None:
+        # numba asks for the signature again and again, which takes a tenth of a start where it is found anew.
+        vars(function)["__signature__"] = inspect.signature(function)
+        self._options = {"nopython": True, "boundscheck": None, **options}
+        super().__init__(function, targetoptions={**self._options, **BARE})
+        self._cache, self._kept = BareCache(function), KernelCache(function)
+
+    @cached_property
+    def called(self) -> CPUDispatcher:
+        """The one that Python calls."""
+        made = CPUDispatcher(self.py_func, targetoptions={**self._options, "no_cfunc_wrapper": True})
+        made._cache = self._kept
+        return made
 
     def add_overload(self, cres: Any) -> None:
         """Keep what has been compiled for some types under a key of its own, for it has no address for Python."""
@@ -36,12 +50,3 @@ class Kernel(CPUDispatcher):
             made = self.called.overloads[kinds]
             self._insert([kind._code for kind in kinds], made.entry_point, made.objectmode)
         return found
-
-
-def kernel(function: Callable[..., object], options: dict[str, Any]) -> Kernel:
-    """Compile a function when it is first called with arguments of new types; see `numba.njit` for the options."""
-    given = {"nopython": True, "boundscheck": None, **options}
-    made = Kernel(function, targetoptions={**given, **BARE})
-    made.called = CPUDispatcher(function, targetoptions={**given, "no_cfunc_wrapper": True})
-    made._cache, made.called._cache = BareCache(function), KernelCache(function)
-    return made

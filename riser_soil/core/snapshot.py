@@ -39,8 +39,7 @@ class WallSnapshot:
     most_used_stress: Array | None  # Pa, von Mises', of the side with the larger utilisation
 
 
-@dataclass(frozen=True, eq=False)
-class RiserSnapshot:
+class RiserSnapshot(NamedTuple):
     """The riser at one instant.
 
     Forces and moments at the ends are exerted by the support on the riser; moments by the right-hand rule.
@@ -97,8 +96,7 @@ class SectionSnapshot:
     settlement: Array  # (ns, m) m, positive downwards; nan beside the soil
 
 
-@dataclass(frozen=True, eq=False)
-class ContactSnapshot:
+class ContactSnapshot(NamedTuple):
     """Contact of the riser with seabed and soil: touchdown, penetration and contact force."""
 
     touchdown_arc: float  # m, nan when nothing touches
@@ -114,8 +112,7 @@ class ContactSnapshot:
     sections: SectionSnapshot | None = None  # None without soil, or where not wanted
 
 
-@dataclass(frozen=True, eq=False)
-class Instant:
+class Instant(NamedTuple):
     """The riser and its contact at one instant. arc: (nn,) m, unstressed arc length of the nodes from the start."""
 
     arc: Array
@@ -123,8 +120,7 @@ class Instant:
     touch: ContactSnapshot
 
 
-@dataclass(frozen=True)
-class StepStatistics:
+class StepStatistics(NamedTuple):
     """Solver statistics of one accepted step."""
 
     newton_iterations: int
@@ -167,8 +163,7 @@ class Ledger:
         return self.residual / self.turned_over if self.turned_over > 0.0 else float("nan")
 
 
-@dataclass(frozen=True)
-class StepRecord:
+class StepRecord(NamedTuple):
     """Record of an accepted step."""
 
     health: StepStatistics

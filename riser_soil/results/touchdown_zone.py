@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,9 @@ from riser_soil.riser.place import axis_at
 if TYPE_CHECKING:
     from riser_soil.contact.touchdown import ContactInterval
 
+# Broadcast arrays can't be written to.
+UNTOUCHED = ContactSnapshot(math.nan, np.broadcast_to(np.nan, 3), 0, 0.0, np.broadcast_to(0.0, 3))
+
 
 class TouchdownZone:
     """Contact results of all grounds, on the rank that evaluates contact. fields: those of `ContactSnapshot` wanted."""
@@ -34,6 +38,8 @@ class TouchdownZone:
         lay_sections: where the riser lies now; they are laid anyway as long as they are nowhere.
         """
         contacts, line = self._assembly.contacts, self._assembly.line
+        if not contacts:
+            return UNTOUCHED
         of_each = [interval for contact in contacts for interval in contact.contact_intervals(state)]
         intervals = joined(of_each, float(line.length.max()))
         arc = touchdown_arc(intervals, line)

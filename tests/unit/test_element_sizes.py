@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -29,7 +28,7 @@ def seen(moment: Array, tension: Array, **more: Array) -> Instant:
     vector = np.zeros((ARC.size, 3))
     vector[:, 1] = moment
     given: dict[str, Any] = {"moment_vector": vector, "bending_moment": np.abs(moment), "effective_tension": tension}
-    return Instant(ARC, replace(line.riser(ARC), **(given | LIMP | more)), line.touch(ARC))
+    return Instant(ARC, line.riser(ARC)._replace(**(given | LIMP | more)), line.touch(ARC))
 
 
 def envelope(*instants: Instant) -> CurveEnvelope:

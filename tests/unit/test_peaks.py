@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -41,12 +39,12 @@ def seen(t: float) -> Instant:
     line = Catenary(32.0, 30.0)
     riser = line.riser(ARC)
     moment = LargestAlong(riser.largest_moment.value * float(np.cos(t)), riser.largest_moment.arc)
-    return Instant(ARC, replace(riser, largest_moment=moment), line.touch(ARC))
+    return Instant(ARC, riser._replace(largest_moment=moment), line.touch(ARC))
 
 
 def test_only_what_sits_between_nodes_is_replaced() -> None:
     """Of the figures, the least tension alone is told at nodes."""
-    hanging = replace(seen(0.0).riser, effective_tension=(ARC - 67.0) ** 2)
+    hanging = seen(0.0).riser._replace(effective_tension=(ARC - 67.0) ** 2)
     least = Instant(ARC, hanging, seen(0.0).touch)
     plain, peaked = pack(least), pack_peaks(least)
     changed = np.flatnonzero(~np.isclose(plain, peaked, equal_nan=True))
@@ -77,7 +75,7 @@ def of_five(t: np.ndarray, moment: np.ndarray) -> float:
     peaks.begin_stage("motion", "dynamic")
     line = Catenary(32.0, 30.0)
     for at, size in zip(t, moment, strict=True):
-        riser = replace(line.riser(ARC), largest_moment=LargestAlong(float(size), 0.0))
+        riser = line.riser(ARC)._replace(largest_moment=LargestAlong(float(size), 0.0))
         peaks.record(float(at), Instant(ARC, riser, line.touch(ARC)))
     largest: float = peaks.told("smooth")["stages"][0]["extremes"]["max_bending_moment"]["max"]
     return largest

@@ -72,9 +72,9 @@ def test_final_state_of_a_catenary() -> None:
 def test_what_is_unknown_is_left_out() -> None:
     nothing = np.full(ARC.size, math.nan)
     unused = LargestAlong(math.nan, math.nan)
-    riser = replace(LINE.riser(ARC), wall_tension=nothing, largest_bend_utilisation=unused)
-    riser = replace(riser, tension_utilisation=None, wall=None)
-    touch, extremes = replace(LINE.touch(ARC), embedment=None), Extremes()
+    riser = LINE.riser(ARC)._replace(wall_tension=nothing, largest_bend_utilisation=unused)
+    riser = riser._replace(tension_utilisation=None, wall=None)
+    touch, extremes = LINE.touch(ARC)._replace(embedment=None), Extremes()
     extremes.update(0.0, pack(Instant(ARC, riser, touch)))
     unknown = {"min_wall_tension", "max_wall_tension", "max_bend_utilisation", "max_embedment"}
     unknown |= {"max_tension_utilisation", "max_wall_von_mises_stress", "max_stress_utilisation"}
@@ -83,7 +83,7 @@ def test_what_is_unknown_is_left_out() -> None:
 
 
 def test_a_straight_pipe_has_no_bend_radius() -> None:
-    riser = replace(LINE.riser(ARC), largest_curvature=LargestAlong(0.0, 0.0))
+    riser = LINE.riser(ARC)._replace(largest_curvature=LargestAlong(0.0, 0.0))
     final = final_state(Instant(ARC, riser, LINE.touch(ARC)))
     assert plain_json(final)["min_bend_radius"] == {"value": None, "arc": 0.0}
 
@@ -150,7 +150,7 @@ def test_extremes_mirror_the_final_state() -> None:
 def test_lifting_off_does_not_spoil_the_touchdown_extremes() -> None:
     extremes = Extremes()
     for t, arc in ((0.0, math.nan), (0.1, 20.0), (0.2, math.nan)):
-        extremes.update(t, pack(Instant(ARC, LINE.riser(ARC), replace(LINE.touch(ARC), touchdown_arc=arc))))
+        extremes.update(t, pack(Instant(ARC, LINE.riser(ARC), LINE.touch(ARC)._replace(touchdown_arc=arc))))
     assert extremes.nested()["touchdown_arc"] == {"min": 20.0, "max": 20.0, "t_min": 0.1, "t_max": 0.1}
 
 
