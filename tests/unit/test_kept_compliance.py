@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -30,8 +31,14 @@ CLAY: Mapping = {"kind": "linear-elastic", "E": 4.0e5, "nu": 0.45}
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Where this test's runs keep compliance."""
     monkeypatch.delenv(SWITCH)
-    monkeypatch.setattr(compiled, "FOLDER", tmp_path / "riser_soil" / ("0" * 16))
+    kernels_in(tmp_path / "riser_soil" / ("0" * 16), monkeypatch)
     return tmp_path / "riser_soil" / "compliance"
+
+
+def kernels_in(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As far as the compliance is concerned."""
+    seen = SimpleNamespace(FOLDER=folder, NAME=compiled.NAME, tell=compiled.tell)
+    monkeypatch.setattr(kept_compliance, "compiled", seen)
 
 
 @pytest.fixture
@@ -236,7 +243,7 @@ def test_nothing_is_kept_or_read_where_it_is_switched_off(
 
 def test_a_temporary_folder_that_stands_alone_keeps_it_within(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     alone = folder.parents[1] / "riser_soil-abc"
-    monkeypatch.setattr(compiled, "FOLDER", alone)
+    kernels_in(alone, monkeypatch)
     answers(compliance(), 0)
     assert len(list(alone.glob("compliance/*/*.columns"))) == 1
 
