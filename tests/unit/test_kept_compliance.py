@@ -123,6 +123,20 @@ def test_a_run_adds_to_what_another_has_kept(
     assert len(factorised) == 2
 
 
+def test_runs_at_once_do_not_disturb_each_other(
+    folder: Path, anew: tuple[Array, Array], capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Both find nothing and keep what they have found; then all of it is removed, as a third might do for room."""
+    runs = [compliance(), compliance()]
+    for run in runs:
+        answers(run, 0)
+    shutil.rmtree(folder)
+    for run in runs:
+        assert_same(answers(run, 0, 2), anew)
+    assert [path.name for path in folder.glob("*/*")] == ["2.columns"]
+    assert capfd.readouterr().err == ""
+
+
 @pytest.mark.parametrize(
     "other", [scene(CLAY | {"E": 4.0e5 * (1.0 + 1e-15)}), scene(CLAY | {"nu": 0.44}), scene(size=0.45)]
 )
