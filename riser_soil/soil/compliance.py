@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from functools import cached_property
 
 import numpy as np
@@ -17,6 +18,7 @@ from riser_soil.soil.kept_compliance import KeptColumns, key_of
 from riser_soil.soil.soil import Soil
 
 AT_ONCE = 16  # nodes whose columns are solved for in one call
+HELD = 1 << 28  # bytes of columns in memory, where they can't be kept on disk; others are solved for again
 SAME_ROW = 1e-6  # of the top's longer side: how far points of a row are apart across it
 
 
@@ -30,6 +32,7 @@ class Compliance:
 
     def __init__(self, soil: Soil) -> None:
         self._soil, self._known, self._groups = soil, dict[int, Array](), dict[int, Array]()
+        self._in_memory = deque[int]()  # groups that could not be kept on disk
         self._numbering = Numbering(soil.grid.nodes.comm, [soil.field])
         rows = np.full(int(soil.field.global_index.max()) + 1, -1, dtype=np.int64)
         rows[soil.field.global_index] = self._numbering.index
@@ -87,10 +90,22 @@ class Compliance:
         group = int(self._group[node])
         nodes = np.flatnonzero(self._group == group)
         if group not in self._groups:
-            kept = self._files.find(group, (3 * len(nodes), self._numbering.free))
-            self._groups[group] = self._files.keep(group, self._found(nodes)) if kept is None else kept
+            self._groups[group] = self._kept(group, nodes)
         first = 3 * int(np.searchsorted(nodes, node))
         return self._groups[group][first : first + 3]
+
+    def _kept(self, group: int, nodes: IntArray) -> Array:
+        """Columns (3 nn, n) of a group: on disk, else in memory in the place of those that were found first."""
+        columns = self._files.find(group, (3 * len(nodes), self._numbering.free))
+        if columns is not None:
+            return columns
+        found = self._found(nodes)
+        columns = self._files.keep(group, found)
+        if columns is found:
+            while self._in_memory and (len(self._in_memory) + 1) * found.nbytes > HELD:
+                del self._groups[self._in_memory.popleft()]
+            self._in_memory.append(group)
+        return columns
 
     def _found(self, nodes: IntArray) -> Array:
         """Columns (3 nn, n) of nodes of the top, by a solve."""

@@ -224,6 +224,19 @@ def test_a_disk_that_is_nearly_full_is_left_alone(
     assert len(capfd.readouterr().err.splitlines()) == 1
 
 
+def test_memory_has_no_more_than_some_columns(
+    folder: Path, anew: tuple[Array, Array], monkeypatch: pytest.MonkeyPatch, factorised: list[Compliance]
+) -> None:
+    """Those that are not there any more are solved for again, with the same factors and bits."""
+    monkeypatch.setattr(kept_compliance, "LEFT", 1 << 60)
+    monkeypatch.setattr("riser_soil.soil.compliance.HELD", 1)
+    found = compliance()
+    for _ in range(2):
+        assert_same(answers(found, 0, 2), anew)
+        assert len(found._groups) == 1
+    assert factorised == [found]
+
+
 def test_the_soils_not_used_for_longest_make_room(
     folder: Path, anew: tuple[Array, Array], monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
