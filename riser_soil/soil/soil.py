@@ -120,9 +120,9 @@ class Soil:
     def commit(self, state: State) -> None:
         """Soil that has not moved, and whose history has not changed, answers as before."""
         u, _, found, _ = self._answer(state)
-        if not u.any() and np.array_equal(found.history, self._found.history):
-            return
-        self._found, self._last = found._replace(tangent=np.empty(0)), None
+        if u.any() or not np.array_equal(found.history, self._found.history):
+            self._last = None
+        self._found = found._replace(tangent=np.empty(0))
 
     def output_mesh(self) -> SoilMesh:
         """The whole mesh for output on rank 0; empty elsewhere."""

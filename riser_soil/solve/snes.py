@@ -23,7 +23,7 @@ from riser_soil.solve.loops import (
     OUTGROWN,
     Balance,
 )
-from riser_soil.solve.riser_alone import RiserAlone
+from riser_soil.solve.riser_above_soil import RiserAboveSoil
 from riser_soil.solve.solution import NewtonSettings
 
 REASON = PETSc.SNES.ConvergedReason
@@ -50,7 +50,7 @@ class SnesLoop:
         owned, comm = self._system.numbering.owned, self._system.comm
         self._x, self._f, self._levers = (PETSc.Vec().createMPI((owned, PETSc.DETERMINE), comm=comm) for _ in range(3))
         self._levers.array_w[:] = self._system.numbering.to_global(self._system.levers)
-        self._alone = RiserAlone(self._system) if self._system.has_whole_soil else None
+        self._alone = RiserAboveSoil(self._system) if self._system.has_whole_soil else None
         self._snes = self._create()
 
     def _create(self) -> PETSc.SNES:

@@ -19,13 +19,13 @@ from riser_soil.core.system import System
 from riser_soil.solve.chain import ChainFactors, SingularError
 
 
-class RiserAlone:
+class RiserAboveSoil:
     """Linear solver of such systems; collective.
 
     in_use: all whose KSP is not destroyed. PETSc would call them as it ends, after Python has: they are let go before.
     """
 
-    in_use: ClassVar[dict[RiserAlone, PETSc.KSP]] = {}
+    in_use: ClassVar[dict[RiserAboveSoil, PETSc.KSP]] = {}
 
     def __init__(self, system: System) -> None:
         self._system, self._rows = system, system.line_rows
@@ -72,6 +72,6 @@ class RiserAlone:
 @atexit.register
 def let_go() -> None:
     """Part all solvers from their contexts here."""
-    while RiserAlone.in_use:
-        _, ksp = RiserAlone.in_use.popitem()
+    while RiserAboveSoil.in_use:
+        _, ksp = RiserAboveSoil.in_use.popitem()
         ksp.setType(PETSc.KSP.Type.PREONLY)
