@@ -22,7 +22,7 @@ from demos.page import publish, table
 from riser_soil.results.derived import peak
 
 PAGE, PLOT = ROOT / "docs" / "peers.md", ROOT / "docs" / "peers.png"
-TARGETS = (0.05, 0.03, 0.02, 0.01, 0.005, 0.002)
+TARGETS = (0.05, 0.03, 0.02, 0.01, 0.005, 0.002, 0.001)
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,7 @@ from benchmarks.peers.judge import Judged, front
 from riser_soil.plots.curves import save, sheet
 
 MARKERS = "osPD^v*"
+LARGEST = 2.0  # error that is drawn: one run of another program ended in numbers without meaning
 
 
 def draw(cases: Mapping[str, Mapping[str, Sequence[Judged]]], least: Mapping[str, float], png: Path) -> None:
@@ -22,7 +23,7 @@ def draw(cases: Mapping[str, Mapping[str, Sequence[Judged]]], least: Mapping[str
             _draw_program(axes, program, runs, f"C{number}", MARKERS[number])
         axes.axhline(least[name], color="0.4", linestyle=":", label="distance between the finest runs")
         axes.set(xscale="log", yscale="log", title=name, xlabel="processor seconds per simulated second")
-        axes.set_ylim(bottom=0.5 * least[name])
+        axes.set_ylim(0.5 * least[name], LARGEST)
         axes.yaxis.set_major_formatter(FuncFormatter(lambda part, _: f"{100.0 * part:g} %"))
     panels[0].set_ylabel("largest error of a quantity")
     panels[0].legend(fontsize=8)
