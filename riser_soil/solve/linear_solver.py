@@ -88,8 +88,7 @@ def factorise_directly(pc: PETSc.PC, system: System, room: Room) -> None:
     """Make a preconditioner an exact solver, symmetric where MUMPS is it and the system is."""
     if (chain := _bordered_chain(system)) is not None:
         pc.setOperators(system.matrix.mat)
-        pc.setType(PETSc.PC.Type.PYTHON)
-        pc.setPythonContext(BorderedBand(system.matrix.mat, chain))
+        BorderedBand(system.matrix.mat, chain).work_for(pc)
         return
     mumps = not is_chain(system)
     _choose(pc, system, "cholesky" if mumps and system.symmetric else "lu", room.controls)

@@ -7,9 +7,6 @@ soil's rows have left of a residual counts in Newton's test as ever.
 
 from __future__ import annotations
 
-import atexit
-from typing import ClassVar
-
 import numpy as np
 from petsc4py import PETSc
 
@@ -17,15 +14,11 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import all_of
 from riser_soil.core.system import System
 from riser_soil.solve.chain import ChainFactors, SingularError
+from riser_soil.solve.python_context import PythonContext
 
 
-class RiserAboveSoil:
-    """Linear solver of such systems; collective.
-
-    in_use: all whose KSP is not destroyed. PETSc would call them as it ends, after Python has: they are let go before.
-    """
-
-    in_use: ClassVar[dict[RiserAboveSoil, PETSc.KSP]] = {}
+class RiserAboveSoil(PythonContext):
+    """Linear solver of such systems; collective."""
 
     def __init__(self, system: System) -> None:
         self._system, self._rows = system, system.line_rows
@@ -33,9 +26,7 @@ class RiserAboveSoil:
 
     def serve(self, ksp: PETSc.KSP) -> None:
         """Solve what this KSP is asked for."""
-        self.in_use[self] = ksp
-        ksp.setType(PETSc.KSP.Type.PYTHON)
-        ksp.setPythonContext(self)
+        self.work_for(ksp)
         ksp.getPC().setType(PETSc.PC.Type.NONE)
 
     def suits(self, f: Array, negligible: float) -> bool:
@@ -63,15 +54,3 @@ class RiserAboveSoil:
             found[: self._rows] = self._factors.solve(np.array(b.array_r[: self._rows]))
         x.array_w[:] = found
         ksp.setConvergedReason(PETSc.KSP.ConvergedReason.CONVERGED_RTOL)
-
-    def reset(self, ksp: PETSc.KSP) -> None:
-        """Called as the KSP is destroyed."""
-        self.in_use.pop(self, None)
-
-
-@atexit.register
-def let_go() -> None:
-    """Part all solvers from their contexts here."""
-    while RiserAboveSoil.in_use:
-        _, ksp = RiserAboveSoil.in_use.popitem()
-        ksp.setType(PETSc.KSP.Type.PREONLY)
