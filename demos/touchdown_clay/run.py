@@ -36,7 +36,7 @@ def figures(done: Run) -> str:
     ranges, rows = motion["extremes"], []
     for name, key, scale, digits in (
         ("touchdown arc length [m]", "touchdown_arc", 1.0, 2),
-        ("largest bending moment [kN.m]", "max_bending_moment", 1e-3, 3),
+        ("largest bending moment [kN m]", "max_bending_moment", 1e-3, 3),
     ):
         rest = static["final"][key]
         rest = rest["value"] if isinstance(rest, dict) else rest

@@ -40,14 +40,14 @@ def rows(stages: list[dict[str, Any]]) -> dict[str, str]:
     shown = {
         "at rest: touchdown arc length [m]": f"{final['touchdown_arc']:.2f}",
         "stretches that touch": f"{final['touchdown_points']:.0f}",
-        "largest bending moment [kN.m]": f"{moment['value'] / 1e3:.3f}",
+        "largest bending moment [kN m]": f"{moment['value'] / 1e3:.3f}",
         "at arc length [m]": f"{moment['arc']:.1f}",
         "contact force [kN]": f"{final['contact_force'] / 1e3:.2f}",
     }
     for stage in stages[1:]:
         touchdown, bent = (stage["extremes"][key] for key in ("touchdown_arc", "max_bending_moment"))
         shown["in heave: touchdown arc length [m]"] = f"{touchdown['min']:.2f} to {touchdown['max']:.2f}"
-        shown["largest bending moment, in heave [kN.m]"] = f"{bent['min'] / 1e3:.3f} to {bent['max'] / 1e3:.3f}"
+        shown["largest bending moment, in heave [kN m]"] = f"{bent['min'] / 1e3:.3f} to {bent['max'] / 1e3:.3f}"
     return shown
 
 
@@ -67,7 +67,7 @@ def draw(png: Path, runs: dict[str, Run]) -> None:
             axis.plot(run.arc[near], values[near], label=name)
     axes[0].set(ylabel="height of the underside [m]", ylim=(-0.4, 1.0))
     axes[1].set(ylabel="contact force [N/m]")
-    axes[2].set(ylabel="bending moment [kN.m]")
+    axes[2].set(ylabel="bending moment [kN m]")
     for axis in axes:
         axis.set(xlabel="arc length [m]")
         axis.legend()

@@ -42,7 +42,7 @@ def shortened(factor: float) -> list[str]:
 
 
 def extremes(run: Run) -> dict[str, float]:
-    """From SINCE on: tension at the turret [kN], moments by zone [kN.m], touchdown arc [m]."""
+    """From SINCE on: tension at the turret [kN], moments by zone [kN m], touchdown arc [m]."""
     seen = run.time >= SINCE
     tension, moment = 1e-3 * run["effective_tension"][seen, -1], 1e-3 * run["bending_moment"][seen]
     found = {"T min": -float(peak(run.time[seen], -tension)), "T max": float(peak(run.time[seen], tension))}
@@ -62,7 +62,7 @@ def as_table(found: Mapping[tuple[float, float], tuple[int, float, dict[str, flo
         errors = [f"{100.0 * value:.2f} %" for value in apart.values()]
         shown = [f"{value:.4g}" for value in values.values()]
         rows.append([str(elements), f"{time_step:g}", f"{seconds:.0f}", *shown, *errors])
-    units = {"T": "kN", "M": "kN.m", "s": "m"}
+    units = {"T": "kN", "M": "kN m", "s": "m"}
     head = ["elements", "step s", "run s", *(f"{name} {units[name[0]]}" for name in best)]
     return table([*head, "error of T", "of M", "of s"], rows)
 

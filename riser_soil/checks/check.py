@@ -80,6 +80,8 @@ def _condensed(assembly: Assembly, soil: Soil) -> Iterator[str]:
     assert assembly.scene.soil is not None
     if assembly.condensed is not None:
         yield "soil: condensed to what the riser touches of its surface; the whole is recovered for results"
+        if assembly.condensed.top.compliance.kept:
+            yield "soil: what earlier runs have found of its compliance is at hand"
     elif assembly.scene.soil.is_linear:
         reason = why_whole(assembly.scene, soil, assembly.line, assembly.scales.diameter)
         yield f"soil: solved for as a whole, not condensed: {reason}"

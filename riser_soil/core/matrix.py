@@ -7,7 +7,7 @@ first and sends what belongs to others in one exchange (`shared_matrix`).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -78,6 +78,11 @@ class Matrix:
             values[... if filled is None else filled] = 0.0
             if filled is not None:
                 filled[:] = False
+
+    def written(self, keys: Collection[str]) -> bool:
+        """Whether parts of this rank have written to some of the batches since `clear`, or may have."""
+        marks = [self._blocks[key].filled for key in keys]
+        return any(filled is None or bool(filled.any()) for filled in marks)
 
     def assemble(self) -> None:
         """Sum the blocks' values into the matrix."""

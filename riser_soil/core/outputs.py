@@ -229,7 +229,7 @@ OF_MODEL: tuple[OutputQuantity[Instant], ...] = (
     OutputQuantity(
         "largest_bending_moment", "", "N m", "largest bending moment, between nodes too", "summary",
         lambda i: i.riser.largest_moment,
-        figures=(greatest_between("max_bending_moment", Row("largest bending moment", "kN.m", 1e-3)),),
+        figures=(greatest_between("max_bending_moment", Row("largest bending moment", "kN m", 1e-3)),),
     ),
     OutputQuantity(
         "largest_curvature", "", "m-1", "largest curvature, between nodes too", "summary",

@@ -82,7 +82,32 @@ class System:
         blocks: dict[str, MatrixBlock] = {}
         for part in self._active:
             blocks.update(part.blocks())
+        self._couplings = [key for key, block in blocks.items() if _couples(block, self._end_of_lines)]
         return Matrix(self.numbering, blocks, self.symmetric)
+
+    @property
+    def _end_of_lines(self) -> int:
+        """Lines come first in local arrays."""
+        return sum(line.size for line in self.model.lines)
+
+    @property
+    def has_whole_soil(self) -> bool:
+        """Whether all of the soil is solved for, beside the lines."""
+        return any(field.name == field.space == "soil" for field in self.model.others)
+
+    @property
+    def line_rows(self) -> int:
+        """How many of this rank's rows are the lines': its first ones."""
+        rows = self.numbering.index[: self._end_of_lines] - self.numbering.first
+        return int(np.count_nonzero((rows >= 0) & (rows < self.numbering.owned)))
+
+    @property
+    def couples(self) -> bool:
+        """Whether this rank's parts couple the lines with other fields in the tangent assembled last, or may do so.
+
+        Where no rank's do, there is nothing beside its block of the lines and that of all else.
+        """
+        return self.matrix.written(self._couplings)
 
     def renew_pattern(self) -> None:
         """Number the dofs that are free now, and build the matrix anew from the parts' present blocks."""
@@ -190,6 +215,12 @@ class System:
     def destroy(self) -> None:
         self.matrix.destroy()
         self.numbering.destroy()
+
+
+def _couples(block: MatrixBlock, end_of_lines: int) -> bool:
+    """Whether a batch has dofs of lines, the first ones, and of other fields."""
+    dofs = np.concatenate([block.rows.ravel(), block.cols.ravel()])
+    return bool((dofs >= end_of_lines).any() and ((dofs >= 0) & (dofs < end_of_lines)).any())
 
 
 @njit

@@ -11,7 +11,7 @@ from riser_soil.core.output import Figure, OutputQuantity, Row
 from riser_soil.plots.units import shown
 from riser_soil.report.tables import NOTHING, ReportTable, compact, found, number
 
-READ_IN = {"N": ("kN", 1e-3), "N.m": ("kN.m", 1e-3)}  # units of headline quantities, as they are read
+READ_IN = {"N": ("kN", 1e-3), "N.m": ("kN m", 1e-3)}  # units of headline quantities, as they are read
 _HEADS = {
     "static": ("quantity", "unit", "value", "at arc [m]", "±"),
     "dynamic": (

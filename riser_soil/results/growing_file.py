@@ -17,7 +17,7 @@ from typing import BinaryIO
 
 import h5py
 
-from riser_soil.errors import ResultsError
+from riser_soil.errors import ResultsError, RiserSoilError
 from riser_soil.results.folder import draft_of, synchronise, write_atomically
 
 _PAGE = 4096
@@ -116,6 +116,21 @@ def appending(file: GrowingFile) -> Iterator[h5py.File]:
         with h5py.File(pages, "r+") as store:
             yield store
     file.update(pages.changes(), pages.size)
+
+
+@contextmanager
+def cutting_back(file: GrowingFile) -> Iterator[h5py.File]:
+    """The same of a file that goes on; ResultsError where it is damaged, which HDF5 tells by all kinds of errors."""
+    try:
+        with appending(file) as store:
+            yield store
+    except RiserSoilError:
+        raise
+    except Exception as err:
+        if isinstance(err, OSError) and err.errno is not None:  # of the disk
+            raise
+        reason = str(err).partition("\n")[0]
+        raise ResultsError(f"{file.path}: is damaged, and can't go on ({reason}); begin anew by --force") from err
 
 
 def reading(path: Path) -> h5py.File:

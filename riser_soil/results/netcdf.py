@@ -23,7 +23,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.output import OutputQuantity
 from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.step_outputs import OF_STEP, TAKEN_OUT
-from riser_soil.results.growing_file import GrowingFile, appending, behind
+from riser_soil.results.growing_file import GrowingFile, appending, behind, cutting_back
 
 _SPOKEN = {  # parts whose names don't tell what dissipates or works
     "morison": "drag and other forces of the water's motion",
@@ -190,7 +190,7 @@ class SeriesFile:
         self._records, self._steps = int(saved["records"]), int(saved["steps"])
         self._stages = unpacked(saved["stages"])
         if self._goes_on:
-            with appending(self._file) as file:
+            with cutting_back(self._file) as file:
                 for name, variable in self._variables.items():
                     _cut_back(file[name], self._steps if variable.dims[0] == "step" else self._records, self._file.path)
                 file.attrs["finished"] = np.int8(False)

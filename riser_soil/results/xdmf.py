@@ -17,7 +17,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.saved_state import Saved
 from riser_soil.results import vtkhdf
-from riser_soil.results.growing_file import GrowingFile, appending, behind
+from riser_soil.results.growing_file import GrowingFile, appending, behind, cutting_back
 from riser_soil.results.ownership import PROGRAM, XDMF_HEAD, quoted
 
 _CELLS = {4: "Tetrahedron", 8: "Hexahedron", 10: "Tetrahedron_10"}
@@ -115,7 +115,7 @@ class XdmfFile:
         self._frames = int(saved["frames"])
         if self._goes_on:
             self._cut_back_text()
-            with appending(self._heavy) as store:
+            with cutting_back(self._heavy) as store:
                 if len(vtkhdf.times(store)) < self._frames:
                     raise behind(self._heavy.path)
                 vtkhdf.cut_back(store, self._frames)

@@ -3,7 +3,8 @@
 With no force on it but at the reached dofs A, such soil moves by u = C f: its stiffness there is the inverse of the
 compliance, K = inv(C_AA), and the rest of the top follows as C_TA K u_A. That is static condensation (Guyan, AIAA
 Journal 3, 1965, 380, from memory), exact without inertia. It is done from the compliance, whose columns are solved for
-once and kept while A grows and shrinks. A force on another dof has no place in it: it is noticed, and A is extended.
+once and kept, while A grows and shrinks and for other runs. A force on another dof has no place in it: it is noticed,
+and A is extended.
 """
 
 from __future__ import annotations
@@ -209,8 +210,8 @@ class CondensedSoil:
         return nodes > SPARE * np.count_nonzero(self._wanted) + FEW
 
     def recover(self) -> Soil:
-        """The whole soil as committed, by one solve with the factors that are kept, from the undisturbed state: so it
-        does not hang, to the last bit, on how often it was asked for.
+        """The whole soil as committed, from the forces on its top and the undisturbed state: so it does not hang, to
+        the last bit, on how often it was asked for.
         """
         if not self._recovered:
             restore_all(self._owners, self._undisturbed)

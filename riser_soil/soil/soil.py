@@ -9,7 +9,6 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
@@ -63,7 +62,7 @@ class Soil:
         self.traits = Traits("E", self.law.symmetric, roles=(Stateful,))
         self._check_start(initial, depth, K0)
         self._initial, self._found = initial, _at_rest(self.law, initial)
-        self._answers = IdentityCache[State, tuple[Array, StressUpdate]]()
+        self._last: _Answer | None = None
         self._unloads = False
         self._load = self._internal(initial) if start == "geostatic" else self._weight(weight.at(depth))
 
@@ -72,8 +71,7 @@ class Soil:
         return {"soil": MatrixBlock(rows, rows)}
 
     def residual(self, state: State, forces: Forces) -> None:
-        _, found = self._answer(state)
-        self.field.own(forces.end)[:] += self._internal(found.stress) - self._load
+        self.field.own(forces.end)[:] += self._answer(state).force
 
     def unload(self) -> None:
         """From now on the tangent is that of unloading, which is elastic, as in small vibrations about rest."""
@@ -85,7 +83,7 @@ class Soil:
         return _Stiffness.unknown(self._gradients)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        _, found = self._answer(state)
+        found = self._answer(state).found
         by_strain = mandel.stiffness(self.law.bulk, self.law.shear) if self._unloads else found.tangent
         g, moduli = self._gradients, by_strain.reshape(*self._shape, 6, 6)
         kernels.renew_stiffness(g.full, g.volume, g.weights, moduli, *self._stiffness)
@@ -97,7 +95,7 @@ class Soil:
         With σ0 the initial stress and εe the elastic strain since then, potential = ∫ σ0:εe − load·u, which is −∫ σ0:εp
         for a geostatic start: nothing, as long as K0 = 1.
         """
-        _, found = self._answer(state)
+        found = self._answer(state).found
         displacement = self.field.total + self.field.own(state.u)
         return Energy(
             strain=self._sum(found.stored),
@@ -113,16 +111,18 @@ class Soil:
         stays at its limit, nothing where no plastic strain grows; backstress and elements in parallel add half the
         product of the changes of their own stress and strain.
         """
-        strain, found = self._answer(after)
+        _, strain, found, _ = self._answer(after)
         stored, elastic = found.stored - self._found.stored, found.elastic - self._found.elastic
         taken = self._integral(found.stress, strain) - self._integral(self._initial, elastic)
         by_scheme = 0.5 * self._integral(found.stress - self._found.stress, elastic)
         return Work(dissipated=taken - self._sum(stored), by_scheme=by_scheme)
 
     def commit(self, state: State) -> None:
-        _, found = self._answer(state)
+        """Soil that has not moved, and whose history has not changed, answers as before."""
+        u, _, found, _ = self._answer(state)
+        if u.any() or not np.array_equal(found.history, self._found.history):
+            self._last = None
         self._found = found._replace(tangent=np.empty(0))
-        self._answers.forget()
 
     def output_mesh(self) -> SoilMesh:
         """The whole mesh for output on rank 0; empty elsewhere."""
@@ -146,24 +146,26 @@ class Soil:
         strength_used = self.law.overstress(stress)
         return -mandel.mean(stress), mandel.von_mises(stress), strength_used, self._plastic_strain()
 
-    def _answer(self, state: State) -> tuple[Array, StressUpdate]:
-        """Strain increment (n, 6) of a trial state and the law's answer; kept for the last state, whose arrays
-        must not change then.
-        """
-        return self._answers.made_of(state, self._new_answer)
+    def _answer(self, state: State) -> _Answer:
+        """At a trial state: the last one, as long as neither the soil's increments nor its history change."""
+        u = self.field.own(state.u)
+        if self._last is None or not np.array_equal(u, self._last.u):
+            self._last = self._new_answer(u.copy())
+        return self._last
 
-    def _new_answer(self, state: State) -> tuple[Array, StressUpdate]:
-        strain = self._strain(state)
-        return strain, self.law.update(strain, self._found.history)
+    def _new_answer(self, u: Array) -> _Answer:
+        strain = self._strain(u)
+        found = self.law.update(strain, self._found.history)
+        return _Answer(u, strain, found, self._internal(found.stress) - self._load)
 
     def _plastic_strain(self) -> Array:
         """Equivalent plastic strain (n,), 0 for a law without plasticity."""
         history, columns = self._found.history, self.law.columns
         return history[:, columns.index(PLASTIC_STRAIN)] if PLASTIC_STRAIN in columns else np.zeros(len(history))
 
-    def _strain(self, state: State) -> Array:
+    def _strain(self, u: Array) -> Array:
         g, out = self._gradients, np.empty((*self._shape, 6))
-        kernels.strain(g.full, g.volume, self._cells, self.field.own(state.u), out)
+        kernels.strain(g.full, g.volume, self._cells, u, out)
         return out.reshape(-1, 6)
 
     def _internal(self, stress: Array) -> Array:
@@ -207,8 +209,16 @@ class Soil:
         return {"stress": found.stress, "history": found.history, "stored": found.stored, "elastic": found.elastic}
 
     def restore(self, saved: Saved) -> None:
-        self._found = self._found._replace(**saved)
-        self._answers.forget()
+        self._found, self._last = self._found._replace(**saved), None
+
+
+class _Answer(NamedTuple):
+    """Of the soil to its increments u: strain increment (n, 6), the law's answer, and residual [N]."""
+
+    u: Array
+    strain: Array
+    found: StressUpdate
+    force: Array
 
 
 class _Stiffness(NamedTuple):

@@ -11,9 +11,6 @@ Source: Golub & Van Loan, Matrix Computations (2013), 4.3 and 3.4.
 
 from __future__ import annotations
 
-import atexit
-from typing import ClassVar
-
 import numpy as np
 from petsc4py import PETSc
 from scipy.linalg.lapack import dgetrf, dgetrs
@@ -22,18 +19,13 @@ from riser_soil.core import banded
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.solve.chain import SingularError
+from riser_soil.solve.python_context import PythonContext
 
 WIDEST = 32  # entries beside the diagonal up to which a matrix is a chain's
 
 
-class BorderedBand:
-    """PETSc's preconditioner of type python for such matrices: an exact solver.
-
-    chain: rows of B, the first ones. in_use: all that are not destroyed. PETSc would call them as it ends, after Python
-    has: they are let go before.
-    """
-
-    in_use: ClassVar[dict[BorderedBand, PETSc.PC]] = {}
+class BorderedBand(PythonContext):
+    """PETSc's preconditioner of type python for such matrices: an exact solver. chain: rows of B, the first ones."""
 
     def __init__(self, matrix: PETSc.Mat, chain: int) -> None:
         self._indptr, self._indices, _ = matrix.getValuesCSR()
@@ -46,7 +38,6 @@ class BorderedBand:
 
     def setUp(self, pc: PETSc.PC) -> None:
         """Factorise the present matrix; SingularError where it can't be."""
-        self.in_use[self] = pc
         values = pc.getOperators()[1].getValuesCSR()[2]
         parts = self._band, self._right, self._below, self._corner
         self._touched = np.flatnonzero(_spread(self._indptr, self._indices, values, *parts))
@@ -73,18 +64,6 @@ class BorderedBand:
             x[self._touched] -= self._by_border @ x[chain:]
         banded.solve(self._band, self._pivots, x[:chain], self._wide)
         found.setArray(x)
-
-    def reset(self, pc: PETSc.PC) -> None:
-        """Called as the preconditioner is destroyed."""
-        self.in_use.pop(self, None)
-
-
-@atexit.register
-def let_go() -> None:
-    """Part all preconditioners from their contexts here."""
-    while BorderedBand.in_use:
-        _, pc = BorderedBand.in_use.popitem()
-        pc.setType(PETSc.PC.Type.NONE)
 
 
 def bandwidth(matrix: PETSc.Mat, chain: int) -> int:

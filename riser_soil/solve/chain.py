@@ -21,47 +21,56 @@ def is_chain(system: System) -> bool:
 
 
 class ChainFactors:
-    """Factors of a chain's matrix, made anew where it has changed."""
+    """Factors of a chain's matrix, made anew where it has changed. rows: its first ones, which are the chain's; all by
+    default.
+    """
 
-    def __init__(self, matrix: Matrix) -> None:
-        self._matrix, self._factored = matrix, -1
+    def __init__(self, matrix: Matrix, rows: int | None = None) -> None:
+        self._matrix, self._rows, self._factored = matrix, rows, -1
 
     def solve(self, load: Array) -> Array:
         """What the matrix makes the load of; SingularError where there is nothing."""
-        if self._factored != self._matrix.changes:
-            self._factorise()
+        self.factorise()
         found = load.copy()
         banded.solve(self._band, self._pivots, found, self._width)
         return found
 
-    def _factorise(self) -> None:
+    def factorise(self) -> None:
+        """Where that has not been done; SingularError where it can't be."""
+        if self._factored == self._matrix.changes:
+            return
         self._factored = -1
-        self._band, self._width = band_of(self._matrix)
+        self._band, self._width = band_of(self._matrix, self._rows)
         self._pivots = np.zeros(len(self._band) - len(self._width), dtype=np.int64)
         if not banded.factorise(self._band, self._pivots, self._width):
             raise SingularError
         self._factored = self._matrix.changes
 
 
-def negative_pivots(matrix: Matrix) -> int:
-    """Negative pivots of a chain's symmetric matrix: its number of negative eigenvalues."""
-    band, width = band_of(matrix)
+def negative_pivots(matrix: Matrix, rows: int | None = None) -> int:
+    """Negative pivots of a chain's symmetric matrix: its number of negative eigenvalues. rows: as of `ChainFactors`."""
+    band, width = band_of(matrix, rows)
     return int(banded.count_negative_pivots(band, len(band) - len(width), width))
 
 
-def band_of(matrix: Matrix) -> tuple[Array, Array]:
-    """The matrix as in `banded`, and an array as long as its band is wide: of any length, where that is not fixed."""
+def band_of(matrix: Matrix, rows: int | None = None) -> tuple[Array, Array]:
+    """The matrix as in `banded`, and an array as long as its band is wide: of any length, where that is not fixed.
+    rows: of the matrix, the first ones, and as many columns.
+    """
     indptr, indices, values = matrix.stored.csr()
-    n = len(indptr) - 1
-    rows = np.repeat(np.arange(n), np.diff(indptr))
-    b = int(np.abs(rows - indices).max(initial=0))
+    n = len(indptr) - 1 if rows is None else rows
+    of_entry = np.repeat(np.arange(n), np.diff(indptr[: n + 1]))
+    columns = indices[: indptr[n]]
+    b = int(np.abs(of_entry - columns)[columns < n].max(initial=0))
     band = np.zeros((n + b, 3 * b + 1))
-    _spread(indptr, indices, values, band, b)
+    _spread(indptr[: n + 1], indices, values, band, b)
     return band, np.zeros(b)
 
 
 @njit
 def _spread(indptr: IntArray, indices: IntArray, values: Array, band: Array, b: int) -> None:
-    for i in range(indptr.size - 1):
+    n = indptr.size - 1
+    for i in range(n):
         for k in range(indptr[i], indptr[i + 1]):
-            band[i, indices[k] - i + b] = values[k]
+            if indices[k] < n:
+                band[i, indices[k] - i + b] = values[k]

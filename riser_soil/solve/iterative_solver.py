@@ -18,6 +18,7 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Field, local
 from riser_soil.core.system import System
 from riser_soil.solve.linear_solver import PREFIX, LinearSystems, defaults
+from riser_soil.solve.python_context import PythonContext
 
 TOLERANCE, MOST_ITERATIONS, RESTART = 1e-4, 500, 100  # share of the residual that may be left
 MULTIGRID = {"soil_pc_gamg_reuse_interpolation": "true"}  # of the first tangent, for all of its pattern
@@ -35,7 +36,7 @@ def solid_of(system: System) -> Solid | None:
     return cast(Solid, found[0]) if found else None
 
 
-class IterativeSolver(LinearSystems):
+class IterativeSolver(PythonContext, LinearSystems):
     """Linear solver of a system with a solid, and the context of its preconditioner; collective."""
 
     factorises: ClassVar[bool] = False
@@ -50,8 +51,7 @@ class IterativeSolver(LinearSystems):
         ksp.setPCSide(PETSc.PC.Side.RIGHT)
         ksp.setTolerances(rtol=TOLERANCE, atol=0.0, max_it=MOST_ITERATIONS)
         ksp.setGMRESRestart(RESTART)
-        ksp.getPC().setType(PETSc.PC.Type.PYTHON)
-        ksp.getPC().setPythonContext(self)
+        self.work_for(ksp.getPC())
 
     def setUp(self, pc: PETSc.PC) -> None:
         """Called by PETSc for each new tangent."""

@@ -22,6 +22,7 @@ from petsc4py import PETSc
 from riser_soil.core.factor_memory import Room
 from riser_soil.core.saved_state import Saved
 from riser_soil.solve.linear_solver import LinearSystems, use_mumps
+from riser_soil.solve.python_context import PythonContext
 
 FEWEST = 10  # iterations that a solve may take in any case
 PER_ENTRY = 36.0  # operations of a factorisation that take as long as a solve for one entry of its factors: 32 to 40
@@ -30,7 +31,7 @@ TOO_LONG = PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT
 BROKEN = PETSc.KSP.ConvergedReason.DIVERGED_BREAKDOWN
 
 
-class KeptFactors(LinearSystems):
+class KeptFactors(PythonContext, LinearSystems):
     """Linear solver of a system's tangents, one after the other; collective.
 
     symmetric: whether the tangents are. room: for fill-in; it grows where it was too little. factorisations,
@@ -53,8 +54,7 @@ class KeptFactors(LinearSystems):
     def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
         """Solve what this KSP is asked for, to its relative tolerance in the norm of residuals over the levers."""
         self._levers = levers
-        ksp.setType(PETSc.KSP.Type.PYTHON)
-        ksp.setPythonContext(self)
+        self.work_for(ksp)
         ksp.getPC().setType(PETSc.PC.Type.NONE)
 
     def solve(self, ksp: PETSc.KSP, b: PETSc.Vec, x: PETSc.Vec) -> None:

@@ -16,6 +16,7 @@ from petsc4py import PETSc
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import destroyed_together
 from riser_soil.core.factor_memory import Room
+from riser_soil.core.petsc_matrix import declare
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.solve.bordered_band import WIDEST, BorderedBand, bandwidth
@@ -87,8 +88,7 @@ def factorise_directly(pc: PETSc.PC, system: System, room: Room) -> None:
     """Make a preconditioner an exact solver, symmetric where MUMPS is it and the system is."""
     if (chain := _bordered_chain(system)) is not None:
         pc.setOperators(system.matrix.mat)
-        pc.setType(PETSc.PC.Type.PYTHON)
-        pc.setPythonContext(BorderedBand(system.matrix.mat, chain))
+        BorderedBand(system.matrix.mat, chain).work_for(pc)
         return
     mumps = not is_chain(system)
     _choose(pc, system, "cholesky" if mumps and system.symmetric else "lu", room.controls)
@@ -131,11 +131,31 @@ def exact_solver(system: System) -> Iterator[Callable[[Array], Array]]:
 
 def negative_pivots(system: System) -> int:
     """Negative pivots of the system's symmetric matrix: its number of negative eigenvalues; collective."""
+    return _counted(system.matrix.mat)
+
+
+def negative_pivots_behind(system: System, rows: int) -> int:
+    """Those of its part behind this rank's first rows, and columns, which is coupled with none of these; collective."""
+    mat, numbering = system.matrix.mat, system.numbering
+    behind = np.arange(numbering.first + rows, numbering.first + numbering.owned, dtype=PETSc.IntType)
+    at = PETSc.IS().createGeneral(behind, comm=mat.comm)
+    part = mat.createSubMatrix(at, at)
+    declare(part, symmetric=True)
+    try:
+        return _counted(part) if part.getSize()[0] else 0
+    finally:
+        for thing in (part, at):
+            thing.destroy()
+
+
+def _counted(mat: PETSc.Mat) -> int:
+    """Negative pivots of a symmetric matrix, which is no chain's."""
     room = Room()
     while True:
-        pc = PETSc.PC().create(system.comm)
+        pc = PETSc.PC().create(mat.comm)
         try:
-            _choose(pc, system, "cholesky", room.controls | COUNTING)
+            pc.setOperators(mat)
+            use_mumps(pc, "cholesky", room.controls | COUNTING)
             pc.setUp()
             if not room.grows_after(pc):
                 return int(pc.getFactorMatrix().getInertia()[0])

@@ -28,6 +28,10 @@ class Balance(Protocol):
 
     def linear_tolerance(self) -> float: ...
 
+    def negligible(self) -> float:
+        """What of the residual [N] needs no answer of the next linear system; collective."""
+        ...
+
 
 class Loop(Protocol):
     """factorises: whether pivots may be counted, too. again: whether what failed last may be tried once more."""

@@ -24,7 +24,7 @@ from riser_soil.solve.loops import CONVERGED, DIVERGED, ITERATING, LOOSE, NOT_FI
 from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.round_off import ROUND_OFF, stays
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError, told
-from riser_soil.solve.stability import prescribe_free_turns, unstable_modes
+from riser_soil.solve.stability import PivotCounter, prescribe_free_turns, unstable_modes
 from riser_soil.solve.time_scheme import Static
 
 TIGHT = 1e-10  # least share of the residual that a linear system solved by iterations may leave, LOOSE the largest
@@ -47,6 +47,7 @@ class Newton:
         self._known: State | None = None  # whose forces are known
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
         self.loop = self._new_loop()
+        self._pivots = PivotCounter(system)
         self._make_vectors()
 
     def _new_loop(self) -> Loop:
@@ -195,10 +196,10 @@ class Newton:
         if not self.loop.factorises:
             return 0
         scale = self._scale(self.system.forces(state) if forces is None else forces)
-        negative = unstable_modes(self.system, state, STATIC, scale, doubtful)
+        negative = unstable_modes(self._pivots, state, STATIC, scale, doubtful)
         while self._outgrown():
             self._renew(state)
-            negative = unstable_modes(self.system, state, STATIC, scale, doubtful)
+            negative = unstable_modes(self._pivots, state, STATIC, scale, doubtful)
         return negative
 
     def _renew(self, state: State) -> None:
@@ -345,6 +346,10 @@ class Newton:
             return LOOSE
         enough = self.settings.tolerance * self._scale(self._forces) / norm
         return min(max(BELOW * (norm / before) ** 2, BELOW * enough, TIGHT), LOOSE)
+
+    def negligible(self) -> float:
+        """Residual [N] that needs no answer: below what Newton's method may leave; collective."""
+        return BELOW * self.settings.tolerance * self._scale(self._forces)
 
     def _norm(self) -> float:
         """Norm of the residual [N]; collective."""

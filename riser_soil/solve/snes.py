@@ -23,6 +23,7 @@ from riser_soil.solve.loops import (
     OUTGROWN,
     Balance,
 )
+from riser_soil.solve.riser_above_soil import RiserAboveSoil
 from riser_soil.solve.solution import NewtonSettings
 
 REASON = PETSc.SNES.ConvergedReason
@@ -49,6 +50,7 @@ class SnesLoop:
         owned, comm = self._system.numbering.owned, self._system.comm
         self._x, self._f, self._levers = (PETSc.Vec().createMPI((owned, PETSc.DETERMINE), comm=comm) for _ in range(3))
         self._levers.array_w[:] = self._system.numbering.to_global(self._system.levers)
+        self._alone = RiserAboveSoil(self._system) if self._system.has_whole_soil else None
         self._snes = self._create()
 
     def _create(self) -> PETSc.SNES:
@@ -60,11 +62,22 @@ class SnesLoop:
         snes.setTolerances(max_it=self._settings.max_iterations)
         if self._settings.line_search:
             snes.setLineSearchPreCheck(self._shorten)
-        self.linear.serve(snes.getKSP(), self._levers)
+        self._coupled = snes.getKSP()
+        self.linear.serve(self._coupled, self._levers)
         snes.setOptionsPrefix(PREFIX)
         with defaults({"snes_linesearch_type": "basic"}):
             snes.setFromOptions()
+        self._uncoupled = PETSc.KSP().create(self._system.comm)
+        if self._alone is not None:
+            self._alone.serve(self._uncoupled)
         return snes
+
+    def _choose(self, f: PETSc.Vec) -> PETSc.KSP:
+        """The solver of the present tangent and a residual, which SNES gets."""
+        alone = self._alone is not None and self._alone.suits(np.array(f.array_r), self._balance.negligible())
+        chosen = self._uncoupled if alone else self._coupled
+        self._snes.setKSP(chosen)
+        return chosen
 
     def iterate(self, x: Array, most: int) -> str:
         """By SNES."""
@@ -77,11 +90,11 @@ class SnesLoop:
     def respond(self, f: Array) -> tuple[str, Array]:
         """By the linear solver that SNES has."""
         self._f.array_w[:] = f
-        failure = self._failing(self._respond, lambda: self._snes.getKSP().reason < 0)
+        solver = self._choose(self._f)
+        failure = self._failing(lambda: self._respond(solver), lambda: solver.reason < 0)
         return failure, np.array(self._x.array_r)
 
-    def _respond(self) -> None:
-        solver = self._snes.getKSP()
+    def _respond(self, solver: PETSc.KSP) -> None:
         solver.setOperators(self._system.matrix.mat)
         solver.setTolerances(rtol=LOOSE)
         solver.solve(self._f, self._x)
@@ -99,7 +112,7 @@ class SnesLoop:
                 raise
         if not complained and not unsolved():
             return ""
-        why, self.again = self.linear.failed(self._snes.getKSP())
+        why, self.again = self.linear.failed(self._coupled)
         self._drop()
         self._snes = self._create()
         return complained or why or NOT_SOLVED
@@ -112,8 +125,10 @@ class SnesLoop:
 
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
         ending = self._balance.judge(np.array(self._x.array_r), np.array(self._f.array_r))
+        if ending == ITERATING:
+            self._choose(self._f)
         if self.linear.to_tolerance:
-            snes.getKSP().setTolerances(rtol=self._balance.linear_tolerance())
+            self._coupled.setTolerances(rtol=self._balance.linear_tolerance())
         return int(REASONS[ending])
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> bool:
@@ -147,8 +162,9 @@ class SnesLoop:
         """Destroy SNES, its factors first and on all ranks at once: MUMPS waits for the others. SNES itself may be held
         longer by frames that an exception keeps, as numba's do on the rank that compiles a kernel.
         """
-        self._snes.reset()
-        self._snes.destroy()
+        for thing in (self._snes, self._coupled, self._uncoupled):
+            thing.reset()
+            thing.destroy()
 
 
 def _ending(reason: int) -> str:

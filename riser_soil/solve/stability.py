@@ -20,6 +20,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.communicator import all_of, any_of
+from riser_soil.core.matrix import Matrix
 from riser_soil.core.part import LineField, Part, State, Weights, local
 from riser_soil.core.system import System
 from riser_soil.solve import chain
@@ -34,12 +36,46 @@ def judged_parts(system: System) -> Sequence[Part] | None:
     return judged if all(part.traits.symmetric for part in judged) else None
 
 
-def unstable_modes(system: System, state: State, weights: Weights, forces: float, doubtful: bool = False) -> int:
-    """Independent ways to leave the equilibrium that set energy free; collective.
+class PivotCounter:
+    """Counts negative pivots of one matrix of a system after the other. While nothing couples the lines with other
+    fields, those of the others' rows are counted again only where these have changed: soil at rest is factorised once.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self._matrix: Matrix | None = None
+        self._seen: Array = np.zeros(0)
+        self._others = 0
+
+    def count(self) -> int:
+        """Of the present matrix; collective."""
+        system = self.system
+        if not system.has_whole_soil or any_of(system.comm, system.couples):
+            return negative_pivots(system)
+        rows = system.line_rows
+        mine = chain.negative_pivots(system.matrix, rows) if rows else 0
+        return int(system.sum([float(mine)])[0]) + self._of_others(rows)
+
+    def _of_others(self, rows: int) -> int:
+        """Of the rows behind this rank's first ones."""
+        system, (starts, _, values) = self.system, self.system.matrix.stored.csr()
+        present = values[starts[rows] :]
+        seen = self._matrix is system.matrix and np.array_equal(present, self._seen)
+        if not all_of(system.comm, seen):
+            self._others = _negative_pivots_behind(system, rows)
+            self._matrix, self._seen = system.matrix, present.copy()
+        return self._others
+
+
+def unstable_modes(
+    pivots: PivotCounter, state: State, weights: Weights, forces: float, doubtful: bool = False
+) -> int:
+    """Independent ways to leave the equilibrium of the counter's system that set energy free; collective.
 
     forces [N]: norm of the forces in play. doubtful: count those as well that round-off may have made or may hide.
     The system's matrix is not that of its parts afterwards.
     """
+    system = pivots.system
     judged = judged_parts(system)
     if judged is None or system.numbering.free == 0:
         return 0
@@ -50,7 +86,7 @@ def unstable_modes(system: System, state: State, weights: Weights, forces: float
     mine = _of_this_rank(system, prescribed)
     more[mine] += bounds[mine]
     system.matrix.add_to_diagonal(more)
-    return negative_pivots(system)
+    return pivots.count()
 
 
 def negative_pivots(system: System) -> int:
@@ -60,6 +96,12 @@ def negative_pivots(system: System) -> int:
     from riser_soil.solve import linear_solver
 
     return linear_solver.negative_pivots(system)
+
+
+def _negative_pivots_behind(system: System, rows: int) -> int:
+    from riser_soil.solve import linear_solver
+
+    return linear_solver.negative_pivots_behind(system, rows)
 
 
 def prescribe_free_turns(system: System, state: State, least: float) -> None:

@@ -96,8 +96,7 @@ class Solver:
         self.snes.setFunction(self.function, self.f)
         self.snes.setJacobian(lambda *_: None, mat)
         self.snes.getKSP().setType("preonly")
-        self.snes.getKSP().getPC().setType("python")
-        self.snes.getKSP().getPC().setPythonContext(BorderedBand(mat, 2))
+        BorderedBand(mat, 2).work_for(self.snes.getKSP().getPC())
 
     def function(self, snes, x, f):
         f.setArray(2.0 * x.getArray(readonly=True) - 6.0)

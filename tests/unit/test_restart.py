@@ -212,6 +212,15 @@ def test_xml_that_is_cut_off_is_refused(left: Path) -> None:
         run(scene_of(), left, restart=True)
 
 
+@pytest.mark.parametrize("name", ["results.nc", "riser.vtkhdf"])
+def test_a_run_with_a_damaged_file_is_refused(name: str, left: Path) -> None:
+    """Its head is whole, so that it is taken for its writer's; what its groups hold can't be read."""
+    content = (left / name).read_bytes()
+    (left / name).write_bytes(content.replace(b"TREE", b"EERT"))
+    with pytest.raises(ResultsError, match=f"{name}: is damaged, and can't go on .*; begin anew by --force"):
+        run(scene_of(), left, restart=True)
+
+
 def test_a_run_that_is_ended_before_it_went_on_stays_as_it_was(left: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = {path.name: path.read_bytes() for path in left.iterdir()}
     monkeypatch.setattr(Assembly, "resume", lambda self: signal.raise_signal(signal.SIGTERM))
