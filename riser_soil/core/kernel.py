@@ -23,7 +23,7 @@ class Kernel(CPUDispatcher):
     """A function compiled for compiled code; see `numba.njit` for the options."""
 
     def __init__(self, function: Callable[..., object], options: dict[str, Any]) -> None:
-        # numba asks for the signature again and again, which takes a tenth of a start where it is found anew.
+        # numba asks for the signature again and again, which takes a twentieth of a start where it is found anew.
         vars(function)["__signature__"] = inspect.signature(function)
         self._options = {"nopython": True, "boundscheck": None, **options}
         super().__init__(function, targetoptions={**self._options, **BARE})
