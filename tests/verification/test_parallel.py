@@ -48,8 +48,12 @@ def scene(name: str) -> Mapping:
 
 
 def held_demo() -> Mapping:
-    """The demo in space, with friction and suction too, and pulled so fast that it slips and is torn off at once."""
-    given = scene("demo")
+    """The demo in space, with friction and suction too, and pulled so fast that it slips and is torn off at once.
+
+    To 1e-11 of its forces: at 1e-10 its clay, on the way to yield, differs by up to 1e-8 from one run on two ranks to
+    the next, as MUMPS sums in the order of messages.
+    """
+    given = scene("demo") | {"solver": {"tolerance": 1e-11}}
     given["dimension"] = 3
     given["contact"] |= {"friction": {"axial": 0.4, "lateral": 0.7}, "suction": {"cap": 300.0, "reach": 0.03}}
     heave = given["stages"][1]
@@ -169,4 +173,4 @@ def test_demo_with_friction_and_suction_agrees_to_the_solvers_tolerance(ranks: i
     lost = results("demo held", 1).summary["stages"][1]["energy"]["dissipated_by"]
     assert min(lost["soil_plasticity"], lost["soil_friction"]) > 0.0
     assert results("demo held", 1).series["contact_force"].min() < 0.0
-    assert_same("demo held", ranks, within=1e-8)
+    assert_same("demo held", ranks, within=1e-9)
