@@ -91,9 +91,9 @@ class System:
         return sum(line.size for line in self.model.lines)
 
     @property
-    def has_whole_soil(self) -> bool:
-        """Whether all of the soil is solved for, beside the lines."""
-        return any(field.name == field.space == "soil" for field in self.model.others)
+    def whole_soil(self) -> Field | None:
+        """The soil, where all of it is solved for."""
+        return next((field for field in self.model.others if field.name == field.space == "soil"), None)
 
     @property
     def line_rows(self) -> int:

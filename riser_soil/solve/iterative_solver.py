@@ -32,8 +32,7 @@ class Solid(Field, Protocol):
 
 def solid_of(system: System) -> Solid | None:
     """The soil, where it is solved for as a whole."""
-    found = [field for field in system.model.fields if field.name == field.space == "soil"]
-    return cast(Solid, found[0]) if found else None
+    return cast(Solid | None, system.whole_soil)
 
 
 class IterativeSolver(PythonContext, LinearSystems):

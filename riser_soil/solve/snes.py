@@ -50,7 +50,7 @@ class SnesLoop:
         owned, comm = self._system.numbering.owned, self._system.comm
         self._x, self._f, self._levers = (PETSc.Vec().createMPI((owned, PETSc.DETERMINE), comm=comm) for _ in range(3))
         self._levers.array_w[:] = self._system.numbering.to_global(self._system.levers)
-        self._alone = RiserAboveSoil(self._system) if self._system.has_whole_soil else None
+        self._alone = None if self._system.whole_soil is None else RiserAboveSoil(self._system)
         self._snes = self._create()
 
     def _create(self) -> PETSc.SNES:
@@ -67,14 +67,17 @@ class SnesLoop:
         snes.setOptionsPrefix(PREFIX)
         with defaults({"snes_linesearch_type": "basic"}):
             snes.setFromOptions()
-        self._uncoupled = PETSc.KSP().create(self._system.comm)
+        self._uncoupled: PETSc.KSP | None = None
         if self._alone is not None:
+            self._uncoupled = PETSc.KSP().create(self._system.comm)
             self._alone.serve(self._uncoupled)
         return snes
 
     def _choose(self, f: PETSc.Vec) -> PETSc.KSP:
         """The solver of the present tangent and a residual, which SNES gets."""
-        alone = self._alone is not None and self._alone.suits(np.array(f.array_r), self._balance.negligible())
+        if self._alone is None:
+            return self._coupled
+        alone = self._alone.suits(np.array(f.array_r), self._balance.negligible())
         chosen = self._uncoupled if alone else self._coupled
         self._snes.setKSP(chosen)
         return chosen
@@ -163,8 +166,9 @@ class SnesLoop:
         longer by frames that an exception keeps, as numba's do on the rank that compiles a kernel.
         """
         for thing in (self._snes, self._coupled, self._uncoupled):
-            thing.reset()
-            thing.destroy()
+            if thing is not None:
+                thing.reset()
+                thing.destroy()
 
 
 def _ending(reason: int) -> str:

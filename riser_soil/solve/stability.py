@@ -50,7 +50,7 @@ class PivotCounter:
     def count(self) -> int:
         """Of the present matrix; collective."""
         system = self.system
-        if not system.has_whole_soil or any_of(system.comm, system.couples):
+        if system.whole_soil is None or any_of(system.comm, system.couples):
             return negative_pivots(system)
         rows = system.line_rows
         mine = chain.negative_pivots(system.matrix, rows) if rows else 0
