@@ -118,9 +118,9 @@ def greatest_known(name: str, row: Row | None = None) -> Figure:
     return Figure(name, lambda along: np.nanmax(along), node=lambda along: np.nanargmax(along), row=row)
 
 
-def greatest_between(name: str, row: Row | None = None) -> Figure:
-    """A largest value between nodes, `LargestAlong`, with its place."""
-    return Figure(name, lambda largest: largest.value, arc=lambda largest: largest.arc, row=row)
+def extreme_along(name: str, row: Row | None = None) -> Figure:
+    """The largest or least value along the riser where that is known, `ExtremeAlong`, with its place."""
+    return Figure(name, lambda extreme: extreme.value, arc=lambda extreme: extreme.arc, row=row)
 
 
 def greatest_in_soil(name: str, row: Row | None = None) -> Figure:

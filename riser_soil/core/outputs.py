@@ -15,8 +15,8 @@ from riser_soil.core.output import (
     Row,
     angle_deg,
     bend_radius,
+    extreme_along,
     greatest,
-    greatest_between,
     greatest_in_soil,
     greatest_known,
     least,
@@ -44,7 +44,6 @@ ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
         figures=(
             Figure("start.effective_tension", lambda T: T[0], row=_TOP),
             Figure("end.effective_tension", lambda T: T[-1], row=_TOP),
-            least("min_effective_tension", Row("least effective tension", "kN", 1e-3)),
         ),
     ),
     OutputQuantity(
@@ -220,22 +219,27 @@ OF_MODEL: tuple[OutputQuantity[Instant], ...] = (
     ),
     OutputQuantity(
         "min_effective_tension", "", "N", "least effective tension along the riser", "model",
-        lambda i: i.riser.effective_tension.min(), "negative in compression",
+        lambda i: i.riser.least_tension.value, "negative in compression",
     ),
     OutputQuantity(
         "min_effective_tension_arc", "", "m", "arc length of the least effective tension", "model",
-        lambda i: i.arc[i.riser.effective_tension.argmin()],
+        lambda i: i.riser.least_tension.arc,
+    ),
+    OutputQuantity(
+        "least_tension", "", "N", "least effective tension along the riser, with its place", "summary",
+        lambda i: i.riser.least_tension, "negative in compression",
+        figures=(extreme_along("min_effective_tension", Row("least effective tension", "kN", 1e-3)),),
     ),
     OutputQuantity(
         "largest_bending_moment", "", "N m", "largest bending moment, between nodes too", "summary",
         lambda i: i.riser.largest_moment,
-        figures=(greatest_between("max_bending_moment", Row("largest bending moment", "kN m", 1e-3)),),
+        figures=(extreme_along("max_bending_moment", Row("largest bending moment", "kN m", 1e-3)),),
     ),
     OutputQuantity(
         "largest_curvature", "", "m-1", "largest curvature, between nodes too", "summary",
         lambda i: i.riser.largest_curvature,
         figures=(
-            greatest_between("max_curvature", Row("largest curvature", "1/m")),
+            extreme_along("max_curvature", Row("largest curvature", "1/m")),
             Figure(
                 "min_bend_radius",
                 lambda largest: bend_radius(largest.value),
@@ -247,7 +251,7 @@ OF_MODEL: tuple[OutputQuantity[Instant], ...] = (
     OutputQuantity(
         "largest_bend_utilisation", "", "1", "largest bend utilisation, between nodes too", "summary",
         lambda i: i.riser.largest_bend_utilisation, needs="min_bend_radius",
-        figures=(greatest_between("max_bend_utilisation", Row("allowed over actual bend radius")),),
+        figures=(extreme_along("max_bend_utilisation", Row("allowed over actual bend radius")),),
     ),
     OutputQuantity(
         "min_bend_radius", "", "m", "smallest bend radius, one over the largest curvature, between nodes too", "model",

@@ -12,8 +12,8 @@ from typing import NamedTuple
 from riser_soil.core.arrays import Array, IntArray
 
 
-class LargestAlong(NamedTuple):
-    """The largest value along the riser, between nodes too, and its arc length [m]."""
+class ExtremeAlong(NamedTuple):
+    """The largest or least value along the riser, largest ones between nodes too, and its arc length [m]."""
 
     value: float
     arc: float
@@ -47,13 +47,14 @@ class RiserSnapshot(NamedTuple):
 
     position: Array  # (nn, 3) m
     effective_tension: Array  # (nn,) N, positive in tension
-    wall_tension: Array  # (nn,) N, positive in tension; nan where the pressures are unknown
+    wall_tension: Array | None  # (nn,) N, positive in tension; None where the pressures are unknown
     bending_moment: Array  # (nn,) N.m, magnitude >= 0
     curvature: Array  # (nn,) 1/m, magnitude >= 0
-    bend_utilisation: Array  # (nn,) curvature times the least bend radius allowed; nan where none is given
-    largest_moment: LargestAlong  # N.m
-    largest_curvature: LargestAlong  # 1/m
-    largest_bend_utilisation: LargestAlong  # nan where no least bend radius is given
+    bend_utilisation: Array | None  # (nn,) curvature times the least bend radius allowed; None where none is given
+    least_tension: ExtremeAlong  # N, effective
+    largest_moment: ExtremeAlong  # N.m
+    largest_curvature: ExtremeAlong  # 1/m
+    largest_bend_utilisation: ExtremeAlong  # nan where no least bend radius is given
     tightest_radius: float  # m, where the bend utilisation is largest; the same
     contact_force: Array  # (nn,) N/m, positive where the ground pushes, negative where it holds the riser by suction
     moment_vector: Array  # (nn, 3) N.m, exerted by the part towards `end` on the part towards `start`

@@ -7,7 +7,7 @@ import numpy as np
 from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
 from riser_soil.core.snapshot import WallSnapshot
-from riser_soil.riser.section_forces import SectionForces
+from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.riser.section_moments import about_section_axes
 from riser_soil.riser.trial import Trial
 from riser_soil.riser.wall_sections import WallSections
@@ -15,12 +15,11 @@ from riser_soil.riser.wall_stress import bending_stress, hoop_and_radial_stress,
 
 
 def wall_snapshot(
-    assembly: Assembly, sections: WallSections, trial: Trial, forces: SectionForces, z: Array
+    assembly: Assembly, sections: WallSections, trial: Trial, forces: SectionForces
 ) -> WallSnapshot:
-    """z: heights of the nodes (nn,) [m]."""
     assert assembly.pressures is not None  # scenes with a wall are refused without
     wall, nodes = sections.wall, assembly.line.nodes
-    inside, outside = assembly.pressures.at(z)
+    inside, outside = assembly.pressures.at(forces.position[:, 2])
     moments = about_section_axes(assembly.line, trial, forces.moment) * assembly.elements.bends_beside[:, None]
     torque, moment_y, moment_z = moments.T
     loads = sections.loads(forces.effective_tension, moment_y, moment_z, torque, inside, outside)

@@ -151,6 +151,13 @@ def put_turning(at: Configuration, F: Array, G: Array) -> None:
     """Write to G (ne, 2, r, r) the derivative of P^T F by the rotation dofs, F (ne, 2, d) held."""
 
 
+@by_type
+def put_moment_maps(at: Configuration, axes: Array, maps: Array) -> None:
+    """Write the maps (nn, 3, r) of what is conjugate to the rotation dofs to moments in global axes, see `Orientation`.
+    axes (3, r): `Line.turning_axes`.
+    """
+
+
 @place.of(PlanarConfiguration)
 def _place_in_plane(at: PlanarConfiguration, base: PlanarBase, u: Array, v: Array, a: Array) -> None:
     _move(at, base, u, v, a)
@@ -226,3 +233,15 @@ def _put_turning_in_plane(at: PlanarConfiguration, F: Array, G: Array) -> None:
 @put_turning.of(SpatialConfiguration)
 def _put_turning_in_space(at: SpatialConfiguration, F: Array, G: Array) -> None:
     spatial_directors.put_geometric(at.Rn, at.H, at.Theta, at.tangent, F, G)
+
+
+@put_moment_maps.of(PlanarConfiguration)
+def _put_moment_maps_in_plane(at: PlanarConfiguration, axes: Array, maps: Array) -> None:
+    for n in range(maps.shape[0]):
+        for i in range(3):
+            maps[n, i, 0] = axes[i, 0]
+
+
+@put_moment_maps.of(SpatialConfiguration)
+def _put_moment_maps_in_space(at: SpatialConfiguration, axes: Array, maps: Array) -> None:
+    spatial_directors.put_moment_maps(at.Rn, at.Theta, maps)

@@ -71,8 +71,8 @@ class Inertia(LinePart):
     def numbers(self) -> Mass:
         return Mass(self.M)
 
-    def numbers_within(self, numbers: tuple[Any, ...]) -> Mass:
-        return Mass(self.M if self._at_ends is None else self.M - self._at_ends)
+    def numbers_within(self, numbers: tuple[Any, ...]) -> tuple[Any, ...]:
+        return numbers if self._at_ends is None else Mass(self.M - self._at_ends)
 
     def energy(self, state: State) -> Energy:
         rate = self.line.trial(state).q_rate

@@ -66,7 +66,7 @@ class SpatialOrientation:
     def moment_maps(self, axes: Array) -> Array:
         """Maps (nn, 3, 3) of moments conjugate to the rotation increments to those in global axes; axes: unit."""
         maps = np.empty_like(self.Rn)
-        _put_moment_maps(self.Rn, self.Theta, maps)
+        put_moment_maps(self.Rn, self.Theta, maps)
         return maps
 
     def maps(self, v: Array, a: Array, shift_v: float, shift_a: float) -> Maps:
@@ -147,7 +147,7 @@ def orient(
 
 
 @njit
-def _put_moment_maps(Rn: Array, Theta: Array, maps: Array) -> None:
+def put_moment_maps(Rn: Array, Theta: Array, maps: Array) -> None:
     """H^-T, that is Rn T_R^-1."""
     for n in range(len(Rn)):
         inverse = transpose(rotations.left_tangent_inverse(vector(Theta[n])))

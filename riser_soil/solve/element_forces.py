@@ -1,6 +1,7 @@
-"""What acts within the elements of a riser alone at an accepted state, by the kernels of its parts; see `part_kernels`.
+"""What acts within the elements of a riser alone at an accepted state, and its section forces, by the kernels of its
+parts; see `part_kernels`.
 
-As `riser.section_forces.element_residual`, which asks the parts' methods one by one.
+As `riser.section_forces`, which asks the parts' methods one by one.
 """
 
 from __future__ import annotations
@@ -15,51 +16,121 @@ from riser_soil.core.bound import Bound, in_turn
 from riser_soil.core.compiled import njit
 from riser_soil.core.packed import Packed
 from riser_soil.core.part import State
-from riser_soil.riser.configuration import Configuration, base_of, place, room_for
+from riser_soil.riser.configuration import (
+    Configuration,
+    PlanarConfiguration,
+    base_of,
+    place,
+    put_moment_maps,
+    room_for,
+)
 from riser_soil.riser.hermite import put_pulled_back
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import LinePart
+from riser_soil.riser.line_part import LinePart, overrides
 from riser_soil.riser.part_kernels import LineForces, add_forces, bound, forces_of
-from riser_soil.riser.section_forces import element_residual
+from riser_soil.riser.section_forces import (
+    NO_FRAMES,
+    element_residual,
+    section_input,
+    section_room,
+    viscous_residual,
+)
+from riser_soil.riser.section_kernels import SectionForces, put_section_forces
+from riser_soil.riser.sections import Elements
 from riser_soil.solve import riser_loop as loop
 
 
 class ElementForces:
-    """Residuals of the elements of a line. parts: with the numbers that were asked for last."""
+    """Residuals of the elements of a line and its section forces, in a configuration where parts have put their forces.
+
+    parts: of the line, for what follows from strain rates; asked: those whose share of the residual is not among the
+    forces.
+    """
+
+    def __init__(
+        self,
+        line: Line,
+        at: Configuration,
+        forces: LineForces,
+        parts: Sequence[LinePart],
+        asked: Sequence[LinePart] = (),
+    ) -> None:
+        self._line, self._asked = line, asked
+        self._damped = [part for part in parts if overrides(part, "viscous_forces")]
+        self._at, self._residual = at, np.zeros((line.length.size, 2 * line.ndof))
+        self._put = Bound(put_residual, Packed(at), Packed(forces), Packed(self._residual))
+        self._elements: Elements | None = None
+
+    def residual(self, state: State) -> Array:
+        """Sum over parts and groups (ne, 2 ndof); the same array each time."""
+        self._put()
+        if self._asked:
+            self._residual += element_residual(self._line, self._asked, state)
+        return self._residual
+
+    def section_forces(self, elements: Elements, state: State) -> SectionForces:
+        """Of the line whose elements these are."""
+        if self._elements is not elements:
+            self._bind_sections(elements)
+        self.residual(state)
+        if self._damped:
+            self._viscous[...] = viscous_residual(self._line, self._damped, state)
+        self._put_sections()
+        return SectionForces(*(values.copy() for values in self._sections))
+
+    def _bind_sections(self, elements: Elements) -> None:
+        line, at, self._elements = self._line, self._at, elements
+        maps = np.empty((line.nodes, 3, line.frames.dofs))
+        frames = (NO_FRAMES, NO_FRAMES) if isinstance(at, PlanarConfiguration) else (at.frame1, at.frame2)
+        viscous = np.zeros_like(self._residual) if self._damped else None
+        given = section_input(line, elements, self._residual, viscous, at.x, maps, at.tangent, *frames)
+        self._viscous, self._sections = given.viscous, section_room(line)
+        self._put_sections = in_turn(
+            bound(put_moment_maps, at, Packed(np.ascontiguousarray(line.turning_axes)), Packed(maps)),
+            Bound(put_section_forces, Packed(given), Packed(self._sections)),
+        )
+
+
+class AcceptedForces:
+    """What the parts of a line put within its elements at an accepted state: room of its own beside that of the loop.
+
+    parts: with the numbers that were asked for last. whole: whether the loop's forces tell the same, where it has
+    solved for the state: in the axes in which that step began, which parts with viscous forces don't know any more.
+    """
 
     def __init__(self, line: Line, parts: Sequence[tuple[LinePart, tuple[Any, ...]]]) -> None:
         self._line, shape = line, (line.nodes, line.ndof)
         within = [(part, part.numbers_within(numbers)) for part, numbers in parts]
-        self._asked = [part for part, numbers in within if numbers is None]
+        damped = any(overrides(part, "viscous_forces") for part, _ in parts)
+        self.whole = not damped and all(own is given for (_, own), (_, given) in zip(within, parts, strict=True))
         base = base_of(line)
         self._base = Packed(type(base)(*map(np.copy, base)))
         self._rates = np.zeros(shape), np.zeros(shape)
-        self._out = np.zeros((line.length.size, 2 * line.ndof))
-        at, forces = room_for(line), Packed(forces_of(line))
-        here = Packed(at)
+        at, out = room_for(line), forces_of(line)
+        here, forces = Packed(at), Packed(out)
         self._find = in_turn(
             bound(place, at, self._base, *map(Packed, (np.zeros(shape), *self._rates))),
             Bound(loop.clear, forces),
             *(bound(add_forces, numbers, here, forces) for _, numbers in within if numbers is not None),
-            Bound(put_residual, here, forces, Packed(self._out)),
         )
+        asked = [part for part, numbers in within if numbers is None]
+        self._forces = ElementForces(line, at, out, [part for part, _ in parts], asked)
 
-    def residual(self, state: State) -> Array:
-        """Sum over parts and groups (ne, 2 ndof) at an accepted state, to whose time the numbers have been brought."""
+    def found(self, state: State) -> ElementForces:
+        """At an accepted state, to whose time the numbers have been brought."""
         for kept, given in zip(self._base.value, base_of(self._line), strict=True):
             kept[...] = given
         for kept, given in zip(self._rates, (state.v, state.a), strict=True):
             kept.ravel()[:] = given
         self._find()
-        return self._out + element_residual(self._line, self._asked, state) if self._asked else self._out.copy()
+        return self._forces
 
 
 @njit
 def put_residual(at: Configuration, forces: LineForces, out: Array) -> None:
     """Write the sum of all groups within the elements."""
-    q = forces.inertia_q
-    q += forces.force_q
-    q += forces.end_q
+    q = forces.inertia_q + forces.force_q + forces.end_q
     put_pulled_back(q, at.P, out, at.D, at.R)
-    out += forces.inertia_e
-    out += forces.force_e
+    for e in range(out.shape[0]):
+        for i in range(out.shape[1]):
+            out[e, i] += forces.inertia_e[e, i] + forces.force_e[e, i]

@@ -16,7 +16,9 @@ from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import acting_on
-from riser_soil.riser.section_forces import element_residual
+from riser_soil.riser.section_forces import element_residual, nodal_residual, section_forces, viscous_residual
+from riser_soil.riser.section_kernels import SectionForces
+from riser_soil.riser.sections import Elements
 from riser_soil.solve.chain import is_chain
 from riser_soil.solve.failed_step import place_of_largest
 from riser_soil.solve.line_search import step_length
@@ -85,6 +87,15 @@ class Newton:
     def element_residual(self, line: Line, state: State) -> Array:
         """Of a line's elements (ne, 2 ndof) at an accepted state; on the rank that has it."""
         return element_residual(line, acting_on(line, self.system.model.parts), state)
+
+    def section_forces(self, line: Line, elements: Elements, state: State) -> SectionForces:
+        """Of a line at an accepted state; on the rank that has it."""
+        viscous = viscous_residual(line, acting_on(line, self.system.model.parts), state)
+        return section_forces(line, elements, state, self.element_residual(line, state), viscous)
+
+    def nodal_residual(self, line: Line, state: State) -> Array | None:
+        """Of what acts on a line's nodes (nn, ndof) without holding them; on the rank that has it."""
+        return nodal_residual(line, acting_on(line, self.system.model.parts), state)
 
     def _continues(self) -> bool:
         """Whether a static step goes on as those before: its guess leaves less out of balance than its loads put there.

@@ -39,7 +39,7 @@ Numbers = tuple[Any, ...]
 
 
 class PackedRiser:
-    """A line and its parts, whose arrays it shares; step, forces, dofs, room, progress: what the loop writes to.
+    """A line and its parts, whose arrays it shares; at, step, forces, dofs, room, progress: what the loop writes to.
 
     numbers: of the parts; prescribed, levers (size,): of the line's dofs; most: iterations of a step.
     """
@@ -61,7 +61,7 @@ class PackedRiser:
 
     def _bind(self, numbers: Sequence[Numbers]) -> None:
         """Bind the kernels of the loop to where they read and write."""
-        at = room_for(self._line)
+        at = self.at = room_for(self._line)
         written = self.step, self.forces, self.dofs, self.room, self.progress
         now, step, forces, dofs, room, progress = map(Packed, (at, *written))
         maps, weights, limits, K = self._maps, self._weights, self._limits, Packed(self.room.K)
@@ -94,7 +94,6 @@ class PackedRiser:
         tables = (Packed(calls(*kernels)) for kernels in (evaluate, probe, renew, improve))
         self._solve = Bound(loop.solve_step, *tables, limits, progress)
         self.evaluate, self.put_tangent = in_turn(*evaluate), in_turn(*put_tangent, put_sizes)
-        self._at = now
 
     def _bind_account(self, numbers: Sequence[Numbers]) -> None:
         """Bind the kernels of energy and work."""
@@ -102,7 +101,7 @@ class PackedRiser:
         still, *self._begun = _zeros(3, self.step.u.shape)
         self._energy, self._work = np.zeros(3), np.zeros((len(turning), 4))
         first = room_for(self._line)
-        then, now, energy = Packed(first), self._at, Packed(self._energy)
+        then, now, energy = Packed(first), Packed(self.at), Packed(self._energy)
         rows = [Packed(row) for row in self._work]
         self._account = in_turn(
             bound(place, first, self._base, *map(Packed, (still, *self._begun))),

@@ -16,9 +16,12 @@ from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
 from riser_soil.riser.part_kernels import add_work
+from riser_soil.riser.section_forces import nodal_residual
+from riser_soil.riser.section_kernels import SectionForces
+from riser_soil.riser.sections import Elements
 from riser_soil.solve import riser_loop
 from riser_soil.solve.compiled_mass import CompiledMass
-from riser_soil.solve.element_forces import ElementForces
+from riser_soil.solve.element_forces import AcceptedForces, ElementForces
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, largest_at, told
 
@@ -50,14 +53,16 @@ class RiserNewton:
         assert isinstance(line, Line)
         self._line, most = line, settings.max_iterations
         self._riser = PackedRiser(line, [held for _, held in parts], system.prescribed, system.levers, most)
+        self._solved: State | None = None  # last, where no forces may have jumped since
         self._numbered, self._t, self._free = parts, math.nan, np.flatnonzero(~system.prescribed)
         self._renewed = [part for part, _ in parts if overrides(part, "renew_numbers")]
+        self._on_nodes = [part for part, _ in parts if overrides(part, "nodal_forces")]
         kernels = [(part, type(held) in add_work.kernels) for part, held in parts]
         self._turning = [(part, kernel) for part, kernel in kernels if kernel or overrides(part, "work")]
 
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError."""
-        since = time.perf_counter()
+        since, self._solved = time.perf_counter(), None
         self._bring(step.before.t, step.t)
         scheme = step.scheme
         self._riser.begin(self._guess(step), scheme.past(step.start), scheme.weights(step.dt), self._limits(step))
@@ -71,6 +76,7 @@ class RiserNewton:
         state = self._riser.solved(step.t)
         if reason := self._line.inadmissible(state):
             raise NotConvergedError(reason)
+        self._solved = state if self.system.smooth else None
         return Solution(state, self._found(), norms)
 
     def _bring(self, start: float, end: float) -> None:
@@ -97,15 +103,33 @@ class RiserNewton:
         """Forces of groups I and F at an accepted state, those of group E zero."""
         return self.mass.bulk_forces(state)
 
-    @cached_property
-    def _element_forces(self) -> ElementForces:
-        return ElementForces(self._line, self._numbered)
-
     def element_residual(self, line: Line, state: State) -> Array:
         """Of the line's elements (ne, 2 ndof) at an accepted state."""
+        return self._found_at(state).residual(state)
+
+    def section_forces(self, line: Line, elements: Elements, state: State) -> SectionForces:
+        """Of the line at an accepted state; of the one solved for last as the loop has found its forces."""
+        solved = self._solved
+        if solved is not None and self._accepted.whole and state.v is solved.v and state.a is solved.a:
+            return self._at_solution.section_forces(elements, state)
+        return self._found_at(state).section_forces(elements, state)
+
+    def _found_at(self, state: State) -> ElementForces:
         if self._t != state.t or not self.system.smooth:  # contact has a new history since the step was solved
             self._bring(state.t, state.t)
-        return self._element_forces.residual(state)
+        return self._accepted.found(state)
+
+    @cached_property
+    def _accepted(self) -> AcceptedForces:
+        return AcceptedForces(self._line, self._numbered)
+
+    @cached_property
+    def _at_solution(self) -> ElementForces:
+        return ElementForces(self._line, self._riser.at, self._riser.forces, [part for part, _ in self._numbered])
+
+    def nodal_residual(self, line: Line, state: State) -> Array | None:
+        """Of what acts on the line's nodes (nn, ndof) without holding them."""
+        return nodal_residual(line, self._on_nodes, state) if self._on_nodes else None
 
     def turned_over(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
         """Energy stored at the end of the step solved last, and what each part turned over in it."""

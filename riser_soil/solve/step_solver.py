@@ -8,6 +8,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
+from riser_soil.riser.section_kernels import SectionForces
+from riser_soil.riser.sections import Elements
 from riser_soil.solve.chain import is_chain
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.riser_mass import InverseMass
@@ -40,7 +42,19 @@ class StepSolver(Protocol):
         ...
 
     def element_residual(self, line: Line, state: State) -> Array:
-        """Of a line's elements (ne, 2 ndof) at an accepted state, see `section_forces`; on the rank that has it."""
+        """Of a line's elements (ne, 2 ndof) at an accepted state, see `section_forces`; on the rank that has it, until
+        the next call.
+        """
+        ...
+
+    def section_forces(self, line: Line, elements: Elements, state: State) -> SectionForces:
+        """Of a line at an accepted state; on the rank that has it."""
+        ...
+
+    def nodal_residual(self, line: Line, state: State) -> Array | None:
+        """Of what acts on a line's nodes (nn, ndof) without holding them at an accepted state, if anything; the
+        same.
+        """
         ...
 
     def require_stable(self, solution: Solution) -> None: ...

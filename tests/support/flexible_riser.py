@@ -73,9 +73,8 @@ def hang(count: int, dimension: int = 2, EI: float = EI) -> Hanging:
     beam = Beam(line, e)
     iterations = solve(line, [beam])
     state = State.at_rest(1.0, line.size)
-    residual = element_residual(line, [beam], state)
-    start, end = end_reactions(line, state, residual)
-    return Hanging(line, start, end, section_forces(line, e, state, residual), iterations)
+    inside = section_forces(line, e, state, element_residual(line, [beam], state))
+    return Hanging(line, *end_reactions(line, state, inside), inside, iterations)
 
 
 def elastica_H() -> tuple[float, float]:

@@ -13,7 +13,7 @@ import numpy as np
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.snapshot import (
     ContactSnapshot,
-    LargestAlong,
+    ExtremeAlong,
     Ledger,
     RiserSnapshot,
     RunFacts,
@@ -41,8 +41,8 @@ FACTS = RunFacts(
 SCENE = "title: Touchdown on soft clay\nline_types: {flexible: {outer_diameter: 0.3}}\n"
 
 
-def _largest(arc: Array, values: Array) -> LargestAlong:
-    return LargestAlong(float(values.max()), float(arc[values.argmax()]))
+def _largest(arc: Array, values: Array) -> ExtremeAlong:
+    return ExtremeAlong(float(values.max()), float(arc[values.argmax()]))
 
 
 def _wall(tension: Array, moment: Array) -> WallSnapshot:
@@ -74,6 +74,7 @@ class Catenary:
             bending_moment=EI * curvature,
             curvature=curvature,
             bend_utilisation=20.0 * curvature,
+            least_tension=ExtremeAlong(float(tension.min()), float(arc[tension.argmin()])),
             largest_moment=_largest(arc, EI * curvature),
             largest_curvature=_largest(arc, curvature),
             largest_bend_utilisation=_largest(arc, 20.0 * curvature),

@@ -16,7 +16,7 @@ from riser_soil.core.part import Energy, Forces, Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import acting_on
-from riser_soil.riser.section_forces import element_residual
+from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.riser_loop import StopLimits
@@ -147,6 +147,22 @@ def require_element_residual(newton: RiserNewton, line: Line, parts: list[Any], 
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-12 * scale)
 
 
+def require_section_forces(compiled: TimedStage, snes: TimedStage) -> None:
+    """Section forces at the state solved for last are those by the parts' methods, at that state and by SNES."""
+    line, elements, newton = compiled.assembly.line, compiled.assembly.elements, compiled.newton
+    assert isinstance(newton, RiserNewton)
+    state, other = compiled.stepper.now, snes.stepper.now
+    told = newton.section_forces(line, elements, state)
+    parts = acting_on(line, compiled.system.model.parts)
+    acting = element_residual(line, parts, state), viscous_residual(line, parts, state)
+    own = section_forces(line, elements, state, *acting)
+    by_snes = snes.newton.section_forces(snes.assembly.line, snes.assembly.elements, other)
+    for name, values in told._asdict().items():
+        scale = np.abs(values).max()
+        np.testing.assert_allclose(values, getattr(own, name), rtol=0.0, atol=1e-10 * scale, err_msg=name)
+        np.testing.assert_allclose(values, getattr(by_snes, name), rtol=0.0, atol=1e-5 * scale, err_msg=name)
+
+
 def require_steps_of_snes(case: str) -> None:
     """Iterations, states and energy turned over of a scene's steps by the loop are those by SNES."""
     compiled, snes = (walked(case, newton, 25) for newton in ("compiled", "snes"))
@@ -158,6 +174,7 @@ def require_steps_of_snes(case: str) -> None:
     found, expected = compiled.stepper, snes.stepper
     parts = acting_on(compiled.assembly.line, found.system.model.parts)
     require_element_residual(compiled.newton, compiled.assembly.line, parts, found.now)
+    require_section_forces(compiled, snes)
     np.testing.assert_allclose(found.before.v, expected.before.v, rtol=0.0, atol=1e-7)
     assert found.energy.total == pytest.approx(expected.energy.total, rel=1e-9)
     assert compiled._taken.turned.keys() == snes._taken.turned.keys()

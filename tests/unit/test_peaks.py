@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.core.snapshot import Instant, LargestAlong
+from riser_soil.core.snapshot import ExtremeAlong, Instant
 from riser_soil.results.figures import pack, places_of
 from riser_soil.results.peaks import RunPeaks, least_between_nodes, pack_peaks, vertex
 from tests.support.recorded_run import Catenary
@@ -38,13 +38,15 @@ def seen(t: float) -> Instant:
     """Catenary whose largest moment grows and falls with time."""
     line = Catenary(32.0, 30.0)
     riser = line.riser(ARC)
-    moment = LargestAlong(riser.largest_moment.value * float(np.cos(t)), riser.largest_moment.arc)
+    moment = ExtremeAlong(riser.largest_moment.value * float(np.cos(t)), riser.largest_moment.arc)
     return Instant(ARC, riser._replace(largest_moment=moment), line.touch(ARC))
 
 
 def test_only_what_sits_between_nodes_is_replaced() -> None:
     """Of the figures, the least tension alone is told at nodes."""
-    hanging = seen(0.0).riser._replace(effective_tension=(ARC - 67.0) ** 2)
+    tension = (ARC - 67.0) ** 2
+    at_node = ExtremeAlong(float(tension.min()), float(ARC[tension.argmin()]))
+    hanging = seen(0.0).riser._replace(effective_tension=tension, least_tension=at_node)
     least = Instant(ARC, hanging, seen(0.0).touch)
     plain, peaked = pack(least), pack_peaks(least)
     changed = np.flatnonzero(~np.isclose(plain, peaked, equal_nan=True))
@@ -75,7 +77,7 @@ def of_five(t: np.ndarray, moment: np.ndarray) -> float:
     peaks.begin_stage("motion", "dynamic")
     line = Catenary(32.0, 30.0)
     for at, size in zip(t, moment, strict=True):
-        riser = line.riser(ARC)._replace(largest_moment=LargestAlong(float(size), 0.0))
+        riser = line.riser(ARC)._replace(largest_moment=ExtremeAlong(float(size), 0.0))
         peaks.record(float(at), Instant(ARC, riser, line.touch(ARC)))
     largest: float = peaks.told("smooth")["stages"][0]["extremes"]["max_bending_moment"]["max"]
     return largest

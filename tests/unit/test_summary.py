@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.output import angle_deg
-from riser_soil.core.snapshot import ContactSnapshot, Instant, LargestAlong, Ledger
+from riser_soil.core.snapshot import ContactSnapshot, ExtremeAlong, Instant, Ledger
 from riser_soil.results.figures import Extremes, final_state, pack, unpack
 from riser_soil.results.summary import StageTally, Summary, plain_json
 from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary, record
@@ -71,7 +71,7 @@ def test_final_state_of_a_catenary() -> None:
 
 def test_what_is_unknown_is_left_out() -> None:
     nothing = np.full(ARC.size, math.nan)
-    unused = LargestAlong(math.nan, math.nan)
+    unused = ExtremeAlong(math.nan, math.nan)
     riser = LINE.riser(ARC)._replace(wall_tension=nothing, largest_bend_utilisation=unused)
     riser = riser._replace(tension_utilisation=None, wall=None)
     touch, extremes = LINE.touch(ARC)._replace(embedment=None), Extremes()
@@ -83,7 +83,7 @@ def test_what_is_unknown_is_left_out() -> None:
 
 
 def test_a_straight_pipe_has_no_bend_radius() -> None:
-    riser = LINE.riser(ARC)._replace(largest_curvature=LargestAlong(0.0, 0.0))
+    riser = LINE.riser(ARC)._replace(largest_curvature=ExtremeAlong(0.0, 0.0))
     final = final_state(Instant(ARC, riser, LINE.touch(ARC)))
     assert plain_json(final)["min_bend_radius"] == {"value": None, "arc": 0.0}
 

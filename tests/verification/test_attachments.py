@@ -20,7 +20,8 @@ from riser_soil.riser.hermite import consistent_mass
 from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import acting_on
-from riser_soil.riser.section_forces import SectionForces, element_residual, section_forces
+from riser_soil.riser.section_forces import element_residual, section_forces
+from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.riser.sections import MeshedSegment, SectionProperties, Surroundings, elements
 from tests.support.coupled_scenes import Mapping
 from tests.support.dense_chain import solve, tangent

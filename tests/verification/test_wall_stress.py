@@ -70,6 +70,7 @@ def test_a_full_pipe_that_hangs_in_water(dimension: int) -> None:
     A_i, A_o = 0.25 * np.pi * INNER**2, 0.25 * np.pi * COATED**2
     axial = ((MASS + OIL * A_i - RHO * A_o) * G * below + inside * A_i - outside * A_o) / A
     assert wall.axial_stress == pytest.approx(axial, rel=1e-6)
+    assert riser.wall_tension is not None
     assert riser.wall_tension / A == pytest.approx(wall.axial_stress, rel=1e-12)
     hoop = (inside * (OUTER**2 + INNER**2) - 2.0 * outside * OUTER**2) / (OUTER**2 - INNER**2)
     assert wall.hoop_stress == pytest.approx(hoop, rel=1e-6)

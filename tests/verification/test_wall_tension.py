@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
-from riser_soil.core.snapshot import RiserSnapshot
+from riser_soil.core.arrays import Array
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
@@ -30,9 +30,16 @@ def hanging(top: float, contents: Mapping | None = None, **more: Any) -> Mapping
     return riser_scene(static(), riser=riser, gravity=G, **(sizes | more))
 
 
-def settled(scene: Mapping) -> RiserSnapshot:
+class Settled(NamedTuple):
+    position: Array
+    effective_tension: Array
+    wall_tension: Array
+
+
+def settled(scene: Mapping) -> Settled:
     (stage,) = stage_histories(scene)
-    return stage.end
+    assert stage.end.wall_tension is not None
+    return Settled(stage.end.position, stage.end.effective_tension, stage.end.wall_tension)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

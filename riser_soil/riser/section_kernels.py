@@ -1,0 +1,189 @@
+"""Kernels of section forces: all that results tell of the inside of a riser, from the residuals of its elements."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
+from riser_soil.riser import bending_peaks
+
+
+class SectionInput(NamedTuple):
+    """What section forces follow from. residual and viscous (ne, 2 ndof): see `section_forces`, viscous is empty where
+    nothing is. x (nn, d): of the nodes; maps (nn, 3, r): of what is conjugate to their rotation dofs to moments in
+    global axes; tangent (ne, 2, d): of the elements' ends; first and second (ne, 3, 3): frames there, empty in a plane,
+    where there is one stiffness. basis (3, d) and origin (3,): the line's axes; arc and bends (nn,): 1, or 0 between
+    chains; y, z (ne,): 1/EI.
+    """
+
+    residual: Array
+    viscous: Array
+    x: Array
+    maps: Array
+    tangent: Array
+    first: Array
+    second: Array
+    basis: Array
+    origin: Array
+    arc: Array
+    bends: Array
+    y: Array
+    z: Array
+
+
+class SectionForces(NamedTuple):
+    """Section forces and moments at nodes, exerted by the line after a node on the line before it, in global axes: (nn,
+    3) or (nn,).
+
+    force N, moment N m; effective_tension N, positive in tension; bending_moment N m and curvature 1/m, magnitudes;
+    position (nn, 3) m. Of the elements themselves, at their ends (ne, 2): curvature_beside, which differs where
+    stiffnesses meet, and the slopes of moment [N] and curvature [1/m2], which differ where a force or contact acts on a
+    node. Of the line's two ends (2, 3): what is exerted on the elements there, and unit tangents in the direction of
+    growing arc length. extreme (3, 2): least tension, and largest moment and curvature, between nodes too, each with
+    its arc length [m].
+    """
+
+    force: Array
+    moment: Array
+    effective_tension: Array
+    bending_moment: Array
+    curvature: Array
+    curvature_beside: Array
+    moment_slope: Array
+    curvature_slope: Array
+    position: Array
+    end_force: Array
+    end_moment: Array
+    end_tangent: Array
+    extreme: Array
+
+
+@njit
+def put_section_forces(given: SectionInput, out: SectionForces) -> None:
+    """All together."""
+    ne, basis = len(given.residual), given.basis
+    shape, free = (ne, 2, 3), np.empty((ne + 1, 3))
+    on_ends, moments, damping, along = np.empty(shape), np.empty(shape), np.zeros(shape), np.zeros(shape)
+    put_end_forces(given.residual, basis, given.maps, on_ends, moments)
+    if len(given.viscous) > 0:
+        put_end_forces(given.viscous, basis, given.maps, np.empty(shape), damping)
+    for e in range(ne):
+        for end in range(2):
+            for i in range(3):
+                for j in range(basis.shape[1]):
+                    along[e, end, i] += basis[i, j] * given.tangent[e, end, j]
+    _put_at_nodes(on_ends, moments, damping, along, given.bends, free, out)
+    _put_curvatures(free, given.first, given.second, given.y, given.z, out)
+    _put_position(given, out.position)
+    for end in range(2):
+        e = -end  # the first element, or the last
+        for i in range(3):
+            out.end_force[end, i], out.end_moment[end, i] = on_ends[e, end, i], moments[e, end, i]
+            out.end_tangent[end, i] = along[e, end, i]
+    _put_extremes(given.arc, out)
+
+
+@njit
+def _put_position(given: SectionInput, out: Array) -> None:
+    """Places of the nodes (nn, 3) in global axes."""
+    for n in range(len(out)):
+        for i in range(3):
+            out[n, i] = given.origin[i]
+            for j in range(given.basis.shape[1]):
+                out[n, i] += given.x[n, j] * given.basis[i, j]
+
+
+@njit
+def _put_extremes(arc: Array, out: SectionForces) -> None:
+    """Least tension of the nodes, of equal ones the first; largest moment and curvature between nodes, too."""
+    least, moments = 0, np.empty(out.curvature_beside.shape)
+    for n in range(len(arc)):
+        if not out.effective_tension[n] >= out.effective_tension[least]:
+            least = n
+    for e in range(len(moments)):
+        moments[e, 0], moments[e, 1] = out.bending_moment[e], out.bending_moment[e + 1]
+    out.extreme[0, 0], out.extreme[0, 1] = out.effective_tension[least], arc[least]
+    for row, values, slopes in ((1, moments, out.moment_slope), (2, out.curvature_beside, out.curvature_slope)):
+        out.extreme[row, 0], out.extreme[row, 1], _ = bending_peaks.largest(arc, values, slopes)
+
+
+@njit
+def _put_at_nodes(
+    on_ends: Array, moments: Array, damping: Array, tangent: Array, bends: Array, free: Array, out: SectionForces
+) -> None:
+    """Forces, moments and the moment's slope; free (nn, 3): the bending moment less the damping's.
+
+    on_ends, moments, damping (ne, 2, 3): on the elements' ends; tangent: there; bends (nn,): 1, or 0 between chains.
+    """
+    nn = len(free)
+    bending, behind = np.empty((nn, 3)), np.empty(on_ends.shape)
+    viscous, t = np.empty(3), np.empty(3)
+    for n in range(nn):
+        force, moment = out.force[n], out.moment[n]
+        share = 1.0 if n == 0 or n == nn - 1 else 0.5
+        for i in range(3):
+            force[i] = moment[i] = viscous[i] = t[i] = 0.0
+            for e, end, sign in ((n - 1, 1, share), (n, 0, -share)):
+                if 0 <= e < nn - 1:
+                    behind[e, end, i] = sign / share * on_ends[e, end, i]
+                    force[i] += sign * on_ends[e, end, i]
+                    moment[i] += sign * moments[e, end, i]
+                    viscous[i] += sign * damping[e, end, i]
+                    t[i] += tangent[e, end, i]
+        size = math.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2])
+        tension, twist, twist_rate, square = 0.0, 0.0, 0.0, 0.0
+        for i in range(3):
+            t[i] /= size
+            tension += force[i] * t[i]
+            twist += moment[i] * t[i]
+            twist_rate += viscous[i] * t[i]
+        for i in range(3):
+            bending[n, i] = (moment[i] - twist * t[i]) * bends[n]
+            free[n, i] = bending[n, i] - (viscous[i] - twist_rate * t[i])
+            square += bending[n, i] ** 2
+        out.effective_tension[n], out.bending_moment[n] = tension, math.sqrt(square)
+    bending_peaks.slopes(bending, behind, tangent, out.moment_slope)
+
+
+@njit
+def _put_curvatures(free: Array, first: Array, second: Array, y: Array, z: Array, out: SectionForces) -> None:
+    """Curvatures: bending moment over stiffness, about the section axes where there are two stiffnesses.
+
+    free (nn, 3): the moment that bends; first, second: see `SectionInput`; y, z (ne,): 1/EI.
+    """
+    beside = out.curvature_beside
+    out.curvature[:] = 0.0
+    for e in range(len(beside)):
+        for end in range(2):
+            M = free[e + end]
+            if len(first) == 0:
+                k = math.sqrt(M[0] * M[0] + M[1] * M[1] + M[2] * M[2]) * y[e]
+            else:
+                F = first[e] if end == 0 else second[e]
+                about_y = F[0, 1] * M[0] + F[1, 1] * M[1] + F[2, 1] * M[2]
+                about_z = F[0, 2] * M[0] + F[1, 2] * M[1] + F[2, 2] * M[2]
+                k = math.hypot(about_y * y[e], about_z * z[e])
+            n, size = e + end, out.bending_moment[e + end]
+            beside[e, end] = k
+            out.curvature[n] += k if n == 0 or n == len(beside) else 0.5 * k
+            out.curvature_slope[e, end] = out.moment_slope[e, end] * k / size if size > 0.0 else 0.0
+
+
+@njit
+def put_end_forces(residual: Array, basis: Array, maps: Array, force: Array, moment: Array) -> None:
+    """basis (3, d): the line's axes; maps: see `SectionInput`."""
+    d, r = basis.shape[1], maps.shape[2]
+    for e in range(len(force)):
+        for end in range(2):
+            k = end * (d + r)
+            for i in range(3):
+                push, turn = 0.0, 0.0
+                for j in range(d):
+                    push += basis[i, j] * residual[e, k + j]
+                for j in range(r):
+                    turn += maps[e + end, i, j] * residual[e, k + d + j]
+                force[e, end, i], moment[e, end, i] = push, turn
