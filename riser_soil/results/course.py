@@ -1,11 +1,13 @@
-"""The course of figures from step to step, compiled: how sharply they turn, their peaks; see `time_resolution`."""
+"""The course of figures from step to step, compiled: their extremes, how sharply they turn, their peaks; see `figures`
+and `time_resolution`.
+"""
 
 from __future__ import annotations
 
 import math
 from typing import NamedTuple
 
-from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Bound
 from riser_soil.core.compiled import njit
 from riser_soil.core.packed import Packed
@@ -41,6 +43,41 @@ class Course(NamedTuple):
     rival: Array
     rival_error: Array
     rival_steps: Array
+
+
+class Extent(NamedTuple):
+    """Least and most of n figures, with the times when they were [s]; of those that sit somewhere, whose numbers are in
+    placed (m,), their places [m], too.
+    """
+
+    least: Array
+    most: Array
+    t_least: Array
+    t_most: Array
+    arc_least: Array
+    arc_most: Array
+    placed: IntArray
+
+
+def extending(extent: Extent, t: Array, seen: Array) -> Bound:
+    """A call that takes in the figures and places that are in `seen` at the time in t (1,), see `extend`."""
+    return Bound(extend, Packed(extent), Packed(t), Packed(seen))
+
+
+@njit
+def extend(extent: Extent, t: Array, seen: Array) -> None:
+    """Take in figures, and behind them the places of those that have one (n + m,); nan does not count."""
+    n = extent.least.size
+    for k, i in enumerate(extent.placed):
+        if seen[i] < extent.least[i]:
+            extent.arc_least[k] = seen[n + k]
+        if seen[i] > extent.most[i]:
+            extent.arc_most[k] = seen[n + k]
+    for i in range(n):
+        if seen[i] < extent.least[i]:
+            extent.least[i], extent.t_least[i] = seen[i], t[0]
+        if seen[i] > extent.most[i]:
+            extent.most[i], extent.t_most[i] = seen[i], t[0]
 
 
 def following(course: Course, after: Array) -> Bound:

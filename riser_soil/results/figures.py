@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ import numpy as np
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.output import Figure
-from riser_soil.core.saved_state import Saved, values_of
+from riser_soil.core.saved_state import Saved
 from riser_soil.core.snapshot import Instant
 
 _END = ("position", "force", "resultant_force", "moment", "effective_tension", "angle_deg")
@@ -134,40 +135,48 @@ class Extremes:
     """Smallest and largest of every figure, with their times and places along the riser; nan does not count."""
 
     def __init__(self) -> None:
-        self._least, self._most = np.full(_SIZE, np.inf), np.full(_SIZE, -np.inf)
-        self._t_least, self._t_most = np.full(_SIZE, np.nan), np.full(_SIZE, np.nan)
-        self._arc_least, self._arc_most = np.full(len(_PLACED), np.nan), np.full(len(_PLACED), np.nan)
+        from riser_soil.results.course import Extent  # compiled code is imported where there are stages
+
+        none, nowhere = np.full(_SIZE, np.inf), np.full(len(_PLACED), np.nan)
+        unknown = np.full(_SIZE, np.nan)
+        self._extent = Extent(none, -none, unknown, unknown.copy(), nowhere, nowhere.copy(), _AT_PLACED)
+        self._t, self._seen = np.empty(1), np.empty(_SIZE + len(_PLACED))
+
+    @cached_property
+    def _extend(self) -> Callable[[], None]:
+        """Takes in what is seen; bound where there are steps."""
+        from riser_soil.results.course import extending
+
+        return extending(self._extent, self._t, self._seen)
 
     def update(self, t: float, vector: Array) -> None:
         """t: s (static stages: load factor); vector: from `pack`."""
-        values, arcs = vector[:_SIZE], vector[_SIZE:]
-        less, more = values < self._least, values > self._most
-        self._least[less], self._most[more] = values[less], values[more]
-        self._t_least[less], self._t_most[more] = t, t
-        less, more = less[_AT_PLACED], more[_AT_PLACED]
-        self._arc_least[less], self._arc_most[more] = arcs[less], arcs[more]
+        self._t[0], self._seen[:] = t, vector
+        self._extend()
 
     def nested(self) -> dict[str, Any]:
         """{min, max, t_min, t_max} of each figure, and {arc_min, arc_max} [m] of those that sit somewhere along the
         riser; vectors by component.
         """
-        columns = {"min": self._least, "max": self._most, "t_min": self._t_least, "t_max": self._t_most}
+        found = self._extent
+        columns = {"min": found.least, "max": found.most, "t_min": found.t_least, "t_max": found.t_most}
         parts = {key: unpack(values) for key, values in columns.items()}
         nested: dict[str, Any] = {}
         for _, figure in _FIGURES:
             least = _get(parts["min"], figure.path)
             if figure.name not in _SOMETIMES or np.isfinite(least).all():
                 _put(nested, figure.path, {key: _get(part, figure.path) for key, part in parts.items()})
-        for (_, figure), least, most in zip(_PLACED, self._arc_least, self._arc_most, strict=True):
+        for (_, figure), least, most in zip(_PLACED, found.arc_least, found.arc_most, strict=True):
             with suppress(KeyError):  # one that is unknown was left out
                 _get(nested, figure.path).update(arc_min=float(least), arc_max=float(most))
         return nested
 
     def state(self) -> Saved:
-        return values_of(self)
+        return {name: values.copy() for name, values in self._extent._asdict().items()}
 
     def restore(self, saved: Saved) -> None:
-        vars(self).update({name: value.copy() for name, value in saved.items()})
+        for name, values in self._extent._asdict().items():
+            values[...] = saved[name]
 
 
 def _put(nested: dict[str, Any], path: tuple[str, ...], value: Any) -> None:

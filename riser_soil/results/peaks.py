@@ -7,7 +7,6 @@ orders. Largest moments and curvatures are told between nodes already (`riser.be
 
 from __future__ import annotations
 
-from copy import deepcopy
 from typing import Any
 
 import numpy as np
@@ -103,7 +102,8 @@ class StagePeaks:
 
     def _smooth_to_the_end(self) -> Extremes:
         """With the last two steps, whose ringing is that of the five."""
-        ended = deepcopy(self.smooth)
+        ended = Extremes()
+        ended.restore(self.smooth.state())
         for n in (1, 2) if self._even else ():
             ended.update(self._t[2 + n], RINGLESS[n] @ np.array(self._last))
         return ended

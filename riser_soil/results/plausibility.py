@@ -15,6 +15,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.snapshot import ContactSnapshot, RiserSnapshot
+from riser_soil.results.strains import largest_strains
 from riser_soil.riser.resolution import misfit
 from riser_soil.riser.section_forces import at_most
 from riser_soil.scene.stages import Stage
@@ -50,7 +51,11 @@ class LargestValue:
 
     def or_larger(self, values: Array, arcs: Array, t: float) -> LargestValue:
         at = int(values.argmax())
-        return LargestValue(float(values[at]), float(arcs[at]), t) if values[at] > self.value else self
+        return self.or_this(float(values[at]), arcs, at, t)
+
+    def or_this(self, value: float, arcs: Array, at: int, t: float) -> LargestValue:
+        """This value, at the place of a number, where it is larger."""
+        return LargestValue(value, float(arcs[at]), t) if value > self.value else self
 
 
 class Plausibility:
@@ -77,13 +82,17 @@ class Plausibility:
         self._boundary: BoundaryStress | None = None
         self._axial = self._bending = self._smooth = self._steep = self._stretch = self._beyond = LargestValue()
         self._load = self._misfit = LargestValue()
+        self._warned: tuple[tuple[object, ...], tuple[str, ...]] | None = None  # of what, and what
 
     def look(self, t: float, state: State, riser: RiserSnapshot, touch: ContactSnapshot) -> None:
         """t: s of the run (static stages: load factor)."""
         arc = self._assembly.line.arc
-        self._axial = self._axial.or_larger(np.abs(riser.effective_tension) / self.EA, arc, t)
-        self._bending = self._bending.or_larger(self.radius * riser.curvature, arc, t)
-        self._largest = max(self._largest, float(riser.bending_moment.max()))
+        axial, at, bending, bent_at, moment = largest_strains(
+            riser.effective_tension, self.EA, riser.curvature, self.radius, riser.bending_moment
+        )
+        self._axial = self._axial.or_this(axial, arc, at, t)
+        self._bending = self._bending.or_this(bending, arc, bent_at, t)
+        self._largest = max(self._largest, moment)
         contact = self._assembly.soil_contact
         if contact is not None:
             force = contact.force_per_length(state)
@@ -93,6 +102,9 @@ class Plausibility:
                 self._load = self._load.or_larger(borne, arc, t)
             self._beyond = self._beyond.or_larger(self._past_the_block(touch), np.array([touch.touchdown_arc]), t)
             self._stretch = self._stretch.or_larger(np.array([contact.stretch(state)]), np.full(1, np.nan), t)
+            self._look_for_ground(riser, touch)
+
+    def _look_for_ground(self, riser: RiserSnapshot, touch: ContactSnapshot) -> None:
         down = not math.isnan(touch.touchdown_arc)
         self._where = "touches down at" if down else "hangs with its lowest point at"
         self._lowest = touch.touchdown_position if down else riser.position[riser.position[:, 2].argmin()]
@@ -131,7 +143,10 @@ class Plausibility:
 
     def warnings(self) -> tuple[str, ...]:
         """With numbers and a remedy."""
-        return tuple(self._told())
+        basis = (*self._largest_values, self._boundary, self._largest, self._lowest, self._touched)
+        if self._warned is None or any(a is not b for a, b in zip(basis, self._warned[0], strict=True)):
+            self._warned = basis, tuple(self._told())
+        return self._warned[1]
 
     def _told(self) -> Iterator[str]:
         yield from self._strains()

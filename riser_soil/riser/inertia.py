@@ -45,8 +45,10 @@ class Inertia(LinePart):
 
     def _end_forces(self, state: State) -> Array | None:
         """Share (ne, 2 ndof) of what sits at the line's ends, if anything."""
+        if self._at_ends is None:
+            return None
         trial = self.line.trial(state)
-        return None if self._at_ends is None else trial.pull_back(weigh(self._at_ends, trial.q_acceleration))
+        return trial.pull_back(weigh(self._at_ends, trial.q_acceleration))
 
     def element_forces(self, state: State) -> tuple[Array, None]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None, without what sits at the line's ends."""

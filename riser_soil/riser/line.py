@@ -87,7 +87,7 @@ class Line:
         self._supports = self._bases = {node: unturned.at(node).copy() for node in (0, self.arc.size - 1)}
         self.offset = 0
         self._left: Trial | None = None
-        self._moved_ends: dict[int, tuple[Motion, float, Array, tuple[Array, Array, Array]]] = {}
+        self._moved_ends: dict[int, tuple[Motion, float, Array, Array]] = {}
         self._trials = IdentityCache[State, Trial](first=1, latest=2)
         self._number()
         self.prescribe_spin(prescribe_spin)
@@ -159,7 +159,7 @@ class Line:
     @property
     def translation_dofs(self) -> IntArray:
         """Local numbers of the translations (nn, d)."""
-        return self.offset + self._translations
+        return self.offset + self._translations if self.offset else self._translations
 
     @cached_property
     def _translations(self) -> IntArray:
@@ -301,16 +301,17 @@ class Line:
         along = (self.arc / self.arc[-1])[:, None]
         return {0: (1.0 - along) ** 3, self.nodes - 1: along**3}
 
-    def _moved_end(self, node: int, t: float) -> tuple[Array, Array, Array]:
-        """Increment, velocity and acceleration (d,) by which an end's motion moves its node; kept until the next time
+    def _moved_end(self, node: int, t: float) -> Array:
+        """Increment, velocity and acceleration (3, d) by which an end's motion moves its node; kept until the next time
         or commit.
         """
         motion, kept = (self.end if node else self.start).motion, self._moved_ends.get(node)
         assert motion is not None
         if kept is None or kept[0] is not motion or kept[1] != t or kept[2] is not self.x:
-            position, velocity, acceleration = motion(t)
-            to = np.asarray((position - self.origin) @ self.basis - self.x[node])
-            moved = to, velocity @ self.basis, acceleration @ self.basis
+            to = np.array(motion(t))
+            to[0] -= self.origin
+            moved = to @ self.basis
+            moved[0] -= self.x[node]
             kept = self._moved_ends[node] = motion, t, self.x, moved
         return kept[3]
 

@@ -56,6 +56,7 @@ class RiserNewton:
         self._solved: State | None = None  # last, where no forces may have jumped since
         self._numbered, self._t, self._free = parts, math.nan, np.flatnonzero(~system.prescribed)
         self._renewed = [part for part, _ in parts if overrides(part, "renew_numbers")]
+        self._no_work = {part.name: Work() for part, _ in parts}
         self._on_nodes = [part for part, _ in parts if overrides(part, "nodal_forces")]
         kernels = [(part, type(held) in add_work.kernels) for part, held in parts]
         self._turning = [(part, kernel) for part, kernel in kernels if kernel or overrides(part, "work")]
@@ -134,7 +135,7 @@ class RiserNewton:
     def turned_over(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
         """Energy stored at the end of the step solved last, and what each part turned over in it."""
         since = time.perf_counter()
-        work = {part.name: Work() for part in self.system.model.parts}
+        work = dict(self._no_work)
         energy, rows = self._riser.account(before)
         compiled = (Work(*(float(joules) for joules in row)) for row in rows)
         for part, kernel in self._turning:
