@@ -23,11 +23,11 @@ from riser_soil.core.compiled import njit
 Kernel = Callable[..., Any]
 
 
-def by_type(stub: Any) -> Any:
+def by_type(stub: Any, apart: bool = True) -> Any:
     """A function whose kernels are chosen by the type of its first argument, a NamedTuple.
 
     stub: its name, text and arguments. Its attribute `of` takes the kernel for a type, see the module's text, and
-    compiles it like all others; kernels: by type.
+    compiles it like all others; kernels: by type. apart: see `compiled.njit`.
     """
     kernels: dict[type, Kernel] = {}
 
@@ -38,13 +38,18 @@ def by_type(stub: Any) -> Any:
 
     def of(numbers: type) -> Callable[[Kernel], Kernel]:
         def keep(kernel: Kernel) -> Kernel:
-            kernels[numbers] = njit(kernel, apart=True)
+            kernels[numbers] = njit(kernel, apart=apart)
             return kernel
 
         return keep
 
     stub.of, stub.kernels = of, kernels
     return stub
+
+
+def bound_by_type(stub: Any) -> Any:
+    """As `by_type`, for kernels that are called by address alone, see `bound`: each stands in one place, inlined."""
+    return by_type(stub, apart=False)
 
 
 def _type_of(part: Any) -> type:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.by_type import by_type
+from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser import hermite, planar_directors, spatial_directors
 from riser_soil.riser.hermite import Size
@@ -131,22 +131,22 @@ def _empty(shapes: dict[str, tuple[int, ...]]) -> dict[str, Any]:
     return {name: np.empty(shape) for name, shape in shapes.items()}
 
 
-@by_type
+@bound_by_type
 def place(at: Configuration, base: Base, u: Array, v: Array, a: Array) -> None:
     """Write the configuration after increments u, with rates v and accelerations a (nn, ndof) of the dofs."""
 
 
-@by_type
+@bound_by_type
 def put_magnitudes(at: Configuration, out: Array) -> None:
     """Write the sizes (nn, ndof) of a configuration's coordinates, see `Field.magnitudes`."""
 
 
-@by_type
+@bound_by_type
 def put_maps(at: Configuration, maps: Maps) -> None:
     """Write the maps of a configuration with their shifts."""
 
 
-@by_type
+@bound_by_type
 def put_turning(at: Configuration, F: Array, G: Array) -> None:
     """Write to G (ne, 2, r, r) the derivative of P^T F by the rotation dofs, F (ne, 2, d) held."""
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Bound
-from riser_soil.core.by_type import by_type
+from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.packed import Packed
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.line import Line
@@ -53,22 +53,22 @@ def bound(stub: Any, numbers: tuple[Any, ...], *arguments: Packed) -> Bound:
     return Bound(stub.kernels[type(numbers)], Packed(numbers), *arguments)
 
 
-@by_type
+@bound_by_type
 def add_forces(part: tuple, at: Configuration, out: LineForces) -> None:
     """Add a part's residual in a configuration to the `LineForces`."""
 
 
-@by_type
+@bound_by_type
 def add_tangent(part: tuple, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
     """Add to K (ne, n, n) the derivative of a part's residual by the dofs, without that of P in `LineForces`."""
 
 
-@by_type
+@bound_by_type
 def add_energy(part: tuple, at: Configuration, energy: Array) -> None:
     """Add a part's energy to (3,): kinetic, strain, potential [J]."""
 
 
-@by_type
+@bound_by_type
 def add_work(part: tuple, first: Configuration, last: Configuration, work: Array) -> None:
     """Add what a part turns over in a step between two configurations to work (4,): dissipated, external, inertial, by
     the scheme, as in `core.part.Work` [J].

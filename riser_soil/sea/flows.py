@@ -9,7 +9,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Bound
-from riser_soil.core.by_type import by_type
+from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import njit
 from riser_soil.core.packed import Packed
 from riser_soil.sea.water import WaterMotion
@@ -22,7 +22,7 @@ class SeaNumbers(NamedTuple):
     flows: tuple
 
 
-@by_type
+@bound_by_type
 def add_flow(flow: tuple, motion: WaterMotion, t: Array, x: Array) -> None:
     """Add a flow at time t (1,) to the motion of points x (n, 3)."""
 

@@ -41,19 +41,31 @@ def test_steps_in_a_plane_are_those_of_snes() -> None:
     require_steps_of_snes("surge in a plane")
 
 
+@pytest.mark.parametrize("diagonal", [0.0, 1e-13])  # pivots must be exchanged
 @pytest.mark.parametrize(("n", "b"), [(3, 2), (9, 2), (40, 5), (66, 11)])
-def test_banded_factors_solve(n: int, b: int) -> None:
+def test_banded_factors_solve(n: int, b: int, diagonal: float) -> None:
     rng = np.random.default_rng(n)
     ab, band = banded.room(n, b)
     columns = np.zeros((2 * b + 1, n))  # as scipy has them: entry (i, j) at [b + i - j, j]
     for i in range(n):
         for j in range(max(0, i - b), min(n, i + b + 1)):
-            ab[i, j - i + b] = columns[b + i - j, j] = 0.0 if i == j else rng.normal()  # pivots must be exchanged
+            ab[i, j - i + b] = columns[b + i - j, j] = diagonal if i == j else rng.normal()
     load, pivots = rng.normal(size=n), np.zeros(n, dtype=np.int64)
     expected = solve_banded((b, b), columns, load)
     assert banded.factorise(ab, pivots, band)
     banded.solve(ab, pivots, load, band)
     np.testing.assert_allclose(load, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+
+
+def test_rows_stay_where_their_pivots_are_large_enough() -> None:
+    ab, band = banded.room(5, 1)
+    pivots = np.zeros(5, dtype=np.int64)
+    for pivot, row in ((0.2, 0), (0.05, 1)):
+        ab[...] = 0.0
+        ab[:5, 1] = 1.0
+        ab[0, 1], ab[0, 2], ab[1, 0] = pivot, 1.0, 1.0
+        assert banded.factorise(ab, pivots, band)
+        np.testing.assert_array_equal(pivots, [row, 1, 2, 3, 4])
 
 
 @pytest.mark.parametrize("wrong", [0.0, np.nan, np.inf])
