@@ -117,11 +117,11 @@ def _contact_tangent(part: SeabedNumbers, at: Configuration, maps: Maps, weights
     for e in range(part.radius.size):
         if not found.touches[e]:
             continue
+        stations.begin_changes(room)
         for g in range(part.share.shape[1]):
             _, _, bend = distance_in(part.frame, part.ground, padded(found.position[e, g]))
             put_matrix(by_position(found.force[e, g], found.slope[e, g], padded(found.normal[e, g]), bend), part.by)
-            room.change[g] = 0.0
-            stations.add_position(room.change[g], part.at.N[e, g], part.by, 1.0, at.P[e], at.D, at.R)
+            stations.add_change(room, g, part.at.N[e, g], part.by, maps.place_rows[e], at.D, at.R)
         stations.add_element(K[e], room, part.at.weighted[e], at.P[e], at.D, at.R)
 
 
@@ -190,6 +190,7 @@ def _friction_tangent(part: FrictionNumbers, at: Configuration, maps: Maps, weig
     for e in range(part.stiffness.size):
         if not found.touches[e]:
             continue
+        stations.begin_changes(room)
         for g in range(contact.share.shape[1]):
             force, normal = found.force[e, g], padded(found.normal[e, g])
             _, by_elastic, by_N = return_map(_elastic(part, e, g), max(force, 0.0), part.mu)
@@ -198,8 +199,7 @@ def _friction_tangent(part: FrictionNumbers, at: Configuration, maps: Maps, weig
             put_matrix(
                 resistance_by_position(ways, part.stiffness[e], by_elastic, by_N, slope, normal), contact.by
             )
-            room.change[g] = 0.0
-            stations.add_position(room.change[g], contact.at.N[e, g], contact.by, 1.0, at.P[e], at.D, at.R)
+            stations.add_change(room, g, contact.at.N[e, g], contact.by, maps.place_rows[e], at.D, at.R)
         stations.add_element(K[e], room, contact.at.weighted[e], at.P[e], at.D, at.R)
 
 

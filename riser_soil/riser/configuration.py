@@ -92,12 +92,17 @@ Configuration = PlanarConfiguration | SpatialConfiguration
 
 
 class Maps(NamedTuple):
-    """How the rates and accelerations of element ends' tangents (ne, 2, d, r) follow the rotation dofs; the shifts."""
+    """How the rates and accelerations of element ends' tangents (ne, 2, d, r) follow the rotation dofs; the shifts; and
+    how places, rates and accelerations of an element follow its dofs, rows (ne, d, n) as of `hermite.put_rows`.
+    """
 
     rate: Array
     acceleration: Array
     shift_v: float
     shift_a: float
+    place_rows: Array
+    rate_rows: Array
+    acceleration_rows: Array
 
 
 def base_of(line: Line) -> Base:
@@ -124,7 +129,8 @@ def room_for(line: Line) -> Configuration:
 def maps_for(line: Line) -> Maps:
     """Maps to be written to, without shifts."""
     ne, d, r = line.length.size, line.dimension, line.frames.dofs
-    return Maps(np.empty((ne, 2, d, r)), np.empty((ne, 2, d, r)), 0.0, 0.0)
+    rows = (np.empty((ne, d, 2 * (d + r))) for _ in range(3))
+    return Maps(np.empty((ne, 2, d, r)), np.empty((ne, 2, d, r)), 0.0, 0.0, *rows)
 
 
 def _empty(shapes: dict[str, tuple[int, ...]]) -> dict[str, Any]:
@@ -216,6 +222,7 @@ def _put_maps_in_plane(at: PlanarConfiguration, maps: Maps) -> None:
     planar_directors.put_maps(
         at.tangent, normal, at.v[:, 2:], at.a[:, 2:], maps.shift_v, maps.shift_a, maps.rate, maps.acceleration
     )
+    _put_rows(at, maps)
 
 
 @put_maps.of(SpatialConfiguration)
@@ -223,6 +230,14 @@ def _put_maps_in_space(at: SpatialConfiguration, maps: Maps) -> None:
     spatial_directors.put_maps(
         at.frames, at.H, at.T0, at.v[:, 3:], at.a[:, 3:], maps.shift_v, maps.shift_a, maps.rate, maps.acceleration
     )
+    _put_rows(at, maps)
+
+
+@njit
+def _put_rows(at: Configuration, maps: Maps) -> None:
+    hermite.put_all_rows(at.P, 1.0, maps.place_rows, at.D, at.R)
+    hermite.put_all_rows(maps.rate, maps.shift_v, maps.rate_rows, at.D, at.R)
+    hermite.put_all_rows(maps.acceleration, maps.shift_a, maps.acceleration_rows, at.D, at.R)
 
 
 @put_turning.of(PlanarConfiguration)

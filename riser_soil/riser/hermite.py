@@ -14,6 +14,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.rows import add_multiple, add_shaped
 
 Four = tuple[float, float, float, float]
 Size = tuple[int, ...]  # of `fixed`: D for the dimension d, R for the r rotation dofs
@@ -158,46 +159,65 @@ def collect_nodal(F: Array, P: Array, nodal: Array, D: Size, R: Size) -> None:
                 nodal[e + side, d + k] += total
 
 
+@njit
+def put_rows(P: Array, shift: float, out: Array, D: Size, R: Size) -> None:
+    """Write how the coordinates of positions and tangents at an element's ends follow its dofs, to out (d, n): a row
+    for each coordinate; positions by `shift`, tangents by P (2, d, r). `add_shaped` takes them, with shape functions.
+    """
+    n = len(D) + len(R)
+    for i in range(len(D)):
+        for side in range(2):
+            for j in range(len(D)):
+                out[i, side * n + j] = shift if i == j else 0.0
+            for k in range(len(R)):
+                out[i, side * n + len(D) + k] = P[side, i, k]
+
+
+@njit
+def put_all_rows(P: Array, shift: float, out: Array, D: Size, R: Size) -> None:
+    """`put_rows` of all elements, out (ne, d, n)."""
+    for e in range(out.shape[0]):
+        put_rows(P[e], shift, out[e], D, R)
+
+
 def add_mass(out: Array, scale: float, P: Array, columns: Array, shift: float, M: Array) -> None:
     """Add scale P^T M D to out (ne, n, n), D being the derivative of q'' by the dofs; M (ne, 4, 4) as in `weigh`.
 
     D: `shift` for positions, `columns` (ne, 2, d, r) for tangents.
     """
-    add_mass_to(out, scale, P, columns, shift, M, fixed(P.shape[2]), fixed(P.shape[3]))
+    D, R, rows = fixed(P.shape[2]), fixed(P.shape[3]), np.empty((len(P), P.shape[2], out.shape[2]))
+    put_all_rows(columns, shift, rows, D, R)
+    add_mass_to(out, scale, P, rows, M, D, R)
 
 
 @njit
-def add_mass_to(out: Array, scale: float, P: Array, columns: Array, shift: float, M: Array, D: Size, R: Size) -> None:
-    """What `add_mass` does, for compiled code."""
-    d, r = len(D), len(R)
-    n = d + r
-    S = np.zeros((4, d, 2 * n))  # M D of one element
+def add_mass_to(out: Array, scale: float, P: Array, rows: Array, M: Array, D: Size, R: Size) -> None:
+    """What `add_mass` does, for compiled code; rows: see `put_rows`."""
+    d, n = len(D), 2 * (len(D) + len(R))
+    S, one = np.zeros((4, d, n)), np.zeros((d, d))  # M D of one element
+    for i in range(d):
+        one[i, i] = scale
     for e in range(P.shape[0]):
         for a in range(4):
-            for side in range(2):
-                position, turn = scale * shift * M[e, a, 2 * side], scale * M[e, a, 2 * side + 1]
-                for i in range(d):
-                    S[a, i, side * n + i] = position
-                    for k in range(r):
-                        S[a, i, side * n + d + k] = turn * columns[e, side, i, k]
+            for i in range(len(D)):
+                for c in range(2 * (len(D) + len(R))):
+                    S[a, i, c] = 0.0
+                add_shaped(S, (a * d + i) * n, M, (e * 4 + a) * 4, one, i, rows, e * d * n, D, R)
         add_rows(out[e], P[e], S, D, R)
 
 
 @njit
 def add_rows(out: Array, P: Array, S: Array, D: Size, R: Size) -> None:
     """Add P^T S of one element to out (n, n); S: (4, d, n), rows conjugate to q, columns by the dofs."""
-    d, r, columns = len(D), len(R), out.shape[1]
-    n = d + r
+    d, n = len(D), len(D) + len(R)
     for side in range(2):
-        for i in range(d):
-            for c in range(columns):
-                out[side * n + i, c] += S[2 * side, i, c]
-        for m in range(r):
-            for c in range(columns):
-                total = 0.0
-                for i in range(d):
-                    total += P[side, i, m] * S[2 * side + 1, i, c]
-                out[side * n + d + m, c] += total
+        first = 2 * side * d * 2 * n  # of the positions in S; the tangents follow
+        for i in range(len(D)):
+            add_multiple(out, (side * n + i) * 2 * n, 1.0, S, first + i * 2 * n, D + R + D + R)
+        for k in range(len(R)):
+            for i in range(len(D)):
+                at = first + (d + i) * 2 * n
+                add_multiple(out, (side * n + d + k) * 2 * n, P[side, i, k], S, at, D + R + D + R)
 
 
 @njit

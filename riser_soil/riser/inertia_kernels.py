@@ -36,7 +36,7 @@ def _mass_forces(part: Mass, at: Configuration, out: LineForces) -> None:
 
 @add_tangent.of(Mass)
 def _mass_tangent(part: Mass, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    add_mass_to(K, weights.inertia, at.P, maps.acceleration, maps.shift_a, part.M, at.D, at.R)
+    add_mass_to(K, weights.inertia, at.P, maps.acceleration_rows, part.M, at.D, at.R)
 
 
 @add_forces.of(SpatialRotaryMass)

@@ -13,7 +13,8 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.riser.hermite import Size, add_rows, shapes, slopes
+from riser_soil.core.rows import add_multiple, add_shaped
+from riser_soil.riser.hermite import Size, add_rows, put_rows, shapes, slopes
 
 POINTS = 0.5 + np.sqrt(0.6) * np.array([-0.5, 0.0, 0.5])
 GAUSS = np.array([5.0, 8.0, 5.0]) / 18.0
@@ -223,31 +224,46 @@ class Derivatives(NamedTuple):
 
 
 class ElementRoom(NamedTuple):
-    """Room for one element: how the forces at its stations follow its dofs (ng, d, n), how what is conjugate to q does
-    (4, d, n), and both as matrices (ng, d n) and (4, d n), whose long rows fill vector registers.
+    """Room for one element: how the forces at its stations follow its dofs (ng, d, n), and how what is conjugate to q
+    does (4, d, n).
     """
 
     change: Array
     S: Array
-    changes: Array
-    rows: Array
 
 
 @njit
 def element_room(ng: int, n: int, D: Size) -> ElementRoom:
     """Room for an element of n dofs with ng stations."""
-    change, S = np.empty((ng, len(D), n)), np.empty((4, len(D), n))
-    return ElementRoom(change, S, change.reshape(ng, len(D) * n), S.reshape(4, len(D) * n))
+    return ElementRoom(np.empty((ng, len(D), n)), np.empty((4, len(D), n)))
+
+
+@njit
+def begin_changes(room: ElementRoom) -> None:
+    """Write zero to how the forces at an element's stations follow its dofs."""
+    room.change[:] = 0.0
+
+
+@njit
+def add_change(room: ElementRoom, g: int, shape: Array, by: Array, rows: Array, D: Size, R: Size) -> None:
+    """Add how the force at station g of an element follows its dofs: by its derivative (d, d) by what has there the
+    shape functions `shape` (4,) or their derivatives, and of which rows (d, n) tell how it follows, see `put_rows`.
+    """
+    d, n = len(D), 2 * (len(D) + len(R))
+    for i in range(len(D)):
+        add_shaped(room.change, (g * d + i) * n, shape, 0, by, i, rows, 0, D, R)
 
 
 @njit
 def add_element(out: Array, room: ElementRoom, weighted: Array, P: Array, D: Size, R: Size) -> None:
     """Add to out (n, n) of an element the integral of what is in the room; weighted (ng, 4), P (2, d, r)."""
-    room.rows[:] = 0.0
-    for g in range(room.changes.shape[0]):
+    n = 2 * (len(D) + len(R))
+    room.S[:] = 0.0
+    for g in range(room.change.shape[0]):
         for a in range(4):
-            for c in range(room.changes.shape[1]):
-                room.rows[a, c] += weighted[g, a] * room.changes[g, c]
+            for i in range(len(D)):
+                at = (g * len(D) + i) * n
+                add_multiple(room.S, (a * len(D) + i) * n, weighted[g, a], room.change, at, D + R + D + R)
     add_rows(out, P, room.S, D, R)
 
 
@@ -261,52 +277,19 @@ def add_tangent(out: Array, at: Stations, by: Derivatives, columns: DofDerivativ
 def _add_tangent(out: Array, at: tuple, by: tuple, columns: tuple, D: Size, R: Size) -> None:
     """Takes plain tuples: numba reads named ones half a microsecond slower."""
     at, by, columns = Stations(*at), Derivatives(*by), DofDerivatives(*columns)
-    room = element_room(by.slope.shape[1], out.shape[1], D)
+    room, shape = element_room(by.slope.shape[1], out.shape[1], D), (len(D), out.shape[1])
+    places, rates, accelerations = np.empty(shape), np.empty(shape), np.empty(shape)
     for e in range(by.slope.shape[0]):
+        put_rows(columns.q[e], 1.0, places, D, R)
+        put_rows(columns.rate[e], columns.shift_v, rates, D, R)
+        put_rows(columns.acceleration[e], columns.shift_a, accelerations, D, R)
+        begin_changes(room)
         for g in range(by.slope.shape[1]):
-            put_slope(room.change[g], at.dN[e, g], by.slope[e, g], columns.q[e], D, R)
-            add_position(room.change[g], at.N[e, g], by.position[e, g], 1.0, columns.q[e], D, R)
-            add_position(room.change[g], at.N[e, g], by.rate[e, g], columns.shift_v, columns.rate[e], D, R)
-            add_position(
-                room.change[g], at.N[e, g], by.acceleration[e, g], columns.shift_a, columns.acceleration[e], D, R
-            )
+            add_change(room, g, at.dN[e, g], by.slope[e, g], places, D, R)
+            add_change(room, g, at.N[e, g], by.position[e, g], places, D, R)
+            add_change(room, g, at.N[e, g], by.rate[e, g], rates, D, R)
+            add_change(room, g, at.N[e, g], by.acceleration[e, g], accelerations, D, R)
         add_element(out[e], room, at.weighted[e], columns.q[e], D, R)
-
-
-@njit
-def put_slope(change: Array, dN: Array, by: Array, P: Array, D: Size, R: Size) -> None:
-    """Write how the force at a station, dN (4,), follows the dofs of its element to change (d, n): by its derivative by
-    x' (d, d), P (2, d, r) being that of the tangents.
-    """
-    d = len(D)
-    for side in range(2):
-        first, by_chord, by_end = side * (d + len(R)), dN[2 * side], dN[2 * side + 1]
-        for i in range(d):
-            for j in range(d):
-                change[i, first + j] = by_chord * by[i, j]
-            for k in range(len(R)):
-                sloping = 0.0
-                for j in range(d):
-                    sloping += by[i, j] * P[side, j, k]
-                change[i, first + d + k] = by_end * sloping
-
-
-@njit
-def add_position(change: Array, N: Array, by: Array, shift: float, map: Array, D: Size, R: Size) -> None:
-    """Add how the force at a station, N (4,), follows the dofs of its element to change (d, n): by its derivative by x,
-    x. or x.. (d, d), which follow the positions by `shift` and the rotations by the tangents' map (2, d, r).
-    """
-    d = len(D)
-    for side in range(2):
-        first, position, tangent = side * (d + len(R)), N[2 * side], N[2 * side + 1]
-        for i in range(d):
-            for j in range(d):
-                change[i, first + j] += position * shift * by[i, j]
-            for k in range(len(R)):
-                turning = 0.0
-                for j in range(d):
-                    turning += by[i, j] * map[side, j, k]
-                change[i, first + d + k] += tangent * turning
 
 
 def add_stiffness(out: Array, at: Stations, elements: IntArray, by_position: Array, P: Array) -> None:
@@ -320,10 +303,11 @@ def add_stiffness(out: Array, at: Stations, elements: IntArray, by_position: Arr
 def _add_stiffness(
     out: Array, N: Array, weighted: Array, elements: IntArray, by_position: Array, P: Array, D: Size, R: Size
 ) -> None:
-    room = element_room(by_position.shape[1], out.shape[1], D)
+    room, rows = element_room(by_position.shape[1], out.shape[1], D), np.empty((len(D), out.shape[1]))
     for m in range(elements.size):
         e = elements[m]
+        put_rows(P[e], 1.0, rows, D, R)
+        begin_changes(room)
         for g in range(by_position.shape[1]):
-            room.change[g] = 0.0
-            add_position(room.change[g], N[e, g], by_position[m, g], 1.0, P[e], D, R)
+            add_change(room, g, N[e, g], by_position[m, g], rows, D, R)
         add_element(out[e], room, weighted[e], P[e], D, R)

@@ -75,13 +75,13 @@ def _station_tangent(part: DryStationNumbers, at: Configuration, maps: Maps, wei
     water, up = part.seen.end, len(at.D) - 1
     for m in range(part.element.size):
         e = part.element[m]
+        stations.begin_changes(part.change)
         for g in range(part.share.shape[1]):
             p = m * part.share.shape[1] + g
             slope = -weights.force * part.displaced[m] * wet_slope(water.immersion[p], part.span[m, g])
             for j in range(len(at.D)):
                 part.by_x[up, j] = slope * water.immersion_gradient[p, j]
-            part.change.change[g] = 0.0
-            stations.add_position(part.change.change[g], part.at.N[m, g], part.by_x, 1.0, at.P[e], at.D, at.R)
+            stations.add_change(part.change, g, part.at.N[m, g], part.by_x, maps.place_rows[e], at.D, at.R)
         stations.add_element(K[e], part.change, part.at.weighted[m], at.P[e], at.D, at.R)
 
 

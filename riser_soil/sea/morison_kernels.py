@@ -70,6 +70,7 @@ def _still_forces(part: StillWaterNumbers, at: Configuration, out: LineForces) -
 def _still_tangent(part: StillWaterNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
     room = part.room
     for e in range(part.drag.shape[0]):
+        stations.begin_changes(part.element)
         for g in range(part.at.N.shape[1]):
             stretch = _see(part, at, e, g)
             law.put_drag_derivatives(room.v, room.tau, part.drag[e], room.by_v, room.by_tau, at.D)
@@ -80,10 +81,10 @@ def _still_tangent(part: StillWaterNumbers, at: Configuration, maps: Maps, weigh
                     room.by_a[i, j] *= weights.inertia
                     room.by_tau[i, j] = weights.force * room.by_tau[i, j] + weights.inertia * room.more[i, j]
             stations.to_slope(room.by_tau, room.tau, stretch, at.D)
-            change, N = part.element.change[g], part.at.N[e, g]
-            stations.put_slope(change, part.at.dN[e, g], room.by_tau, at.P[e], at.D, at.R)
-            stations.add_position(change, N, room.by_v, maps.shift_v, maps.rate[e], at.D, at.R)
-            stations.add_position(change, N, room.by_a, maps.shift_a, maps.acceleration[e], at.D, at.R)
+            N, element = part.at.N[e, g], part.element
+            stations.add_change(element, g, part.at.dN[e, g], room.by_tau, maps.place_rows[e], at.D, at.R)
+            stations.add_change(element, g, N, room.by_v, maps.rate_rows[e], at.D, at.R)
+            stations.add_change(element, g, N, room.by_a, maps.acceleration_rows[e], at.D, at.R)
         stations.add_element(K[e], part.element, part.at.weighted[e], at.P[e], at.D, at.R)
 
 

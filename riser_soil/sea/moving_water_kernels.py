@@ -151,16 +151,17 @@ def _tangent(part: MovingWaterNumbers, at: Configuration, maps: Maps, weights: L
     by = part.by
     for m in range(part.element.size):
         e = part.element[m]
+        stations.begin_changes(part.change)
         for g in range(part.share.shape[1]):
             stretch = _move(part, at, m, g, part.room)
             _resist(part, part.seen.end, m, g, part.room, at.D)
             _differentiate(part, part.seen.end, m, g, weights, at.D)
             stations.to_slope(by.by_tau, part.room.tau, stretch, at.D)
-            change, N = part.change.change[g], part.at.N[m, g]
-            stations.put_slope(change, part.at.dN[m, g], by.by_tau, at.P[e], at.D, at.R)
-            stations.add_position(change, N, by.by_x, 1.0, at.P[e], at.D, at.R)
-            stations.add_position(change, N, by.by_v, maps.shift_v, maps.rate[e], at.D, at.R)
-            stations.add_position(change, N, by.by_a, maps.shift_a, maps.acceleration[e], at.D, at.R)
+            N, places = part.at.N[m, g], maps.place_rows[e]
+            stations.add_change(part.change, g, part.at.dN[m, g], by.by_tau, places, at.D, at.R)
+            stations.add_change(part.change, g, N, by.by_x, places, at.D, at.R)
+            stations.add_change(part.change, g, N, by.by_v, maps.rate_rows[e], at.D, at.R)
+            stations.add_change(part.change, g, N, by.by_a, maps.acceleration_rows[e], at.D, at.R)
         stations.add_element(K[e], part.change, part.at.weighted[m], at.P[e], at.D, at.R)
 
 

@@ -13,7 +13,6 @@ from riser_soil.core.bound import Bound, calls, in_turn
 from riser_soil.core.packed import Packed
 from riser_soil.core.part import State, Weights
 from riser_soil.riser.configuration import (
-    Maps,
     base_of,
     maps_for,
     place,
@@ -128,7 +127,7 @@ class PackedRiser:
 
     def _weigh(self, weights: Weights) -> None:
         maps, self._weighed = self._maps, weights
-        maps.renew(Maps(maps.value.rate, maps.value.acceleration, weights.shift_v, weights.shift_a))
+        maps.renew(maps.value._replace(shift_v=weights.shift_v, shift_a=weights.shift_a))
         self._weights.renew(LineWeights(weights.inertia, weights.force))
 
     def solve(self) -> tuple[int, int]:
