@@ -157,7 +157,7 @@ def put_turning(at: Configuration, F: Array, G: Array) -> None:
     """Write to G (ne, 2, r, r) the derivative of P^T F by the rotation dofs, F (ne, 2, d) held."""
 
 
-@by_type
+@bound_by_type
 def put_moment_maps(at: Configuration, axes: Array, maps: Array) -> None:
     """Write the maps (nn, 3, r) of what is conjugate to the rotation dofs to moments in global axes, see `Orientation`.
     axes (3, r): `Line.turning_axes`.
