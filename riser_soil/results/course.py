@@ -1,6 +1,4 @@
-"""The course of figures from step to step, compiled: their extremes, how sharply they turn, their peaks; see `figures`
-and `time_resolution`.
-"""
+"""The course of figures from step to step, compiled: extremes, peaks, how sharply they turn; see `time_resolution`."""
 
 from __future__ import annotations
 
@@ -59,14 +57,9 @@ class Extent(NamedTuple):
     placed: IntArray
 
 
-def extending(extent: Extent, t: Array, seen: Array) -> Bound:
-    """A call that takes in the figures and places that are in `seen` at the time in t (1,), see `extend`."""
-    return Bound(extend, Packed(extent), Packed(t), Packed(seen))
-
-
 @njit
-def extend(extent: Extent, t: Array, seen: Array) -> None:
-    """Take in figures, and behind them the places of those that have one (n + m,); nan does not count."""
+def extend(extent: Extent, t: float, seen: Array) -> None:
+    """Take in figures at a time, and behind them the places of those that have one (n + m,); nan does not count."""
     n = extent.least.size
     for k, i in enumerate(extent.placed):
         if seen[i] < extent.least[i]:
@@ -75,9 +68,9 @@ def extend(extent: Extent, t: Array, seen: Array) -> None:
             extent.arc_most[k] = seen[n + k]
     for i in range(n):
         if seen[i] < extent.least[i]:
-            extent.least[i], extent.t_least[i] = seen[i], t[0]
+            extent.least[i], extent.t_least[i] = seen[i], t
         if seen[i] > extent.most[i]:
-            extent.most[i], extent.t_most[i] = seen[i], t[0]
+            extent.most[i], extent.t_most[i] = seen[i], t
 
 
 def following(course: Course, after: Array) -> Bound:

@@ -6,7 +6,6 @@ import itertools
 import math
 from collections.abc import Callable
 from contextlib import suppress
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -140,19 +139,12 @@ class Extremes:
         none, nowhere = np.full(_SIZE, np.inf), np.full(len(_PLACED), np.nan)
         unknown = np.full(_SIZE, np.nan)
         self._extent = Extent(none, -none, unknown, unknown.copy(), nowhere, nowhere.copy(), _AT_PLACED)
-        self._t, self._seen = np.empty(1), np.empty(_SIZE + len(_PLACED))
-
-    @cached_property
-    def _extend(self) -> Callable[[], None]:
-        """Takes in what is seen; bound where there are steps."""
-        from riser_soil.results.course import extending
-
-        return extending(self._extent, self._t, self._seen)
 
     def update(self, t: float, vector: Array) -> None:
         """t: s (static stages: load factor); vector: from `pack`."""
-        self._t[0], self._seen[:] = t, vector
-        self._extend()
+        from riser_soil.results.course import extend
+
+        extend(self._extent, t, vector)
 
     def nested(self) -> dict[str, Any]:
         """{min, max, t_min, t_max} of each figure, and {arc_min, arc_max} [m] of those that sit somewhere along the

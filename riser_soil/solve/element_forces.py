@@ -1,7 +1,6 @@
-"""What acts within the elements of a riser alone at an accepted state, and its section forces, by the kernels of its
-parts; see `part_kernels`.
+"""What acts within a riser's elements, and its section forces, by the kernels of its parts; see `part_kernels`.
 
-As `riser.section_forces`, which asks the parts' methods one by one.
+As `riser.section_forces`, which asks the parts' methods one by one. At an accepted state of a riser alone.
 """
 
 from __future__ import annotations
