@@ -44,8 +44,8 @@ class Course(NamedTuple):
 
 
 class Extent(NamedTuple):
-    """Least and most of n figures, with the times when they were [s]; of those that sit somewhere, whose numbers are in
-    placed (m,), their places [m], too.
+    """Least and most of n figures, with the times when they were [s]; of the m that sit somewhere along the riser their
+    arc lengths [m], too.
     """
 
     least: Array
@@ -54,14 +54,16 @@ class Extent(NamedTuple):
     t_most: Array
     arc_least: Array
     arc_most: Array
-    placed: IntArray
 
 
 @njit
-def extend(extent: Extent, t: float, seen: Array) -> None:
-    """Take in figures at a time, and behind them the places of those that have one (n + m,); nan does not count."""
+def extend(extent: Extent, placed: IntArray, t: float, seen: Array) -> None:
+    """Take in figures at a time, and behind them the arc lengths of those that have one (n + m,); nan does not count.
+
+    placed (m,): which figures these are.
+    """
     n = extent.least.size
-    for k, i in enumerate(extent.placed):
+    for k, i in enumerate(placed):
         if seen[i] < extent.least[i]:
             extent.arc_least[k] = seen[n + k]
         if seen[i] > extent.most[i]:

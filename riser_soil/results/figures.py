@@ -138,13 +138,13 @@ class Extremes:
 
         none, nowhere = np.full(_SIZE, np.inf), np.full(len(_PLACED), np.nan)
         unknown = np.full(_SIZE, np.nan)
-        self._extent = Extent(none, -none, unknown, unknown.copy(), nowhere, nowhere.copy(), _AT_PLACED)
+        self._extent = Extent(none, -none, unknown, unknown.copy(), nowhere, nowhere.copy())
 
     def update(self, t: float, vector: Array) -> None:
         """t: s (static stages: load factor); vector: from `pack`."""
         from riser_soil.results.course import extend
 
-        extend(self._extent, t, vector)
+        extend(self._extent, _AT_PLACED, t, vector)
 
     def nested(self) -> dict[str, Any]:
         """{min, max, t_min, t_max} of each figure, and {arc_min, arc_max} [m] of those that sit somewhere along the

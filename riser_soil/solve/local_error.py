@@ -94,8 +94,7 @@ def committed_error(
     begun, ended: the states with the bulk's rates alone, and as the riser moves, before and after the step.
     """
     (start, moving), (after, now) = begun, ended
-    missed = after.a - start.a
-    missed *= scheme.error_constant
+    missed = scheme.error_constant * (after.a - start.a)
     if now is not after or moving is not start:
         missed += CONTACT.error_constant * ((now.a - after.a) - (moving.a - start.a))
     missed[system.prescribed_dofs] = 0.0

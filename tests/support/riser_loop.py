@@ -75,9 +75,12 @@ class Compiled:
 
 PIPE = "line_types.flexible."
 IN_SPACE = ("dimension=3", "riser.segments.0.elements=12", PIPE + "GJ=2.0e4", "solver.tolerance=1e-9")
+SWAYING = "stages.1.motion.end.harmonic={amplitude: [2.0, 6.0, 1.0], period: 7.0, ramp: 1.0}"
 CASES = {
     "surge in a plane": ("catenary", ("dimension=2", "riser.segments.0.elements=15")),
     "surge in space, damped": ("catenary", (*IN_SPACE, PIPE + "damping={ratio: 0.02, frequency: 1.0}")),
+    "sway": ("catenary", (*IN_SPACE, SWAYING)),
+    "sway, damped": ("catenary", (*IN_SPACE, SWAYING, PIPE + "damping={ratio: 0.2, frequency: 0.1}")),
     "hose on a floor": ("tank", ("riser.segments.0.elements=40",)),
     "storm over clay": ("storm", ()),
 }

@@ -70,9 +70,8 @@ def test_final_state_of_a_catenary() -> None:
 
 
 def test_what_is_unknown_is_left_out() -> None:
-    nothing = np.full(ARC.size, math.nan)
     unused = ExtremeAlong(math.nan, math.nan)
-    riser = LINE.riser(ARC)._replace(wall_tension=nothing, largest_bend_utilisation=unused)
+    riser = LINE.riser(ARC)._replace(wall_tension=None, largest_bend_utilisation=unused)
     riser = riser._replace(tension_utilisation=None, wall=None)
     touch, extremes = LINE.touch(ARC)._replace(embedment=None), Extremes()
     extremes.update(0.0, pack(Instant(ARC, riser, touch)))
