@@ -36,7 +36,7 @@ class HarmonicMotion:
     def _components(self) -> list[tuple[float, float]]:
         """Amplitude and phase of each: with three numbers plain arithmetic is faster than that of arrays."""
         phases = np.broadcast_to(self.phase, self.amplitude.shape)
-        return list(zip(self.amplitude.tolist(), phases.tolist(), strict=True))
+        return [(float(size), float(phase)) for size, phase in zip(self.amplitude, phases, strict=True)]
 
     def _component(self, t: float, amplitude: float, phase: float) -> tuple[float, float, float]:
         w = 2.0 * math.pi / self.period

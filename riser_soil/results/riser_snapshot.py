@@ -23,7 +23,7 @@ def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
     line, state = assembly.line, stepper.now
     inside = stepper.newton.section_forces(line, assembly.elements, state)
     start, end = end_reactions(line, state, inside, stepper.newton.nodal_residual(line, state))
-    least_tension, largest_moment, largest_curvature = (ExtremeAlong(*row) for row in inside.extreme.tolist())
+    least_tension, largest_moment, largest_curvature = (ExtremeAlong(float(x), float(s)) for x, s in inside.extreme)
     most_used, tightest = _tightest_bend(assembly, inside)
     return RiserSnapshot(
         position=inside.position,
