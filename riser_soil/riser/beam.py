@@ -8,7 +8,6 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights
-from riser_soil.riser import uniform_load
 from riser_soil.riser.beam_kernels import PlanarBeam, SpatialBeam
 from riser_soil.riser.elastic import elastic_elements
 from riser_soil.riser.line import Line
@@ -38,31 +37,24 @@ class Beam(LinePart):
         per_length = elements.weight[:, None] * DOWN + (np.zeros(3) if load is None else load)
         self._load = np.ascontiguousarray(per_length @ line.basis)
 
-    def _loaded(self, trial: Trial) -> tuple[Array, Array, Array, Array]:
-        """Arguments of `uniform_load`: chords, tangents, lengths and load."""
-        return trial.chord, trial.turn.tangent, self.line.length, self.factor(trial.state.t) * self._load
-
-    def _load_forces(self, trial: Trial) -> Array:
-        """Residual of weight and load conjugate to q (ne, 4, d)."""
-        return uniform_load.residual(*self._loaded(trial))
+    def _load_at(self, trial: Trial) -> Array:
+        """Weight and load at a trial's time (ne, d) [N/m]."""
+        return np.asarray(self.factor(trial.state.t) * self._load)
 
     def _element_forces(self, trial: Trial) -> Array:
-        return self._elastic.forces(trial) + trial.pull_back(trial.once((self, "load"), self._load_forces))
+        return self._elastic.forces(trial) + self._elastic.load_forces(trial, self._load_at(trial))
 
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
         return None, self.line.trial(state).once((self, "element forces"), self._element_forces)
 
     def residual(self, state: State, forces: Forces) -> None:
-        trial = self.line.trial(state)
-        self.line.scatter(self._elastic.forces(trial), forces.force)
-        self.line.collect(trial, trial.once((self, "load"), self._load_forces), forces.force)
+        self.line.scatter(self.element_forces(state)[1], forces.force)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        trial, K, at = self.line.trial(state), values[self.line.name], self._loaded(self.line.trial(state))
+        trial, K = self.line.trial(state), values[self.line.name]
         self._elastic.add_tangent(K, weights.force, trial)
-        trial.add_turning(K, weights.force, trial.once((self, "load"), self._load_forces))
-        uniform_load.add_tangent(K, weights.force, trial.turn.P, *at)
+        self._elastic.add_load_tangent(K, weights.force, trial, self._load_at(trial))
 
     def numbers(self) -> PlanarBeam | SpatialBeam:
         kind = PlanarBeam if self.line.dimension == 2 else SpatialBeam
@@ -76,7 +68,5 @@ class Beam(LinePart):
     def energy(self, state: State) -> Energy:
         """Strain energy, and the potential of weight and load, zero at the origin of the axes."""
         trial = self.line.trial(state)
-        chord, *rest = self._loaded(trial)
-        middle = 0.5 * (trial.x[:-1] + trial.x[1:])
-        potential = float(np.sum(uniform_load.potential(chord, middle, *rest)))
+        potential = self._elastic.load_potential(trial, self._load_at(trial))
         return Energy(strain=self._elastic.energy(trial), potential=potential)

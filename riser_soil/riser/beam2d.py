@@ -135,16 +135,14 @@ def strain_energy(
     """Strain energy U (ne,) in J; arguments as in `forces`."""
     U = np.empty(len(chord))
     for e in range(len(chord)):
-        U[e] = element_energy(e, chord, direction1, direction2, ref, section)
+        U[e] = element_energy(e, corotate(chord[e], direction1[e], direction2[e]), ref, section)
     return U
 
 
 @njit
-def element_energy(
-    e: int, chord: Array, direction1: Array, direction2: Array, ref: PlanarReference, section: PlanarSection
-) -> float:
+def element_energy(e: int, at: PlanarCorotated, ref: PlanarReference, section: PlanarSection) -> float:
     """That of element e."""
-    element, at = element_at(ref, section, e), corotate(chord[e], direction1[e], direction2[e])
+    element = element_at(ref, section, e)
     phi1, phi2 = at.theta1 - element.theta1, at.theta2 - element.theta2
     m1, m2 = end_moments(element.EI_per_L, phi1, phi2)
     return 0.5 * (element.EA * element.L * _strain(element, at) ** 2 + m1 * phi1 + m2 * phi2)
@@ -170,22 +168,13 @@ def forces(chord: Array, direction1: Array, direction2: Array, ref: PlanarRefere
     """Internal forces f (ne, 6) for chords (ne, 2) and tangent directions (ne,) of both ends, rad."""
     f = np.empty((len(chord), 6))
     for e in range(len(chord)):
-        put_element_forces(e, chord, direction1, direction2, ref, section, f[e])
+        put_element_forces(e, corotate(chord[e], direction1[e], direction2[e]), ref, section, f[e])
     return f
 
 
 @njit
-def put_element_forces(
-    e: int,
-    chord: Array,
-    direction1: Array,
-    direction2: Array,
-    ref: PlanarReference,
-    section: PlanarSection,
-    f: Array,
-) -> None:
-    """Write forces f (6,) of element e; all else as in `forces`."""
-    at = corotate(chord[e], direction1[e], direction2[e])
+def put_element_forces(e: int, at: PlanarCorotated, ref: PlanarReference, section: PlanarSection, f: Array) -> None:
+    """Write forces f (6,) of element e."""
     N, m1, m2 = _stress(element_at(ref, section, e), at)
     put_forces(at.axis, nodal_forces(at, N, m1, m2), f)
 
@@ -229,23 +218,16 @@ def forces_and_tangent(
     """Internal forces f (ne, 6) and their derivative K (ne, 6, 6) by displacements and angles."""
     f, K = np.empty((len(chord), 6)), np.empty((len(chord), 6, 6))
     for e in range(len(chord)):
-        put_element(e, chord, direction1, direction2, ref, section, f[e], K[e])
+        put_element(e, corotate(chord[e], direction1[e], direction2[e]), ref, section, f[e], K[e])
     return f, K
 
 
 @njit
 def put_element(
-    e: int,
-    chord: Array,
-    direction1: Array,
-    direction2: Array,
-    ref: PlanarReference,
-    section: PlanarSection,
-    f: Array,
-    K: Array,
+    e: int, at: PlanarCorotated, ref: PlanarReference, section: PlanarSection, f: Array, K: Array
 ) -> None:
-    """Write forces f (6,) and tangent K (6, 6) of element e; all else as in `forces_and_tangent`."""
-    element, at = element_at(ref, section, e), corotate(chord[e], direction1[e], direction2[e])
+    """Write forces f (6,) and tangent K (6, 6) of element e."""
+    element = element_at(ref, section, e)
     N, m1, m2 = _stress(element, at)
     response = nodal_forces(at, N, m1, m2)
     put_forces(at.axis, response, f)

@@ -8,8 +8,8 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.riser import beam2d, beam3d, increments, uniform_load
-from riser_soil.riser.configuration import Configuration, Maps, PlanarConfiguration, SpatialConfiguration
+from riser_soil.riser import beam2d, beam3d, increments, planar_load, uniform_load
+from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
 
 
@@ -31,14 +31,21 @@ class SpatialBeam(NamedTuple):
     load: Array
 
 
+@njit
+def _corotated(at: PlanarConfiguration, e: int) -> beam2d.PlanarCorotated:
+    found: beam2d.PlanarCorotated = beam2d.corotate(at.chord[e], at.end_angle[e, 0], at.end_angle[e, 1])
+    return found
+
+
 @add_forces.of(PlanarBeam)
 def _planar_forces(part: PlanarBeam, at: PlanarConfiguration, out: LineForces) -> None:
-    f, first, second = np.empty(6), at.end_angle[:, 0], at.end_angle[:, 1]
+    f = np.empty(6)
     for e in range(part.length.size):
-        beam2d.put_element_forces(e, at.chord, first, second, part.reference, part.section, f)
+        seen = _corotated(at, e)
+        beam2d.put_element_forces(e, seen, part.reference, part.section, f)
+        planar_load.add_element_forces(seen, part.length[e], part.load[e], f)
         for i in range(6):
             out.force_e[e, i] += f[i]
-    uniform_load.add_residual(at.D, at.chord, at.tangent, part.length, part.load, out.force_q)
 
 
 @add_forces.of(SpatialBeam)
@@ -54,15 +61,14 @@ def _spatial_forces(part: SpatialBeam, at: SpatialConfiguration, out: LineForces
 
 @add_tangent.of(PlanarBeam)
 def _planar_tangent(part: PlanarBeam, at: PlanarConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    f, own, first, second = np.empty(6), np.empty((6, 6)), at.end_angle[:, 0], at.end_angle[:, 1]
+    f, own = np.empty(6), np.empty((6, 6))
     for e in range(part.length.size):
-        beam2d.put_element(e, at.chord, first, second, part.reference, part.section, f, own)
+        seen = _corotated(at, e)
+        beam2d.put_element(e, seen, part.reference, part.section, f, own)
+        planar_load.add_element_tangent(seen, part.length[e], part.load[e], own)
         for i in range(6):
             for j in range(6):
                 K[e, i, j] += weights.force * own[i, j]
-    uniform_load.add_tangent_to(
-        at.D, at.R, K, weights.force, at.P, at.chord, at.tangent, part.length, part.load
-    )
 
 
 @add_tangent.of(SpatialBeam)
@@ -81,27 +87,20 @@ def _spatial_tangent(part: SpatialBeam, at: SpatialConfiguration, maps: Maps, we
 
 @add_energy.of(PlanarBeam)
 def _planar_energy(part: PlanarBeam, at: PlanarConfiguration, energy: Array) -> None:
-    first, second = at.end_angle[:, 0], at.end_angle[:, 1]
     for e in range(part.length.size):
-        energy[1] += beam2d.element_energy(e, at.chord, first, second, part.reference, part.section)
-    energy[2] += _potential(part, at)
+        seen, x = _corotated(at, e), at.x
+        energy[1] += beam2d.element_energy(e, seen, part.reference, part.section)
+        p, z = 0.5 * (x[e, 0] + x[e + 1, 0]), 0.5 * (x[e, 1] + x[e + 1, 1])
+        energy[2] += planar_load.element_potential(seen, part.length[e], part.load[e], p, z)
 
 
 @add_energy.of(SpatialBeam)
 def _spatial_energy(part: SpatialBeam, at: SpatialConfiguration, energy: Array) -> None:
+    middle, room = np.empty(3), np.empty(3)
     for e in range(part.length.size):
         energy[1] += beam3d.element_energy(e, at.chord, at.frame1, at.frame2, part.reference, part.section)
-    energy[2] += _potential(part, at)
-
-
-@njit
-def _potential(part: PlanarBeam | SpatialBeam, at: Configuration) -> float:
-    """Of weight and load [J]."""
-    total, middle, room = 0.0, np.empty(len(at.D)), np.empty(len(at.D))
-    for e in range(part.length.size):
-        for i in range(len(at.D)):
+        for i in range(3):
             middle[i] = 0.5 * (at.x[e, i] + at.x[e + 1, i])
-        total += uniform_load.element_potential(
+        energy[2] += uniform_load.element_potential(
             at.D, at.chord[e], middle, at.tangent[e], part.length[e], part.load[e], room
         )
-    return total

@@ -1,4 +1,4 @@
-"""Elastic forces and tangent of all elements of a line, in the plane and in space."""
+"""Elastic forces and tangent of all elements of a line under uniform load, in the plane and in space."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.riser import beam2d, beam3d, increments
+from riser_soil.riser import beam2d, beam3d, increments, planar_load, uniform_load
 from riser_soil.riser.line import Line
 from riser_soil.riser.planar_directors import PlanarFrames, PlanarOrientation
 from riser_soil.riser.sections import Elements
@@ -29,6 +29,7 @@ class ElasticElements(ABC):
     section_type: ClassVar[type[Any]]
 
     def __init__(self, line: Line, ends: Array, *stiffnesses: Array) -> None:
+        self._line = line
         first, second = (np.ascontiguousarray(ends[:, i]) for i in (0, 1))
         self.reference: Any = self.kernels.reference(line.chord0, first, second, line.length)
         self.section: Any = self.section_type(*stiffnesses)
@@ -51,6 +52,18 @@ class ElasticElements(ABC):
     @abstractmethod
     def add_tangent(self, out: Array, weight: float, trial: Trial) -> None:
         """Add weight times the tangents to out (ne, 2 ndof, 2 ndof)."""
+
+    @abstractmethod
+    def load_forces(self, trial: Trial, load: Array) -> Array:
+        """Residual (ne, 2 ndof) of a load per length (ne, d) [N/m]."""
+
+    @abstractmethod
+    def add_load_tangent(self, out: Array, weight: float, trial: Trial, load: Array) -> None:
+        """Add weight times the derivative of that residual to out (ne, 2 ndof, 2 ndof)."""
+
+    @abstractmethod
+    def load_potential(self, trial: Trial, load: Array) -> float:
+        """Potential of a load per length (ne, d) [N/m], zero at the origin of the axes [J]."""
 
 
 class PlanarElements(ElasticElements):
@@ -77,6 +90,16 @@ class PlanarElements(ElasticElements):
     def add_tangent(self, out: Array, weight: float, trial: Trial) -> None:
         _add_planar_tangent(out, weight, *self.at(trial))
 
+    def load_forces(self, trial: Trial, load: Array) -> Array:
+        return np.asarray(planar_load.forces(*self.configuration(trial), self._line.length, load))
+
+    def add_load_tangent(self, out: Array, weight: float, trial: Trial, load: Array) -> None:
+        planar_load.add_tangent(out, weight, *self.configuration(trial), self._line.length, load)
+
+    def load_potential(self, trial: Trial, load: Array) -> float:
+        at = self.configuration(trial)
+        return float(np.sum(planar_load.potential(*at, _middle(trial), self._line.length, load)))
+
 
 class SpatialElements(ElasticElements):
     """Elements of a line in space."""
@@ -99,6 +122,29 @@ class SpatialElements(ElasticElements):
         turn = spatial(trial)
         _add_spatial_tangent(out, weight, *self.at(trial), (turn.H, turn.Rn, turn.Theta))
 
+    def load_forces(self, trial: Trial, load: Array) -> Array:
+        return trial.pull_back(self._load_conjugate(trial, load))
+
+    def add_load_tangent(self, out: Array, weight: float, trial: Trial, load: Array) -> None:
+        trial.add_turning(out, weight, self._load_conjugate(trial, load))
+        turn = trial.turn
+        uniform_load.add_tangent(out, weight, turn.P, trial.chord, turn.tangent, self._line.length, load)
+
+    def _load_conjugate(self, trial: Trial, load: Array) -> Array:
+        """Residual of the load conjugate to q (ne, 4, 3), found once for a trial."""
+        at = trial.chord, trial.turn.tangent, self._line.length, load
+        found: Array = trial.once((self, "load"), lambda _: uniform_load.residual(*at))
+        return found
+
+    def load_potential(self, trial: Trial, load: Array) -> float:
+        at = trial.chord, _middle(trial), trial.turn.tangent
+        return float(np.sum(uniform_load.potential(*at, self._line.length, load)))
+
+
+def _middle(trial: Trial) -> Array:
+    """(ne, d), of the elements' ends [m]."""
+    return np.asarray(0.5 * (trial.x[:-1] + trial.x[1:]))
+
 
 @njit
 def _add(out: Array, weight: float, K: Array) -> None:
@@ -120,7 +166,8 @@ def _add_planar_tangent(
 ) -> None:
     f, K = np.empty(6), np.empty((6, 6))
     for e in range(len(chord)):
-        beam2d.put_element(e, chord, direction1, direction2, reference, section, f, K)
+        at = beam2d.corotate(chord[e], direction1[e], direction2[e])
+        beam2d.put_element(e, at, reference, section, f, K)
         _add(out[e], weight, K)
 
 

@@ -1,0 +1,104 @@
+"""Uniform load per length on elements in a plane: its potential, residual and tangent.
+
+That of `uniform_load`, whose psi_i is in a plane the angle theta_i from the chord to an end's tangent times the load
+w.n across the chord. theta_1 - theta_2 does not change as the chord turns, so that with w per unstressed length L
+
+    V = -w.(x1 + x2) L/2 - (theta_1 - theta_2) w.n L^2/12
+
+depends on the chord by its direction alone. Forces (N) and moments (N m) are ordered as in `beam2d`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
+from riser_soil.riser.beam2d import PlanarCorotated, corotate
+
+
+@njit
+def _split(at: PlanarCorotated, w: Array) -> tuple[float, float]:
+    """The load along the chord and across it."""
+    c, s = at.axis
+    return c * w[0] + s * w[1], c * w[1] - s * w[0]
+
+
+@njit
+def element_potential(at: PlanarCorotated, L: float, w: Array, middle_p: float, middle_z: float) -> float:
+    """V [J] of one element, its middle (x1 + x2)/2 at (p, z) [m]."""
+    _, across = _split(at, w)
+    return -L * (w[0] * middle_p + w[1] * middle_z) - L * L / 12.0 * (at.theta1 - at.theta2) * across
+
+
+@njit
+def add_element_forces(at: PlanarCorotated, L: float, w: Array, f: Array) -> None:
+    """Add the residual of one element to f (6,)."""
+    along, across = _split(at, w)
+    twelfth = L * L / 12.0
+    spun = twelfth * (at.theta1 - at.theta2) * along / at.length  # by the chord's turning, over its length
+    p, z = -spun * at.axis[1], spun * at.axis[0]
+    f[0] -= 0.5 * L * w[0] + p
+    f[1] -= 0.5 * L * w[1] + z
+    f[2] -= twelfth * across
+    f[3] -= 0.5 * L * w[0] - p
+    f[4] -= 0.5 * L * w[1] - z
+    f[5] += twelfth * across
+
+
+@njit
+def add_element_tangent(at: PlanarCorotated, L: float, w: Array, K: Array) -> None:
+    """Add the derivative of the residual of one element to K (6, 6)."""
+    along, across = _split(at, w)
+    c, s = at.axis
+    twelfth, spread = L * L / 12.0, at.theta1 - at.theta2
+    bend = twelfth * spread / (at.length * at.length)
+    even, odd = bend * across, bend * along  # by n n and by (e n + n e) of the chord's unit vector e and its normal n
+    pp = even * s * s + 2.0 * odd * c * s
+    zz = even * c * c - 2.0 * odd * c * s
+    pz = -even * c * s - odd * (c * c - s * s)
+    turned = twelfth * along / at.length
+    for end in range(2):
+        sign = 2 * end - 1.0
+        for other in range(2):
+            both, i, j = sign * (2 * other - 1.0), 3 * end, 3 * other
+            K[i, j] += both * pp
+            K[i, j + 1] += both * pz
+            K[i + 1, j] += both * pz
+            K[i + 1, j + 1] += both * zz
+            mixed = -both * turned
+            K[i, j + 2] += mixed * -s
+            K[i + 1, j + 2] += mixed * c
+            K[j + 2, i] += mixed * -s
+            K[j + 2, i + 1] += mixed * c
+
+
+@njit
+def potential(chord: Array, direction1: Array, direction2: Array, middle: Array, L: Array, w: Array) -> Array:
+    """V (ne,) [J]; chord, middle = (x1 + x2)/2 [m] and w [N/m]: (ne, 2); directions (ne,) as in `beam2d.forces`."""
+    V = np.empty(len(chord))
+    for e in range(len(chord)):
+        at = corotate(chord[e], direction1[e], direction2[e])
+        V[e] = element_potential(at, L[e], w[e], middle[e, 0], middle[e, 1])
+    return V
+
+
+@njit
+def forces(chord: Array, direction1: Array, direction2: Array, L: Array, w: Array) -> Array:
+    """Residual (ne, 6); arguments as in `potential`."""
+    f = np.zeros((len(chord), 6))
+    for e in range(len(chord)):
+        add_element_forces(corotate(chord[e], direction1[e], direction2[e]), L[e], w[e], f[e])
+    return f
+
+
+@njit
+def add_tangent(
+    out: Array, weight: float, chord: Array, direction1: Array, direction2: Array, L: Array, w: Array
+) -> None:
+    """Add weight times the derivative of the residual to out (ne, 6, 6); other arguments as in `potential`."""
+    own = np.empty(2)
+    for e in range(len(chord)):
+        for i in range(2):
+            own[i] = weight * w[e, i]
+        add_element_tangent(corotate(chord[e], direction1[e], direction2[e]), L[e], own, out[e])
