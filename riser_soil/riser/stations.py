@@ -178,32 +178,6 @@ def _inner(share: Array, f: Array, g: Array) -> float:
     return total
 
 
-def follow_slope(A: Array, tau: Array, stretch: Array) -> Array:
-    """Derivative by x' from that by tau, A (ne, ng, d, d): tau follows x' by (I - tau tau)/|x'|."""
-    by_slope: Array = _follow_slope(A, tau, stretch, fixed(tau.shape[2]))
-    return by_slope
-
-
-@njit
-def _follow_slope(A: Array, tau: Array, stretch: Array, D: Size) -> Array:
-    out = A.copy()
-    for e in range(tau.shape[0]):
-        for g in range(tau.shape[1]):
-            to_slope(out[e, g], tau[e, g], stretch[e, g], D)
-    return out
-
-
-@njit
-def to_slope(A: Array, tau: Array, stretch: float, D: Size) -> None:
-    """Turn the derivative by tau at one station, A (d, d), into that by x'."""
-    for i in range(len(D)):
-        along = 0.0
-        for j in range(len(D)):
-            along += A[i, j] * tau[j]
-        for j in range(len(D)):
-            A[i, j] = (A[i, j] - along * tau[j]) / stretch
-
-
 class DofDerivatives(NamedTuple):
     """Derivatives by the dofs: of tangents in q, q' and q'' (ne, 2, d, r), of positions in q' and q'' the shifts."""
 

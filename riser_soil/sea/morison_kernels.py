@@ -23,13 +23,12 @@ class StationRoom(NamedTuple):
     f: Array
     by_v: Array
     by_a: Array
-    by_tau: Array
-    more: Array
+    by_slope: Array
 
 
 def station_room(d: int) -> StationRoom:
     """Room for a line of d dimensions."""
-    return StationRoom(*(np.empty(d) for _ in range(4)), *(np.empty((d, d)) for _ in range(4)))
+    return StationRoom(*(np.empty(d) for _ in range(4)), *(np.empty((d, d)) for _ in range(3)))
 
 
 class StillWaterNumbers(NamedTuple):
@@ -73,16 +72,11 @@ def _still_tangent(part: StillWaterNumbers, at: Configuration, maps: Maps, weigh
         stations.begin_changes(part.element)
         for g in range(part.at.N.shape[1]):
             stretch = _see(part, at, e, g)
-            law.put_drag_derivatives(room.v, room.tau, part.drag[e], room.by_v, room.by_tau, at.D)
-            law.put_added_derivatives(room.a, room.tau, part.mass[e], room.by_a, room.more, at.D)
-            for i in range(len(at.D)):
-                for j in range(len(at.D)):
-                    room.by_v[i, j] *= weights.force
-                    room.by_a[i, j] *= weights.inertia
-                    room.by_tau[i, j] = weights.force * room.by_tau[i, j] + weights.inertia * room.more[i, j]
-            stations.to_slope(room.by_tau, room.tau, stretch, at.D)
+            along = room.tau, stretch
+            law.put_drag_derivatives(room.v, *along, part.drag[e], weights.force, room.by_v, room.by_slope, at.D)
+            law.put_added_derivatives(room.a, *along, part.mass[e], weights.inertia, room.by_a, room.by_slope, at.D)
             N, element = part.at.N[e, g], part.element
-            stations.add_change(element, g, part.at.dN[e, g], room.by_tau, maps.place_rows[e], at.D, at.R)
+            stations.add_change(element, g, part.at.dN[e, g], room.by_slope, maps.place_rows[e], at.D, at.R)
             stations.add_change(element, g, N, room.by_v, maps.rate_rows[e], at.D, at.R)
             stations.add_change(element, g, N, room.by_a, maps.acceleration_rows[e], at.D, at.R)
         stations.add_element(K[e], part.element, part.at.weighted[e], at.P[e], at.D, at.R)

@@ -6,9 +6,10 @@ pipe feels
     drag        -(D/2) rho Cdn |v_n| v_n - (pi D/2) rho Cdt |v_t| v_t tau
     added mass  -rho (pi D^2/4) [Can (a - (a.tau) tau) + Cat (a.tau) tau]
 
-The functions return the resistance, that is the negative of these forces (N/m), and its derivatives (..., d, d), tau
-being varied freely, at ng points of each element: v, a, tau (ne, ng, d); c, m: coefficients (ne, 2), normal and
-tangential. With tau = 0 they are those of a body alike in all directions, by the normal coefficients.
+The functions return the resistance, that is the negative of these forces (N/m), and its derivatives (..., d, d) by v,
+a and the slope x' of the axis, whose direction is tau and whose size is the stretch, at ng points of each element: v,
+a, tau (ne, ng, d); stretch (ne, ng); c, m: coefficients (ne, 2), normal and tangential. With tau = 0 they are those of
+a body alike in all directions, by the normal coefficients. tau follows x' by (I - tau tau)/|x'|.
 Source: Morison et al., Petroleum Transactions 189 (1950); tangential drag on the wetted perimeter as in DNV-RP-C205.
 """
 
@@ -60,33 +61,36 @@ def put_added(a: Array, tau: Array, m: Array, f: Array, D: Size) -> None:
 
 
 @njit
-def put_drag_derivatives(v: Array, tau: Array, c: Array, by_v: Array, by_tau: Array, D: Size) -> None:
-    """Write d drag/dv and d drag/dtau at one point, each (d, d); at rest both are zero."""
+def put_drag_derivatives(
+    v: Array, tau: Array, stretch: float, c: Array, weight: float, by_v: Array, by_slope: Array, D: Size
+) -> None:
+    """Write d drag/dv and d drag/dx' at one point, each (d, d), times a weight; at rest both are zero."""
     along, speed = _split(v, tau, D)
-    normal, tangential = c[0] * speed, 2.0 * c[1] * abs(along)
-    bend = c[0] / speed if speed > 0.0 else 0.0
+    normal, tangential = weight * c[0] * speed, weight * 2.0 * c[1] * abs(along)
+    bend = weight * c[0] / speed if speed > 0.0 else 0.0
+    excess, turned, shorter = tangential - normal, (0.5 * tangential - normal) * along, 1.0 / stretch
     for i in range(len(D)):
         across_i = v[i] - along * tau[i]
         for j in range(len(D)):
-            dyad = bend * across_i * (v[j] - along * tau[j])
-            one = 1.0 if i == j else 0.0
-            both = tau[i] * tau[j]
-            turned = tau[i] * v[j]
-            by_v[i, j] = normal * (one - both) + dyad + tangential * both
-            by_tau[i, j] = tangential * (turned + 0.5 * along * one)
-            by_tau[i, j] -= normal * (turned + along * one) + along * dyad
+            across_j = v[j] - along * tau[j]
+            one, both, dyad = 1.0 if i == j else 0.0, tau[i] * tau[j], bend * across_i * across_j
+            by_v[i, j] = normal * one + excess * both + dyad
+            by_slope[i, j] = (excess * tau[i] * across_j + turned * (one - both) - along * dyad) * shorter
 
 
 @njit
-def put_added_derivatives(a: Array, tau: Array, m: Array, by_a: Array, by_tau: Array, D: Size) -> None:
-    """Write d added/da and d added/dtau at one point, each (d, d)."""
-    excess = m[1] - m[0]
+def put_added_derivatives(
+    a: Array, tau: Array, stretch: float, m: Array, weight: float, by_a: Array, by_slope: Array, D: Size
+) -> None:
+    """Write d added/da at one point (d, d), times a weight, and add d added/dx' to by_slope (d, d)."""
+    normal, excess = weight * m[0], weight * (m[1] - m[0])
     along, _ = _split(a, tau, D)
+    shorter = excess / stretch
     for i in range(len(D)):
         for j in range(len(D)):
-            one = 1.0 if i == j else 0.0
-            by_a[i, j] = m[0] * one + excess * tau[i] * tau[j]
-            by_tau[i, j] = excess * (tau[i] * a[j] + along * one)
+            one, both = 1.0 if i == j else 0.0, tau[i] * tau[j]
+            by_a[i, j] = normal * one + excess * both
+            by_slope[i, j] += shorter * (tau[i] * (a[j] - along * tau[j]) + along * (one - both))
 
 
 def resistance(v: Array, a: Array, tau: Array, c: Array, m: Array) -> tuple[Array, Array]:
@@ -104,23 +108,26 @@ def _resistance(v: Array, a: Array, tau: Array, c: Array, m: Array, D: Size) -> 
     return _added(a, tau, m, D), drag
 
 
-def resistance_derivatives(v: Array, a: Array, tau: Array, c: Array, m: Array) -> tuple[Array, Array, Array]:
-    """Derivatives of the sum of `resistance` by v, a and tau."""
-    found: tuple[Array, Array, Array] = _resistance_derivatives(v, a, tau, c, m, fixed(v.shape[2]))
+def resistance_derivatives(
+    v: Array, a: Array, tau: Array, stretch: Array, c: Array, m: Array
+) -> tuple[Array, Array, Array]:
+    """Derivatives of the sum of `resistance` by v, a and x'."""
+    found: tuple[Array, Array, Array] = _resistance_derivatives(v, a, tau, stretch, c, m, fixed(v.shape[2]))
     return found
 
 
 @njit
 def _resistance_derivatives(
-    v: Array, a: Array, tau: Array, c: Array, m: Array, D: Size
+    v: Array, a: Array, tau: Array, stretch: Array, c: Array, m: Array, D: Size
 ) -> tuple[Array, Array, Array]:
     ne, ng, d = v.shape[0], v.shape[1], len(D)
-    by_v, by_tau = np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d))
+    by_v, by_a, by_slope = np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d))
     for e in range(ne):
         for g in range(ng):
-            put_drag_derivatives(v[e, g], tau[e, g], c[e], by_v[e, g], by_tau[e, g], D)
-    by_a, added_by_tau = _added_derivatives(a, tau, m, D)
-    return by_v, by_a, by_tau + added_by_tau
+            along = tau[e, g], stretch[e, g]
+            put_drag_derivatives(v[e, g], *along, c[e], 1.0, by_v[e, g], by_slope[e, g], D)
+            put_added_derivatives(a[e, g], *along, m[e], 1.0, by_a[e, g], by_slope[e, g], D)
+    return by_v, by_a, by_slope
 
 
 def added(a: Array, tau: Array, m: Array) -> Array:
@@ -138,17 +145,17 @@ def _added(a: Array, tau: Array, m: Array, D: Size) -> Array:
     return f
 
 
-def added_derivatives(a: Array, tau: Array, m: Array) -> tuple[Array, Array]:
-    """d added/da and d added/dtau."""
-    found: tuple[Array, Array] = _added_derivatives(a, tau, m, fixed(a.shape[2]))
+def added_derivatives(a: Array, tau: Array, stretch: Array, m: Array) -> tuple[Array, Array]:
+    """Derivatives of `added` by a and x'."""
+    found: tuple[Array, Array] = _added_derivatives(a, tau, stretch, m, fixed(a.shape[2]))
     return found
 
 
 @njit
-def _added_derivatives(a: Array, tau: Array, m: Array, D: Size) -> tuple[Array, Array]:
+def _added_derivatives(a: Array, tau: Array, stretch: Array, m: Array, D: Size) -> tuple[Array, Array]:
     ne, ng, d = a.shape[0], a.shape[1], len(D)
-    by_a, by_tau = np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d))
+    by_a, by_slope = np.empty((ne, ng, d, d)), np.zeros((ne, ng, d, d))
     for e in range(ne):
         for g in range(ng):
-            put_added_derivatives(a[e, g], tau[e, g], m[e], by_a[e, g], by_tau[e, g], D)
-    return by_a, by_tau
+            put_added_derivatives(a[e, g], tau[e, g], stretch[e, g], m[e], 1.0, by_a[e, g], by_slope[e, g], D)
+    return by_a, by_slope

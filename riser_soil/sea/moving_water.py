@@ -23,7 +23,6 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Weights
-from riser_soil.riser import stations
 from riser_soil.riser.stations import Derivatives
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import morison_law as law
@@ -147,10 +146,11 @@ class AcceleratedWater:
 
     def derivatives(self, trial: Trial, weights: Weights) -> Derivatives:
         by, flow, water = self._loads.derivatives(trial, weights), self._pipe.flow(trial), self._stream.at(trial)
-        by_a, by_tau = law.added_derivatives(water.acceleration, flow.tau, -weights.force * self._mass)
+        mass = -weights.force * self._mass
+        by_a, by_slope = law.added_derivatives(water.acceleration, flow.tau, flow.stretch, mass)
         return by._replace(
             position=by.position + by_a @ water.acceleration_gradient,
-            slope=by.slope + stations.follow_slope(by_tau, flow.tau, flow.stretch),
+            slope=by.slope + by_slope,
         )
 
     def numbers(self) -> MovingWaterNumbers:

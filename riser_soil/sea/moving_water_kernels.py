@@ -34,15 +34,15 @@ class FlowRoom(NamedTuple):
 
 
 class FlowDerivatives(NamedTuple):
-    """Derivatives (d, d) of the force at one station, and of its terms by the tangent."""
+    """Derivatives (d, d) of the force at one station by the pipe's place, slope x', velocity and acceleration, and by
+    the water's acceleration.
+    """
 
     by_x: Array
+    by_slope: Array
     by_v: Array
     by_a: Array
     by_u: Array
-    by_tau: Array
-    more: Array
-    yet_more: Array
 
 
 class MovingWaterNumbers(NamedTuple):
@@ -155,10 +155,9 @@ def _tangent(part: MovingWaterNumbers, at: Configuration, maps: Maps, weights: L
         for g in range(part.share.shape[1]):
             stretch = _move(part, at, m, g, part.room)
             _resist(part, part.seen.end, m, g, part.room, at.D)
-            _differentiate(part, part.seen.end, m, g, weights, at.D)
-            stations.to_slope(by.by_tau, part.room.tau, stretch, at.D)
+            _differentiate(part, part.seen.end, m, g, stretch, weights, at.D)
             N, places = part.at.N[m, g], maps.place_rows[e]
-            stations.add_change(part.change, g, part.at.dN[m, g], by.by_tau, places, at.D, at.R)
+            stations.add_change(part.change, g, part.at.dN[m, g], by.by_slope, places, at.D, at.R)
             stations.add_change(part.change, g, N, by.by_x, places, at.D, at.R)
             stations.add_change(part.change, g, N, by.by_v, maps.rate_rows[e], at.D, at.R)
             stations.add_change(part.change, g, N, by.by_a, maps.acceleration_rows[e], at.D, at.R)
@@ -167,30 +166,25 @@ def _tangent(part: MovingWaterNumbers, at: Configuration, maps: Maps, weights: L
 
 @njit
 def _differentiate(
-    part: MovingWaterNumbers, water: WaterMotion, m: int, g: int, weights: LineWeights, D: Size
+    part: MovingWaterNumbers, water: WaterMotion, m: int, g: int, stretch: float, weights: LineWeights, D: Size
 ) -> None:
     """Write the weighted derivatives of the force at a station whose resistance is known."""
     room, by, p = part.room, part.by, m * part.share.shape[1] + g
-    law.put_drag_derivatives(room.through, room.tau, part.drag[m], by.by_v, by.by_tau, D)
-    law.put_added_derivatives(room.a, room.tau, part.mass[m], by.by_a, by.more, D)
-    law.put_added_derivatives(water.acceleration[p], room.tau, part.pushed[m], by.by_u, by.yet_more, D)
     share, steep = _wet(part, water, m, g), 0.0
     if part.partly:
         steep = wet_slope(water.immersion[p], part.span[m, g])
-    inertia, force = share * weights.inertia, share * weights.force
+    along, force = (room.tau, stretch), share * weights.force
+    law.put_drag_derivatives(room.through, *along, part.drag[m], force, by.by_v, by.by_slope, D)
+    law.put_added_derivatives(room.a, *along, part.mass[m], share * weights.inertia, by.by_a, by.by_slope, D)
+    law.put_added_derivatives(water.acceleration[p], *along, part.pushed[m], -force, by.by_u, by.by_slope, D)
     for i in range(len(D)):
         whole = weights.inertia * room.inertia[i] + weights.force * room.force[i]
         for j in range(len(D)):
             followed = 0.0
             for k in range(len(D)):
-                followed += by.by_v[i, k] * water.velocity_gradient[p, k, j]
                 followed += by.by_u[i, k] * water.acceleration_gradient[p, k, j]
-            by.by_x[i, j] = steep * whole * water.immersion_gradient[p, j] - force * followed
-            by.by_tau[i, j] = force * (by.by_tau[i, j] - by.yet_more[i, j]) + inertia * by.more[i, j]
-    for i in range(len(D)):
-        for j in range(len(D)):
-            by.by_v[i, j] *= force
-            by.by_a[i, j] *= inertia
+                followed -= by.by_v[i, k] * water.velocity_gradient[p, k, j]
+            by.by_x[i, j] = steep * whole * water.immersion_gradient[p, j] + followed
 
 
 @add_energy.of(MovingWaterNumbers)

@@ -9,7 +9,6 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed
 from riser_soil.core.part import Weights
-from riser_soil.riser import stations
 from riser_soil.riser.stations import Derivatives, element_room
 from riser_soil.riser.trial import Trial
 from riser_soil.sea import morison_law as law
@@ -88,6 +87,5 @@ class StillWater:
     def linearise(self, flow: StationFlow, weights: Weights) -> Derivatives:
         """Derivatives of `resist` by that motion, weighed and summed."""
         drag, mass = weights.force * self._drag, weights.inertia * self.mass
-        by_v, by_a, by_tau = law.resistance_derivatives(flow.v, flow.a, flow.tau, drag, mass)
-        by_slope = stations.follow_slope(by_tau, flow.tau, flow.stretch)
+        by_v, by_a, by_slope = law.resistance_derivatives(flow.v, flow.a, flow.tau, flow.stretch, drag, mass)
         return Derivatives(np.zeros_like(by_v), by_slope, by_v, by_a)

@@ -159,25 +159,30 @@ def weigh(room: MatrixRoom, mass: MassNumbers) -> None:
 
 @njit
 def project(room: MatrixRoom, dofs: Dofs, mass: MassNumbers) -> None:
-    """Project element matrices and forces over the levers onto what moves; what does not gets the largest mass."""
+    """Project element matrices and forces over the levers onto what moves; what does not gets the largest mass, which
+    is on a diagonal.
+    """
     K, ndof, largest = room.K, mass.levers.shape[1], 0.0
     left, own = np.zeros((ndof, ndof)), np.zeros(ndof)
     for e in range(K.shape[0]):
         for i in range(2 * ndof):
-            for j in range(2 * ndof):
-                largest = max(largest, K[e, i, j])
+            largest = max(largest, K[e, i, i])
+        if mass.whole[e] and mass.whole[e + 1]:
+            continue
         for row in range(2):
             for column in range(2):
                 block = K[e, row * ndof : (row + 1) * ndof, column * ndof : (column + 1) * ndof]
-                if not (mass.whole[e + row] and mass.whole[e + column]):
-                    _multiply(mass.moving[e + row], block, left)
-                    _multiply(left, mass.moving[e + column], block)
+                _multiply(mass.moving[e + row], block, left)
+                _multiply(left, mass.moving[e + column], block)
     if largest == 0.0:
         largest = 1.0
     for n in range(dofs.residual.shape[0]):
         e, first = max(n - 1, 0), ndof if n > 0 else 0
         for i in range(ndof):
             own[i] = dofs.residual[n, i] / mass.levers[n, i]
+            dofs.residual[n, i] = own[i]
+        if mass.whole[n]:
+            continue
         for i in range(ndof):
             dofs.residual[n, i] = 0.0
             for j in range(ndof):

@@ -112,8 +112,11 @@ def projectors(blocks: Array, free: BoolArray) -> Array:
     mass[1:] += blocks[:, dofs:, dofs:]
     mask = free.reshape(-1, dofs)
     masses, axes = np.linalg.eigh(mass * mask[:, :, None] * mask[:, None, :])
-    kept = axes * (masses > MASSLESS * masses[:, -1:])[:, None, :]
-    return np.asarray(kept @ np.swapaxes(kept, 1, 2))
+    moves = masses > MASSLESS * masses[:, -1:]
+    kept = axes * moves[:, None, :]
+    found = kept @ np.swapaxes(kept, 1, 2)
+    found[moves.all(axis=1)] = np.eye(dofs)  # without round-off
+    return np.asarray(found)
 
 
 def _projected(blocks: Array, moving: Array) -> Array:

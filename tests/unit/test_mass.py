@@ -8,7 +8,7 @@ from mpi4py import MPI
 
 from riser_soil.core.part import Model
 from riser_soil.core.system import System, Timer
-from riser_soil.solve.riser_mass import RiserMass
+from riser_soil.solve.riser_mass import RiserMass, projectors
 from tests.support.toy_chain import Chain, Inertia, Springs
 
 
@@ -30,3 +30,13 @@ def test_massless_dofs_stay() -> None:
     system = System(MPI.COMM_SELF, Model([chain], [Inertia(chain, 0.0)]), Timer.new())
     assert RiserMass(system).accelerations(0.0, np.ones(3)) == pytest.approx(np.zeros(3))
     system.destroy()
+
+
+def test_nodes_that_move_in_all_directions_are_projected_without_round_off() -> None:
+    half = np.random.default_rng(3).normal(size=(4, 6, 6))
+    blocks = half @ np.swapaxes(half, 1, 2)
+    free = np.ones(15, dtype=bool)
+    free[:3] = False
+    found = projectors(blocks, free)
+    assert np.array_equal(found[1:], np.broadcast_to(np.eye(3), (4, 3, 3)))
+    assert np.array_equal(found[0], np.zeros((3, 3)))
