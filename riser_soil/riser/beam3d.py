@@ -234,16 +234,49 @@ def _vary(D: Stiffness, at: Shape, response: SpatialResponse, u: Vec, w1: Vec, w
 
 
 @njit
-def _tangent(D: Stiffness, at: Shape, response: SpatialResponse, K: Array) -> None:
-    """Write the element's tangent, column by column, to K (12, 12)."""
-    axes = at.frame.axes
-    for k in range(3):
-        unit = (axes[0][k], axes[1][k], axes[2][k])
-        put_forces(axes, _vary(D, at, response, STILL, unit, STILL), K[:, 3 + k])
-        put_forces(axes, _vary(D, at, response, STILL, STILL, unit), K[:, 9 + k])
-        put_forces(axes, _vary(D, at, response, unit, STILL, STILL), K[:, 6 + k])
-        for i in range(12):
-            K[i, k] = -K[i, 6 + k]
+def tangent_room() -> Array:
+    """Room (2, 9, 9) for moves of an element and what they change."""
+    return np.zeros((2, 9, 9))
+
+
+@njit
+def _tangent(D: Stiffness, at: Shape, response: SpatialResponse, room: Array, K: Array) -> None:
+    """Write the element's tangent to K (12, 12): the changes, columns of room[1], by the moves, columns of room[0]."""
+    axes, moves, changes = at.frame.axes, room[0], room[1]
+    for i in range(3):
+        for k in range(3):
+            moves[i, k] = moves[3 + i, 3 + k] = moves[6 + i, 6 + k] = axes[i][k]
+    for k in range(9):
+        _put_change(D, at, response, moves, changes, k)
+    _spread(changes, K)
+
+
+@njit
+def _put_change(D: Stiffness, at: Shape, response: SpatialResponse, moves: Array, changes: Array, k: int) -> None:
+    """Write how the forces change in move k; by itself so that the loop over all of them is done on vectors."""
+    u, w1, w2 = _three(moves, 0, k), _three(moves, 3, k), _three(moves, 6, k)
+    change, axes = _vary(D, at, response, u, w1, w2), at.frame.axes
+    force, moment1, moment2 = vecmat(change.force, axes), vecmat(change.moment1, axes), vecmat(change.moment2, axes)
+    for i in range(3):
+        changes[i, k], changes[3 + i, k], changes[6 + i, k] = force[i], moment1[i], moment2[i]
+
+
+@njit
+def _three(rows: Array, first: int, k: int) -> Vec:
+    return rows[first, k], rows[first + 1, k], rows[first + 2, k]
+
+
+@njit
+def _spread(changes: Array, K: Array) -> None:
+    """Write K (12, 12) from changes (9, 9) of the force on node 2 and of both moments by u and both spins."""
+    for i in range(3):
+        for k in range(3):
+            for row, of in ((6, 0), (3, 3), (9, 6)):
+                by_u = changes[of + i, k]
+                K[row + i, k], K[row + i, 6 + k] = -by_u, by_u
+                K[row + i, 3 + k], K[row + i, 9 + k] = changes[of + i, 3 + k], changes[of + i, 6 + k]
+        for k in range(12):
+            K[i, k] = -K[6 + i, k]
 
 
 @njit
@@ -251,9 +284,9 @@ def forces_and_tangent(
     chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, section: SpatialSection
 ) -> tuple[Array, Array]:
     """Internal forces f (ne, 12) and their derivative K (ne, 12, 12) by displacements and spatial spins."""
-    f, K = np.empty((len(chord), 12)), np.empty((len(chord), 12, 12))
+    f, K, room = np.empty((len(chord), 12)), np.empty((len(chord), 12, 12)), tangent_room()
     for e in range(len(chord)):
-        put_element(e, chord, frame1, frame2, ref, section, f[e], K[e])
+        put_element(e, chord, frame1, frame2, ref, section, room, f[e], K[e])
     return f, K
 
 
@@ -265,12 +298,15 @@ def put_element(
     frame2: Array,
     ref: SpatialReference,
     section: SpatialSection,
+    room: Array,
     f: Array,
     K: Array,
 ) -> None:
-    """Write forces f (12,) and tangent K (12, 12) of element e; all else as in `forces_and_tangent`."""
+    """Write forces f (12,) and tangent K (12, 12) of element e; room: `tangent_room`; all else as in
+    `forces_and_tangent`.
+    """
     D = stiffness(ref, section, e)
     at = shape(D.L, vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
     response = _respond(D, _unstressed(ref, e), at)
     put_forces(at.frame.axes, response.forces, f)
-    _tangent(D, at, response, K)
+    _tangent(D, at, response, room, K)

@@ -73,9 +73,9 @@ def _planar_tangent(part: PlanarBeam, at: PlanarConfiguration, maps: Maps, weigh
 
 @add_tangent.of(SpatialBeam)
 def _spatial_tangent(part: SpatialBeam, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    f, own = np.empty(12), np.empty((12, 12))
+    f, own, room = np.empty(12), np.empty((12, 12)), beam3d.tangent_room()
     for e in range(part.length.size):
-        beam3d.put_element(e, at.chord, at.frame1, at.frame2, part.reference, part.section, f, own)
+        beam3d.put_element(e, at.chord, at.frame1, at.frame2, part.reference, part.section, room, f, own)
         increments.tangent_to_increments(e, f, own, at.H, at.Rn, at.Theta)
         for i in range(12):
             for j in range(12):

@@ -197,9 +197,9 @@ def _add_spatial_tangent(
     nodes: tuple[Array, Array, Array],
 ) -> None:
     """nodes: H, Rn and Theta, see `increments`."""
-    f, K = np.empty(12), np.empty((12, 12))
+    f, K, room = np.empty(12), np.empty((12, 12)), beam3d.tangent_room()
     for e in range(len(chord)):
-        beam3d.put_element(e, chord, frame1, frame2, reference, section, f, K)
+        beam3d.put_element(e, chord, frame1, frame2, reference, section, room, f, K)
         increments.tangent_to_increments(e, f, K, nodes[0], nodes[1], nodes[2])
         _add(out[e], weight, K)
 

@@ -283,7 +283,7 @@ LEFT_OUT = {
 
 def interpret(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs the tangent's own functions uncompiled, so that they see substitutes."""
-    for name in ("move", "strain_of", "forces_change", "_vary", "_tangent", "put_element"):
+    for name in ("move", "strain_of", "forces_change", "_vary", "_put_change", "_tangent", "put_element"):
         monkeypatch.setattr(beam3d, name, getattr(beam3d, name).py_func)
 
 
