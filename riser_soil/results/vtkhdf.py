@@ -11,10 +11,11 @@ Source: VTK's file formats, "VTKHDF File Format", version 2.0.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import h5py
 import numpy as np
-from h5py import h5d, h5p, h5s
+from h5py import h5d, h5p, h5s, h5t
 
 from riser_soil.core.arrays import Array, IntArray
 
@@ -125,17 +126,45 @@ def _add_cells(group: h5py.Group, cells: IntArray) -> None:
     group["Offsets"] = points * np.arange(count + 1, dtype=np.int64)
 
 
-def window(store: h5py.File, kind: str, name: str, number: int) -> str:
-    """Path of one instant's values alone, for readers that know no parts of datasets: a view, it stores no number."""
-    values = store[ROOT][f"{kind}Data"][name]
-    rows, row = values.chunks[0], values.shape[1:]
-    view, all_of_it = h5s.create_simple((rows, *row)), h5s.create_simple(values.shape)
-    all_of_it.select_hyperslab((number * rows, *(0 for _ in row)), (rows, *row))
-    layout = h5p.create(h5p.DATASET_CREATE)
-    layout.set_virtual(view, b".", values.name.encode(), all_of_it)
-    group = store.require_group(f"{_FRAME}{number:06d}")
-    h5d.create(group.id, name.encode(), values.id.get_type(), view, layout)
-    return f"{group.name[1:]}/{name}"
+class Windows:
+    """Makes datasets of one instant's values alone, for readers that know no parts of datasets: views, which store no
+    number. What all instants share is found once.
+    """
+
+    def __init__(self, store: h5py.File) -> None:
+        self._store, self._number = store, -1
+        self._sources: dict[tuple[str, str], _Source] = {}
+
+    def make(self, kind: str, name: str, number: int) -> str:
+        """The path of the values of one quantity at an instant."""
+        source = self._sources.get((kind, name))
+        if source is None:
+            source = self._sources[kind, name] = _source(self._store[ROOT][f"{kind}Data"][name])
+        if number != self._number:
+            self._group, self._number = self._store.require_group(f"{_FRAME}{number:06d}"), number
+            self._within = self._group.name[1:]
+        rows, *row = source.shape
+        source.values.select_hyperslab((number * rows, *(0 for _ in row)), source.shape)
+        layout = h5p.create(h5p.DATASET_CREATE)
+        layout.set_virtual(source.view, b".", source.path, source.values)
+        h5d.create(self._group.id, name.encode(), source.kind, source.view, layout)
+        return f"{self._within}/{name}"
+
+
+class _Source(NamedTuple):
+    """Values of all instants: path, type and space, and the space and shape of one instant's."""
+
+    path: bytes
+    kind: h5t.TypeID
+    values: h5s.SpaceID
+    view: h5s.SpaceID
+    shape: tuple[int, ...]
+
+
+def _source(values: h5py.Dataset) -> _Source:
+    shape = values.chunks[0], *values.shape[1:]
+    spaces = h5s.create_simple(values.shape), h5s.create_simple(shape)
+    return _Source(values.name.encode(), values.id.get_type(), *spaces, shape)
 
 
 def _append_values(data: h5py.Group, offsets: h5py.Group, numbers: IntArray, values: Mapping[str, Array]) -> None:

@@ -89,7 +89,8 @@ class XdmfFile:
         with appending(self._heavy) as store:
             on_points, on_cells = (_stacked([getattr(f, of) for f in frames]) for of in ("on_points", "on_cells"))
             vtkhdf.append(store, [frame.time for frame in frames], on_points, on_cells, frames[0].geometry)
-            grids = [self._grid(store, self._frames + i, frame) for i, frame in enumerate(frames)]
+            windows = vtkhdf.Windows(store)
+            grids = [self._grid(windows, self._frames + i, frame) for i, frame in enumerate(frames)]
         self._frames += len(grids)
         self._waiting.clear()
         self._append("".join(grids))
@@ -134,10 +135,10 @@ class XdmfFile:
         elif self._text is not None and at >= 0:
             self._text.update({at: _FOOT.encode()}, at + len(_FOOT))
 
-    def _grid(self, store: h5py.File, number: int, frame: Frame) -> str:
+    def _grid(self, windows: vtkhdf.Windows, number: int, frame: Frame) -> str:
         on = {"Point": frame.on_points, "Cell": frame.on_cells}
         items = {
-            name: self._item(vtkhdf.window(store, kind, name, number), v.shape)
+            name: self._item(windows.make(kind, name, number), v.shape)
             for kind, values in on.items()
             for name, v in values.items()
         }

@@ -120,7 +120,10 @@ def test_vtkhdf_is_cut_back_and_goes_on(tmp_path: Path) -> None:
         found = vtkhdf.values_at(store, 2)
         np.testing.assert_array_equal(found["displacement"], points + 2.0)
         assert (found["stress"].tolist(), found["p"].tolist()) == ([2.0], [3.0])
-        assert store[vtkhdf.window(store, "Cell", "stress", 2)][...].tolist() == [2.0]
+        windows = vtkhdf.Windows(store)
+        paths = {(name, n): windows.make("Cell", name, n) for n in (1, 2) for name in ("stress", "p")}
+        seen = {key: store[path][...].tolist() for key, path in paths.items()}
+        assert seen == {("stress", 1): [1.0], ("p", 1): [3.0], ("stress", 2): [2.0], ("p", 2): [3.0]}
         steps = store[vtkhdf.ROOT]["Steps"]
         assert steps["PointDataOffsets"]["displacement"][...].tolist() == [0, 8, 16]
         assert {len(rows) for rows in steps.values() if isinstance(rows, h5py.Dataset)} == {3}
