@@ -235,7 +235,7 @@ def _vary(D: Stiffness, at: Shape, response: SpatialResponse, u: Vec, w1: Vec, w
 
 @njit
 def tangent_room() -> Array:
-    """Room (2, 9, 9) for moves of an element and what they change."""
+    """Room (2, 9, 9) for moves of an element, zero but for the blocks on the diagonal, and for what they change."""
     return np.zeros((2, 9, 9))
 
 
