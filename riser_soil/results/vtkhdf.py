@@ -132,7 +132,7 @@ class Windows:
     """
 
     def __init__(self, store: h5py.File) -> None:
-        self._store, self._number = store, -1
+        self._store, self._frame, self._group = store, "", store["/"]
         self._sources: dict[tuple[str, str], _Source] = {}
 
     def make(self, kind: str, name: str, number: int) -> str:
@@ -140,15 +140,15 @@ class Windows:
         source = self._sources.get((kind, name))
         if source is None:
             source = self._sources[kind, name] = _source(self._store[ROOT][f"{kind}Data"][name])
-        if number != self._number:
-            self._group, self._number = self._store.require_group(f"{_FRAME}{number:06d}"), number
-            self._within = self._group.name[1:]
+        frame = f"{_FRAME}{number:06d}"
+        if frame != self._frame:
+            self._frame, self._group = frame, self._store.require_group(frame)
         rows, *row = source.shape
         source.values.select_hyperslab((number * rows, *(0 for _ in row)), source.shape)
         layout = h5p.create(h5p.DATASET_CREATE)
         layout.set_virtual(source.view, b".", source.path, source.values)
         h5d.create(self._group.id, name.encode(), source.kind, source.view, layout)
-        return f"{self._within}/{name}"
+        return f"{frame}/{name}"
 
 
 class _Source(NamedTuple):

@@ -131,7 +131,7 @@ class SpatialElements(ElasticElements):
         uniform_load.add_tangent(out, weight, turn.P, trial.chord, turn.tangent, self._line.length, load)
 
     def _load_conjugate(self, trial: Trial, load: Array) -> Array:
-        """Residual of the load conjugate to q (ne, 4, 3), found once for a trial."""
+        """Residual of the load conjugate to q (ne, 4, 3), found once for a trial, which sees one load."""
         at = trial.chord, trial.turn.tangent, self._line.length, load
         found: Array = trial.once((self, "load"), lambda _: uniform_load.residual(*at))
         return found

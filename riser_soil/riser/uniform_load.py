@@ -7,7 +7,8 @@ per unstressed length L has the potential
 
 e being the chord's unit vector and g = theta/sin(theta), so that psi is theta times the load across the
 chord. Taking t_i - c_i e itself (g = 1), or the cubic through the unit tangents, costs accuracy on coarse
-meshes: the elements measure their bending by the angle. Arrays follow `hermite`: residual F = dV/dq (ne, 4, d).
+meshes: the elements measure their bending by the angle. Arrays follow `hermite`: residual F = dV/dq (ne, 4, d). In a
+plane `planar_load` is the same at less cost.
 """
 
 import math

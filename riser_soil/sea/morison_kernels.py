@@ -72,9 +72,9 @@ def _still_tangent(part: StillWaterNumbers, at: Configuration, maps: Maps, weigh
         stations.begin_changes(part.element)
         for g in range(part.at.N.shape[1]):
             stretch = _see(part, at, e, g)
-            along = room.tau, stretch
-            law.put_drag_derivatives(room.v, *along, part.drag[e], weights.force, room.by_v, room.by_slope, at.D)
-            law.put_added_derivatives(room.a, *along, part.mass[e], weights.inertia, room.by_a, room.by_slope, at.D)
+            axis = room.tau, stretch
+            law.put_drag_derivatives(room.v, *axis, part.drag[e], weights.force, room.by_v, room.by_slope, at.D)
+            law.put_added_derivatives(room.a, *axis, part.mass[e], weights.inertia, room.by_a, room.by_slope, at.D)
             N, element = part.at.N[e, g], part.element
             stations.add_change(element, g, part.at.dN[e, g], room.by_slope, maps.place_rows[e], at.D, at.R)
             stations.add_change(element, g, N, room.by_v, maps.rate_rows[e], at.D, at.R)

@@ -124,9 +124,9 @@ def _resistance_derivatives(
     by_v, by_a, by_slope = np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d)), np.empty((ne, ng, d, d))
     for e in range(ne):
         for g in range(ng):
-            along = tau[e, g], stretch[e, g]
-            put_drag_derivatives(v[e, g], *along, c[e], 1.0, by_v[e, g], by_slope[e, g], D)
-            put_added_derivatives(a[e, g], *along, m[e], 1.0, by_a[e, g], by_slope[e, g], D)
+            axis = tau[e, g], stretch[e, g]
+            put_drag_derivatives(v[e, g], *axis, c[e], 1.0, by_v[e, g], by_slope[e, g], D)
+            put_added_derivatives(a[e, g], *axis, m[e], 1.0, by_a[e, g], by_slope[e, g], D)
     return by_v, by_a, by_slope
 
 

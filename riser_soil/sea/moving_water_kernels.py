@@ -173,10 +173,10 @@ def _differentiate(
     share, steep = _wet(part, water, m, g), 0.0
     if part.partly:
         steep = wet_slope(water.immersion[p], part.span[m, g])
-    along, force = (room.tau, stretch), share * weights.force
-    law.put_drag_derivatives(room.through, *along, part.drag[m], force, by.by_v, by.by_slope, D)
-    law.put_added_derivatives(room.a, *along, part.mass[m], share * weights.inertia, by.by_a, by.by_slope, D)
-    law.put_added_derivatives(water.acceleration[p], *along, part.pushed[m], -force, by.by_u, by.by_slope, D)
+    axis, force = (room.tau, stretch), share * weights.force
+    law.put_drag_derivatives(room.through, *axis, part.drag[m], force, by.by_v, by.by_slope, D)
+    law.put_added_derivatives(room.a, *axis, part.mass[m], share * weights.inertia, by.by_a, by.by_slope, D)
+    law.put_added_derivatives(water.acceleration[p], *axis, part.pushed[m], -force, by.by_u, by.by_slope, D)
     for i in range(len(D)):
         whole = weights.inertia * room.inertia[i] + weights.force * room.force[i]
         for j in range(len(D)):

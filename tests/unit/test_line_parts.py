@@ -100,7 +100,7 @@ def without_geometric(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
     monkeypatch.setattr(hermite, "add_geometric", no_operation)
 
 
-def without_load_on_turned_chord(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
+def without_load_tangent(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
     monkeypatch.setattr(planar_load, "add_tangent", no_operation)
 
 
@@ -189,7 +189,7 @@ def without_viscosity(monkeypatch: pytest.MonkeyPatch, part: Part) -> None:
 @pytest.mark.parametrize(
     ("name", "dimension", "leave_out"),
     [
-        ("beam", 2, without_load_on_turned_chord),
+        ("beam", 2, without_load_tangent),
         ("beam", 3, without_geometric),
         ("inertia", 2, without_geometric),
         ("inertia", 3, without_geometric),
