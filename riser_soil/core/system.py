@@ -189,9 +189,10 @@ class System:
 
     def commit(self, state: State) -> None:
         """Accept a state: parts first, then the fields that they act on."""
-        owners: list[Part | Field] = [*self._active, *self.model.fields]
-        for owner in owners:
-            owner.commit(state)
+        for part in self._active:
+            part.commit(state)
+        for field in self.model.fields:
+            field.commit(state)
 
     def describe(self, row: int) -> str:
         """Description of a row's place, for messages; collective."""

@@ -29,8 +29,8 @@ class HarmonicMotion:
 
     def __call__(self, t: float) -> Kinematics:
         """Position [m], velocity [m/s] and acceleration [m/s2] at t [s]."""
-        x, v, a = np.array([self._component(t, *given) for given in self._components]).T
-        return self.origin + x, v, a
+        x, v, a = zip(*(self._component(t, *given) for given in self._components), strict=True)
+        return self.origin + x, np.array(v), np.array(a)
 
     @cached_property
     def _components(self) -> list[tuple[float, float]]:

@@ -10,12 +10,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser import hermite, planar_directors, spatial_directors
 from riser_soil.riser.hermite import Size
-from riser_soil.riser.line import Line
+from riser_soil.riser.line import Line, first_folded
 from riser_soil.riser.planar_directors import PlanarFrames
 
 
@@ -164,6 +164,11 @@ def put_moment_maps(at: Configuration, axes: Array, maps: Array) -> None:
     """
 
 
+@bound_by_type
+def put_tangled(at: Configuration, out: IntArray) -> None:
+    """Write the number of the first element that is folded or wound up, see `Line.inadmissible`; ne without any."""
+
+
 @place.of(PlanarConfiguration)
 def _place_in_plane(at: PlanarConfiguration, base: PlanarBase, u: Array, v: Array, a: Array) -> None:
     _move(at, base, u, v, a)
@@ -260,3 +265,13 @@ def _put_moment_maps_in_plane(at: PlanarConfiguration, axes: Array, maps: Array)
 @put_moment_maps.of(SpatialConfiguration)
 def _put_moment_maps_in_space(at: SpatialConfiguration, axes: Array, maps: Array) -> None:
     spatial_directors.put_moment_maps(at.Rn, at.Theta, maps)
+
+
+@put_tangled.of(PlanarConfiguration)
+def _put_tangled_in_plane(at: PlanarConfiguration, out: IntArray) -> None:
+    out[0] = min(first_folded(at.chord, at.tangent), planar_directors.first_wound(at.end_angle))
+
+
+@put_tangled.of(SpatialConfiguration)
+def _put_tangled_in_space(at: SpatialConfiguration, out: IntArray) -> None:
+    out[0] = min(first_folded(at.chord, at.tangent), spatial_directors.first_wound(at.Theta))

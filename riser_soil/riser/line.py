@@ -7,7 +7,7 @@ an angle, p along the horizontal unit vector d, the angle positive from d toward
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -212,8 +212,8 @@ class Line:
     def _make_trial(self, state: State) -> Trial:
         u = self.nodal(state.u)
         x, chord = _moved(self.x, self.chord, u)
-        turn = self.frames.turn(u[:, self.dimension :])
-        return Trial(state, x, chord, turn, (self.nodal(state.v), self.nodal(state.a)))
+        turning = self.frames.turning(u[:, self.dimension :])
+        return Trial(state, x, chord, turning, (self.nodal(state.v), self.nodal(state.a)))
 
     @property
     def turns_axes(self) -> bool:
@@ -260,7 +260,8 @@ class Line:
         if left:
             state = State(float(left["t"]), left["u"], left["v"], left["a"])
             rates = self.nodal(state.v), self.nodal(state.a)
-            self._left = Trial(state, self.x, self.chord, self.frames.turn_of(within(left, "turn")), rates)
+            turning = partial(self.frames.turn_of, within(left, "turn"))
+            self._left = Trial(state, self.x, self.chord, turning, rates)
 
     def begin_stage(self) -> None:
         """Supports turn from where they are now."""
@@ -288,17 +289,17 @@ class Line:
         iteration. The cube of the distance from the other end keeps the far part, often on the seabed, where it is.
         """
         predicted = guess.u.copy()
-        moved = self.nodal(predicted)[:, : self.dimension]
+        moved = self.nodal(predicted)
         for node, end in self._ends:
             if end.prescribed and end.motion is not None:
-                held = moved[:, : end.held(self.dimension)]
-                held += self._reach[node] * (self._moved_end(node, guess.t)[0][: held.shape[1]] - held[node])
+                to = self._moved_end(node, guess.t)[0]
+                _spread(moved, node, to, end.held(self.dimension), self._reach[node])
         return predicted
 
     @cached_property
     def _reach(self) -> dict[int, Array]:
-        """Share of an end's motion that each node follows in a first guess (nn, 1)."""
-        along = (self.arc / self.arc[-1])[:, None]
+        """Share of an end's motion that each node follows in a first guess (nn,)."""
+        along = self.arc / self.arc[-1]
         return {0: (1.0 - along) ** 3, self.nodes - 1: along**3}
 
     def _moved_end(self, node: int, t: float) -> Array:
@@ -308,10 +309,7 @@ class Line:
         motion, kept = (self.end if node else self.start).motion, self._moved_ends.get(node)
         assert motion is not None
         if kept is None or kept[0] is not motion or kept[1] != t or kept[2] is not self.x:
-            to = np.array(motion(t))
-            to[0] -= self.origin
-            moved = to @ self.basis
-            moved[0] -= self.x[node]
+            moved = _in_axes(np.array(motion(t)), self.origin, self.basis, self.x[node])
             kept = self._moved_ends[node] = motion, t, self.x, moved
         return kept[3]
 
@@ -331,11 +329,16 @@ class Line:
         not physical for a pipe, and an end spring would count the turns.
         """
         trial = self.trial(state)
-        folded = min(_first_folded(trial.chord, trial.turn.tangent), trial.turn.first_wound)
-        if folded == self.length.size:
+        return self.tangled(min(first_folded(trial.chord, trial.turn.tangent), trial.turn.first_wound))
+
+    def tangled(self, element: int) -> str:
+        """What to say of the first element that is folded or wound up; nothing where there is none, the number of
+        elements.
+        """
+        if element == self.length.size:
             return ""
         return (
-            f"the riser is folded at arc {self.arc[folded]:.6g} m, where an element's end turns by more than "
+            f"the riser is folded at arc {self.arc[element]:.6g} m, where an element's end turns by more than "
             "90 degrees from its chord; start nearer to the shape sought, or take shorter elements or steps"
         )
 
@@ -379,6 +382,30 @@ class Line:
 
 
 @njit
+def _spread(moved: Array, node: int, to: Array, held: int, reach: Array) -> None:
+    """Add the rest of a node's motion to what is held of it to the increments (nn, ndof), each node by its share."""
+    for i in range(held):
+        rest = to[i] - moved[node, i]
+        for n in range(moved.shape[0]):
+            moved[n, i] += reach[n] * rest
+
+
+@njit
+def _in_axes(motion: Array, origin: Array, basis: Array, start: Array) -> Array:
+    """Displacement, velocity and acceleration (3, d) in the axes of a line: of a motion (3, 3), its place first, from
+    where the node is, `start` (d,).
+    """
+    out = np.zeros((3, basis.shape[1]))
+    for k in range(3):
+        for i in range(basis.shape[1]):
+            for j in range(3):
+                out[k, i] += (motion[k, j] - (origin[j] if k == 0 else 0.0)) * basis[j, i]
+    for i in range(basis.shape[1]):
+        out[0, i] -= start[i]
+    return out
+
+
+@njit
 def _moved(x: Array, chord: Array, u: Array) -> tuple[Array, Array]:
     """Positions (nn, d) and chords (ne, d) after the increments u (nn, ndof); chords add theirs, see `Line.commit`."""
     nn, d = x.shape
@@ -393,7 +420,7 @@ def _moved(x: Array, chord: Array, u: Array) -> tuple[Array, Array]:
 
 
 @njit
-def _first_folded(chord: Array, tangent: Array) -> int:
+def first_folded(chord: Array, tangent: Array) -> int:
     """First element with an end whose tangent points against the chord; ne without any."""
     for e in range(chord.shape[0]):
         for side in range(2):

@@ -1,6 +1,8 @@
 """Node orientations (directors) of a plane line: an angle per node; see `directors`."""
 
 import math
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -35,7 +37,7 @@ class PlanarOrientation:
     @property
     def first_wound(self) -> int:
         """First element whose ends differ by more than half a turn; ne without any."""
-        return int(_first_wound(self.end_angle))
+        return int(first_wound(self.end_angle))
 
     def motion(self, v: Array, a: Array) -> tuple[Array, Array]:
         """q' and q'' (ne, 4, 2) from rates and accelerations of the dofs (nn, 3)."""
@@ -95,7 +97,11 @@ class PlanarFrames:
         return rate
 
     def turn(self, increment: Array) -> PlanarOrientation:
-        return PlanarOrientation(self.angle + increment[:, 0], self.alpha0)
+        return self.turning(increment)()
+
+    def turning(self, increment: Array) -> Callable[[], PlanarOrientation]:
+        """What makes the orientation after an increment from where the line is now, whenever it is called."""
+        return partial(PlanarOrientation, self.angle + increment[:, 0], self.alpha0)
 
     def in_new_axes(self, moment: Array, increment: Array) -> Array:
         """Moments (nn, 1) conjugate to the increment, as the next one has them."""
@@ -126,7 +132,8 @@ def put_ends(angle: Array, alpha0: Array, end_angle: Array, tangent: Array, norm
 
 
 @njit
-def _first_wound(end_angle: Array) -> int:
+def first_wound(end_angle: Array) -> int:
+    """First element whose ends' angles (ne, 2) differ by more than half a turn; ne without any."""
     for e in range(end_angle.shape[0]):
         if abs(end_angle[e, 1] - end_angle[e, 0]) > math.pi:
             return e

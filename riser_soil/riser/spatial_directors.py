@@ -1,6 +1,8 @@
 """Node orientations (directors) of a line in space: a rotation matrix per node; see `directors`."""
 
 import math
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -55,7 +57,7 @@ class SpatialOrientation:
     @property
     def first_wound(self) -> int:
         """First element whose ends turn by increments that differ by more than half a turn; ne without any."""
-        return int(_first_wound(self.Theta))
+        return int(first_wound(self.Theta))
 
     def motion(self, v: Array, a: Array) -> tuple[Array, Array]:
         """q' and q'' (ne, 4, 3) from rates and accelerations of the dofs (nn, 6), angular ones in body axes."""
@@ -114,7 +116,11 @@ class SpatialFrames:
         return np.asarray(orientation.T @ rate)
 
     def turn(self, increment: Array) -> SpatialOrientation:
-        return SpatialOrientation(self.R, np.ascontiguousarray(increment), self.T0)
+        return self.turning(increment)()
+
+    def turning(self, increment: Array) -> Callable[[], SpatialOrientation]:
+        """What makes the orientation after an increment from where the line is now, whenever it is called."""
+        return partial(SpatialOrientation, self.R, np.ascontiguousarray(increment), self.T0)
 
     def in_new_axes(self, moment: Array, increment: Array) -> Array:
         """Moments (nn, 3) conjugate to the increment, as the next one has them: those in the turned body's axes."""
@@ -166,7 +172,8 @@ def _turned(Rn: Array, Theta: Array) -> Array:
 
 
 @njit
-def _first_wound(Theta: Array) -> int:
+def first_wound(Theta: Array) -> int:
+    """First element whose ends turn by increments (nn, 3) that differ by more than half a turn; ne without any."""
     ne = Theta.shape[0] - 1
     for e in range(ne):
         turn = sub(vector(Theta[e + 1]), vector(Theta[e]))

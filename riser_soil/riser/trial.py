@@ -28,10 +28,14 @@ Columns = tuple[IncrementDerivatives, IncrementDerivatives, IncrementDerivatives
 
 
 class Trial:
-    """The line at a trial state: x (nn, d), chord (ne, d), orientation `turn`; rates of q on demand."""
+    """The line at a trial state: x (nn, d), chord (ne, d); on demand its orientation, which `turning` makes, and rates
+    of q.
+    """
 
-    def __init__(self, state: State, x: Array, chord: Array, turn: Orientation, rates: tuple[Array, Array]) -> None:
-        self.state, self.x, self.chord, self.turn = state, x, chord, turn
+    def __init__(
+        self, state: State, x: Array, chord: Array, turning: Callable[[], Orientation], rates: tuple[Array, Array]
+    ) -> None:
+        self.state, self.x, self.chord, self._turning = state, x, chord, turning
         self._v, self._a = rates
         self._kept: dict[Hashable, Any] = {}
 
@@ -40,6 +44,11 @@ class Trial:
         if key not in self._kept:
             self._kept[key] = make(self)
         return self._kept[key]
+
+    @cached_property
+    def turn(self) -> Orientation:
+        """Orientation of the nodes; where a step was solved in compiled code, nobody may ask for it."""
+        return self._turning()
 
     @cached_property
     def q(self) -> Array:

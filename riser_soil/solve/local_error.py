@@ -93,11 +93,8 @@ def committed_error(
 
     begun, ended: the states with the bulk's rates alone, and as the riser moves, before and after the step.
     """
-    (start, moving), (after, now) = begun, ended
-    missed = scheme.error_constant * (after.a - start.a)
-    if now is not after or moving is not start:
-        missed += CONTACT.error_constant * ((now.a - after.a) - (moving.a - start.a))
-    missed[system.prescribed_dofs] = 0.0
+    changed = (state.a for pair in (begun, ended) for state in pair)
+    missed = _missed(*changed, scheme.error_constant, CONTACT.error_constant, system.prescribed_dofs)
     return dt**2 * _largest(system, missed)
 
 
@@ -115,6 +112,19 @@ def _farthest(system: System, values: Array) -> float:
 def _largest(system: System, values: Array) -> float:
     """The same of this rank's values."""
     return max(float(_longest(values, line.translation_dofs)) for line in system.model.lines)
+
+
+@njit
+def _missed(
+    start: Array, moving: Array, after: Array, now: Array, bulk: float, contact: float, prescribed: IntArray
+) -> Array:
+    """What accelerations miss, with constants for the bulk's and for contact's; nothing where they are prescribed."""
+    out = np.empty(after.size)
+    for i in range(after.size):
+        out[i] = bulk * (after[i] - start[i]) + contact * ((now[i] - after[i]) - (moving[i] - start[i]))
+    for i in prescribed:
+        out[i] = 0.0
+    return out
 
 
 @njit

@@ -18,6 +18,7 @@ from riser_soil.riser.configuration import (
     place,
     put_magnitudes,
     put_maps,
+    put_tangled,
     put_turning,
     room_for,
 )
@@ -48,6 +49,7 @@ class PackedRiser:
     ) -> None:
         self._line, shape = line, (line.nodes, line.ndof)
         self.step, self.forces, self.room = StepNumbers(*_zeros(6, shape)), forces_of(line), matrix_room(line)
+        self._begun = [values.ravel() for values in (self.step.u, self.step.v0, self.step.a0, self.step.past)]
         self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
         self.progress = NewtonProgress(np.zeros(most + 1), np.zeros(2, dtype=np.int64))
         base = base_of(line)
@@ -91,19 +93,21 @@ class PackedRiser:
         renew = [*put_tangent, Bound(loop.factorise, room, progress)]
         improve = [Bound(loop.improve, room, step, dofs)]
         tables = (Packed(calls(*kernels)) for kernels in (evaluate, probe, renew, improve))
-        self._solve = Bound(loop.solve_step, *tables, limits, progress)
+        self._tangled = np.zeros(1, dtype=np.int64)
+        solve = Bound(loop.solve_step, *tables, limits, progress)
+        self._solve = in_turn(solve, bound(put_tangled, at, Packed(self._tangled)))
         self.evaluate, self.put_tangent = in_turn(*evaluate), in_turn(*put_tangent, put_sizes)
 
     def _bind_account(self, numbers: Sequence[Numbers]) -> None:
         """Bind the kernels of energy and work."""
         turning = [each for each in numbers if type(each) in add_work.kernels]
-        still, *self._begun = _zeros(3, self.step.u.shape)
+        still, *self._before = _zeros(3, self.step.u.shape)
         self._energy, self._work = np.zeros(3), np.zeros((len(turning), 4))
         first = room_for(self._line)
         then, now, energy = Packed(first), Packed(self.at), Packed(self._energy)
         rows = [Packed(row) for row in self._work]
         self._account = in_turn(
-            bound(place, first, self._base, *map(Packed, (still, *self._begun))),
+            bound(place, first, self._base, *map(Packed, (still, *self._before))),
             Bound(loop.clear_account, energy, Packed(self._work)),
             *(bound(add_energy, each, now, energy) for each in numbers),
             *(bound(add_work, each, then, now, row) for each, row in zip(turning, rows, strict=True)),
@@ -113,16 +117,15 @@ class PackedRiser:
         """Begin a step.
 
         state: the first guess, and the rates of no increments but those that are prescribed; past: see `time_scheme`.
+        The weights and limits of the last step are known by being the same objects.
         """
         for kept, given in zip(self._base.value, base_of(self._line), strict=True):
             kept[...] = given
-        step = self.step
-        for kept, given in ((step.u, state.u), (step.v0, state.v), (step.a0, state.a)):
-            kept.ravel()[:] = given
-        step.past.ravel()[:] = 0.0 if past is None else past
-        if weights != self._weighed:
+        u, v, a, earlier = self._begun
+        u[:], v[:], a[:], earlier[:] = state.u, state.v, state.a, 0.0 if past is None else past
+        if weights is not self._weighed:
             self._weigh(weights)
-        if limits != self._limits.value:
+        if limits is not self._limits.value:
             self._limits.renew(limits)
 
     def _weigh(self, weights: Weights) -> None:
@@ -130,19 +133,24 @@ class PackedRiser:
         maps.renew(maps.value._replace(shift_v=weights.shift_v, shift_a=weights.shift_a))
         self._weights.renew(LineWeights(weights.inertia, weights.force))
 
+    @property
+    def tangled(self) -> int:
+        """First element that is folded or wound up in the last trial, see `Line.inadmissible`; ne without any."""
+        return int(self._tangled[0])
+
     def solve(self) -> tuple[int, int]:
         """Solve the step: the outcome, see `riser_loop`, and the number of iterations."""
         self._solve()
-        outcome, taken = self.progress.ending
-        return int(outcome), int(taken)
+        outcome, taken = self.progress.ending.tolist()
+        return outcome, taken
 
     def solved(self, t: float) -> State:
         """The state of the step solved last."""
-        return State(t, *(values.ravel().copy() for values in (self.step.u, self.step.v, self.step.a)))
+        return State(t, self.step.u.flatten(), self.step.v.flatten(), self.step.a.flatten())
 
     def account(self, before: State) -> tuple[Array, Array]:
         """Energy (3,) at the end of the step solved last, and work (parts that have kernels for it, 4) in it."""
-        for kept, rates in zip(self._begun, (before.v, before.a), strict=True):
+        for kept, rates in zip(self._before, (before.v, before.a), strict=True):
             kept.ravel()[:] = rates
         self._account()
         return self._energy, self._work

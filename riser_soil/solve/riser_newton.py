@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Energy, Forces, State, Work
+from riser_soil.core.part import Energy, Forces, State, Weights, Work
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
@@ -24,6 +24,7 @@ from riser_soil.solve.compiled_mass import CompiledMass
 from riser_soil.solve.element_forces import AcceptedForces, ElementForces
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, largest_at, told
+from riser_soil.solve.time_scheme import Scheme
 
 WHY = {
     riser_loop.NOT_FINITE: "diverged_fnorm_nan",
@@ -55,6 +56,9 @@ class RiserNewton:
         self._riser = PackedRiser(line, [held for _, held in parts], system.prescribed, system.levers, most)
         self._solved: State | None = None  # last, where no forces may have jumped since
         self._numbered, self._t, self._free = parts, math.nan, np.flatnonzero(~system.prescribed)
+        self._nothing = np.zeros(line.size)
+        self._weighed: tuple[Scheme, float, Weights] | None = None
+        self._stops: tuple[NewtonSettings, dict[bool, riser_loop.StopLimits]] = settings, {}
         self._renewed = [part for part, _ in parts if overrides(part, "renew_numbers")]
         self._no_work = {part.name: Work() for part, _ in parts}
         self._on_nodes = [part for part, _ in parts if overrides(part, "nodal_forces")]
@@ -65,18 +69,18 @@ class RiserNewton:
         """Solve a step or raise NotConvergedError."""
         since, self._solved = time.perf_counter(), None
         self._bring(step.before.t, step.t)
-        scheme = step.scheme
-        self._riser.begin(self._guess(step), scheme.past(step.start), scheme.weights(step.dt), self._limits(step))
+        past, limits = step.scheme.past(step.start), self._limits(step)
+        self._riser.begin(self._guess(step), past, self._weights_of(step), limits)
         outcome, taken = self._riser.solve()
         self.rests = False
         self.iterations += taken
-        norms = [float(norm) for norm in self._riser.progress.norms[: taken + 1]]
+        norms: list[float] = self._riser.progress.norms[: taken + 1].tolist()
         self.system.clock.add("riser alone", since)
         if outcome != riser_loop.CONVERGED:
             raise NotConvergedError(self._reason(outcome, norms))
-        state = self._riser.solved(step.t)
-        if reason := self._line.inadmissible(state):
+        if reason := self._line.tangled(self._riser.tangled):
             raise NotConvergedError(reason)
+        state = self._riser.solved(step.t)
         self._solved = state if self.system.smooth else None
         return Solution(state, self._found(), norms)
 
@@ -137,21 +141,39 @@ class RiserNewton:
         since = time.perf_counter()
         work = dict(self._no_work)
         energy, rows = self._riser.account(before)
-        compiled = (Work(*(float(joules) for joules in row)) for row in rows)
+        compiled = iter(rows.tolist())
         for part, kernel in self._turning:
-            work[part.name] += next(compiled) if kernel else part.work(before, solution.state)
+            work[part.name] += Work(*next(compiled)) if kernel else part.work(before, solution.state)
         self.system.clock.add("riser alone", since)
-        return Energy(*(float(joules) for joules in energy)), work
+        return Energy(*energy.tolist()), work
 
     def _guess(self, step: Step) -> State:
         """The first guess, with the rates of no increments but those that are prescribed."""
-        still = step.scheme.trial(step.before, step.t, step.dt, np.zeros(step.guess.size))
+        still = step.scheme.trial(step.before, step.t, step.dt, self._nothing)
         state = State(step.t, step.guess.copy(), still.v, still.a)
-        self.system.prescribe(state)
+        self._line.prescribe(step.t, state.u, state.v, state.a)
         return state
 
+    def _weights_of(self, step: Step) -> Weights:
+        """The same object as long as scheme and step stay the same."""
+        known = self._weighed
+        if known is None or known[0] is not step.scheme or known[1] != step.dt:
+            known = self._weighed = step.scheme, step.dt, step.scheme.weights(step.dt)
+        return known[2]
+
     def _limits(self, step: Step) -> riser_loop.StopLimits:
-        """As in `Newton`: without contact the guess continues a smooth motion, whose tangent can be reused."""
+        """As in `Newton`: without contact the guess continues a smooth motion, whose tangent can be reused, and at
+        least one iteration answers the load. The same object as long as they stay the same.
+        """
+        answers = self.system.smooth or self.rests or bool(step.guess[self._free].any())
+        if self._stops[0] is not self.settings:
+            self._stops = self.settings, {}
+        limits = self._stops[1]
+        if answers not in limits:
+            limits[answers] = self._new_limits(answers)
+        return limits[answers]
+
+    def _new_limits(self, answers_load: bool) -> riser_loop.StopLimits:
         settings, smooth = self.settings, self.system.smooth
         return riser_loop.StopLimits(
             settings.tolerance,
@@ -159,13 +181,13 @@ class RiserNewton:
             settings.reuse if smooth else 0.0,
             settings.max_iterations,
             max(settings.least_iterations, int(smooth)),
-            self.rests or bool(step.guess[self._free].any()),
+            answers_load,
         )
 
     def _found(self) -> Forces:
         """The forces of the last trial."""
         forces = self._riser.forces
-        return Forces(*(group.ravel().copy() for group in (forces.inertia, forces.force, forces.end)))
+        return Forces(forces.inertia.flatten(), forces.force.flatten(), forces.end.flatten())
 
     def _reason(self, outcome: int, norms: list[float]) -> str:
         residual = np.where(self.system.prescribed, 0.0, self._riser.dofs.residual.ravel()) / self.system.levers

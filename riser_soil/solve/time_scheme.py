@@ -178,7 +178,7 @@ class GeneralizedAlpha:
     def past(self, start: Forces | None) -> Array | None:
         if start is None:
             return None
-        return self.bulk_weight * (self.alpha_m * start.inertia + self.alpha_f * start.force)
+        return np.asarray(_past(self.bulk_weight, self.alpha_m, start.inertia, self.alpha_f, start.force))
 
     def combine(self, forces: Forces, past: Array | None) -> Array:
         bulk = self.bulk_weight
@@ -199,6 +199,15 @@ class GeneralizedAlpha:
             return end.state, end.state
         bulk = self.split_contact(end.state, end.contact, end.dt)
         return bulk, State(bulk.t, bulk.u, bulk.v, bulk.a + end.contact)
+
+
+@njit
+def _past(bulk: float, alpha_m: float, inertia: Array, alpha_f: float, force: Array) -> Array:
+    """What the forces at the start of a step add to its residual."""
+    out = np.empty(force.size)
+    for i in range(force.size):
+        out[i] = bulk * (alpha_m * inertia[i] + alpha_f * force[i])
+    return out
 
 
 @njit

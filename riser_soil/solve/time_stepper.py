@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import any_of
-from riser_soil.core.part import Energy, Forces, State, Work, local
+from riser_soil.core.part import Energy, Forces, LineField, State, Work, local
 from riser_soil.core.roles import MomentumCorrecting, Predictor, with_role
 from riser_soil.core.saved_state import Saved, Stateful, gathered, record_of, under, values_of, within
 from riser_soil.core.system import System, total
@@ -43,13 +44,20 @@ class AcceptedStep:
     turned: dict[str, Work]
     braking: float
 
-    @cached_property
+    @property
     def dissipated(self) -> float:
-        return sum(work.dissipated for work in self.turned.values())
+        return self._sums[0]
+
+    @property
+    def work(self) -> float:
+        return self._sums[1]
 
     @cached_property
-    def work(self) -> float:
-        return sum(work.external for work in self.turned.values())
+    def _sums(self) -> tuple[float, float]:
+        dissipated = external = 0.0
+        for work in self.turned.values():
+            dissipated, external = dissipated + work.dissipated, external + work.external
+        return dissipated, external
 
 
 class TimeStepper:
@@ -258,16 +266,10 @@ class TimeStepper:
         if not self.system.smooth:
             return self.newton.bulk_forces(self.before)
         forces, u = step.solution.forces, step.solution.state.u
-        return Forces(*(self._in_new_axes(f, u) for f in (forces.inertia, forces.force, forces.end)))
-
-    def _in_new_axes(self, conjugate: Array, increments: Array) -> Array:
         turned = [line for line in self.system.model.lines if line.turns_axes]
-        out = conjugate.copy() if turned else conjugate
-        for line in turned:
-            at = local(line)
-            out[at] = line.in_new_axes(conjugate[at], increments[at])
-        return out
-
+        if not turned:
+            return forces
+        return Forces(*(_in_new_axes(turned, f, u) for f in (forces.inertia, forces.force, forces.end)))
     def state(self) -> Saved:
         """The accepted state with its forces and energy, and what the next step is foreseen and judged by."""
         owners: dict[str, Stateful | None] = {"predictor": self._past, "mass": self._mass, "error": self._error}
@@ -299,3 +301,12 @@ class TimeStepper:
         if error := within(saved, "error"):
             self._error = self._new_error()
             self._error.restore(error)
+
+
+def _in_new_axes(lines: Sequence[LineField], conjugate: Array, increments: Array) -> Array:
+    """Forces conjugate to the increments, with those of the lines in the axes that these turn to."""
+    out = conjugate.copy()
+    for line in lines:
+        at = local(line)
+        out[at] = line.in_new_axes(conjugate[at], increments[at])
+    return out
