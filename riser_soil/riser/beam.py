@@ -59,11 +59,13 @@ class Beam(LinePart):
     def numbers(self) -> PlanarBeam | SpatialBeam:
         kind = PlanarBeam if self.line.dimension == 2 else SpatialBeam
         elastic = self._elastic
-        self._load_now = self._load.copy()
+        self._load_now, self._factor_now = self._load.copy(), 1.0
         return kind(elastic.reference, elastic.section, self.line.length, self._load_now)
 
     def renew_numbers(self, start: float, end: float) -> None:
-        np.multiply(self.factor(end), self._load, out=self._load_now)
+        if (factor := self.factor(end)) != self._factor_now:
+            np.multiply(factor, self._load, out=self._load_now)
+            self._factor_now = factor
 
     def energy(self, state: State) -> Energy:
         """Strain energy, and the potential of weight and load, zero at the origin of the axes."""

@@ -238,7 +238,9 @@ class Line:
         trial = self.trial(state)
         self.x, self.chord = trial.x, trial.chord
         self.frames.commit(self.nodal(state.u)[:, self.dimension :])
-        self._supports = {node: self.support(node, state.t) for node in self._supports}
+        turned = {node: self.support(node, state.t) for node, end in self._ends if end.turning is not None}
+        if turned:
+            self._supports = self._supports | turned
         self.forget()
         self._left = trial
 

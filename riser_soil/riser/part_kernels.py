@@ -59,6 +59,11 @@ def add_forces(part: tuple, at: Configuration, out: LineForces) -> None:
 
 
 @bound_by_type
+def find_water(part: tuple, at: Configuration) -> None:
+    """Find the water at a part's stations, as its forces do, for tangent and energy; of parts in water that moves."""
+
+
+@bound_by_type
 def add_tangent(part: tuple, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
     """Add to K (ne, n, n) the derivative of a part's residual by the dofs, without that of P in `LineForces`."""
 

@@ -73,11 +73,14 @@ def _still_tangent(part: StillWaterNumbers, at: Configuration, maps: Maps, weigh
         for g in range(part.at.N.shape[1]):
             stretch = _see(part, at, e, g)
             axis = room.tau, stretch
-            law.put_drag_derivatives(room.v, *axis, part.drag[e], weights.force, room.by_v, room.by_slope, at.D)
-            law.put_added_derivatives(room.a, *axis, part.mass[e], weights.inertia, room.by_a, room.by_slope, at.D)
             N, element = part.at.N[e, g], part.element
+            if weights.force == 0.0:  # the mass alone is asked for
+                room.by_slope[...] = 0.0
+            else:
+                law.put_drag_derivatives(room.v, *axis, part.drag[e], weights.force, room.by_v, room.by_slope, at.D)
+                stations.add_change(element, g, N, room.by_v, maps.rate_rows[e], at.D, at.R)
+            law.put_added_derivatives(room.a, *axis, part.mass[e], weights.inertia, room.by_a, room.by_slope, at.D)
             stations.add_change(element, g, part.at.dN[e, g], room.by_slope, maps.place_rows[e], at.D, at.R)
-            stations.add_change(element, g, N, room.by_v, maps.rate_rows[e], at.D, at.R)
             stations.add_change(element, g, N, room.by_a, maps.acceleration_rows[e], at.D, at.R)
         stations.add_element(K[e], part.element, part.at.weighted[e], at.P[e], at.D, at.R)
 

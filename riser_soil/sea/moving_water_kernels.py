@@ -11,7 +11,15 @@ from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
+from riser_soil.riser.part_kernels import (
+    LineForces,
+    LineWeights,
+    add_energy,
+    add_forces,
+    add_tangent,
+    add_work,
+    find_water,
+)
 from riser_soil.sea import morison_law as law
 from riser_soil.sea.pipe import Pipe
 from riser_soil.sea.stream_kernels import SeenWater, Stream, WaterInLoop, see_end, see_start
@@ -127,6 +135,11 @@ def _wet(part: MovingWaterNumbers, water: WaterMotion, m: int, g: int) -> float:
         return 1.0
     share: float = wet_share(water.immersion[m * part.share.shape[1] + g], part.span[m, g])
     return share
+
+
+@find_water.of(MovingWaterNumbers)
+def _find_water(part: MovingWaterNumbers, at: Configuration) -> None:
+    see_end(part.stream, at.q)
 
 
 @add_forces.of(MovingWaterNumbers)

@@ -18,7 +18,15 @@ from riser_soil.core.part import Forces, State
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser.configuration import base_of, maps_for, place, put_maps, room_for
 from riser_soil.riser.line import Line
-from riser_soil.riser.part_kernels import LineWeights, add_energy, add_forces, add_tangent, bound, forces_of
+from riser_soil.riser.part_kernels import (
+    LineWeights,
+    add_energy,
+    add_forces,
+    add_tangent,
+    bound,
+    find_water,
+    forces_of,
+)
 from riser_soil.solve import riser_loop as loop
 from riser_soil.solve.packed_riser import matrix_room
 from riser_soil.solve.riser_loop import Dofs, MatrixRoom, NewtonProgress, StepNumbers
@@ -28,11 +36,11 @@ Numbers = tuple[Any, ...]
 
 
 class MassNumbers(NamedTuple):
-    """levers (nn, ndof) [m] of moments; moving (nn, ndof, ndof): see `riser_mass.projectors`; whole (nn,): where they
-    change nothing.
+    """inverse (nn, ndof) [1/m] of the levers of moments; moving (nn, ndof, ndof): see `riser_mass.projectors`; whole
+    (nn,): where they change nothing.
     """
 
-    levers: Array
+    inverse: Array
     moving: Array
     whole: BoolArray
 
@@ -58,10 +66,12 @@ class CompiledMass:
         base = base_of(line)
         self._base = Packed(type(base)(*map(np.copy, base)))
         self._forces, self._energy, self._known = forces_of(line), np.zeros(3), False
+        self._placed: tuple[float, Array, Array] | None = None  # time, rates and place of what was placed last
         self._rates = np.zeros(shape), np.zeros(shape)
         self._step, self._room = StepNumbers(*(np.zeros(shape) for _ in range(6))), matrix_room(line)
         self._dofs = Dofs(np.zeros(shape, dtype=bool), np.ones(shape), *(np.zeros(shape) for _ in range(3)))
-        self._mass = MassNumbers(levers.reshape(shape), np.zeros((*shape, line.ndof)), np.zeros(line.nodes, dtype=bool))
+        moving, whole = np.zeros((*shape, line.ndof)), np.zeros(line.nodes, dtype=bool)
+        self._mass = MassNumbers(1.0 / levers.reshape(shape), moving, whole)
         self._bind_state(bulk, inertial)
         self._bind_mass(inertial)
 
@@ -72,17 +82,18 @@ class CompiledMass:
         moving = bound(place, at, self._base, *map(Packed, (still, *self._rates)))
         each = [bound(add_forces, numbers, here, forces) for numbers in bulk]
         self._find_forces = in_turn(moving, Bound(loop.clear, forces), *each, Bound(loop.collect, here, forces))
-        self._find_energy = in_turn(moving, *(bound(add_energy, numbers, here, energy) for numbers in inertial))
+        self._place = moving
+        self._find_energy = in_turn(*(bound(add_energy, numbers, here, energy) for numbers in inertial))
 
     def _bind_mass(self, inertial: Sequence[Numbers]) -> None:
         """Bind the kernels of the mass at rest."""
         at, still = room_for(self._line), Packed(np.zeros(self._step.u.shape))
-        here, forces, room, dofs, mass = map(Packed, (at, self._forces, self._room, self._dofs, self._mass))
+        here, room, dofs, mass = map(Packed, (at, self._room, self._dofs, self._mass))
         K, progress = Packed(self._room.K), Packed(NewtonProgress(np.zeros(1), np.zeros(2, dtype=np.int64)))
         maps, weights = Packed(maps_for(self._line)._replace(shift_a=1.0)), Packed(LineWeights(1.0, 0.0))
         self._find_matrices = in_turn(
             bound(place, at, self._base, still, still, still),
-            *(bound(add_forces, numbers, here, forces) for numbers in inertial),  # they find the water there
+            *(bound(find_water, numbers, here) for numbers in inertial if type(numbers) in find_water.kernels),
             bound(put_maps, at, maps),
             Bound(loop.clear_tangent, room),
             *(bound(add_tangent, numbers, here, maps, weights, K) for numbers in inertial),
@@ -104,7 +115,10 @@ class CompiledMass:
 
     def kinetic_energy(self, state: State) -> float:
         """Kinetic energy [J] at an accepted state."""
-        self._put(state)
+        placed = self._placed
+        if placed is None or placed[0] != state.t or placed[1] is not state.v or placed[2] is not self._line.x:
+            self._put(state)
+            self._place()
         self._energy[:] = 0.0
         self._find_energy()
         return float(self._energy[0])
@@ -114,6 +128,7 @@ class CompiledMass:
         self._renew_base()
         for kept, given in zip(self._rates, (state.v, state.a), strict=True):
             kept.ravel()[:] = given
+        self._placed = state.t, state.v, self._line.x
 
     def _renew_base(self) -> None:
         for kept, given in zip(self._base.value, base_of(self._line), strict=True):
@@ -129,7 +144,7 @@ class CompiledMass:
         self._step.u[...] = 0.0
         np.negative(force, out=self._dofs.residual.ravel())
         self._solve()
-        return self._step.u.ravel() / self._mass.levers.ravel()
+        return self._step.u.ravel() * self._mass.inverse.ravel()
 
     def state(self) -> Saved:
         """As of `RiserMass`."""
@@ -148,13 +163,13 @@ class CompiledMass:
 @njit
 def weigh(room: MatrixRoom, mass: MassNumbers) -> None:
     """Divide element matrices by the levers, so that all masses are in kg."""
-    K, levers, ndof = room.K, mass.levers, mass.levers.shape[1]
+    K, inverse, ndof = room.K, mass.inverse, mass.inverse.shape[1]
     for e in range(K.shape[0]):
         for row in range(2):
             for i in range(ndof):
                 for j in range(ndof):
-                    K[e, row * ndof + i, j] /= levers[e + row, i] * levers[e, j]
-                    K[e, row * ndof + i, ndof + j] /= levers[e + row, i] * levers[e + 1, j]
+                    K[e, row * ndof + i, j] *= inverse[e + row, i] * inverse[e, j]
+                    K[e, row * ndof + i, ndof + j] *= inverse[e + row, i] * inverse[e + 1, j]
 
 
 @njit
@@ -162,7 +177,7 @@ def project(room: MatrixRoom, dofs: Dofs, mass: MassNumbers) -> None:
     """Project element matrices and forces over the levers onto what moves; what does not gets the largest mass, which
     is on a diagonal.
     """
-    K, ndof, largest = room.K, mass.levers.shape[1], 0.0
+    K, ndof, largest = room.K, mass.inverse.shape[1], 0.0
     left, own = np.zeros((ndof, ndof)), np.zeros(ndof)
     for e in range(K.shape[0]):
         for i in range(2 * ndof):
@@ -179,7 +194,7 @@ def project(room: MatrixRoom, dofs: Dofs, mass: MassNumbers) -> None:
     for n in range(dofs.residual.shape[0]):
         e, first = max(n - 1, 0), ndof if n > 0 else 0
         for i in range(ndof):
-            own[i] = dofs.residual[n, i] / mass.levers[n, i]
+            own[i] = dofs.residual[n, i] * mass.inverse[n, i]
             dofs.residual[n, i] = own[i]
         if mass.whole[n]:
             continue

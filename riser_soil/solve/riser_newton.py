@@ -109,15 +109,19 @@ class RiserNewton:
         return self.mass.bulk_forces(state)
 
     def element_residual(self, line: Line, state: State) -> Array:
-        """Of the line's elements (ne, 2 ndof) at an accepted state."""
-        return self._found_at(state).residual(state)
+        """Of the line's elements (ne, 2 ndof) at an accepted state; as solved where a step does not turn its axes."""
+        known = self._has_solved(state) and not self._line.turns_axes
+        return (self._at_solution if known else self._found_at(state)).residual(state)
 
     def section_forces(self, line: Line, elements: Elements, state: State) -> SectionForces:
         """Of the line at an accepted state; of the one solved for last as the loop has found its forces."""
+        found = self._at_solution if self._has_solved(state) else self._found_at(state)
+        return found.section_forces(elements, state)
+
+    def _has_solved(self, state: State) -> bool:
+        """Whether a state is that of the step solved last, whose forces the loop has left and nothing has changed."""
         solved = self._solved
-        if solved is not None and self._accepted.whole and state.v is solved.v and state.a is solved.a:
-            return self._at_solution.section_forces(elements, state)
-        return self._found_at(state).section_forces(elements, state)
+        return solved is not None and self._accepted.whole and state.v is solved.v and state.a is solved.a
 
     def _found_at(self, state: State) -> ElementForces:
         if self._t != state.t or not self.system.smooth:  # contact has a new history since the step was solved
