@@ -59,10 +59,10 @@ class BendingMisfit(NamedTuple):
 def misfit(line: Line, elements: Elements, state: State, residual: Array) -> BendingMisfit:
     """residual (ne, 2 ndof): from `section_forces.element_residual`, less its viscous share."""
     trial = line.trial(state)
-    tangent, on_ends = trial.turn.tangent @ line.basis.T, end_forces(line, trial, residual)
-    EI, out = np.maximum(elements.EI_y, elements.EI_z), (np.empty(line.length.size), np.empty(line.length.size))
-    stiffness = *section_frames(trial), *elements.flexibility, EI
-    _put_misfits(line.length, *on_ends, tangent, _turns(line, trial, tangent), *stiffness, *out)
+    tangent, out = trial.turn.tangent, (np.empty(line.length.size), np.empty(line.length.size))
+    stiffness = *section_frames(trial), *elements.flexibility, elements.larger_EI
+    on_ends = end_forces(line, trial, residual)
+    _put_misfits(line.length, *on_ends, line.basis, tangent, _turns(line, trial), *stiffness, *out)
     i, j = (int(values.argmax()) for values in out)
     return BendingMisfit(float(out[0][i]), i, float(out[1][j]), j)
 
@@ -72,6 +72,7 @@ def _put_misfits(
     length: Array,
     force: Array,
     moment: Array,
+    basis: Array,
     tangent: Array,
     turn: Array,
     first: Array,
@@ -84,14 +85,14 @@ def _put_misfits(
 ) -> None:
     """Write the misfits (ne,) of the elements by the formula with shear, and by the trapezoidal rule.
 
-    force, moment (ne, 2, 3): on the elements' ends; tangent: there; turn: of `_turns`; first, second: of
-    `section_frames`; y, z (ne,): 1/EI.
+    force, moment (ne, 2, 3): on the elements' ends; basis (3, d): axes of the tangents (ne, 2, d) there; turn: of
+    `_turns`; first, second: of `section_frames`; y, z (ne,): 1/EI.
     """
     ne, size = len(length), np.empty(2)
     k, slope = np.empty((2, 3)), np.empty((2, 3))
     for e in range(ne):
         for end in range(2):
-            sign, t, F = 2.0 * end - 1.0, padded(tangent[e, end]), padded(force[e, end])
+            sign, t, F = 2.0 * end - 1.0, _in_space(basis, tangent[e, end]), padded(force[e, end])
             M = scale(sign, padded(moment[e, end]))
             bending, shear = sub(M, scale(dot(M, t), t)), scale(sign, cross(F, t))
             size[end] = norm(bending)
@@ -111,6 +112,15 @@ def _put_misfits(
 
 
 @njit
+def _in_space(basis: Array, a: Array) -> Vec:
+    """The vector, global axes, of components (d,) along those of a basis (3, d)."""
+    x = y = z = 0.0
+    for i in range(len(a)):
+        x, y, z = x + basis[0, i] * a[i], y + basis[1, i] * a[i], z + basis[2, i] * a[i]
+    return x, y, z
+
+
+@njit
 def _put_over_stiffness(frame: Array, moment: Vec, y: float, z: float, out: Array) -> None:
     """Write the curvature of a moment, global axes, about the section axes of two stiffnesses."""
     about_y = frame[0, 1] * moment[0] + frame[1, 1] * moment[1] + frame[2, 1] * moment[2]
@@ -119,7 +129,7 @@ def _put_over_stiffness(frame: Array, moment: Vec, y: float, z: float, out: Arra
         out[i] = frame[i, 1] * y * about_y + frame[i, 2] * z * about_z
 
 
-def _turns(line: Line, trial: Trial, tangent: Array) -> Array:
+def _turns(line: Line, trial: Trial) -> Array:
     """Rotation vectors (ne, 3) by which elements' ends turn against each other from the unstressed state on, less the
     twist.
     """
@@ -127,7 +137,7 @@ def _turns(line: Line, trial: Trial, tangent: Array) -> Array:
         angle = trial.turn.angle
         return np.asarray((angle[1:] - angle[:-1])[:, None] * line.normal)
     turns = np.empty((line.length.size, 3))
-    _put_turns(trial.turn.R, tangent, turns)
+    _put_turns(trial.turn.R, trial.turn.tangent, turns)
     return turns
 
 

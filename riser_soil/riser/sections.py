@@ -138,6 +138,11 @@ class Elements:
         return larger_beside(self.bends.astype(float))
 
     @cached_property
+    def larger_EI(self) -> Array:
+        """The larger EI (ne,) about a section axis [N.m2]."""
+        return np.maximum(self.EI_y, self.EI_z)
+
+    @cached_property
     def flexibility(self) -> tuple[Array, Array]:
         """1/EI (ne,) about both section axes [1/(N.m2)], 0 of a chain: no moment bends it."""
         y, z = (np.divide(1.0, EI, out=np.zeros_like(EI), where=self.bends) for EI in (self.EI_y, self.EI_z))
