@@ -19,7 +19,7 @@ from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.packed_riser import PackedRiser
-from riser_soil.solve.riser_loop import StopLimits
+from riser_soil.solve.riser_loop import CONVERGED, StopLimits
 from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.riser_newton import RiserNewton, riser_newton
 from riser_soil.solve.solution import NewtonSettings
@@ -138,9 +138,28 @@ def require_mass(at: Sample, parts: list[Any]) -> None:
     for name, group in vars(newton.bulk_forces(accepted)).items():
         scale = np.abs(forces.force).max()
         np.testing.assert_allclose(group, getattr(forces, name), rtol=0.0, atol=1e-12 * scale)
-    for instant in (accepted, at.state(5, size=0.0, t=0.7)):
+    other = at.state(5, size=0.0, t=0.7)
+    for instant in (accepted, other, State(other.t, other.u, 2.0 * other.v, other.a)):  # what was placed last, or not
+        assert found.kinetic_energy(instant) == pytest.approx(expected.kinetic_energy(instant), rel=1e-12)
+    for instant in (accepted, other):
         require_element_residual(newton, at.line, parts, instant)
     system.destroy()
+
+
+def require_tangles(dimension: int) -> None:
+    """Elements that are folded or wound up are those that the line tells of; in a plane an angle counts whole turns."""
+    at, anything = sample(dimension, shaken=False), StopLimits(0.0, np.inf, 0.0, 1, 0, True)
+    line, parts, told = at.line, [at.beam()], []
+    for node, turn in ((0, 0.0), (1, 0.1), (1, 2.0), (line.nodes - 1, 2.0), (line.nodes - 1, -3.5)):
+        state = at.state(1, size=0.0)
+        line.nodal(state.u)[node, -1] = turn
+        compiled = Compiled(at, parts, state, state)
+        compiled.riser.begin(state, None, WEIGHTS, anything)
+        assert compiled.riser.solve()[0] == CONVERGED
+        told.append(line.tangled(compiled.riser.tangled))
+        assert told[-1] == line.inadmissible(state)
+    assert told[0] == told[1] == ""
+    assert len(set(told)) == 3
 
 
 def require_element_residual(newton: RiserNewton, line: Line, parts: list[Any], accepted: State) -> None:

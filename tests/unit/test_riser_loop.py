@@ -16,6 +16,8 @@ from riser_soil.core import banded
 from riser_soil.core.system import Timer
 from riser_soil.errors import SolveError
 from riser_soil.solve.newton import Newton
+from riser_soil.solve.packed_riser import PackedRiser
+from riser_soil.solve.solution import NotConvergedError
 from tests.support.riser_loop import (
     CASES,
     SCENES,
@@ -23,6 +25,7 @@ from tests.support.riser_loop import (
     require_kernels_of_parts,
     require_mass,
     require_steps_of_snes,
+    require_tangles,
     walked,
 )
 from tests.support.sample_line import sample
@@ -39,6 +42,17 @@ def test_the_mass_in_a_plane_is_that_of_the_parts() -> None:
 
 def test_steps_in_a_plane_are_those_of_snes() -> None:
     require_steps_of_snes("surge in a plane")
+
+
+def test_tangles_in_a_plane_are_those_of_the_line() -> None:
+    require_tangles(2)
+
+
+def test_a_step_that_ends_in_a_tangle_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    stage = walked("surge in a plane", "compiled", 1)
+    monkeypatch.setattr(PackedRiser, "tangled", 1)
+    with pytest.raises(NotConvergedError, match="folded at arc"):
+        stage.newton.solve(stage.stepper.next_step(stage.control))
 
 
 @pytest.mark.parametrize("diagonal", [0.0, 1e-13])  # pivots must be exchanged

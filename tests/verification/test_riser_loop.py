@@ -14,6 +14,7 @@ from tests.support.riser_loop import (
     require_kernels_of_parts,
     require_mass,
     require_steps_of_snes,
+    require_tangles,
 )
 from tests.support.sample_line import sample
 from tests.support.turned_bar import turned_bar
@@ -28,6 +29,10 @@ def test_kernels_in_space_are_those_of_the_parts() -> None:
 def test_the_mass_in_space_is_that_of_the_parts() -> None:
     at = sample(3)
     require_mass(at, all_parts(at))
+
+
+def test_tangles_in_space_are_those_of_the_line() -> None:
+    require_tangles(3)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
