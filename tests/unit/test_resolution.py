@@ -66,6 +66,16 @@ def test_two_bending_stiffnesses_have_each_their_curvature() -> None:
     assert told.smooth < 1e-6
 
 
+def test_a_misfit_counts_with_the_larger_stiffness() -> None:
+    """It bends about one of both axes: with the stiffness of that one, or with three times as much."""
+    start, steep = prescribed(0.0, 0.0, 0.0, rotation="fixed"), []
+    for y, z in ((1.0e5, 3.0e5), (3.0e5, 1.0e5)):
+        pipe: Mapping = {"EA": 1.0e9, "EI_y": y, "EI_z": z, "GJ": 1.0e5, "mass": 1.0, "submerged_weight": 1.0}
+        scene = riser_scene(static(), pipe=pipe, length=10.0, elements=4, start=start, end="free", gravity=9.81)
+        steep.append(found(scene)[0].steep)
+    assert sorted(steep) == pytest.approx([50.0 / 96.0, 150.0 / 96.0], rel=1e-3)
+
+
 def hanging(elements: int, rotation: Any = "free", **more: Any) -> Mapping:
     """Ten kilometres of riser in the plane or in space; its largest moment is 264.4 N.m."""
     pipe: Mapping = {"EA": 1.0e9, "EI": 1.0e6, "GJ": 1.0e6, "mass": 120.0, "submerged_weight": 500.0}
