@@ -174,7 +174,7 @@ class Assembly:
         """Error message where a riser too slack for its elements finds no equilibrium."""
         bend = least_bend(self.elements)
         return (
-            "the riser is slack: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
+            f"the riser is slack: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
             "its place, and no way back there was found; take shorter segments, move the ends apart, or take "
             f"elements well below (EI/w)^(1/3) = {bend:.3g} m, the length over which it bends under its own weight"
         )
