@@ -15,7 +15,8 @@ from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser import hermite, planar_directors, spatial_directors
 from riser_soil.riser.hermite import Size
-from riser_soil.riser.line import Line, first_folded
+from riser_soil.riser.line import Line
+from riser_soil.riser.line_kernels import first_folded
 from riser_soil.riser.planar_directors import PlanarFrames
 
 

@@ -12,7 +12,6 @@ from functools import cached_property, partial
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.core.compiled import njit
 from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.core.part import MatrixBlock, State
 from riser_soil.core.saved_state import Saved, under, values_of, within
@@ -21,6 +20,7 @@ from riser_soil.riser import hermite
 from riser_soil.riser.directors import Frames
 from riser_soil.riser.ends import End, Motion, SupportRotation
 from riser_soil.riser.free_turns import free_turns, unit_lengths
+from riser_soil.riser.line_kernels import after_increments, first_folded, motion_in_axes, spread_motion
 from riser_soil.riser.planar_directors import PlanarFrames
 from riser_soil.riser.spatial_directors import SpatialFrames
 from riser_soil.riser.trial import Trial
@@ -211,7 +211,7 @@ class Line:
 
     def _make_trial(self, state: State) -> Trial:
         u = self.nodal(state.u)
-        x, chord = _moved(self.x, self.chord, u)
+        x, chord = after_increments(self.x, self.chord, u)
         turning = self.frames.turning(u[:, self.dimension :])
         return Trial(state, x, chord, turning, (self.nodal(state.v), self.nodal(state.a)))
 
@@ -295,7 +295,7 @@ class Line:
         for node, end in self._ends:
             if end.prescribed and end.motion is not None:
                 to = self._moved_end(node, guess.t)[0]
-                _spread(moved, node, to, end.held(self.dimension), self._reach[node])
+                spread_motion(moved, node, to, end.held(self.dimension), self._reach[node])
         return predicted
 
     @cached_property
@@ -311,7 +311,7 @@ class Line:
         motion, kept = (self.end if node else self.start).motion, self._moved_ends.get(node)
         assert motion is not None
         if kept is None or kept[0] is not motion or kept[1] != t or kept[2] is not self.x:
-            moved = _in_axes(np.array(motion(t)), self.origin, self.basis, self.x[node])
+            moved = motion_in_axes(np.array(motion(t)), self.origin, self.basis, self.x[node])
             kept = self._moved_ends[node] = motion, t, self.x, moved
         return kept[3]
 
@@ -381,57 +381,6 @@ class Line:
             else ("force x", "force y", "vertical force", "moment 1", "moment 2", "moment 3")
         )
         return f"riser node at arc {self.arc[node]:.6g} m, {names[dof]}"
-
-
-@njit
-def _spread(moved: Array, node: int, to: Array, held: int, reach: Array) -> None:
-    """Add the rest of a node's motion to what is held of it to the increments (nn, ndof), each node by its share."""
-    for i in range(held):
-        rest = to[i] - moved[node, i]
-        for n in range(moved.shape[0]):
-            moved[n, i] += reach[n] * rest
-
-
-@njit
-def _in_axes(motion: Array, origin: Array, basis: Array, start: Array) -> Array:
-    """Displacement, velocity and acceleration (3, d) in the axes of a line: of a motion (3, 3), its place first, from
-    where the node is, `start` (d,).
-    """
-    out = np.zeros((3, basis.shape[1]))
-    for k in range(3):
-        for i in range(basis.shape[1]):
-            for j in range(3):
-                out[k, i] += (motion[k, j] - (origin[j] if k == 0 else 0.0)) * basis[j, i]
-    for i in range(basis.shape[1]):
-        out[0, i] -= start[i]
-    return out
-
-
-@njit
-def _moved(x: Array, chord: Array, u: Array) -> tuple[Array, Array]:
-    """Positions (nn, d) and chords (ne, d) after the increments u (nn, ndof); chords add theirs, see `Line.commit`."""
-    nn, d = x.shape
-    moved, along = np.empty((nn, d)), np.empty((nn - 1, d))
-    for n in range(nn):
-        for i in range(d):
-            moved[n, i] = x[n, i] + u[n, i]
-    for e in range(nn - 1):
-        for i in range(d):
-            along[e, i] = chord[e, i] + (u[e + 1, i] - u[e, i])
-    return moved, along
-
-
-@njit
-def first_folded(chord: Array, tangent: Array) -> int:
-    """First element with an end whose tangent points against the chord; ne without any."""
-    for e in range(chord.shape[0]):
-        for side in range(2):
-            ahead = 0.0
-            for i in range(chord.shape[1]):
-                ahead += chord[e, i] * tangent[e, side, i]
-            if ahead <= 0.0:
-                return e
-    return chord.shape[0]
 
 
 def _planar_frames(layout: Layout, direction: Array) -> PlanarFrames:

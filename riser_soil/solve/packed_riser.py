@@ -117,15 +117,14 @@ class PackedRiser:
         """Begin a step.
 
         state: the first guess, and the rates of no increments but those that are prescribed; past: see `time_scheme`.
-        The weights and limits of the last step are known by being the same objects.
         """
         for kept, given in zip(self._base.value, base_of(self._line), strict=True):
             kept[...] = given
         u, v, a, earlier = self._begun
         u[:], v[:], a[:], earlier[:] = state.u, state.v, state.a, 0.0 if past is None else past
-        if weights is not self._weighed:
+        if weights != self._weighed:
             self._weigh(weights)
-        if limits is not self._limits.value:
+        if limits != self._limits.value:
             self._limits.renew(limits)
 
     def _weigh(self, weights: Weights) -> None:

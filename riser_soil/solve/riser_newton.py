@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Energy, Forces, State, Weights, Work
+from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
@@ -24,7 +24,6 @@ from riser_soil.solve.compiled_mass import CompiledMass
 from riser_soil.solve.element_forces import AcceptedForces, ElementForces
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, largest_at, told
-from riser_soil.solve.time_scheme import Scheme
 
 WHY = {
     riser_loop.NOT_FINITE: "diverged_fnorm_nan",
@@ -32,7 +31,6 @@ WHY = {
     riser_loop.DIVERGED: "diverged_dtol",
     riser_loop.TOO_MANY: "diverged_max_it",
 }
-
 
 Numbered = Sequence[tuple[Any, tuple[Any, ...]]]  # parts of a line
 
@@ -57,8 +55,6 @@ class RiserNewton:
         self._solved: State | None = None  # last, where no forces may have jumped since
         self._numbered, self._t, self._free = parts, math.nan, np.flatnonzero(~system.prescribed)
         self._nothing = np.zeros(line.size)
-        self._weighed: tuple[Scheme, float, Weights] | None = None
-        self._stops: tuple[NewtonSettings, dict[bool, riser_loop.StopLimits]] = settings, {}
         self._renewed = [part for part, _ in parts if overrides(part, "renew_numbers")]
         self._no_work = {part.name: Work() for part, _ in parts}
         self._on_nodes = [part for part, _ in parts if overrides(part, "nodal_forces")]
@@ -69,8 +65,8 @@ class RiserNewton:
         """Solve a step or raise NotConvergedError."""
         since, self._solved = time.perf_counter(), None
         self._bring(step.before.t, step.t)
-        past, limits = step.scheme.past(step.start), self._limits(step)
-        self._riser.begin(self._guess(step), past, self._weights_of(step), limits)
+        scheme = step.scheme
+        self._riser.begin(self._guess(step), scheme.past(step.start), scheme.weights(step.dt), self._limits(step))
         outcome, taken = self._riser.solve()
         self.rests = False
         self.iterations += taken
@@ -158,35 +154,10 @@ class RiserNewton:
         self._line.prescribe(step.t, state.u, state.v, state.a)
         return state
 
-    def _weights_of(self, step: Step) -> Weights:
-        """The same object as long as scheme and step stay the same."""
-        known = self._weighed
-        if known is None or known[0] is not step.scheme or known[1] != step.dt:
-            known = self._weighed = step.scheme, step.dt, step.scheme.weights(step.dt)
-        return known[2]
-
     def _limits(self, step: Step) -> riser_loop.StopLimits:
-        """As in `Newton`: without contact the guess continues a smooth motion, whose tangent can be reused, and at
-        least one iteration answers the load. The same object as long as they stay the same.
-        """
-        answers = self.system.smooth or self.rests or bool(step.guess[self._free].any())
-        if self._stops[0] is not self.settings:
-            self._stops = self.settings, {}
-        limits = self._stops[1]
-        if answers not in limits:
-            limits[answers] = self._new_limits(answers)
-        return limits[answers]
-
-    def _new_limits(self, answers_load: bool) -> riser_loop.StopLimits:
-        settings, smooth = self.settings, self.system.smooth
-        return riser_loop.StopLimits(
-            settings.tolerance,
-            settings.floor,
-            settings.reuse if smooth else 0.0,
-            settings.max_iterations,
-            max(settings.least_iterations, int(smooth)),
-            answers_load,
-        )
+        """A smooth motion takes an iteration, which answers its load."""
+        smooth = self.system.smooth
+        return _limits(self.settings, smooth, smooth or self.rests or bool(step.guess[self._free].any()))
 
     def _found(self) -> Forces:
         """The forces of the last trial."""
@@ -212,3 +183,16 @@ class RiserNewton:
 
     def destroy(self) -> None:
         """There is nothing to give back."""
+
+
+@lru_cache(maxsize=8)
+def _limits(settings: NewtonSettings, smooth: bool, answers_load: bool) -> riser_loop.StopLimits:
+    """As in `Newton`: without contact the guess continues a smooth motion, whose tangent can be reused."""
+    return riser_loop.StopLimits(
+        settings.tolerance,
+        settings.floor,
+        settings.reuse if smooth else 0.0,
+        settings.max_iterations,
+        max(settings.least_iterations, int(smooth)),
+        answers_load,
+    )

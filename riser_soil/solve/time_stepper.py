@@ -270,6 +270,7 @@ class TimeStepper:
         if not turned:
             return forces
         return Forces(*(_in_new_axes(turned, f, u) for f in (forces.inertia, forces.force, forces.end)))
+
     def state(self) -> Saved:
         """The accepted state with its forces and energy, and what the next step is foreseen and judged by."""
         owners: dict[str, Stateful | None] = {"predictor": self._past, "mass": self._mass, "error": self._error}

@@ -1,0 +1,59 @@
+"""Kernels of the riser's line: places after increments, motion of its ends, folded elements; see `line`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
+
+
+@njit
+def spread_motion(moved: Array, node: int, to: Array, held: int, reach: Array) -> None:
+    """Add the rest of a node's motion to what is held of it to the increments (nn, ndof), each node by its share."""
+    for i in range(held):
+        rest = to[i] - moved[node, i]
+        for n in range(moved.shape[0]):
+            moved[n, i] += reach[n] * rest
+
+
+@njit
+def motion_in_axes(motion: Array, origin: Array, basis: Array, start: Array) -> Array:
+    """Displacement, velocity and acceleration (3, d) in the axes of a line: of a motion (3, 3), its place first, from
+    where the node is, `start` (d,).
+    """
+    out = np.zeros((3, basis.shape[1]))
+    for k in range(3):
+        for i in range(basis.shape[1]):
+            for j in range(3):
+                out[k, i] += (motion[k, j] - (origin[j] if k == 0 else 0.0)) * basis[j, i]
+    for i in range(basis.shape[1]):
+        out[0, i] -= start[i]
+    return out
+
+
+@njit
+def after_increments(x: Array, chord: Array, u: Array) -> tuple[Array, Array]:
+    """Positions (nn, d) and chords (ne, d) after the increments u (nn, ndof); chords add theirs, see `Line.commit`."""
+    nn, d = x.shape
+    place, along = np.empty((nn, d)), np.empty((nn - 1, d))
+    for n in range(nn):
+        for i in range(d):
+            place[n, i] = x[n, i] + u[n, i]
+    for e in range(nn - 1):
+        for i in range(d):
+            along[e, i] = chord[e, i] + (u[e + 1, i] - u[e, i])
+    return place, along
+
+
+@njit
+def first_folded(chord: Array, tangent: Array) -> int:
+    """First element with an end whose tangent points against the chord; ne without any."""
+    for e in range(chord.shape[0]):
+        for side in range(2):
+            ahead = 0.0
+            for i in range(chord.shape[1]):
+                ahead += chord[e, i] * tangent[e, side, i]
+            if ahead <= 0.0:
+                return e
+    return chord.shape[0]
