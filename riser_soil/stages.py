@@ -93,6 +93,8 @@ def lay(assembly: Assembly, clock: Timer) -> tuple[State, LayingCounter | None]:
     rest, stage = State.at_rest(0.0, assembly.size), assembly.laying
     if stage is None:
         return rest, None
+    if assembly.too_soft:
+        raise SolveError(assembly.too_soft)
     counter = LayingCounter()
     try:
         return _take(assembly, assembly.begin_laying(stage), stage, rest, counter, clock), counter

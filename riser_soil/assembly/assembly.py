@@ -47,6 +47,7 @@ if TYPE_CHECKING:
 
 AUTO_TOLERANCE = 0.02  # of the diameter: local error of automatic steps
 AUTO_SMALLEST, AUTO_SMALLEST_OF_STAGE = 1e-4, 1e-7  # of a given time step; of a stage with automatic ones
+MOST_STRETCHED = 10.0  # lengths of the riser: an end farther beyond its place is there by stretch that no pipe bears
 
 
 @dataclass(eq=False)
@@ -177,6 +178,19 @@ class Assembly:
             f"the riser is slack: with a bend that its elements can follow its end would lie {self.slack:.4g} m beyond "
             "its place, and no way back there was found; take shorter segments, move the ends apart, or take "
             f"elements well below (EI/w)^(1/3) = {bend:.3g} m, the length over which it bends under its own weight"
+        )
+
+    @property
+    def too_soft(self) -> str:
+        """Error message where a slack riser would stretch to many times its length under its own weight, else empty."""
+        L, elements = float(self.line.arc[-1]), self.elements
+        if self.slack <= MOST_STRETCHED * L:
+            return ""
+        weight = float(np.abs(elements.weight) @ elements.length)
+        return (
+            f"the riser is too soft along its axis: hung with a bend that its elements can follow its end would lie "
+            f"{self.slack:.4g} m beyond its place, {self.slack / L:.3g} times its length of {L:.4g} m, by stretch; "
+            f"give an EA well above its weight, {weight:.3g} N (the least EA given is {elements.EA.min():.3g} N)"
         )
 
     @property

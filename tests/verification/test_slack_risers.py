@@ -21,7 +21,8 @@ W, PIPE = 500.0, {"EA": 1e8, "EI": 1e4, "GJ": 1e4, "submerged_weight": 500.0, "o
 def slack_scene(*end: float, length: float = 60.0, elements: int = 60, **more: Any) -> Mapping:
     stages = more.pop("stages", (static(),))
     start = prescribed(0.0, 0.0, 0.0)
-    options: Mapping = {"pipe": PIPE, "length": length, "elements": elements, "start": start, "end": prescribed(*end)}
+    pipe = more.pop("pipe", PIPE)
+    options: Mapping = {"pipe": pipe, "length": length, "elements": elements, "start": start, "end": prescribed(*end)}
     return riser_scene(*stages, **options, gravity=9.81, solver={"tolerance": 1e-11}, **more)
 
 
@@ -83,3 +84,15 @@ def test_a_loop_too_tight_for_its_elements_is_told(tmp_path: Path) -> None:
     lies, asked = r"would lie \d[\d.e+-]* m beyond its place", r"take elements well below \(EI/w\)\^\(1/3\) = 2.71 m"
     with pytest.raises(SolveError, match=f"the riser is slack: .* {lies}.* {asked}"):
         done(slack_scene(40.0, 0.0, 15.0, length=200.0, elements=20, seabed=seabed), tmp_path)
+
+
+def test_a_riser_that_stretches_beyond_all_measure_is_not_laid(tmp_path: Path) -> None:
+    """Under its weight of 30 kN an EA of 1 N gives strains in the thousands: nothing is tried, and no time spent."""
+    far, length = r"would lie \S+ m beyond its place, \S+ times its length of 60 m", r"its weight, 3e\+04 N"
+    with pytest.raises(SolveError, match=f"too soft along its axis: .* {far}.* {length} .*least EA given is 1 N"):
+        done(slack_scene(0.0, 0.0, 40.0, pipe=PIPE | {"EA": 1.0}), tmp_path)
+
+
+def test_a_slack_riser_may_stretch(tmp_path: Path) -> None:
+    """An EA of its weight doubles its length, and it is laid all the same."""
+    assert done(slack_scene(0.0, 0.0, 40.0, pipe=PIPE | {"EA": 60.0 * W}), tmp_path).summary["laying"]["slack"] > 0.0
