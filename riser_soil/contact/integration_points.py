@@ -15,29 +15,34 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 
 LARGEST = 512  # divisions of a facet's side
+ENOUGH = 12  # points along a facet or an element, whichever is shorter: they leave 1e-4 of the force, of a cubic gap
 
 
-def divisions(points: Array, facets: IntArray, along: Array, spacing: tuple[float, float]) -> IntArray:
+def divisions(
+    points: Array, facets: IntArray, along: Array, spacing: tuple[float, float], element: float = 0.0
+) -> IntArray:
     """Into how many parts (nf, 2) facets are cut in xi and eta: their points lie no farther apart than the spacing.
 
     points (np, 3): undeformed [m]. facets (nf, 4 or 6). along (2,): horizontal unit vector of the riser. spacing: of
-    points along and across it [m].
+    points along and across it [m]. element: length of the riser's elements [m], over which the gap is smooth; along the
+    riser points are spread wider than asked for where that is enough for it and for the facet.
     """
     at = points[facets]
     if facets.shape[1] == len(QUAD):
         a, b, c, d = at[:, 0], at[:, 1], at[:, 2], at[:, 3]
-        counted = _parts(0.5 * np.stack([b + c - a - d, c + d - a - b], axis=1), along, spacing)
+        counted = _parts(0.5 * np.stack([b + c - a - d, c + d - a - b], axis=1), along, spacing, element)
     else:
         sides = np.stack([at[:, 1] - at[:, 0], at[:, 2] - at[:, 1], at[:, 0] - at[:, 2]], axis=1)
-        counted = np.repeat(_parts(sides, along, spacing).max(axis=1)[:, None], 2, axis=1)
+        counted = np.repeat(_parts(sides, along, spacing, element).max(axis=1)[:, None], 2, axis=1)
     return np.clip(counted, 1, LARGEST)
 
 
-def _parts(sides: Array, along: Array, spacing: tuple[float, float]) -> IntArray:
+def _parts(sides: Array, along: Array, spacing: tuple[float, float], element: float) -> IntArray:
     """Parts (nf, k) of sides (nf, k, 3) [m]; what they rise counts as across."""
-    lengthwise, across = sides[..., :2] @ along, sides[..., :2] @ np.array([-along[1], along[0]])
-    extent = np.stack([np.abs(lengthwise), np.hypot(across, sides[..., 2])], axis=2)
-    parts: IntArray = np.ceil(np.max(extent / np.array(spacing), axis=2) - 1e-9).astype(np.int64)
+    lengthwise, across = np.abs(sides[..., :2] @ along), sides[..., :2] @ np.array([-along[1], along[0]])
+    apart = np.maximum(spacing[0], np.minimum(lengthwise, element) / ENOUGH)
+    wanted = np.maximum(lengthwise / apart, np.hypot(across, sides[..., 2]) / spacing[1])
+    parts: IntArray = np.ceil(wanted - 1e-9).astype(np.int64)
     return parts
 
 

@@ -48,7 +48,7 @@ class SurfaceContact(SoilContact):
 
     radius (ne,): of the pipe [m]. pressure: its law of the penetration, [N/m2] where other contacts have [N/m]; with a
     history, such as suction has, for each point of the soil. spacing: of the integration points along and across the
-    riser [m]. upright: contact sees the soil's surface move up and down alone, and presses on it so; the horizontal
+    riser [m], see `divisions`. upright: contact sees the soil's surface move up and down alone, and presses on it so; the horizontal
     forces on the riser are then borne by nothing. along (2,): horizontal unit vector of the riser on the ground; by
     default its first axis. reach: by default half a facet above the soil, but no more than a quarter radius around the
     pipe.
@@ -73,7 +73,7 @@ class SurfaceContact(SoilContact):
         half = 0.5 * self._soil.facet_size
         self._reach = reach or CandidateRange(half, min(half, AROUND * float(radius.max())))
         axis = line.basis[:2, 0] if along is None else along
-        self._parts = divisions(surface.points, self._soil.facets, axis, spacing)
+        self._parts = divisions(surface.points, self._soil.facets, axis, spacing, float(line.length.min()))
         self._first = np.append(0, np.cumsum(self._parts.prod(axis=1)))[:-1]
         self._memory = PointMemory(pressure.initial_history(()))
 
