@@ -146,7 +146,8 @@ def seabed_contact_of(
         _ground(scene, scene.seabed),
         law,
         ENDS if settings.at_nodes else gauss(GAUSS_POINTS),
-        covered=beside.covers if beside is not None else None,
+        covered=None if beside is None else beside.covers,
+        covering=beside,
     )
 
 

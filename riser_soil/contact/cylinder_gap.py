@@ -18,7 +18,8 @@ import math
 
 import numpy as np
 
-from riser_soil.contact.near_points import Axis, NearPoints, Surface, combined, point_on, signed_distance
+from riser_soil.contact.closest_point import Axis, combined, signed_distance
+from riser_soil.contact.near_points import NearPoints, Surface, point_on
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
 from riser_soil.riser.hermite import Four, bend, slope
@@ -36,12 +37,13 @@ def gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array) -> t
     """
     columns = 4 * basis.shape[1] + 3 * surface.facets.shape[1]
     forms, C = np.empty((len(near.gap), FORMS, columns)), np.zeros((len(near.gap), FORMS, FORMS))
-    _gap_forms(axis, surface, near, basis, forms, C)
+    put_gap_forms(axis, surface, near, basis, forms, C)
     return forms, C
 
 
 @njit
-def _gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array, forms: Array, C: Array) -> None:
+def put_gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array, forms: Array, C: Array) -> None:
+    """Write what `gap_forms` returns."""
     nv = surface.facets.shape[1]
     N, dN, vectors = np.empty(nv), np.empty((nv, 2)), np.empty((FORMS, 2, 3))
     for i in range(len(near.gap)):
@@ -77,10 +79,9 @@ def _frame(
 
     At an end of the element the third form is along the other direction square to n.
     """
-    c, c1, c2 = combined(q, axis_shape(xi, L)), combined(q, slope(xi, L)), combined(q, bend(xi, L))
-    rho = signed_distance(c, p, radius)
+    c1, c2 = combined(q, slope(xi, L)), combined(q, bend(xi, L))
+    rho, n = away_from_axis(q, L, radius, xi, p)
     vectors[...] = 0.0
-    n = ((p[0] - c[0]) / rho, (p[1] - c[1]) / rho, (p[2] - c[2]) / rho)
     ahead = c1[0] * c1[0] + c1[1] * c1[1] + c1[2] * c1[2]
     kappa = n[0] * c2[0] + n[1] * c2[1] + n[2] * c2[2]
     b = _square_to(c1, n)
@@ -99,6 +100,16 @@ def _frame(
     C[2, 2] = rho / ahead
     C[2, 3] = C[3, 2] = rho * kappa / ahead - 1.0
     C[3, 3] = rho * kappa * kappa / ahead - kappa
+
+
+@njit
+def away_from_axis(
+    q: Array, L: float, radius: float, xi: float, p: tuple[float, float, float]
+) -> tuple[float, tuple[float, float, float]]:
+    """rho [m] and n of a point p whose closest place on an element is xi, see the module's text."""
+    c = combined(q, axis_shape(xi, L))
+    rho = signed_distance(c, p, radius)
+    return rho, ((p[0] - c[0]) / rho, (p[1] - c[1]) / rho, (p[2] - c[2]) / rho)
 
 
 @njit

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from riser_soil.contact.gap import heights
-from riser_soil.contact.pairing import FacetSearch
+from riser_soil.contact.pairing import Cover, FacetSearch
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import State
 from riser_soil.soil.surface import SoilSurface
@@ -92,6 +92,10 @@ class DeformedSurface:
     def locate(self, xy: Array, points: Array) -> tuple[IntArray, Array]:
         """Facet (n,), −1 outside, and place on it (n, 2) below positions xy (n, 2), at deformed points."""
         return self._pairing.locate(xy, points)
+
+    def cover(self) -> Cover:
+        """Of what lies below the surface as accepted so far."""
+        return self._pairing.cover(self.settled)
 
     def facet_dofs(self, facet: IntArray) -> IntArray:
         """Local dof numbers (n, 3·nv) of facets, node by node."""

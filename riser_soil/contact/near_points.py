@@ -1,8 +1,6 @@
 """Search for the points of the soil's surface near the pipe, which is a cylinder around its curved axis.
 
-The axis is the cubic c(s) = Σ N_a(s) q_a of a beam element. A point that has come through to above the axis is taken to
-lie below it: the pipe pushes it down all the same. What lies beyond an element's reach is passed over, facet by facet
-and row by row.
+What lies beyond an element's reach is passed over, facet by facet and row by row.
 """
 
 from __future__ import annotations
@@ -12,26 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from riser_soil.contact.closest_point import Axis, bow_of, nearest
 from riser_soil.contact.facets import QUAD, fill_shape
 from riser_soil.contact.integration_points import area, place
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
-from riser_soil.riser.hermite import Four, bend, slope
-from riser_soil.riser.hermite import shape as axis_shape
 
-MAX_ITERATIONS = 30
-CONVERGED = 1e-9  # step along an element, as a part of its length, after which one more would be below round-off
-THROUGH = 0.5  # radii beside the axis within which a point above it has come through
 ROUND_OFF = 1e-6  # by which a reach is widened, and below which a row lies along an element
-THINNEST = 1e-3  # radii: nearer to the axis the direction from it means nothing
-
-
-class Axis(NamedTuple):
-    """The riser's axis in global axes: q (ne, 4, 3), see `hermite`, lengths and radii (ne,) [m]."""
-
-    q: Array
-    length: Array
-    radius: Array
+FEW = 1024  # points for which there is room at first
 
 
 class Surface(NamedTuple):
@@ -66,6 +52,16 @@ class NearPoints(NamedTuple):
         return NearPoints(*whose, self.along[c], self.xi[c], self.area[c], self.gap[c])
 
 
+class PairsByFacet(NamedTuple):
+    """Pairs of an element and a facet: those of facets[i] are elements[begin[i] : begin[i + 1]]; facets without any are
+    left out.
+    """
+
+    elements: IntArray
+    facets: IntArray
+    begin: IntArray
+
+
 @njit
 def boxes(axis: Axis, above: float, around: float) -> tuple[Array, Array]:
     """Boxes, low and high (ne, 3), around the pipe's elements, as Bézier curves between their handles, wider by a reach
@@ -83,14 +79,24 @@ def boxes(axis: Axis, above: float, around: float) -> tuple[Array, Array]:
 
 def near_points(axis: Axis, surface: Surface, elements: IntArray, facets: IntArray, within: float) -> NearPoints:
     """Points of candidate pairs (m,) of an element and a facet whose gap is less than `within` [m]."""
-    return NearPoints(*_near_points(axis, surface, *_by_facet(elements, facets, len(surface.facets)), within))
+    pairs, room = by_facet(elements, facets, len(surface.facets)), FEW
+    while True:
+        points = points_room(room)
+        found = fill_near(axis, surface, pairs, within, points)
+        if found <= room:
+            return NearPoints(*(values[:found] for values in points))
+        room = found
+
+
+def points_room(count: int) -> NearPoints:
+    """Room for so many points."""
+    whose = (np.empty(count, dtype=np.int64) for _ in range(3))
+    return NearPoints(*whose, np.empty(count), np.empty((count, 2)), np.empty(count), np.empty(count))
 
 
 @njit
-def _by_facet(elements: IntArray, facets: IntArray, count: int) -> tuple[IntArray, IntArray, IntArray]:
-    """The m pairs, facet by facet of those that are in any: their elements (m,), in the order given; the facets (k,);
-    where the elements of each begin (k + 1,).
-    """
+def by_facet(elements: IntArray, facets: IntArray, count: int) -> PairsByFacet:
+    """Pairs (m,) of an element and a facet, facet by facet of `count`."""
     counts = np.zeros(count + 1, np.int64)
     for f in facets:
         counts[f + 1] += 1
@@ -100,23 +106,18 @@ def _by_facet(elements: IntArray, facets: IntArray, count: int) -> tuple[IntArra
     for k, f in enumerate(facets):
         order[at[f]] = elements[k]
         at[f] += 1
-    return order, paired, first
+    return PairsByFacet(order, paired, first)
 
 
 @njit
-def _near_points(
-    axis: Axis, surface: Surface, elements: IntArray, facets: IntArray, begin: IntArray, within: float
-) -> tuple[IntArray, IntArray, IntArray, Array, Array, Array, Array]:
-    bow = _bow(axis)
-    room = 0
-    for f in facets:
-        room += surface.parts[f, 0] * surface.parts[f, 1]
-    element, facet, number = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
-    numbers, n, nv = np.empty((room, 5)), 0, surface.facets.shape[1]
-    N, dN, kept = np.empty(nv), np.empty((nv, 2)), np.empty_like(elements)
-    for i, f in enumerate(facets):
+def fill_near(axis: Axis, surface: Surface, pairs: PairsByFacet, within: float, out: NearPoints) -> int:
+    """Write the points of some pairs whose gap is less than `within` [m], as many as there is room for: their number."""
+    bow = bow_of(axis)
+    room, n, nv = len(out.gap), 0, surface.facets.shape[1]
+    N, dN, kept = np.empty(nv), np.empty((nv, 2)), np.empty_like(pairs.elements)
+    for i, f in enumerate(pairs.facets):
         nodes = surface.facets[f]
-        near = elements[begin[i] : begin[i + 1]]
+        near = pairs.elements[pairs.begin[i] : pairs.begin[i + 1]]
         rows, columns, even = 1, surface.parts[f, 0] * surface.parts[f, 1], nv == len(QUAD)
         if even:
             rows, columns = surface.parts[f, 0], surface.parts[f, 1]
@@ -139,18 +140,17 @@ def _near_points(
                     p = point_on(surface.deformed, nodes, xi, eta, N, dN)
                 if _distance(p, clear_of) <= clearance - within:
                     continue
-                e, along, gap, clearance = _nearest(axis, bow, beside, p, within)
+                e, along, gap, clearance = nearest(axis, bow, beside, p, within)
                 clear_of = p
                 if gap < within:
-                    xi, eta, share = place(nv, surface.parts[f], k)
-                    fill_shape(xi, eta, N, dN)
-                    element[n], facet[n], number[n] = e, f, surface.first[f] + k
-                    numbers[n, 0], numbers[n, 1], numbers[n, 2], numbers[n, 3] = along, gap, xi, eta
-                    numbers[n, 4] = share * area(surface.at_first, nodes, dN)
+                    if n < room:
+                        xi, eta, share = place(nv, surface.parts[f], k)
+                        fill_shape(xi, eta, N, dN)
+                        out.element[n], out.facet[n], out.number[n] = e, f, surface.first[f] + k
+                        out.along[n], out.xi[n, 0], out.xi[n, 1], out.gap[n] = along, xi, eta, gap
+                        out.area[n] = share * area(surface.at_first, nodes, dN)
                     n += 1
-    values = numbers[:n]
-    whose = element[:n], facet[:n], number[:n]
-    return *whose, values[:, 0].copy(), values[:, 2:4].copy(), values[:, 4].copy(), values[:, 1].copy()
+    return n
 
 
 @njit
@@ -251,99 +251,5 @@ def point_on(
 
 
 @njit
-def _nearest(
-    axis: Axis, bow: Array, elements: IntArray, p: tuple[float, float, float], within: float
-) -> tuple[int, float, float, float]:
-    """Of some elements the one whose axis comes nearest to a point, the place on it, and the gap [m]; the first where
-    two come as near. -1 where none can come within that gap. Last the clearance [m]: no gap is less.
-    """
-    nearest, place_on, gap, distance, clearance = -1, 0.0, np.inf, np.inf, np.inf
-    for e in elements:
-        beside = _from_chord(axis.q[e], p) - bow[e]
-        clearance = min(clearance, beside - axis.radius[e])
-        if beside - axis.radius[e] >= within or beside >= distance:
-            continue
-        along = _closest(axis.q[e], axis.length[e], p)
-        c = combined(axis.q[e], axis_shape(along, axis.length[e]))
-        rho = signed_distance(c, p, axis.radius[e])
-        if abs(rho) < distance:
-            nearest, place_on, gap, distance = e, along, rho - axis.radius[e], abs(rho)
-    return nearest, place_on, gap, clearance
-
-
-@njit
 def _distance(p: tuple[float, float, float], r: tuple[float, float, float]) -> float:
     return math.sqrt((p[0] - r[0]) ** 2 + (p[1] - r[1]) ** 2 + (p[2] - r[2]) ** 2)
-
-
-@njit
-def _from_chord(q: Array, p: tuple[float, float, float]) -> float:
-    """Distance of a point from the straight line between an element's ends [m]."""
-    share, beside = _along_chord(q, p), 0.0
-    for i in range(3):
-        beside += (p[i] - q[0, i] - share * (q[2, i] - q[0, i])) ** 2
-    return math.sqrt(beside)
-
-
-@njit
-def _along_chord(q: Array, p: tuple[float, float, float]) -> float:
-    """Place, 0 to 1, on the straight line between an element's ends that is closest to a point."""
-    along = square = 0.0
-    for i in range(3):
-        chord = q[2, i] - q[0, i]
-        along += (p[i] - q[0, i]) * chord
-        square += chord * chord
-    return min(max(along / square, 0.0), 1.0) if square > 0.0 else 0.0
-
-
-@njit
-def _bow(axis: Axis) -> Array:
-    """How far (ne,) the axis leaves the chord at most [m], stretched as it may be: being a Bézier curve, no farther
-    than 3/4 of what its handles do, whose weights sum to that at most.
-    """
-    out = np.empty(len(axis.length))
-    for e in range(len(out)):
-        q, third = axis.q[e], axis.length[e] / 3.0
-        first, last = combined(q, (1.0, third, 0.0, 0.0)), combined(q, (1.0, 0.0, 0.0, third))
-        out[e] = 0.75 * max(_from_chord(q, first), _from_chord(q, last))
-    return out
-
-
-@njit
-def signed_distance(c: tuple[float, float, float], p: tuple[float, float, float], radius: float) -> float:
-    """Distance of p from the axis at c [m], < 0 where it has come through to above."""
-    x, y, z = p[0] - c[0], p[1] - c[1], p[2] - c[2]
-    beside = math.sqrt(x * x + y * y)
-    rho = max(math.sqrt(beside * beside + z * z), THINNEST * radius)
-    return -rho if z > 0.0 and beside < THROUGH * radius else rho
-
-
-@njit
-def _closest(q: Array, L: float, p: tuple[float, float, float]) -> float:
-    """Place xi in 0..1 on an element's axis that is closest to a point."""
-    xi = _along_chord(q, p)
-    for _ in range(MAX_ITERATIONS):
-        c, c1 = combined(q, axis_shape(xi, L)), combined(q, slope(xi, L))
-        c2 = combined(q, bend(xi, L))
-        against = ahead = turning = 0.0
-        for i in range(3):
-            against += (p[i] - c[i]) * c1[i]
-            ahead += c1[i] * c1[i]
-            turning += (p[i] - c[i]) * c2[i]
-        rate = ahead - turning
-        if rate <= 0.1 * ahead:  # far from the axis, beyond its centre of curvature
-            rate = ahead
-        new = min(max(xi + against / (rate * L), 0.0), 1.0)
-        step, xi = abs(new - xi), new
-        if step < CONVERGED:
-            break
-    return xi
-
-
-@njit
-def combined(q: Array, N: Four) -> tuple[float, float, float]:
-    """Sum of the q (4, 3) of an element by their shape functions."""
-    x = N[0] * q[0, 0] + N[1] * q[1, 0] + N[2] * q[2, 0] + N[3] * q[3, 0]
-    y = N[0] * q[0, 1] + N[1] * q[1, 1] + N[2] * q[2, 1] + N[3] * q[3, 1]
-    z = N[0] * q[0, 2] + N[1] * q[1, 2] + N[2] * q[2, 2] + N[3] * q[3, 2]
-    return x, y, z

@@ -30,6 +30,27 @@ class Plan(NamedTuple):
     facets: IntArray
 
 
+class Cover(NamedTuple):
+    """A surface that covers what lies below it, for compiled code. points (np, 3) [m] with the boxes of their facets,
+    see `bounds`, and the box around these; work (nv, 3), xy and xi (2,): room.
+    """
+
+    plan: Plan
+    facets: IntArray
+    points: Array
+    boxes: Array
+    limits: Array
+    work: Array
+    xy: Array
+    xi: Array
+
+    def renew(self, points: Array) -> None:
+        """Take other places of the points (np, 3) [m]."""
+        self.points[...] = points
+        self.boxes[...] = bounds(points, self.facets)
+        self.limits[...] = limits_of(self.boxes)
+
+
 class FacetSearch:
     """Finds facets below points by a plan of the facets and Newton's method on the facets' map.
 
@@ -43,6 +64,13 @@ class FacetSearch:
     def __init__(self, points: Array, facets: IntArray) -> None:
         self._facets = np.ascontiguousarray(facets, dtype=np.int64)
         self._plan = _plan(bounds(points, self._facets))
+
+    def cover(self, points: Array) -> Cover:
+        """Of the facets with their points at (np, 3) [m], which may be renewed."""
+        boxes, work = bounds(points, self._facets), np.empty((self._facets.shape[1], 3))
+        made = Cover(self._plan, self._facets, points.copy(), boxes, np.empty(4), work, np.empty(2), np.empty(2))
+        made.renew(points)
+        return made
 
     def locate(self, xy: Array, points: Array) -> tuple[IntArray, Array]:
         """Facet (n,), −1 where there is none, and (ξ, η) on it (n, 2), of horizontal positions xy (n, 2).
@@ -93,15 +121,41 @@ def _box(points: Array, nodes: IntArray) -> tuple[float, float, float, float]:
 @njit
 def _locate(xy: Array, plan: Plan, facets: IntArray, points: Array) -> tuple[IntArray, Array]:
     facet, xi = np.full(len(xy), -1), np.zeros((len(xy), 2))
-    boxes = bounds(points, facets)
-    low_x, low_y, high_x, high_y = boxes[:, 0].min(), boxes[:, 1].min(), boxes[:, 2].max(), boxes[:, 3].max()
-    everything, work = np.arange(len(facets)), np.empty((facets.shape[1], 3))
+    boxes, work = bounds(points, facets), np.empty((facets.shape[1], 3))
+    limits = limits_of(boxes)
     for i in range(len(xy)):
-        if low_x <= xy[i, 0] <= high_x and low_y <= xy[i, 1] <= high_y:
-            facet[i] = _lowest_holding(xy[i], _proposed(plan, xy[i]), facets, points, boxes, work, xi[i])
-            if facet[i] < 0:
-                facet[i] = _lowest_holding(xy[i], everything, facets, points, boxes, work, xi[i])
+        facet[i] = _holding(xy[i], plan, facets, points, boxes, limits, work, xi[i])
     return facet, xi
+
+
+@njit
+def limits_of(boxes: Array) -> Array:
+    """The box (4,) around boxes (nf, 4)."""
+    low_x, low_y, high_x, high_y = np.inf, np.inf, -np.inf, -np.inf
+    for f in range(len(boxes)):
+        low_x, low_y = min(low_x, boxes[f, 0]), min(low_y, boxes[f, 1])
+        high_x, high_y = max(high_x, boxes[f, 2]), max(high_y, boxes[f, 3])
+    return np.array([low_x, low_y, high_x, high_y])
+
+
+@njit
+def _holding(
+    xy: Array,
+    plan: Plan,
+    facets: IntArray,
+    points: Array,
+    boxes: Array,
+    limits: Array,
+    work: Array,
+    xi: Array,
+) -> int:
+    """The facet that holds a point (2,), -1 where none does; its (ξ, η) go to xi."""
+    if not (limits[0] <= xy[0] <= limits[2] and limits[1] <= xy[1] <= limits[3]):
+        return -1
+    found = _lowest_holding(xy, _proposed(plan, xy), facets, points, boxes, work, xi)
+    if found < 0:
+        found = _lowest_holding(xy, np.arange(len(facets)), facets, points, boxes, work, xi)
+    return found
 
 
 @njit
@@ -163,3 +217,11 @@ def _newton_step(xy: Array, points: Array, nodes: IntArray, N: Array, dN: Array)
     if det == 0.0:
         return np.inf, np.inf
     return (d * rx - b * ry) / det, (a * ry - c * rx) / det
+
+
+@njit
+def covers(cover: Cover, x: float, y: float) -> bool:
+    """Whether a horizontal position [m] lies over a surface, as `FacetSearch.locate` finds it."""
+    cover.xy[0], cover.xy[1] = x, y
+    given = cover.plan, cover.facets, cover.points, cover.boxes, cover.limits, cover.work, cover.xi
+    return _holding(cover.xy, *given) >= 0

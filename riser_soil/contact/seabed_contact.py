@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from riser_soil.contact import seabed_stations
 from riser_soil.contact.landing import landing_predictor
 from riser_soil.contact.line_contact import ContactAlongLine, LineContact
+from riser_soil.contact.pairing import Cover
 from riser_soil.contact.seabed_loop import SeabedNumbers, seabed_numbers
 from riser_soil.contact.station_forces import StationForces
 from riser_soil.contact.work_along_step import work_along_step
@@ -26,6 +27,16 @@ from riser_soil.seabed.law import NormalLaw
 
 CoveredBySoil = Callable[[Array], BoolArray]
 """Horizontal positions (n, 2) [m] -> whether something other than the seabed lies there, such as a block of soil."""
+
+
+class Covering(Protocol):
+    """What lies on the seabed in places as compiled code has it, see `CoveredBySoil`."""
+
+    def cover(self) -> Cover: ...
+
+    def renew_cover(self, cover: Cover) -> None:
+        """Let it be that of the present place."""
+        ...
 
 
 class ContactElements(NamedTuple):
@@ -61,7 +72,7 @@ class SeabedContact(LineContact):
 
     line: the riser's field. radius (ne,): distance [m] from the axis to the line that touches, 0 for the axis itself.
     rule: the stations of an element, Gauss points by default; its two ends make it the classical contact of nodes.
-    covered: where the seabed does not act. at: the stations; share (ne, ng): arc length that each stands for [m].
+    covered: where the seabed does not act, and the same for compiled code. at: the stations; share (ne, ng): arc length that each stands for [m].
     memory (ne, ng, nh): the law's history.
     """
 
@@ -76,9 +87,10 @@ class SeabedContact(LineContact):
         law: NormalLaw,
         rule: stations.QuadratureRule = stations.THREE_POINTS,
         covered: CoveredBySoil | None = None,
+        covering: Covering | None = None,
     ) -> None:
         super().__init__(line, law)
-        self.ground, self._radius, self._covered = ground, radius, covered
+        self.ground, self._radius, self._covered, self._covering = ground, radius, covered, covering
         self._radius_of_nodes = larger_beside(radius)
         self._frame = seabed_stations.frame_of(line)
         self.at = stations.stations(line.length, rule)
@@ -138,15 +150,17 @@ class SeabedContact(LineContact):
         return found
 
     def numbers(self) -> SeabedNumbers | None:
-        """None beside soil."""
-        if self._covered is not None:
+        if self._covered is not None and self._covering is None:
             return None
         stations = self.at, self.share, self._radius, self.memory
-        self.in_loop = seabed_numbers(self.line, *stations, self.ground.numbers, self.law)
+        cover = None if self._covering is None else self._covering.cover()
+        self.in_loop = seabed_numbers(self.line, *stations, self.ground.numbers, self.law, cover)
         return self.in_loop
 
     def renew_numbers(self, start: float, end: float) -> None:
         self.in_loop.memory[:] = self.memory
+        if self._covering is not None:
+            self._covering.renew_cover(self.in_loop.cover)
 
     def energy(self, state: State) -> Energy:
         """Energy stored by the law, which it can return."""

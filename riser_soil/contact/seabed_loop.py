@@ -8,9 +8,11 @@ import numpy as np
 
 from riser_soil.contact.coulomb import Pair, return_map
 from riser_soil.contact.friction_stations import elastic_guess, read_along, resistance_by_position, vector_of
-from riser_soil.contact.seabed_stations import LineFrame, by_position, distance_in, frame_of
+from riser_soil.contact.pairing import Cover, covers
+from riser_soil.contact.seabed_stations import LineFrame, by_position, distance_in, frame_of, global_place
 from riser_soil.contact.work_along_step import work_at
 from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
@@ -36,9 +38,15 @@ class Found(NamedTuple):
     after: Array
 
 
+class Bare(NamedTuple):
+    """Ground on which nothing lies anywhere."""
+
+    covered: bool
+
+
 class SeabedNumbers(NamedTuple):
     """A `SeabedContact`: its stations and their share of arc length (ne, ng), radius (ne,), memory (ne, ng, nh), and
-    the numbers of its ground and law; the law's reach; room for an element, and for the force and its derivative at a
+    the numbers of its ground and law; the law's reach; what covers the ground in places; room for an element, and for the force and its derivative at a
     station.
     """
 
@@ -50,6 +58,7 @@ class SeabedNumbers(NamedTuple):
     ground: Any
     law: Any
     reach: float
+    cover: Any
     found: Found
     element: stations.ElementRoom
     f: Array
@@ -71,9 +80,9 @@ class FrictionNumbers(NamedTuple):
 
 
 def seabed_numbers(
-    line: Line, at: stations.Stations, share: Array, radius: Array, memory: Array, ground: Any, law: NormalLaw
+    line: Line, at: stations.Stations, share: Array, radius: Array, memory: Array, ground: Any, law: NormalLaw, cover: Cover | None = None
 ) -> SeabedNumbers:
-    """With the room that they need; ground: its numbers."""
+    """With the room that they need; ground: its numbers; cover: what lies on it in places, if anything."""
     (ne, ng), d = share.shape, line.dimension
     position, normal = np.zeros((ne, ng, d)), np.zeros((ne, ng, d))
     penetration, force, slope, stored = (np.zeros((ne, ng)) for _ in range(4))
@@ -81,7 +90,31 @@ def seabed_numbers(
     found = Found(touches, position, normal, penetration, force, slope, stored, after)
     element = stations.element_room(ng, 2 * line.ndof, fixed(d))
     room = found, element, np.zeros(d), np.zeros((d, d))
-    return SeabedNumbers(at, share, radius, memory.copy(), frame_of(line), ground, law.numbers, float(law.reach), *room)
+    law_and_cover = law.numbers, float(law.reach), Bare(False) if cover is None else cover
+    return SeabedNumbers(at, share, radius, memory.copy(), frame_of(line), ground, *law_and_cover, *room)
+
+
+@by_type
+def is_covered(cover: Any, x: Vec) -> Any:
+    """Whether something lies on the ground below a place x, in global axes."""
+
+
+@is_covered.of(Bare)
+def _never(cover: Bare, x: Vec) -> bool:
+    return cover.covered
+
+
+@is_covered.of(Cover)
+def _by_surface(cover: Cover, x: Vec) -> bool:
+    return covers(cover, x[0], x[1])
+
+
+@njit
+def _open_penetration(part: SeabedNumbers, place: Array, penetration: float, e: int, g: int) -> float:
+    """Penetration of a station, -inf where something else lies on the ground."""
+    if not may_act(part.law, penetration, part.memory[e, g]):
+        return penetration
+    return -np.inf if is_covered(part.cover, global_place(part.frame, padded(place))) else penetration
 
 
 @add_forces.of(SeabedNumbers)
@@ -92,7 +125,7 @@ def _contact_forces(part: SeabedNumbers, at: Configuration, out: LineForces) -> 
         for g in range(part.share.shape[1]):
             stations.put_value(part.at.N[e, g], at.q[e], found.position[e, g], at.D)
             value, normal, _ = distance_in(part.frame, part.ground, padded(found.position[e, g]))
-            found.penetration[e, g] = part.radius[e] - value
+            found.penetration[e, g] = _open_penetration(part, found.position[e, g], part.radius[e] - value, e, g)
             put(normal, found.normal[e, g])
             touches |= may_act(part.law, found.penetration[e, g], part.memory[e, g])
         found.touches[e] = touches
@@ -144,7 +177,7 @@ def _contact_work(part: SeabedNumbers, first: Configuration, last: Configuration
         for g in range(ng):
             stations.put_value(part.at.N[e, g], first.q[e], began[g], last.D)
             value, _, _ = distance_in(part.frame, part.ground, padded(began[g]))
-            before[g] = part.radius[e] - value
+            before[g] = _open_penetration(part, began[g], part.radius[e] - value, e, g)
             touched |= may_act(part.law, before[g], part.memory[e, g])
         for g in range(ng):
             share = part.share[e, g]

@@ -55,8 +55,14 @@ def frame_of(line: Line) -> LineFrame:
 @njit
 def distance_in(frame: LineFrame, ground: Any, x: Vec) -> tuple[float, Vec, Mat]:
     """Distance of a point from the ground [m], its gradient and hessian [1/m], in the line's axes as x is."""
-    value, gradient, hessian = distance_at(ground, add(frame.origin, vecmat(x, frame.axes)))
+    value, gradient, hessian = distance_at(ground, global_place(frame, x))
     return value, matvec(frame.axes, gradient), matmul(matmul(frame.axes, hessian), transpose(frame.axes))
+
+
+@njit
+def global_place(frame: LineFrame, x: Vec) -> Vec:
+    """A place in global axes [m]."""
+    return add(frame.origin, vecmat(x, frame.axes))
 
 
 @njit

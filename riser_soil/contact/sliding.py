@@ -16,8 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from riser_soil.contact.closest_point import THINNEST, Axis, combined
 from riser_soil.contact.facets import fill_shape
-from riser_soil.contact.near_points import THINNEST, Axis, NearPoints, Surface, combined
+from riser_soil.contact.near_points import NearPoints, Surface
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser import hermite

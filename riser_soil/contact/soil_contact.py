@@ -11,6 +11,7 @@ from riser_soil.contact.candidates import CandidatePairs
 from riser_soil.contact.ground import DeformedSurface
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.line_contact import ContactAlongLine, LineContact
+from riser_soil.contact.pairing import Cover
 from riser_soil.contact.suction import SuctionLaw
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Forces, MatrixBlock, State, Traits, Weights
@@ -138,6 +139,14 @@ class SoilContact(LineContact):
         """Which horizontal positions (n, 2) [m] lie over the soil as it is now."""
         facet, _ = self._soil.locate(xy, self._soil.settled)
         return np.asarray(facet >= 0)
+
+    def cover(self) -> Cover:
+        """The same for compiled code."""
+        return self._soil.cover()
+
+    def renew_cover(self, cover: Cover) -> None:
+        """Let it be that of the soil as it is now."""
+        cover.renew(self._soil.settled)
 
     def settlement(self, xy: Array, state: State) -> Array:
         """Settlement (n,) [m] of the soil's surface at horizontal positions (n, 2) [m] since before the riser came.

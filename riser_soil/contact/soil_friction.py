@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from riser_soil.contact.active_pairs import add_products, add_rows
+from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.coulomb import stuck, traction
-from riser_soil.contact.near_points import Axis, Surface
+from riser_soil.contact.near_points import Surface
 from riser_soil.contact.point_memory import PointMemory
 from riser_soil.contact.sliding import Slide, slide
 from riser_soil.contact.surface_contact import SurfaceContact, SurfaceState

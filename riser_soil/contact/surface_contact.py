@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from riser_soil.contact.active_pairs import ActivePairs, add_rows, in_dofs, paired
 from riser_soil.contact.candidates import CandidatePairs, touching_boxes
+from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.cylinder_gap import gap_forms
 from riser_soil.contact.detection import add_blocks, add_shares
 from riser_soil.contact.gap import heights
 from riser_soil.contact.integration_points import divisions
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.near_points import Axis, NearPoints, Surface, boxes, near_points
+from riser_soil.contact.near_points import NearPoints, PairsByFacet, Surface, boxes, by_facet, near_points
 from riser_soil.contact.point_memory import PointMemory
 from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
 from riser_soil.contact.suction import SuctionLaw
+from riser_soil.contact.surface_loop import TouchNumbers
 from riser_soil.contact.work_along_step import work_along_step
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Weights, Work
@@ -48,10 +51,10 @@ class SurfaceContact(SoilContact):
 
     radius (ne,): of the pipe [m]. pressure: its law of the penetration, [N/m2] where other contacts have [N/m]; with a
     history, such as suction has, for each point of the soil. spacing: of the integration points along and across the
-    riser [m], see `divisions`. upright: contact sees the soil's surface move up and down alone, and presses on it so; the horizontal
-    forces on the riser are then borne by nothing. along (2,): horizontal unit vector of the riser on the ground; by
-    default its first axis. reach: by default half a facet above the soil, but no more than a quarter radius around the
-    pipe.
+    riser [m], see `divisions`. upright: contact sees the soil's surface move up and down alone, and presses on it so;
+    the horizontal forces on the riser are then borne by nothing. along (2,): horizontal unit vector of the riser on the
+    ground; by default its first axis. reach: by default half a facet above the soil, but no more than a quarter radius
+    around the pipe.
     """
 
     def __init__(
@@ -112,6 +115,24 @@ class SurfaceContact(SoilContact):
             deformed[:, :2] = self._soil.at_first[:, :2]
         return deformed
 
+    def touch_numbers(self) -> TouchNumbers | None:
+        """For the compiled loop, with room for axis and surface; None with a history."""
+        if self.law.columns:
+            return None
+        axis = Axis(np.zeros((self.line.length.size, 4, 3)), self.line.length, self._radius)
+        frame = np.ascontiguousarray(self.line.basis), self.line.origin
+        surface = self.surface(self._soil.settled)
+        return TouchNumbers(axis, surface, *frame, self.law.numbers, float(self.law.start), self._upright)
+
+    def watch(self, axes: Sequence[Axis], settled: Array) -> tuple[Array, Array, PairsByFacet]:
+        """Boxes, low and high (ne, 3), around the pipe's elements where their axes are, wider by the candidates' range,
+        and the pairs that may touch within; settled (np, 3): the surface.
+        """
+        around = [boxes(axis, self._reach.above, self._reach.around) for axis in axes]
+        low, high = np.min([low for low, _ in around], axis=0), np.max([high for _, high in around], axis=0)
+        elements, facets = touching_boxes(low, high, settled, self._soil.facets)
+        return low, high, by_facet(elements, facets, len(self._soil.facets))
+
     def surface(self, deformed: Array) -> Surface:
         """The soil's surface with its points at (np, 3) [m]."""
         return Surface(self._soil.facets, self._parts, self._first, self._soil.at_first, deformed)
@@ -121,6 +142,11 @@ class SurfaceContact(SoilContact):
         q = trial.q @ self.line.basis.T
         q[:, ::2] += self.line.origin
         return Axis(q, self.line.length, self._radius)
+
+    @property
+    def around(self) -> float:
+        """How far beside the pipe facets are candidates [m]."""
+        return self._reach.around
 
     def _pairs(self, axis: Axis, deformed: Array, reach: CandidateRange) -> tuple[IntArray, IntArray]:
         """Elements and facets (n,) whose boxes touch, those of the pipe wider by the reach."""

@@ -68,8 +68,9 @@ class System:
 
     def _number(self) -> None:
         self.numbering = Numbering(self.comm, self.model.fields)
-        self.prescribed: BoolArray = np.concatenate([f.prescribed for f in self.model.fields])
-        self.prescribed_dofs: IntArray = np.flatnonzero(self.prescribed)
+        self.prescribed: BoolArray
+        self.prescribed_dofs: IntArray
+        self.renew_prescribed()
 
     def _weigh_moments(self) -> tuple[float, Array]:
         levers = np.ones(self.numbering.size)
@@ -114,6 +115,11 @@ class System:
         self.destroy()
         self._number()
         self.matrix = self._new_matrix()
+
+    def renew_prescribed(self) -> None:
+        """Look anew which dofs are free, where the matrix is not asked for."""
+        self.prescribed = np.concatenate([f.prescribed for f in self.model.fields])
+        self.prescribed_dofs = np.flatnonzero(self.prescribed)
 
     def prescribe(self, state: State) -> None:
         """Write the prescribed motion at state.t into the state's arrays."""

@@ -205,6 +205,10 @@ class CondensedSoil:
         both = np.union1d(wanted, self.top.reached.nodes)
         self.top.reach(wanted if self._spare(len(both)) else both)
 
+    def meet(self, nodes: IntArray) -> None:
+        """Take note of nodes that are not reached and bear a force in the step so far."""
+        self._met = nodes
+
     def _spare(self, nodes: int) -> bool:
         """Whether so many are too many to be reached."""
         return nodes > SPARE * np.count_nonzero(self._wanted) + FEW

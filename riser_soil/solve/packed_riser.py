@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -35,17 +35,27 @@ from riser_soil.riser.part_kernels import (
 from riser_soil.solve import riser_loop as loop
 from riser_soil.solve.riser_loop import Dofs, MatrixRoom, NewtonProgress, StepNumbers, StopLimits
 
+if TYPE_CHECKING:
+    from riser_soil.solve.soil_border import SoilBorder
+
 Numbers = tuple[Any, ...]
 
 
 class PackedRiser:
     """A line and its parts, whose arrays it shares; at, step, forces, dofs, room, progress: what the loop writes to.
 
-    numbers: of the parts; prescribed, levers (size,): of the line's dofs; most: iterations of a step.
+    numbers: of the parts; prescribed, levers (size,): of the line's dofs; most: iterations of a step; border: unknowns
+    beside them, if any.
     """
 
     def __init__(
-        self, line: Line, numbers: Sequence[Numbers], prescribed: BoolArray, levers: Array, most: int
+        self,
+        line: Line,
+        numbers: Sequence[Numbers],
+        prescribed: BoolArray,
+        levers: Array,
+        most: int,
+        border: SoilBorder | None = None,
     ) -> None:
         self._line, shape = line, (line.nodes, line.ndof)
         self.step, self.forces, self.room = StepNumbers(*_zeros(6, shape)), forces_of(line), matrix_room(line)
@@ -57,10 +67,10 @@ class PackedRiser:
         self._maps, self._weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
         self._weighed = Weights(0.0, 0.0, 0.0, 0.0)  # as in both
         self._limits = Packed(StopLimits(0.0, 0.0, 0.0, most, 0, False))
-        self._bind(numbers)
-        self._bind_account(numbers)
+        self._bind(numbers, border)
+        self._bind_account(numbers, border)
 
-    def _bind(self, numbers: Sequence[Numbers]) -> None:
+    def _bind(self, numbers: Sequence[Numbers], border: SoilBorder | None) -> None:
         """Bind the kernels of the loop to where they read and write."""
         at = self.at = room_for(self._line)
         written = self.step, self.forces, self.dofs, self.room, self.progress
@@ -71,16 +81,19 @@ class PackedRiser:
             bound(place, at, self._base, *map(Packed, (self.step.u, self.step.v, self.step.a))),
             Bound(loop.clear, forces),
             *(bound(add_forces, each, now, forces) for each in numbers),
+            *([] if border is None else border.forces(now, forces)),
             Bound(loop.collect, now, forces),
             Bound(loop.combine, forces, step, weights, dofs),
-            Bound(loop.judge, forces, dofs, limits, progress),
         ]
+        judged = forces, dofs, limits, progress
+        evaluate.append(Bound(loop.judge, *judged) if border is None else border.judge(*judged))
 
         def tangent(maps: Packed) -> list[Bound]:
             return [
                 bound(put_maps, at, maps),
                 Bound(loop.clear_tangent, room),
                 *(bound(add_tangent, each, now, maps, weights, K) for each in numbers),
+                *([] if border is None else border.tangent(now, K)),
                 Bound(loop.weigh, forces, weights, room),
                 bound(put_turning, at, Packed(self.room.conjugate), Packed(self.room.turning)),
                 Bound(loop.turn, room),
@@ -90,15 +103,19 @@ class PackedRiser:
         put_sizes = bound(put_magnitudes, at, Packed(self.dofs.sizes))
         probe = [*at_held_rates, put_sizes, Bound(loop.judge_round_off, room, dofs, progress)]
         put_tangent = [*tangent(maps), Bound(loop.fill, room, dofs)]
-        renew = [*put_tangent, Bound(loop.factorise, room, progress)]
-        improve = [Bound(loop.improve, room, step, dofs)]
+        if border is None:
+            factorise, improve = Bound(loop.factorise, room, progress), [Bound(loop.improve, room, step, dofs)]
+        else:
+            probe = []
+            factorise, improve = border.factorise(room, dofs, progress), [border.improve(room, step, dofs)]
+        renew = [*put_tangent, factorise]
         tables = (Packed(calls(*kernels)) for kernels in (evaluate, probe, renew, improve))
         self._tangled = np.zeros(1, dtype=np.int64)
         solve = Bound(loop.solve_step, *tables, limits, progress)
         self._solve = in_turn(solve, bound(put_tangled, at, Packed(self._tangled)))
         self.evaluate, self.put_tangent = in_turn(*evaluate), in_turn(*put_tangent, put_sizes)
 
-    def _bind_account(self, numbers: Sequence[Numbers]) -> None:
+    def _bind_account(self, numbers: Sequence[Numbers], border: SoilBorder | None) -> None:
         """Bind the kernels of energy and work."""
         turning = [each for each in numbers if type(each) in add_work.kernels]
         still, *self._before = _zeros(3, self.step.u.shape)
@@ -111,6 +128,7 @@ class PackedRiser:
             Bound(loop.clear_account, energy, Packed(self._work)),
             *(bound(add_energy, each, now, energy) for each in numbers),
             *(bound(add_work, each, then, now, row) for each, row in zip(turning, rows, strict=True)),
+            *([] if border is None else border.account(then, now)),
         )
 
     def begin(self, state: State, past: Array | None, weights: Weights, limits: StopLimits) -> None:

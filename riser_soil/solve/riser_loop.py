@@ -19,7 +19,7 @@ from riser_soil.riser.hermite import Size, add_geometric, collect_nodal, scatter
 from riser_soil.riser.part_kernels import LineForces, LineWeights
 from riser_soil.solve.round_off import ROUND_OFF, STALLED
 
-GOING_ON, CONVERGED, NOT_FINITE, SINGULAR, DIVERGED, TOO_MANY = range(6)
+GOING_ON, CONVERGED, NOT_FINITE, SINGULAR, DIVERGED, TOO_MANY, OUTGROWN = range(7)
 DIVERGES = 1e6  # times the first norm
 
 
@@ -162,8 +162,14 @@ def combine(forces: LineForces, step: StepNumbers, weights: LineWeights, dofs: D
 @njit
 def judge(forces: LineForces, dofs: Dofs, limits: StopLimits, progress: NewtonProgress) -> None:
     """Write the norm of the residual, and whether it is small enough or none."""
+    decide(line_norm(dofs), forces, dofs, limits, progress)
+
+
+@njit
+def decide(norm: float, forces: LineForces, dofs: Dofs, limits: StopLimits, progress: NewtonProgress) -> None:
+    """The same of a norm [N]."""
     norms, ending = progress
-    taken, norm = ending[1], _norm(dofs)
+    taken = ending[1]
     norms[taken] = norm
     if not math.isfinite(norm):
         ending[0] = NOT_FINITE
@@ -174,7 +180,7 @@ def judge(forces: LineForces, dofs: Dofs, limits: StopLimits, progress: NewtonPr
 
 
 @njit
-def _norm(dofs: Dofs) -> float:
+def line_norm(dofs: Dofs) -> float:
     """Norm [N] of the residual of what is free, moments over the lever."""
     square = 0.0
     for n in range(dofs.fixed.shape[0]):

@@ -65,11 +65,17 @@ class StepSolver(Protocol):
 
 
 def solver_of(system: System, scheme: Scheme, settings: NewtonSettings) -> StepSolver:
-    """`Newton`; or, where it can be and SNES is not asked for, the compiled loop: for a riser alone on one rank, in
-    time steps of Newmark's scheme or generalised-alpha.
+    """`Newton`; or, where it can be and SNES is not asked for, the compiled loop: for a riser alone or on condensed soil
+    on one rank, in time steps of Newmark's scheme or generalised-alpha.
     """
-    if is_chain(system) and not settings.snes and isinstance(scheme, GeneralizedAlpha):
+    if system.comm.size > 1 or settings.snes or not isinstance(scheme, GeneralizedAlpha):
+        return Newton(system, settings)
+    if is_chain(system):
         from riser_soil.solve.riser_newton import riser_newton
 
         return riser_newton(system, settings) or Newton(system, settings)
+    if system.whole_soil is None:
+        from riser_soil.solve.condensed_newton import condensed_newton
+
+        return condensed_newton(system, settings) or Newton(system, settings)
     return Newton(system, settings)

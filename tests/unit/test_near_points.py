@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.contact.near_points import Axis, Surface, near_points
+from riser_soil.contact.closest_point import Axis
+from riser_soil.contact.near_points import Surface, near_points
 
 RADIUS, WITHIN, PARTS = 0.15, 0.05, 40
 

@@ -1,0 +1,261 @@
+"""Newton's method for the time steps of a riser on condensed soil, compiled: the loop over a riser with a border.
+
+A step that it can't solve, as where contact opens so that steps want shortening, is solved by `Newton`.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from riser_soil.contact.surface_contact import SurfaceContact
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Energy, Forces, State, Work
+from riser_soil.core.saved_state import Saved
+from riser_soil.core.system import System
+from riser_soil.riser.line import Line
+from riser_soil.riser.line_part import LinePart, overrides
+from riser_soil.riser.part_kernels import add_work
+from riser_soil.riser.section_kernels import SectionForces
+from riser_soil.riser.sections import Elements
+from riser_soil.soil.condensed import CondensedSoil
+from riser_soil.solve import riser_loop
+from riser_soil.solve.compiled_mass import CompiledMass
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.packed_riser import PackedRiser
+from riser_soil.solve.riser_loop import StopLimits
+from riser_soil.solve.soil_border import SoilBorder
+from riser_soil.solve.solution import NewtonSettings, Solution, Step
+
+MOST_BEGUN = 8  # times that a step is begun with other pairs or dofs before it is left to `Newton`
+
+Numbered = Sequence[tuple[LinePart, tuple[Any, ...]]]
+
+
+def condensed_newton(system: System, settings: NewtonSettings) -> CondensedNewton | None:
+    """The compiled loop over a riser on condensed soil, where all other parts have kernels and contact no history."""
+    contact = next((part for part in system.model.parts if isinstance(part, SurfaceContact)), None)
+    soil = next((part for part in system.model.parts if isinstance(part, CondensedSoil)), None)
+    if contact is None or soil is None or (touch := contact.touch_numbers()) is None:
+        return None
+    rest = [part for part in system.model.parts if part is not contact and part is not soil]
+    asked = [(part, part.numbers()) for part in rest if isinstance(part, LinePart)]
+    numbered = [(part, numbers) for part, numbers in asked if numbers is not None]
+    if len(numbered) < len(rest):
+        return None
+    border = SoilBorder(contact.line, contact, soil, touch)
+    return CondensedNewton(system, settings, numbered, contact, soil, border)
+
+
+class CondensedNewton:
+    """Solver of time steps of a riser on condensed soil. Create once a stage, by `condensed_newton`; see `Newton`."""
+
+    def __init__(
+        self,
+        system: System,
+        settings: NewtonSettings,
+        parts: Numbered,
+        contact: SurfaceContact,
+        soil: CondensedSoil,
+        border: SoilBorder,
+    ) -> None:
+        self.system, self.settings, self._newton = system, settings, Newton(system, settings)
+        self._contact, self._soil, self._border, self._numbered = contact, soil, border, parts
+        (line,) = system.model.lines
+        assert isinstance(line, Line)
+        self._line, self._at, most = line, slice(0, line.size), settings.max_iterations
+        given = system.prescribed[self._at], system.levers[self._at], most
+        self._riser = PackedRiser(line, [held for _, held in parts], *given, border)
+        self._limits = StopLimits(settings.tolerance, settings.floor, 0.0, most, settings.least_iterations, False)
+        self._nothing, self._t = np.zeros(system.numbering.size), math.nan
+        self._renewed = [part for part, _ in parts if overrides(part, "renew_numbers")]
+        kernels = [(part, type(held) in add_work.kernels) for part, held in parts]
+        self._turning = [(part, kernel) for part, kernel in kernels if kernel or overrides(part, "work")]
+        self._reached = soil.top.reached  # as the system's matrix has it
+        self._solved: State | None = None  # by the compiled loop
+        self._stored = dict[float, float]()  # contact's energy [J] by the time of states
+
+    @property
+    def iterations(self) -> int:
+        return self._newton.iterations
+
+    @property
+    def rests(self) -> bool:
+        return self._newton.rests
+
+    @rests.setter
+    def rests(self, value: bool) -> None:
+        self._newton.rests = value
+
+    def solve(self, step: Step) -> Solution:
+        """Solve a step or raise NotConvergedError."""
+        since = time.perf_counter()
+        self._bring(step.before.t, step.t)
+        norms = self._norms(step)
+        self.system.clock.add("riser and soil", since)
+        if norms is None:
+            self._solved = None
+            return self._by_newton(step)
+        self._solved = self._state(step)
+        return Solution(self._solved, self._forces(), norms)
+
+    def _norms(self, step: Step) -> list[float] | None:
+        """Norms of the residual on the way to balance; None where the loop does not get there."""
+        at, scheme, past = self._at, step.scheme, step.scheme.past(step.start)
+        still = scheme.trial(step.before, step.t, step.dt, self._nothing)
+        guess = State(step.t, step.guess[at].copy(), still.v[at], still.a[at])
+        self._line.prescribe(step.t, guess.u, guess.v, guess.a)
+        self._still = still
+        limits = self._limits._replace(answers_load=self.rests or bool(step.guess.any()))
+        self._newton.rests = False
+        for _ in range(MOST_BEGUN):
+            self._border.begin(step.before, step.guess)
+            self._riser.begin(guess, None if past is None else past[at], scheme.weights(step.dt), limits)
+            outcome, taken = self._riser.solve()
+            self._newton.iterations += taken
+            if outcome == riser_loop.CONVERGED and self._border.holds and not self._line.tangled(self._riser.tangled):
+                return list(self._riser.progress.norms[: taken + 1].tolist())
+            if outcome != riser_loop.OUTGROWN:
+                return None
+            self._border.widen()
+            self._prescribe_anew()
+        return None
+
+    def _prescribe_anew(self) -> None:
+        if self._reached is not self._soil.top.reached:
+            self.system.renew_prescribed()
+
+    def _by_newton(self, step: Step) -> Solution:
+        """With a matrix for what is reached and may touch now."""
+        self._contact.rebuild(State.at_rest(step.before.t, len(self._nothing)))
+        self._newton.renew()
+        self._reached = self._soil.top.reached
+        return self._newton.solve(step)
+
+    def _state(self, step: Step) -> State:
+        """The state found."""
+        line, weights, still = self._riser.solved(step.t), step.scheme.weights(step.dt), self._still
+        dofs, moved = self._border.increments
+        u, v, a = self._nothing.copy(), still.v, still.a
+        u[self._at], v[self._at], a[self._at], u[dofs] = line.u, line.v, line.a, moved
+        v[dofs] += weights.shift_v * moved
+        a[dofs] += weights.shift_a * moved
+        rest = self.system.prescribed.copy()
+        rest[self._at] = False
+        v[rest] = a[rest] = 0.0
+        return State(step.t, u, v, a)
+
+    def _forces(self) -> Forces:
+        """Those of the last trial; on the soil's free dofs they are in balance."""
+        found = self._riser.forces
+        return self._padded(found.inertia, found.force, found.end)
+
+    def _padded(self, *groups: Array) -> Forces:
+        """Forces on the line (nn, ndof) among those of all local dofs."""
+        forces = Forces.zeros(len(self._nothing))
+        for whole, group in zip((forces.inertia, forces.force, forces.end), groups, strict=True):
+            whole[self._at] = group.ravel()
+        return forces
+
+    def _bring(self, start: float, end: float) -> None:
+        """Write what depends on the time into the parts' numbers, for a step between two times."""
+        for part in self._renewed:
+            part.renew_numbers(start, end)
+        self._t = end
+
+    def _bring_to(self, t: float) -> None:
+        if self._t != t:
+            self._bring(t, t)
+
+    @cached_property
+    def _mass_of_line(self) -> CompiledMass:
+        bulk, inertial = (
+            [held for part, held in self._numbered if set(part.traits.groups) & set(groups)] for groups in ("IF", "I")
+        )
+        given = self.system.prescribed[self._at], self.system.levers[self._at], self._bring_to
+        return CompiledMass(self._line, bulk, inertial, *given)
+
+    @cached_property
+    def mass(self) -> MassAmongOthers:
+        """Inverse of the line's mass."""
+        return MassAmongOthers(self._at, self._mass_of_line)
+
+    def bulk_forces(self, state: State) -> Forces:
+        """Forces of groups I and F at an accepted state, those of group E zero."""
+        found = self._mass_of_line.bulk_forces(of_line(state, self._at))
+        return self._padded(found.inertia, found.force, found.end)
+
+    def element_residual(self, line: Line, state: State) -> Array:
+        return self._newton.element_residual(line, state)
+
+    def section_forces(self, line: Line, elements: Elements, state: State) -> SectionForces:
+        return self._newton.section_forces(line, elements, state)
+
+    def nodal_residual(self, line: Line, state: State) -> Array | None:
+        return self._newton.nodal_residual(line, state)
+
+    def turned_over(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
+        """Energy stored at the end of the step solved last, and what each part turned over in it."""
+        if solution.state is not self._solved:
+            self._stored.clear()
+            return self._newton.turned_over(before, solution)
+        since = time.perf_counter()
+        work = {part.name: Work() for part in self.system.model.parts}
+        stored, rows = self._riser.account(of_line(before, self._at))
+        compiled = iter(rows.tolist())
+        for part, kernel in self._turning:
+            work[part.name] += Work(*next(compiled)) if kernel else part.work(before, solution.state)
+        work[self._soil.name] += self._soil.work(before, solution.state)
+        work[self._contact.name] += self._work_of_contact(before, solution.state.t)
+        potential = Energy(potential=self._border.potential)
+        self.system.clock.add("riser and soil", since)
+        return Energy(*stored.tolist()) + potential + self._soil.energy(solution.state), work
+
+    def _work_of_contact(self, before: State, t: float) -> Work:
+        """See `SurfaceContact.work`: without a history all is the time scheme's."""
+        first, last = self._stored.get(before.t), self._border.potential
+        if first is None:
+            first = self._contact.energy(before).potential
+        self._stored = {before.t: first, t: last}
+        lost = self._border.taken() - last + first
+        return Work(dissipated=lost, by_scheme=lost)
+
+    def require_stable(self, solution: Solution) -> None:
+        """Time steps need not be stable equilibria."""
+
+    def renew(self) -> None:
+        self._newton.renew()
+
+    def destroy(self) -> None:
+        self._newton.destroy()
+
+
+class MassAmongOthers:
+    """A line's mass among dofs that have none. at: the line's slice of local arrays."""
+
+    def __init__(self, at: slice, mass: CompiledMass) -> None:
+        self._at, self._mass = at, mass
+
+    def accelerations(self, t: float, force: Array) -> Array:
+        out = np.zeros_like(force)
+        out[self._at] = self._mass.accelerations(t, force[self._at])
+        return out
+
+    def kinetic_energy(self, state: State) -> float:
+        return self._mass.kinetic_energy(of_line(state, self._at))
+
+    def state(self) -> Saved:
+        return self._mass.state()
+
+    def restore(self, saved: Saved) -> None:
+        self._mass.restore(saved)
+
+
+def of_line(state: State, at: slice) -> State:
+    """A state of the line's dofs alone."""
+    return State(state.t, state.u[at], state.v[at], state.a[at])

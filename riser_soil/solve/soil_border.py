@@ -1,0 +1,196 @@
+"""Condensed soil beside a riser in the compiled loop: its reached dofs are the loop's border, and contact couples both.
+
+Which pairs of an element and a facet may touch is found for boxes around the elements, and holds as long as these stay
+within; which dofs are reached, see `soil.condensed`. Where either doesn't do, the loop says so, and begins anew.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.contact.near_points import PairsByFacet, points_room
+from riser_soil.contact.surface_contact import SurfaceContact
+from riser_soil.contact.surface_loop import (
+    BEYOND,
+    HELD,
+    LEFT,
+    POINTS,
+    Border,
+    TopMotion,
+    TouchNumbers,
+    TouchRoom,
+    Watched,
+    add_touch,
+    add_touch_tangent,
+    add_touch_work,
+    move_top,
+)
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.bound import Bound
+from riser_soil.core.packed import Packed
+from riser_soil.core.part import State
+from riser_soil.riser.line import Line
+from riser_soil.soil.condensed import CondensedSoil, Reached
+from riser_soil.solve.bordered_loop import (
+    Factors,
+    SoilNumbers,
+    begin_border,
+    clear_border,
+    factorise_with_border,
+    improve_with_border,
+    judge_with_border,
+)
+
+FEW = 1024  # points for which there is room at first
+SHARE = 0.25  # of the range around the pipe by which soil may move before the pairs are looked for anew
+NONE: IntArray = np.empty(0, dtype=np.int64)
+
+
+class SoilBorder:
+    """The soil's reached dofs with their contact; kernels of both, bound to where they read and write.
+
+    touch: the contact's numbers. potential: the contact's energy in the last trial [J]; taken: what its force took in
+    the last step [J].
+    """
+
+    def __init__(self, line: Line, contact: SurfaceContact, soil: CondensedSoil, touch: TouchNumbers) -> None:
+        self._line, self._contact, self._soil, self._top = line, contact, soil, soil.top
+        points, ne = len(soil.top.points), line.length.size
+        self._touch, self._found = touch, TouchRoom(*_points(FEW), np.zeros(2, np.int64), np.zeros(points, np.bool_), np.zeros(1))
+        pairs, boxes = PairsByFacet(NONE, NONE, NONE), (np.zeros((ne, 3)), np.zeros((ne, 3)))
+        self._watched = Packed(Watched(pairs, *boxes, 0.0))
+        self._room, self._numbers = Packed(self._found), Packed(touch)
+        self._motion = Packed(self._motion_of(np.zeros((0, 0)), NONE))
+        self._border, self._held, self._factors = (Packed(each) for each in self._empty(0))
+        self._taken, self._reached, self._looked = np.zeros(1), None, False
+        self._seen = np.empty((0, 3))
+
+    def _empty(self, nb: int) -> tuple[Border, SoilNumbers, Factors]:
+        """Room for so many dofs."""
+        n, nodes = self._line.size, self._line.nodes
+        matrices = np.zeros((nb, nb)), np.zeros((n, nb)), np.zeros(nodes, dtype=np.bool_)
+        border = Border(np.zeros(nb), np.zeros(nb), *matrices)
+        factors = Factors(np.zeros((nb, nb)), np.zeros(nb, np.int64), np.zeros(n, np.int64), np.zeros(1, np.int64))
+        return border, SoilNumbers(np.zeros((nb, nb)), np.zeros(nb)), factors
+
+    def _motion_of(self, by: Array, nodes: IntArray) -> TopMotion:
+        rows = np.full(self._top.size, HELD, dtype=np.int64)
+        rows[self._top.beside] = BEYOND
+        rows[self._top.reached.dofs] = np.arange(len(self._top.reached.dofs))
+        return TopMotion(nodes, by, self._touch.surface.deformed.copy(), rows.reshape(-1, 3))
+
+    def forces(self, at: Packed, forces: Packed) -> list[Bound]:
+        """Kernels that add the border's residual, and contact's."""
+        moved = Bound(move_top, self._numbers, self._motion, self._border)
+        begun = Bound(begin_border, self._held, self._border)
+        given = self._numbers, self._watched, self._motion, at, forces, self._border, self._room
+        return [moved, begun, Bound(add_touch, *given)]
+
+    def judge(self, forces: Packed, dofs: Packed, limits: Packed, progress: Packed) -> Bound:
+        return Bound(judge_with_border, forces, dofs, limits, progress, self._border, self._room)
+
+    def tangent(self, at: Packed, K: Packed) -> list[Bound]:
+        """Kernels that write the border's tangent, and add contact's."""
+        given = self._numbers, self._motion, at, K, self._border, self._room
+        return [Bound(clear_border, self._held, self._border), Bound(add_touch_tangent, *given)]
+
+    def factorise(self, room: Packed, dofs: Packed, progress: Packed) -> Bound:
+        return Bound(factorise_with_border, room, dofs, self._border, self._factors, progress)
+
+    def improve(self, room: Packed, step: Packed, dofs: Packed) -> Bound:
+        return Bound(improve_with_border, room, step, dofs, self._border, self._factors)
+
+    def account(self, then: Packed, now: Packed) -> list[Bound]:
+        """Kernels that find what contact took in the step."""
+        return [Bound(add_touch_work, self._numbers, self._motion, then, now, self._room, Packed(self._taken))]
+
+    def begin(self, before: State, guess: Array) -> None:
+        """Begin a step with a first guess (size,) of all local increments."""
+        if self._soil.outgrown:
+            self._soil.rebuild(before)
+        committed = self._top.committed
+        accepted = np.asarray(self._top.points + committed)
+        if self._touch.upright:
+            accepted[:, :2] = self._top.points[:, :2]
+        self._touch.surface.deformed[...] = accepted
+        if self._reached is not self._top.reached or not self._looked or self._has_moved(accepted):
+            self._look([])
+        self._motion.value.accepted[...] = accepted
+        held, at = self._held.value, self._top.reached.dofs
+        np.dot(held.stiffness, committed.ravel()[at], out=held.holding)
+        self._border.value.u[:] = self._top.own(guess)[at]
+
+    @property
+    def _slack(self) -> float:
+        """How far soil may move before pairs are looked for anew [m]."""
+        return SHARE * self._contact.around
+
+    def _has_moved(self, accepted: Array) -> bool:
+        return bool(np.abs(accepted - self._seen).max() > self._slack)
+
+    def widen(self) -> None:
+        """Reach and watch what the last trial touched."""
+        found = self._found
+        if found.met.any():
+            self._soil.meet(np.flatnonzero(found.met))
+            self._soil.rebuild(State.at_rest(0.0, self._top.offset + self._top.size))
+        if found.found[POINTS] == len(found.force):
+            self._found = found._replace(**dict(zip(("near", "force", "slope"), _points(2 * len(found.force)), strict=True)))
+            self._room.renew(self._found)
+        self._look([self._touch.axis._replace(q=self._touch.axis.q.copy())])
+
+    def _look(self, tried: list) -> None:
+        """Find the pairs that may touch near the accepted place, and those that were tried."""
+        if self._reached is not self._top.reached:
+            self._take(self._top.reached)
+        line, settled = self._line, self._touch.surface.deformed
+        accepted = self._contact.axis(line.trial(State.at_rest(0.0, self._top.offset + self._top.size)))
+        low, high, pairs = self._contact.watch([accepted, *tried], settled)
+        slack = self._slack
+        self._watched.renew(Watched(pairs, low + slack, high - slack, float(settled[:, 2].max()) + slack))
+        nodes = np.unique(self._touch.surface.facets[pairs.facets])
+        self._motion.renew(self._motion_of(self._by_border(nodes), nodes))
+        self._seen, self._looked = settled.copy(), True
+
+    def _by_border(self, nodes: IntArray) -> Array:
+        """How nodes (k,) of the top follow the reached dofs (3 k, nb)."""
+        reached, dofs = self._top.reached, (3 * nodes[:, None] + np.arange(3)).ravel()
+        by = reached.compliance[dofs] @ reached.stiffness
+        row = np.full(self._top.size, -1)
+        row[reached.dofs] = np.arange(len(reached.dofs))
+        own = np.flatnonzero(row[dofs] >= 0)
+        by[own] = 0.0
+        by[own, row[dofs[own]]] = 1.0
+        return np.ascontiguousarray(by)
+
+    def _take(self, reached: Reached) -> None:
+        """Take other dofs."""
+        border, held, factors = self._empty(len(reached.dofs))
+        held.stiffness[...] = reached.stiffness
+        for kept, value in ((self._border, border), (self._held, held), (self._factors, factors)):
+            kept.renew(value)
+        self._reached = reached
+
+    @property
+    def increments(self) -> tuple[IntArray, Array]:
+        """Local dofs, and their increments in the last trial."""
+        return self._top.offset + self._top.reached.dofs, self._border.value.u.copy()
+
+    @property
+    def holds(self) -> bool:
+        """Whether the soil has moved so little in the last trial that the pairs still are all that may touch."""
+        return bool(np.abs(self._border.value.u).max(initial=0.0) <= self._slack)
+
+    @property
+    def potential(self) -> float:
+        return float(self._found.energy[0])
+
+    def taken(self) -> float:
+        """What contact's force took in the step accounted for last [J]."""
+        found = float(self._taken[0])
+        self._taken[0] = 0.0
+        return found
+
+
+def _points(count: int) -> tuple:
+    return points_room(count), np.zeros(count), np.zeros(count)
