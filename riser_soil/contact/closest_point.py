@@ -17,7 +17,7 @@ from riser_soil.riser.hermite import Four, bend, slope
 from riser_soil.riser.hermite import shape as axis_shape
 
 MAX_ITERATIONS = 30
-CONVERGED = 1e-9  # step along an element, as a part of its length, after which one more would be below round-off
+CONVERGED = 1e-8  # step along an element, as a part of its length, whose square, the next one, is below round-off
 THROUGH = 0.5  # radii beside the axis within which a point above it has come through
 THINNEST = 1e-3  # radii: nearer to the axis the direction from it means nothing
 

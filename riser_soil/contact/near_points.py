@@ -84,14 +84,29 @@ def near_points(axis: Axis, surface: Surface, elements: IntArray, facets: IntArr
         points = points_room(room)
         found = fill_near(axis, surface, pairs, within, points)
         if found <= room:
-            return NearPoints(*(values[:found] for values in points))
+            return first_of(points, found)
         room = found
 
 
 def points_room(count: int) -> NearPoints:
     """Room for so many points."""
-    whose = (np.empty(count, dtype=np.int64) for _ in range(3))
-    return NearPoints(*whose, np.empty(count), np.empty((count, 2)), np.empty(count), np.empty(count))
+    element, facet, number = (np.empty(count, dtype=np.int64) for _ in range(3))
+    along, share, gap = (np.empty(count) for _ in range(3))
+    return NearPoints(element, facet, number, along, np.empty((count, 2)), share, gap)
+
+
+@njit
+def first_of(points: NearPoints, n: int) -> NearPoints:
+    """The first n points."""
+    return NearPoints(
+        points.element[:n],
+        points.facet[:n],
+        points.number[:n],
+        points.along[:n],
+        points.xi[:n],
+        points.area[:n],
+        points.gap[:n],
+    )
 
 
 @njit
@@ -111,7 +126,7 @@ def by_facet(elements: IntArray, facets: IntArray, count: int) -> PairsByFacet:
 
 @njit
 def fill_near(axis: Axis, surface: Surface, pairs: PairsByFacet, within: float, out: NearPoints) -> int:
-    """Write the points of some pairs whose gap is less than `within` [m], as many as there is room for: their number."""
+    """Write the points of some pairs whose gap is less than `within` [m], as far as there is room; how many there are."""
     bow = bow_of(axis)
     room, n, nv = len(out.gap), 0, surface.facets.shape[1]
     N, dN, kept = np.empty(nv), np.empty((nv, 2)), np.empty_like(pairs.elements)

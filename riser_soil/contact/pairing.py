@@ -6,11 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.facets import centre, fill_shape, inside
+from riser_soil.contact.facets import QUAD, centre, fill_shape, inside
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 
 RIM = 1e-9  # widening of a facet in (ξ, η): round-off must not open a slit between neighbours
+ON_SIDE = 1e-12  # part of a side's length up to which a point is on it
 MAX_ITERATIONS = 25
 DIVERGED = 100.0  # (ξ, η) of a point that is nowhere near
 CONVERGED = 1e-10  # step in (ξ, η) after which one more Newton step would be below round-off
@@ -220,8 +221,26 @@ def _newton_step(xy: Array, points: Array, nodes: IntArray, N: Array, dN: Array)
 
 
 @njit
-def covers(cover: Cover, x: float, y: float) -> bool:
-    """Whether a horizontal position [m] lies over a surface, as `FacetSearch.locate` finds it."""
+def facet_below(cover: Cover, x: float, y: float, known: int) -> int:
+    """A facet that holds a horizontal position [m]; -1 where none does, as `FacetSearch.locate` finds it. known: the
+    one that held it last, or -1.
+    """
+    if known >= 0 and _within_corners(cover.points, cover.facets[known], x, y):
+        return known
     cover.xy[0], cover.xy[1] = x, y
     given = cover.plan, cover.facets, cover.points, cover.boxes, cover.limits, cover.work, cover.xi
-    return _holding(cover.xy, *given) >= 0
+    return _holding(cover.xy, *given)
+
+
+@njit
+def _within_corners(points: Array, nodes: IntArray, x: float, y: float) -> bool:
+    """Whether a position lies within a facet with straight sides, seen from above."""
+    if nodes.size != len(QUAD):
+        return False
+    for a in range(nodes.size):
+        p, r = nodes[a], nodes[(a + 1) % nodes.size]
+        along_x, along_y = points[r, 0] - points[p, 0], points[r, 1] - points[p, 1]
+        across = along_x * (y - points[p, 1]) - along_y * (x - points[p, 0])
+        if not across >= -ON_SIDE * (along_x * along_x + along_y * along_y):
+            return False
+    return True

@@ -72,7 +72,8 @@ class SeabedContact(LineContact):
 
     line: the riser's field. radius (ne,): distance [m] from the axis to the line that touches, 0 for the axis itself.
     rule: the stations of an element, Gauss points by default; its two ends make it the classical contact of nodes.
-    covered: where the seabed does not act, and the same for compiled code. at: the stations; share (ne, ng): arc length that each stands for [m].
+    covered: where the seabed does not act; covering: the same for compiled code. at: the stations; share (ne, ng): arc
+    length that each stands for [m].
     memory (ne, ng, nh): the law's history.
     """
 
@@ -121,12 +122,17 @@ class SeabedContact(LineContact):
         """Penetration (ne, ng) of stations x (ne, ng, d), its normal, and the normal's derivative, empty where zero;
         radius (ne,): as of the contact.
         """
+        found = self._penetration(x, radius)
+        if self._covered is not None:
+            covered = self._covered(self.line.to_global(x).reshape(-1, 3)[:, :2])
+            found[0][covered.reshape(found[0].shape)] = -np.inf
+        return found
+
+    def _penetration(self, x: Array, radius: Array) -> tuple[Array, Array, Array]:
+        """The same, whatever covers the ground."""
         ne, ng, d = x.shape
         found = np.empty((ne, ng)), np.empty((ne, ng, d)), np.empty((0 if self.ground.flat else ne, ng, d, d))
         seabed_stations.over_ground(self._frame, self.ground.numbers, radius, x, *found)
-        if self._covered is not None:
-            covered = self._covered(self.line.to_global(x).reshape(-1, 3)[:, :2])
-            found[0][covered.reshape(ne, ng)] = -np.inf
         return found
 
     def element_forces(self, state: State) -> tuple[None, Array]:
@@ -232,12 +238,15 @@ class SeabedContact(LineContact):
 
     def clearance(self, state: State) -> Array:
         """Gap (nn,) of the nodes less that at which the force begins [m]."""
-        found: Array = self.line.trial(state).once((self, "clearance"), lambda trial: self._clearance(trial.x))
+        found: Array = self.line.trial(state).once((self, "clearance"), self._clearance_at)
         return found
 
-    def _clearance(self, x: Array) -> Array:
-        """The same of nodes at x (nn, d)."""
-        penetration, _, _ = self._over_ground(x[:, None], self._radius_of_nodes)
+    def _clearance_at(self, trial: Trial) -> Array:
+        return self._clearance(trial.x, self._radius_of_nodes)
+
+    def _clearance(self, x: Array, radius: Array) -> Array:
+        """The same of places x (n, d) with radii (n,)."""
+        penetration, _, _ = self._over_ground(x[:, None], radius)
         return -penetration[:, 0] - self.law.start
 
     def predict(self, guess: State) -> Array:
@@ -245,8 +254,10 @@ class SeabedContact(LineContact):
         if not self.active:
             return guess.u
         moved = self.line.nodal(guess.u)[:, : self.line.dimension]
-        present, guessed = (self._clearance(x) for x in (self.line.x, self.line.x + moved))
-        return landing_predictor(guess, self.line.translation_dofs[:, -1], present, guessed, self.law.start)
+        x, radius, start = self.line.x + moved, self._radius_of_nodes, self.law.start
+        low = np.flatnonzero(self._penetration(x[:, None], radius)[0][:, 0] > -start)
+        present, guessed = (self._clearance(at[low], radius[low]) for at in (self.line.x, x))
+        return landing_predictor(guess, self.line.translation_dofs[low, -1], present, guessed, start)
 
     def state(self) -> Saved:
         return {"memory": self.memory}

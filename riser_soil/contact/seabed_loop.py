@@ -8,10 +8,10 @@ import numpy as np
 
 from riser_soil.contact.coulomb import Pair, return_map
 from riser_soil.contact.friction_stations import elastic_guess, read_along, resistance_by_position, vector_of
-from riser_soil.contact.pairing import Cover, covers
+from riser_soil.contact.pairing import Cover, facet_below
 from riser_soil.contact.seabed_stations import LineFrame, by_position, distance_in, frame_of, global_place
 from riser_soil.contact.work_along_step import work_at
-from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser import stations
@@ -25,7 +25,8 @@ from riser_soil.seabed.law import NormalLaw
 
 class Found(NamedTuple):
     """What was found last at the stations: which elements touch (ne,); position and normal (ne, ng, d); penetration,
-    force, its slope and energy stored (ne, ng); the law's history (nh,) after a step, which nobody keeps.
+    force, its slope and energy stored (ne, ng); what covers the ground below (ne, ng), or -1; the law's history (nh,)
+    after a step, which nobody keeps.
     """
 
     touches: BoolArray
@@ -35,19 +36,20 @@ class Found(NamedTuple):
     force: Array
     slope: Array
     stored: Array
+    below: IntArray
     after: Array
 
 
 class Bare(NamedTuple):
-    """Ground on which nothing lies anywhere."""
+    """Ground on which nothing lies anywhere; nothing: -1."""
 
-    covered: bool
+    nothing: int
 
 
 class SeabedNumbers(NamedTuple):
     """A `SeabedContact`: its stations and their share of arc length (ne, ng), radius (ne,), memory (ne, ng, nh), and
-    the numbers of its ground and law; the law's reach; what covers the ground in places; room for an element, and for the force and its derivative at a
-    station.
+    the numbers of its ground and law; the law's reach; what covers the ground in places; room for an element, and for
+    the force and its derivative at a station.
     """
 
     at: stations.Stations
@@ -80,41 +82,48 @@ class FrictionNumbers(NamedTuple):
 
 
 def seabed_numbers(
-    line: Line, at: stations.Stations, share: Array, radius: Array, memory: Array, ground: Any, law: NormalLaw, cover: Cover | None = None
+    line: Line,
+    at: stations.Stations,
+    share: Array,
+    radius: Array,
+    memory: Array,
+    ground: Any,
+    law: NormalLaw,
+    cover: Cover | None = None,
 ) -> SeabedNumbers:
     """With the room that they need; ground: its numbers; cover: what lies on it in places, if anything."""
     (ne, ng), d = share.shape, line.dimension
     position, normal = np.zeros((ne, ng, d)), np.zeros((ne, ng, d))
     penetration, force, slope, stored = (np.zeros((ne, ng)) for _ in range(4))
     touches, after = np.zeros(ne, dtype=np.bool_), np.zeros(memory.shape[2])
-    found = Found(touches, position, normal, penetration, force, slope, stored, after)
+    found = Found(touches, position, normal, penetration, force, slope, stored, np.full((ne, ng), -1), after)
     element = stations.element_room(ng, 2 * line.ndof, fixed(d))
-    room = found, element, np.zeros(d), np.zeros((d, d))
-    law_and_cover = law.numbers, float(law.reach), Bare(False) if cover is None else cover
-    return SeabedNumbers(at, share, radius, memory.copy(), frame_of(line), ground, *law_and_cover, *room)
+    room = element, np.zeros(d), np.zeros((d, d))
+    given = at, share, radius, memory.copy(), frame_of(line), ground, law.numbers, float(law.reach)
+    return SeabedNumbers(*given, Bare(-1) if cover is None else cover, found, *room)
 
 
 @by_type
-def is_covered(cover: Any, x: Vec) -> Any:
-    """Whether something lies on the ground below a place x, in global axes."""
+def covered_by(cover: Any, x: Vec, known: int) -> Any:
+    """What lies on the ground below a place x, in global axes: its number, or -1. known: what was found there last."""
 
 
-@is_covered.of(Bare)
-def _never(cover: Bare, x: Vec) -> bool:
-    return cover.covered
+@covered_by.of(Bare)
+def _never(cover: Bare, x: Vec, known: int) -> int:
+    return cover.nothing
 
 
-@is_covered.of(Cover)
-def _by_surface(cover: Cover, x: Vec) -> bool:
-    return covers(cover, x[0], x[1])
+@covered_by.of(Cover)
+def _by_surface(cover: Cover, x: Vec, known: int) -> int:
+    return facet_below(cover, x[0], x[1], known)
 
 
 @njit
-def _open_penetration(part: SeabedNumbers, place: Array, penetration: float, e: int, g: int) -> float:
-    """Penetration of a station, -inf where something else lies on the ground."""
-    if not may_act(part.law, penetration, part.memory[e, g]):
-        return penetration
-    return -np.inf if is_covered(part.cover, global_place(part.frame, padded(place))) else penetration
+def _is_covered(part: SeabedNumbers, place: Array, e: int, g: int) -> bool:
+    """Whether something else lies on the ground below a station."""
+    below = part.found.below
+    below[e, g] = covered_by(part.cover, global_place(part.frame, padded(place)), below[e, g])
+    return bool(below[e, g] >= 0)
 
 
 @add_forces.of(SeabedNumbers)
@@ -125,9 +134,13 @@ def _contact_forces(part: SeabedNumbers, at: Configuration, out: LineForces) -> 
         for g in range(part.share.shape[1]):
             stations.put_value(part.at.N[e, g], at.q[e], found.position[e, g], at.D)
             value, normal, _ = distance_in(part.frame, part.ground, padded(found.position[e, g]))
-            found.penetration[e, g] = _open_penetration(part, found.position[e, g], part.radius[e] - value, e, g)
+            found.penetration[e, g] = part.radius[e] - value
             put(normal, found.normal[e, g])
-            touches |= may_act(part.law, found.penetration[e, g], part.memory[e, g])
+            if may_act(part.law, found.penetration[e, g], part.memory[e, g]):
+                if _is_covered(part, found.position[e, g], e, g):
+                    found.penetration[e, g] = -np.inf
+                else:
+                    touches = True
         found.touches[e] = touches
         if touches:
             _press(part, at, e, out)
@@ -177,8 +190,12 @@ def _contact_work(part: SeabedNumbers, first: Configuration, last: Configuration
         for g in range(ng):
             stations.put_value(part.at.N[e, g], first.q[e], began[g], last.D)
             value, _, _ = distance_in(part.frame, part.ground, padded(began[g]))
-            before[g] = _open_penetration(part, began[g], part.radius[e] - value, e, g)
-            touched |= may_act(part.law, before[g], part.memory[e, g])
+            before[g] = part.radius[e] - value
+            if may_act(part.law, before[g], part.memory[e, g]):
+                if _is_covered(part, began[g], e, g):
+                    before[g] = -np.inf
+                else:
+                    touched = True
         for g in range(ng):
             share = part.share[e, g]
             if found.touches[e]:

@@ -14,6 +14,7 @@ from riser_soil.contact.cylinder_gap import gap_forms
 from riser_soil.contact.detection import add_blocks, add_shares
 from riser_soil.contact.gap import heights
 from riser_soil.contact.integration_points import divisions
+from riser_soil.contact.landing import landing_predictor
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.near_points import NearPoints, PairsByFacet, Surface, boxes, by_facet, near_points
 from riser_soil.contact.point_memory import PointMemory
@@ -316,11 +317,27 @@ class SurfaceContact(SoilContact):
         """Gap (nn,) under the nodes less that at which the force begins [m]; inf beside the soil."""
         return self._above(self.line.trial(state), self._seen(state)) - self.law.start
 
+    def predict(self, guess: State) -> Array:
+        """Increments of a first guess that lands, see `landing`: only of nodes below the highest point of the soil."""
+        if not self.active:
+            return guess.u
+        moved = self.line.nodal(guess.u)[:, : self.line.dimension]
+        x, surface, radius = self.line.to_global(self.line.x + moved), self._seen(guess), larger_beside(self._radius)
+        low = np.flatnonzero(x[:, 2] - radius < surface[:, 2].max() + self.law.start)
+        was = self.line.to_global(self.line.x[low]), self._seen(State.at_rest(guess.t, guess.u.size))
+        present, guessed = (
+            self._over(*place, radius[low]) - self.law.start for place in (was, (x[low], surface))
+        )
+        return landing_predictor(guess, self.line.translation_dofs[low, -1], present, guessed, self.law.start)
+
     def _above(self, trial: Trial, surface: Array) -> Array:
         """Height (nn,) of the nodes' undersides above a surface (np, 3) [m]; inf beside it."""
-        x = self.line.to_global(trial.x)
+        return self._over(self.line.to_global(trial.x), surface, larger_beside(self._radius))
+
+    def _over(self, x: Array, surface: Array, radius: Array) -> Array:
+        """The same of places x (n, 3) with radii (n,)."""
         facet, xi = self._soil.locate(x[:, :2], surface)
-        return np.asarray(x[:, 2] - larger_beside(self._radius) - heights(facet, xi, self._soil.facets, surface))
+        return np.asarray(x[:, 2] - radius - heights(facet, xi, self._soil.facets, surface))
 
     def state(self) -> Saved:
         """That of the pattern, and the history of the points."""

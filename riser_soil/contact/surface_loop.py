@@ -13,8 +13,7 @@ import numpy as np
 from riser_soil.contact.active_pairs import add_products, by_curvature, in_dofs, paired
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.cylinder_gap import FORMS, away_from_axis, put_gap_forms
-from riser_soil.contact.facets import fill_shape
-from riser_soil.contact.near_points import NearPoints, PairsByFacet, Surface, boxes, fill_near, point_on
+from riser_soil.contact.near_points import NearPoints, PairsByFacet, Surface, boxes, fill_near, first_of, point_on
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser.configuration import Configuration
@@ -186,15 +185,7 @@ def add_touch_tangent(
 ) -> None:
     """Add the derivative of the contact's residual, found last, to K (ne, n, n) and to the border's."""
     n, facets = room.found[POINTS], touch.surface.facets
-    near = NearPoints(
-        room.near.element[:n],
-        room.near.facet[:n],
-        room.near.number[:n],
-        room.near.along[:n],
-        room.near.xi[:n],
-        room.near.area[:n],
-        room.near.gap[:n],
-    )
+    near = first_of(room.near, n)
     nq = 4 * touch.basis.shape[1]
     nz = nq + 3 * facets.shape[1]
     forms, C = np.empty((n, FORMS, nz)), np.zeros((n, FORMS, FORMS))

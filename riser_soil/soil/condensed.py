@@ -108,8 +108,11 @@ class CondensedTop:
 
     def _answer(self, state: State) -> SurfaceAnswer:
         at = self.reached.dofs
-        moved = self.committed.ravel()[at] + self.own(state.u)[at]
+        moves = self.own(state.u)[at]
+        moved = self.committed.ravel()[at] + moves
         forces = np.asarray(self.reached.stiffness @ moved)
+        if not moves.any():
+            return SurfaceAnswer(forces, self.committed)
         out = self.reached.compliance @ forces
         out[at] = moved
         return SurfaceAnswer(forces, out.reshape(-1, 3))

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.surface_loop import LEFT, POINTS, Border, TouchRoom
+from riser_soil.contact.surface_loop import LEFT, Border, TouchRoom
 from riser_soil.core import banded, dense
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
@@ -43,13 +43,13 @@ class SoilNumbers(NamedTuple):
 
 class Factors(NamedTuple):
     """Room for the factors of the border: the Schur complement (nb, nb) and its pivots; rows (n,) of the line that are
-    coupled, as many as count (1,) says.
+    coupled, as many as `filled` (1,) says.
     """
 
     schur: Array
     pivots: IntArray
     rows: IntArray
-    count: IntArray
+    filled: IntArray
 
 
 @njit
@@ -97,15 +97,15 @@ def factorise_with_border(
             if border.coupled[n] and not fixed[n, i]:
                 factors.rows[count] = n * ndof + i
                 count += 1
-    factors.count[0] = count
+    factors.filled[0] = count
     rows, schur = factors.rows[:count], factors.schur
     schur[...] = border.corner
     if not banded.factorise(room.ab, room.pivots, room.band):
         progress.ending[0] = SINGULAR
         return
     if count > 0:
-        right = border.right[rows]
-        schur -= np.dot(np.ascontiguousarray(right.T), np.dot(banded.inverse_at(room.ab, room.pivots, rows, room.band), right))
+        right, inner = border.right[rows], banded.inverse_at(room.ab, room.pivots, rows, room.band)
+        schur -= np.dot(np.ascontiguousarray(right.T), np.dot(inner, right))
     if not dense.factorise(schur, factors.pivots):
         progress.ending[0] = SINGULAR
 
@@ -117,7 +117,7 @@ def improve_with_border(room: MatrixRoom, step: StepNumbers, dofs: Dofs, border:
     for k in range(fixed.size):
         if fixed[k]:
             residual[k] = 0.0
-    rows, answer = factors.rows[: factors.count[0]], border.residual
+    rows, answer = factors.rows[: factors.filled[0]], border.residual
     inner = residual.copy()
     banded.solve(room.ab, room.pivots, inner, room.band)
     for k in rows:
@@ -125,8 +125,7 @@ def improve_with_border(room: MatrixRoom, step: StepNumbers, dofs: Dofs, border:
             answer[j] -= border.right[k, j] * inner[k]
     dense.solve(factors.schur, factors.pivots, answer)
     for k in rows:
-        for j in range(answer.size):
-            residual[k] -= border.right[k, j] * answer[j]
+        residual[k] -= dense.product(border.right, k, 0, answer.size, answer)
     banded.solve(room.ab, room.pivots, residual, room.band)
     u = step.u.reshape(step.u.size)
     for k in range(fixed.size):

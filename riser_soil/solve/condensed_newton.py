@@ -34,7 +34,7 @@ from riser_soil.solve.solution import NewtonSettings, Solution, Step
 
 MOST_BEGUN = 8  # times that a step is begun with other pairs or dofs before it is left to `Newton`
 
-Numbered = Sequence[tuple[LinePart, tuple[Any, ...]]]
+Numbered = Sequence[tuple[Any, tuple[Any, ...]]]  # parts of a line
 
 
 def condensed_newton(system: System, settings: NewtonSettings) -> CondensedNewton | None:
@@ -65,6 +65,7 @@ class CondensedNewton:
         border: SoilBorder,
     ) -> None:
         self.system, self.settings, self._newton = system, settings, Newton(system, settings)
+        self.iterations, self.rests = 0, False
         self._contact, self._soil, self._border, self._numbered = contact, soil, border, parts
         (line,) = system.model.lines
         assert isinstance(line, Line)
@@ -76,21 +77,9 @@ class CondensedNewton:
         self._renewed = [part for part, _ in parts if overrides(part, "renew_numbers")]
         kernels = [(part, type(held) in add_work.kernels) for part, held in parts]
         self._turning = [(part, kernel) for part, kernel in kernels if kernel or overrides(part, "work")]
-        self._reached = soil.top.reached  # as the system's matrix has it
+        self._reached = soil.top.reached  # as the system has it
         self._solved: State | None = None  # by the compiled loop
         self._stored = dict[float, float]()  # contact's energy [J] by the time of states
-
-    @property
-    def iterations(self) -> int:
-        return self._newton.iterations
-
-    @property
-    def rests(self) -> bool:
-        return self._newton.rests
-
-    @rests.setter
-    def rests(self, value: bool) -> None:
-        self._newton.rests = value
 
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError."""
@@ -98,11 +87,9 @@ class CondensedNewton:
         self._bring(step.before.t, step.t)
         norms = self._norms(step)
         self.system.clock.add("riser and soil", since)
-        if norms is None:
-            self._solved = None
-            return self._by_newton(step)
-        self._solved = self._state(step)
-        return Solution(self._solved, self._forces(), norms)
+        found = self._by_newton(step) if norms is None else Solution(self._state(step), self._forces(), norms)
+        self._solved, self.rests = None if norms is None else found.state, False
+        return found
 
     def _norms(self, step: Step) -> list[float] | None:
         """Norms of the residual on the way to balance; None where the loop does not get there."""
@@ -112,30 +99,34 @@ class CondensedNewton:
         self._line.prescribe(step.t, guess.u, guess.v, guess.a)
         self._still = still
         limits = self._limits._replace(answers_load=self.rests or bool(step.guess.any()))
-        self._newton.rests = False
         for _ in range(MOST_BEGUN):
             self._border.begin(step.before, step.guess)
+            self._prescribe_anew()
             self._riser.begin(guess, None if past is None else past[at], scheme.weights(step.dt), limits)
             outcome, taken = self._riser.solve()
-            self._newton.iterations += taken
+            self.iterations += taken
             if outcome == riser_loop.CONVERGED and self._border.holds and not self._line.tangled(self._riser.tangled):
                 return list(self._riser.progress.norms[: taken + 1].tolist())
             if outcome != riser_loop.OUTGROWN:
                 return None
             self._border.widen()
-            self._prescribe_anew()
         return None
 
     def _prescribe_anew(self) -> None:
+        """What is not reached does not move by itself."""
         if self._reached is not self._soil.top.reached:
             self.system.renew_prescribed()
+            self._reached = self._soil.top.reached
 
     def _by_newton(self, step: Step) -> Solution:
         """With a matrix for what is reached and may touch now."""
         self._contact.rebuild(State.at_rest(step.before.t, len(self._nothing)))
         self._newton.renew()
-        self._reached = self._soil.top.reached
-        return self._newton.solve(step)
+        self._newton.rests, before = self.rests, self._newton.iterations
+        try:
+            return self._newton.solve(step)
+        finally:
+            self.iterations += self._newton.iterations - before
 
     def _state(self, step: Step) -> State:
         """The state found."""

@@ -6,14 +6,16 @@ within; which dofs are reached, see `soil.condensed`. Where either doesn't do, t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.near_points import PairsByFacet, points_room
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.contact.surface_loop import (
     BEYOND,
     HELD,
-    LEFT,
     POINTS,
     Border,
     TopMotion,
@@ -56,14 +58,14 @@ class SoilBorder:
     def __init__(self, line: Line, contact: SurfaceContact, soil: CondensedSoil, touch: TouchNumbers) -> None:
         self._line, self._contact, self._soil, self._top = line, contact, soil, soil.top
         points, ne = len(soil.top.points), line.length.size
-        self._touch, self._found = touch, TouchRoom(*_points(FEW), np.zeros(2, np.int64), np.zeros(points, np.bool_), np.zeros(1))
+        self._touch, self._found = touch, _room(FEW, points)
         pairs, boxes = PairsByFacet(NONE, NONE, NONE), (np.zeros((ne, 3)), np.zeros((ne, 3)))
         self._watched = Packed(Watched(pairs, *boxes, 0.0))
         self._room, self._numbers = Packed(self._found), Packed(touch)
         self._motion = Packed(self._motion_of(np.zeros((0, 0)), NONE))
         self._border, self._held, self._factors = (Packed(each) for each in self._empty(0))
-        self._taken, self._reached, self._looked = np.zeros(1), None, False
-        self._seen = np.empty((0, 3))
+        self._taken, self._seen = np.zeros(1), np.empty((0, 3))
+        self._reached: Reached | None = None  # as it was taken last
 
     def _empty(self, nb: int) -> tuple[Border, SoilNumbers, Factors]:
         """Room for so many dofs."""
@@ -113,7 +115,7 @@ class SoilBorder:
         if self._touch.upright:
             accepted[:, :2] = self._top.points[:, :2]
         self._touch.surface.deformed[...] = accepted
-        if self._reached is not self._top.reached or not self._looked or self._has_moved(accepted):
+        if self._reached is not self._top.reached or self._has_moved(accepted):
             self._look([])
         self._motion.value.accepted[...] = accepted
         held, at = self._held.value, self._top.reached.dofs
@@ -135,11 +137,11 @@ class SoilBorder:
             self._soil.meet(np.flatnonzero(found.met))
             self._soil.rebuild(State.at_rest(0.0, self._top.offset + self._top.size))
         if found.found[POINTS] == len(found.force):
-            self._found = found._replace(**dict(zip(("near", "force", "slope"), _points(2 * len(found.force)), strict=True)))
+            self._found = _room(2 * len(found.force), len(found.met))
             self._room.renew(self._found)
         self._look([self._touch.axis._replace(q=self._touch.axis.q.copy())])
 
-    def _look(self, tried: list) -> None:
+    def _look(self, tried: Sequence[Axis]) -> None:
         """Find the pairs that may touch near the accepted place, and those that were tried."""
         if self._reached is not self._top.reached:
             self._take(self._top.reached)
@@ -150,7 +152,7 @@ class SoilBorder:
         self._watched.renew(Watched(pairs, low + slack, high - slack, float(settled[:, 2].max()) + slack))
         nodes = np.unique(self._touch.surface.facets[pairs.facets])
         self._motion.renew(self._motion_of(self._by_border(nodes), nodes))
-        self._seen, self._looked = settled.copy(), True
+        self._seen = settled.copy()
 
     def _by_border(self, nodes: IntArray) -> Array:
         """How nodes (k,) of the top follow the reached dofs (3 k, nb)."""
@@ -192,5 +194,7 @@ class SoilBorder:
         return found
 
 
-def _points(count: int) -> tuple:
-    return points_room(count), np.zeros(count), np.zeros(count)
+def _room(count: int, nodes: int) -> TouchRoom:
+    """Room for so many points that touch, on a top of so many nodes."""
+    found, met = np.zeros(2, dtype=np.int64), np.zeros(nodes, dtype=np.bool_)
+    return TouchRoom(points_room(count), np.zeros(count), np.zeros(count), found, met, np.zeros(1))

@@ -1,4 +1,4 @@
-"""The solver of a stage's steps: Newton's method over its parts, or for time steps of a riser alone a compiled loop."""
+"""The solver of a stage's steps: Newton's method over its parts, or in time steps of a riser a compiled loop."""
 
 from __future__ import annotations
 
@@ -65,8 +65,8 @@ class StepSolver(Protocol):
 
 
 def solver_of(system: System, scheme: Scheme, settings: NewtonSettings) -> StepSolver:
-    """`Newton`; or, where it can be and SNES is not asked for, the compiled loop: for a riser alone or on condensed soil
-    on one rank, in time steps of Newmark's scheme or generalised-alpha.
+    """`Newton`; or, where it can be and SNES is not asked for, the compiled loop: on one rank for a riser alone, or on
+    condensed soil, in time steps of Newmark's scheme or generalised-alpha.
     """
     if system.comm.size > 1 or settings.snes or not isinstance(scheme, GeneralizedAlpha):
         return Newton(system, settings)
