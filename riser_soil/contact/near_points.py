@@ -126,7 +126,7 @@ def by_facet(elements: IntArray, facets: IntArray, count: int) -> PairsByFacet:
 
 @njit
 def fill_near(axis: Axis, surface: Surface, pairs: PairsByFacet, within: float, out: NearPoints) -> int:
-    """Write the points of some pairs whose gap is less than `within` [m], as far as there is room; how many there are."""
+    """Write points of some pairs whose gap is less than `within` [m], as far as there is room; how many there are."""
     bow = bow_of(axis)
     room, n, nv = len(out.gap), 0, surface.facets.shape[1]
     N, dN, kept = np.empty(nv), np.empty((nv, 2)), np.empty_like(pairs.elements)

@@ -8,7 +8,7 @@ import pytest
 
 from riser_soil.contact.facets import inside, second_derivatives, shape
 from riser_soil.contact.gap import gap_forms, heights, penalty_hessian
-from riser_soil.contact.pairing import FacetSearch, invert
+from riser_soil.contact.pairing import FacetSearch, facet_below, invert
 from riser_soil.core.arrays import Array, IntArray
 
 CORNERS = {
@@ -137,6 +137,24 @@ def test_the_facet_is_found_where_the_surface_has_moved_far_sideways(nv: int) ->
         xy = shape(nv, *place)[0] @ deformed[facets]
         facet, _ = FacetSearch(points, facets).locate(xy[:, :2], deformed)
         np.testing.assert_array_equal(facet, np.arange(len(facets)))
+
+
+@KINDS
+def test_compiled_code_knows_the_same_places_to_be_covered(nv: int) -> None:
+    """Whatever facet is said to have held a place last, and where the surface has moved since the cover was made."""
+    points, facets = grid(nv)
+    search, random = FacetSearch(points, facets), np.random.default_rng(5)
+    cover = search.cover(points)
+    corners = points[facets[:, 0], :2]  # on sides of facets, and on the surface's rim
+    xy = np.vstack([random.uniform([-0.5, -0.5], [3.0, 2.5], size=(200, 2)), corners])
+    for deformed in (points, points + 0.02 * random.standard_normal(points.shape)):
+        cover.renew(deformed)
+        found, _ = search.locate(xy, deformed)
+        assert 0 < np.count_nonzero(found < 0) < len(xy)
+        for place, wanted in zip(xy, found, strict=True):
+            assert facet_below(cover, *place, -1) == wanted
+            for known in (0, wanted, len(facets) - 1):
+                assert (facet_below(cover, *place, known) >= 0) == (wanted >= 0)
 
 
 def test_a_long_facet_beside_many_small_ones_is_found() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from riser_soil.contact.closest_point import Axis
-from riser_soil.contact.near_points import Surface, near_points
+from riser_soil.contact.near_points import Surface, by_facet, fill_near, near_points, points_room
 
 RADIUS, WITHIN, PARTS = 0.15, 0.05, 40
 
@@ -39,3 +39,15 @@ def test_no_point_within_the_gap_is_passed_over(stretch: float, bend: float, tur
     assert 20 < len(expected.number) < 2 * PARTS**2
     for name in ("number", "element", "along", "gap"):
         np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
+
+
+def test_points_beyond_the_room_are_counted_and_given_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    axis, surface = axis_of(0.9, 0.2), plane_of_soil(0)
+    elements, facets = np.array([0, 1, 0, 1]), np.array([0, 0, 1, 1])
+    wanted = near_points(axis, surface, elements, facets, WITHIN)
+    few = points_room(3)
+    assert fill_near(axis, surface, by_facet(elements, facets, 2), WITHIN, few) == len(wanted.number) > 3
+    np.testing.assert_array_equal(few.number, wanted.number[:3])
+    monkeypatch.setattr("riser_soil.contact.near_points.FEW", 3)
+    for got, told in zip(near_points(axis, surface, elements, facets, WITHIN), wanted, strict=True):
+        np.testing.assert_array_equal(got, told)

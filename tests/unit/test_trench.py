@@ -121,6 +121,15 @@ def test_points_of_contact_are_as_near_on_steep_walls() -> None:
         np.testing.assert_array_equal(found, [[20, 20]])
 
 
+def test_points_along_the_riser_are_no_more_than_elements_and_cells_ask_for() -> None:
+    """Twelve over the shorter of both; never more than the spacing asks for, and across as many as it does."""
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.1, 0.0], [0.0, 0.1, 0.0]])
+    facet, along = np.array([[0, 1, 2, 3]]), np.array([1.0, 0.0])
+    for element, wanted in ((0.0, 50), (0.5, 24), (1.0, 12), (7.0, 12), (0.1, 50)):
+        found = divisions(points, facet, along, (0.02, 0.01), element)
+        np.testing.assert_array_equal(found, [[wanted, 10]])
+
+
 def test_stretch_of_a_steep_wall_is_that_of_its_own_plane() -> None:
     surface = soil_on(dug(TrenchSpec(0.4, 0.5, 0.4 * np.tan(np.radians(10.0))), size=0.4)).surface
     steep = surface.facets[np.ptp(surface.points[surface.facets][..., 2], axis=1) > 0.1]

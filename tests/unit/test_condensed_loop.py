@@ -1,0 +1,209 @@
+"""Time steps of a riser on condensed soil in the compiled loop, beside those of Newton's method over its parts."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.core.system import System, Timer
+from riser_soil.solve.condensed_newton import CondensedNewton, condensed_newton
+from riser_soil.solve.newton import Newton
+from riser_soil.solve.solution import NewtonSettings, Solution, Step
+from riser_soil.solve.step_solver import solver_of
+from riser_soil.solve.time_scheme import GeneralizedAlpha
+from riser_soil.solve.time_stepper import AcceptedStep
+from riser_soil.stages import run_stage
+from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
+from tests.support.driven_stage import Watcher, before_commit, built
+
+SAME = 1e-8
+CASES = {
+    "in a plane": (2, {}),
+    "upright": (2, {"soil_moves": "upright"}),
+    "in space": (3, {"friction": None}),
+}
+SCHEME, SETTINGS = GeneralizedAlpha.newmark(), NewtonSettings(1e-9, 25, 1e-6, line_search=True)
+
+
+def scene(case: str, newton: str) -> Mapping:
+    dimension, contact = CASES[case]
+    mapping = touchdown(LAY, heave(0.8), dimension=dimension, tolerance=1e-11)
+    mapping["water"]["current"] = {"profile": [[0.0, 0.2, 0.0], [15.0, 0.6, 0.3 if dimension == 3 else 0.0]]}
+    mapping["soil"]["law"] = {"kind": "linear-elastic", "E": 4.0e5, "nu": 0.45}
+    mapping["contact"] = {"method": "surface", "smoothing": 1e-3} | contact
+    mapping["solver"] |= {"soil": "condensed", "newton": newton}
+    return mapping
+
+
+def taken(case: str, newton: str) -> list[dict[str, Array]]:
+    """What each accepted step of the dynamic stage tells."""
+    assembly, told = built(scene(case, newton)), list[dict[str, Array]]()
+    contact, line, condensed = assembly.soil_contact, assembly.line, assembly.condensed
+    assert contact is not None
+    assert condensed is not None
+
+    def tell(system: System, step: AcceptedStep) -> None:
+        state = step.solution.state
+        works = [vars(work)[name] for work in step.turned.values() for name in ("dissipated", "external", "by_scheme")]
+        told.append(
+            {
+                "positions": line.positions3(state),
+                "rates": np.concatenate([state.v, state.a * step.dt]),
+                "force on the riser": contact.force_on_riser(state),
+                "settlement": condensed.top.displacement(state),
+                "contact": step.solution.forces.end[: line.size],
+                "energy": np.array([*vars(step.energy).values(), step.braking, *works]),
+            }
+        )
+
+    before = State.at_rest(0.0, assembly.size)
+    lay, move = assembly.scene.stages
+    before = run_stage(assembly, lay, before, Watcher(), Timer.new())
+    with before_commit(tell):
+        run_stage(assembly, move, before, Watcher(), Timer.new())
+    return told
+
+
+@cache
+def by_snes(case: str) -> list[dict[str, Array]]:
+    return taken(case, "snes")
+
+
+def assert_same(found: list[dict[str, Array]], wanted: list[dict[str, Array]]) -> None:
+    assert len(found) == len(wanted) == 8
+    for name in wanted[0]:
+        size = max(float(np.abs(each[name]).max()) for each in wanted)
+        assert size > 0.0
+        for got, told in zip(found, wanted, strict=True):
+            assert np.abs(got[name] - told[name]).max() < SAME * size, name
+
+
+def forbid(patch: pytest.MonkeyPatch) -> None:
+    def refuse(solver: CondensedNewton, step: Step) -> Solution:
+        raise AssertionError("a step was left to Newton's method over the parts")
+
+    patch.setattr(CondensedNewton, "_by_newton", refuse)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_loop_finds_what_newton_finds(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    forbid(monkeypatch)
+    assert_same(taken(case, "compiled"), by_snes(case))
+
+
+def test_steps_that_it_cannot_solve_are_left_to_newton(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each second one, so that both go on from what the other has left."""
+    usual, asked = CondensedNewton._norms, []
+
+    def norms(solver: CondensedNewton, step: Step) -> list[float] | None:
+        asked.append(step.t)
+        return usual(solver, step) if len(asked) % 2 else None
+
+    monkeypatch.setattr(CondensedNewton, "_norms", norms)
+    assert_same(taken("in a plane", "compiled"), by_snes("in a plane"))
+    assert len(asked) == 8
+
+
+def test_what_is_watched_follows_the_riser(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a narrow range around the pipe and room for few points steps are begun anew several times."""
+    begun = list[CondensedNewton]()
+    usual = CondensedNewton._prescribe_anew
+
+    def count(solver: CondensedNewton) -> None:
+        begun.append(solver)
+        usual(solver)
+
+    forbid(monkeypatch)
+    monkeypatch.setattr(CondensedNewton, "_prescribe_anew", count)
+    monkeypatch.setattr("riser_soil.solve.soil_border.FEW", 4)
+    monkeypatch.setattr("riser_soil.contact.near_points.FEW", 2)
+    monkeypatch.setattr("riser_soil.contact.surface_contact.AROUND", 0.05)
+    found = taken("in a plane", "compiled")
+    assert len(begun) > 12
+    assert_same(found, by_snes("in a plane"))
+
+
+def test_soil_that_moves_beyond_what_is_watched_is_left_to_newton(monkeypatch: pytest.MonkeyPatch) -> None:
+    left, usual = list[float](), CondensedNewton._by_newton
+
+    def count(solver: CondensedNewton, step: Step) -> Solution:
+        left.append(step.t)
+        return usual(solver, step)
+
+    monkeypatch.setattr(CondensedNewton, "_by_newton", count)
+    monkeypatch.setattr("riser_soil.solve.soil_border.SHARE", 1e-4)
+    found = taken("in a plane", "compiled")
+    assert len(left) > 0
+    assert_same(found, by_snes("in a plane"))
+
+
+def at_first_step(case: str) -> tuple[CondensedNewton, System]:
+    """The loop's solver where the dynamic stage begins, in balance under the present soil."""
+    assembly = built(scene(case, "compiled"))
+    lay, move = assembly.scene.stages
+    before = run_stage(assembly, lay, State.at_rest(0.0, assembly.size), Watcher(), Timer.new())
+    system = System(assembly.comm, assembly.begin(move), Timer.new())
+    found = solver_of(system, SCHEME, SETTINGS)
+    assert isinstance(found, CondensedNewton)
+    guess = np.zeros(assembly.size)
+    found.solve(Step(SCHEME, before, 0.01, 0.01, None, guess))
+    return found, system
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
+    """Of riser and border, and it is another one without contact's share."""
+    newton, system = at_first_step(case)
+    riser, border = newton._riser, newton._border._border.value
+    step, dofs, n = riser.step, riser.dofs, newton._line.size
+    x0 = np.concatenate([step.u.ravel(), border.u])
+
+    def residual(x: Array) -> Array:
+        step.u.ravel()[:], border.u[:] = x[:n], x[n:]
+        riser.evaluate()
+        return np.concatenate([dofs.residual.ravel(), border.residual])
+
+    free = np.append(~dofs.fixed.ravel(), np.ones(len(border.u), dtype=bool))
+    residual(x0)
+    riser.put_tangent()
+    room, matrix = riser.room, np.zeros((len(x0), len(x0)))
+    for i in range(n):
+        for j in range(max(0, i - len(room.band)), min(n, i + len(room.band) + 1)):
+            matrix[i, j] = room.ab[i, j - i + len(room.band)]
+    matrix[:n, n:], matrix[n:, :n], matrix[n:, n:] = border.right, border.right.T, border.corner
+    assert np.abs(border.right[free[:n]]).max() > 0.0
+    assert np.abs(border.corner - newton._border._held.value.stiffness).max() > 0.0
+    random = np.random.default_rng(2)
+    for _ in range(3):
+        direction = random.normal(size=len(x0)) * free
+        h = 1e-7 / np.abs(direction).max()
+        wanted = (residual(x0 + h * direction) - residual(x0 - h * direction)) / (2.0 * h)
+        got = matrix @ direction
+        for rows in (np.flatnonzero(free[:n]), np.arange(n, len(x0))):
+            assert np.linalg.norm((got - wanted)[rows]) < 1e-6 * np.linalg.norm(wanted[rows])
+    newton.destroy()
+    system.destroy()
+
+
+@pytest.mark.parametrize(
+    ("changed", "why"),
+    [
+        ({"method": "node"}, "contact at nodes"),
+        ({"friction": {"axial": 0.4, "lateral": 0.7}}, "friction on soil"),
+        ({"suction": {"cap": 300.0, "reach": 0.02}}, "a history"),
+    ],
+)
+def test_what_has_no_kernels_is_left_to_newton(changed: Mapping, why: str) -> None:
+    mapping = scene("in a plane", "compiled")
+    mapping["contact"] = ({"method": "surface"} | changed) if "method" not in changed else changed
+    assembly = built(mapping)
+    system = System(assembly.comm, assembly.begin(assembly.scene.stages[1]), Timer.new())
+    assert condensed_newton(system, SETTINGS) is None, why
+    found = solver_of(system, SCHEME, SETTINGS)
+    assert isinstance(found, Newton)
+    found.destroy()
+    system.destroy()
