@@ -21,7 +21,7 @@ from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.driven_stage import Watcher, before_commit, built
 
 SAME = 1e-8
-CASES = {
+CASES: dict[str, tuple[int, Mapping]] = {
     "in a plane": (2, {}),
     "upright": (2, {"soil_moves": "upright"}),
     "in space": (3, {"friction": None}),
