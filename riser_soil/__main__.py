@@ -14,7 +14,7 @@ from riser_soil.errors import Interruption, WriteError
 from riser_soil.interruption import handling_signals, latest
 from riser_soil.standard_output import failsafe_output
 
-ALLOCATIONS = 100_000  # between two looks for unreachable objects; 700 by default, a fifth of the time of a start
+ALLOCATIONS = 400_000  # between two looks for unreachable objects, which a start makes few of; 700 by default
 
 
 def main() -> None:
