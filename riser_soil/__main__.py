@@ -20,6 +20,7 @@ ALLOCATIONS = 400_000  # between two looks for unreachable objects, which a star
 def main() -> None:
     """Entry point of the console script."""
     gc.set_threshold(ALLOCATIONS)
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # sought among all packages that are installed
     os.environ["PETSC_OPTIONS"] = f"-no_signal_handler {os.environ.get('PETSC_OPTIONS', '')}"
     with failsafe_output() as told:
         status = _status()
@@ -27,7 +28,7 @@ def main() -> None:
         with failsafe_output():
             print(f"standard output: cannot be written: {told.failure.strerror}", file=sys.stderr)
         status = status or WriteError.exit_status
-    gc.disable()  # the process ends: nothing is gained by a last look
+    gc.freeze()  # the process ends: nothing is gained by the last looks, which Python takes all the same
     sys.exit(status)
 
 
