@@ -20,7 +20,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.output import OutputQuantity
 from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.step_outputs import OF_STEP, TAKEN_OUT
-from riser_soil.results.growing_file import GrowingFile, appending, behind, cutting_back
+from riser_soil.results.growing_file import GrowingFile, append_rows, appending, behind, cutting_back
 from riser_soil.results.netcdf_layout import Variable, lay_out, values_in
 
 _SPOKEN = {  # parts whose names don't tell what dissipates or works
@@ -135,7 +135,7 @@ class SeriesFile:
         """Appends the gathered rows to the file."""
         with appending(self._file) as file:
             for name, rows in self._rows.items():
-                _append(file[name], rows)
+                append_rows(file[name], rows)
             file.attrs["finished"] = np.int8(finished)
             _name_stages(file, self._stages)
         self._rows.clear()
@@ -183,12 +183,6 @@ class SeriesFile:
 def _kept(value: object) -> object:
     """A copy of values that the solver continues to use; numbers stay as they are."""
     return value.copy() if isinstance(value, np.ndarray) else value
-
-
-def _append(dataset: h5py.Dataset, rows: list[object]) -> None:
-    known = dataset.shape[0]
-    dataset.resize(known + len(rows), axis=0)
-    dataset[known:] = np.asarray(rows)
 
 
 def _cut_back(dataset: h5py.Dataset, rows: int, path: Path) -> None:
