@@ -155,6 +155,7 @@ install_python_packages() { # lists of pins
 
 install_project() {
     "$venv/bin/python" -m pip install --disable-pip-version-check --no-deps --no-index --no-build-isolation -e "$root"
+    "$venv/bin/python" -m compileall -q "$root/riser_soil" # a start reads bytecode, also where Python may not write it
 }
 
 check_imports() { # modules

@@ -19,6 +19,13 @@ from riser_soil.core.kernel_cache import BareCache, KernelCache
 BARE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
+class Called(CPUDispatcher):
+    """A function compiled for Python."""
+
+    def _compilation_chain_init_hook(self) -> None:
+        """Extensions of numba are not needed; looking for them reads a file of each package that is installed."""
+
+
 class Kernel(CPUDispatcher):
     """A function compiled for compiled code; see `numba.njit` for the options."""
 
@@ -32,7 +39,7 @@ class Kernel(CPUDispatcher):
     @cached_property
     def called(self) -> CPUDispatcher:
         """The one that Python calls."""
-        made = CPUDispatcher(self.py_func, targetoptions={**self._options, "no_cfunc_wrapper": True})
+        made = Called(self.py_func, targetoptions={**self._options, "no_cfunc_wrapper": True})
         made._cache = self._kept
         return made
 

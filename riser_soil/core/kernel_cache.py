@@ -25,12 +25,15 @@ PACKAGE = Path(__file__).parents[1]
 
 class MachineCode(CompileResultCacheImpl):
     """Keeps the machine code of a function that no compiled code is linked with, without its intermediate code, which
-    takes longer to read.
+    takes longer to read; and of the environments of functions within, which numba imports their modules for, those
+    that are used: by errors with values in their text.
     """
 
     def reduce(self, cres: Any) -> Any:
-        (name, kind, (machine_code, _)), *rest = super().reduce(cres)
-        return (name, kind, (machine_code, _names(cres))), *rest
+        (name, kind, (machine_code, _)), *rest, environments = super().reduce(cres)
+        code = cres.library.get_llvm_str()
+        used = tuple(each for each in environments if code.count(each.env_name) > 1)  # once where it is declared
+        return (name, kind, (machine_code, _names(cres))), *rest, used
 
 
 class KernelCache(FunctionCache):

@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, GetCoreSchemaHandler, Tag
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-FROZEN = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=False)
+FROZEN = ConfigDict(defer_build=True, extra="forbid", frozen=True, allow_inf_nan=False, validate_default=False)
 
 MOST_ELEMENTS = 1_000_000
 """Of a riser: each of them costs some 10 kB, and every step of the run half a minute with so many."""

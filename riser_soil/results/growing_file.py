@@ -16,6 +16,8 @@ from pathlib import Path
 from typing import BinaryIO
 
 import h5py
+import numpy as np
+from h5py import h5s
 
 from riser_soil.errors import ResultsError, RiserSoilError
 from riser_soil.results.folder import draft_of, synchronise, write_atomically
@@ -116,6 +118,15 @@ def appending(file: GrowingFile) -> Iterator[h5py.File]:
         with h5py.File(pages, "r+") as store:
             yield store
     file.update(pages.changes(), pages.size)
+
+
+def append_rows(dataset: h5py.Dataset, rows: object) -> None:
+    """Rows behind those of a dataset, by HDF5's own calls, which take half the time of h5py's."""
+    new, (known, *row) = np.ascontiguousarray(rows), dataset.id.shape
+    dataset.id.set_extent((known + len(new), *row))
+    place = dataset.id.get_space()
+    place.select_hyperslab((known, *(0 for _ in row)), new.shape)
+    dataset.id.write(h5s.create_simple(new.shape), place, new)
 
 
 @contextmanager

@@ -1,20 +1,17 @@
 """netCDF-4 time series of a run, results.nc; readable at any moment, also after a kill.
 
-The file is laid out once by h5netcdf. Rows are gathered in memory; `flush` appends them in one update, so that the
-file on disk is whole at every moment.
+The file is laid out once. Rows are gathered in memory; `flush` appends them in one update, so that the file on disk is
+whole at every moment.
 """
 
 from __future__ import annotations
 
 import io
-import math
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import h5netcdf
 import h5py
 import numpy as np
 
@@ -23,7 +20,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.output import OutputQuantity
 from riser_soil.core.saved_state import Saved, packed, unpacked
 from riser_soil.core.step_outputs import OF_STEP, TAKEN_OUT
-from riser_soil.results.growing_file import GrowingFile, appending, behind, cutting_back
+from riser_soil.results.growing_file import GrowingFile, append_rows, appending, behind, cutting_back
+from riser_soil.results.netcdf_layout import Variable, lay_out, values_in
 
 _SPOKEN = {  # parts whose names don't tell what dissipates or works
     "morison": "drag and other forces of the water's motion",
@@ -35,17 +33,6 @@ _SPOKEN = {  # parts whose names don't tell what dissipates or works
 }
 
 
-@dataclass(frozen=True)
-class Variable:
-    """One variable of results.nc; `sign` says what its sign means, where it has one."""
-
-    dims: tuple[str, ...]
-    units: str
-    long_name: str
-    sign: str = ""
-    dtype: str = "f8"
-
-
 _DIMS = {
     "nodes": ("time", "arc"),
     "sections": ("time", "section"),
@@ -55,6 +42,7 @@ _DIMS = {
 }
 _OFFSET = Variable(("offset",), "m", "horizontal distance from the riser's axis", "positive along section_direction")
 _ARC = Variable(("arc",), "m", "unstressed arc length from the start")
+_COMPONENT = Variable(("component",), "", "global axis", dtype=h5py.string_dtype())
 
 
 def variable(output: OutputQuantity[Any]) -> Variable:
@@ -91,9 +79,6 @@ def _spoken(name: str) -> str:
     return _SPOKEN.get(name, name.replace("_", " "))
 
 
-_CHUNK_BYTES = 65536
-
-
 class SeriesFile:
     """Writer of results.nc.
 
@@ -119,9 +104,10 @@ class SeriesFile:
         wanted = {name: v for name, v in SERIES.items() if name not in left_out}
         self._variables = {name: v for name, v in wanted.items() if sections or "section" not in v.dims} | self._of_step
         self._of_instant = [name for name in self._variables if name in SERIES and name != "stage"]
-        self._sizes = {"arc": arc.size, "component": 3, "section": sections, "offset": len(offsets)}
+        sizes = {"arc": arc.size, "component": 3, "section": sections, "offset": len(offsets)}
+        self._sizes = {"time": None, "step": None} | {name: size for name, size in sizes.items() if size}
         self._offsets = np.array(offsets)
-        self.row_size = sum(8 * _values_in(self._variables[name], self._sizes) for name in self._of_instant)  # bytes
+        self.row_size = sum(8 * values_in(self._variables[name], self._sizes) for name in self._of_instant)  # bytes
         self._rows: defaultdict[str, list[object]] = defaultdict(list)
         self._records = self._steps = 0
         self._stages: list[str] = []
@@ -149,7 +135,7 @@ class SeriesFile:
         """Appends the gathered rows to the file."""
         with appending(self._file) as file:
             for name, rows in self._rows.items():
-                _append(file[name], rows)
+                append_rows(file[name], rows)
             file.attrs["finished"] = np.int8(finished)
             _name_stages(file, self._stages)
         self._rows.clear()
@@ -163,21 +149,18 @@ class SeriesFile:
 
     def _layout(self, arc: Array, title: str, version: str) -> bytes:
         content = io.BytesIO()
-        with h5netcdf.File(content, "w") as file:
-            file.dimensions = {"time": None, "step": None} | {name: n for name, n in self._sizes.items() if n}
+        fixed = {"arc": _ARC, "component": _COMPONENT} | ({"offset": _OFFSET} if self._offsets.size else {})
+        with h5py.File(content, "w", track_order=True) as file:
             file.attrs["title"] = title
             file.attrs["version"] = version
             file.attrs["source"] = f"riser_soil {version}"
             file.attrs["Conventions"] = "CF-1.11"
             file.attrs["finished"] = np.int8(0)
-            _describe(file, "arc", _ARC)[...] = arc
+            lay_out(file, self._sizes, fixed | self._variables)
+            file["arc"][...] = arc
+            file["component"][...] = ["x", "y", "z"]
             if self._offsets.size:
-                _describe(file, "offset", _OFFSET)[...] = self._offsets
-            component = file.create_variable("component", ("component",), h5py.string_dtype())
-            component[...] = np.array(["x", "y", "z"], dtype=object)
-            component.attrs["long_name"] = "global axis"
-            for name, variable in self._variables.items():
-                _describe(file, name, variable, self._sizes)
+                file["offset"][...] = self._offsets
         return content.getvalue()
 
     def state(self) -> Saved:
@@ -200,36 +183,6 @@ class SeriesFile:
 def _kept(value: object) -> object:
     """A copy of values that the solver continues to use; numbers stay as they are."""
     return value.copy() if isinstance(value, np.ndarray) else value
-
-
-def _describe(
-    file: h5netcdf.File, name: str, variable: Variable, sizes: Mapping[str, int] | None = None
-) -> h5netcdf.Variable:
-    made = file.create_variable(name, variable.dims, variable.dtype, chunks=_chunks(variable, sizes or {}))
-    made.attrs["units"] = variable.units
-    made.attrs["long_name"] = variable.long_name
-    if variable.sign:
-        made.attrs["sign_convention"] = variable.sign
-    return made
-
-
-def _values_in(variable: Variable, sizes: Mapping[str, int]) -> int:
-    """Of one row."""
-    return math.prod(sizes[d] for d in variable.dims[1:])
-
-
-def _chunks(variable: Variable, sizes: Mapping[str, int]) -> tuple[int, ...] | None:
-    if variable.dims[0] not in ("time", "step"):
-        return None
-    row = tuple(sizes[d] for d in variable.dims[1:])
-    rows = _CHUNK_BYTES // (8 * max(1, _values_in(variable, sizes)))
-    return (min(1024, max(1, rows)), *row)
-
-
-def _append(dataset: h5py.Dataset, rows: list[object]) -> None:
-    known = dataset.shape[0]
-    dataset.resize(known + len(rows), axis=0)
-    dataset[known:] = np.asarray(rows)
 
 
 def _cut_back(dataset: h5py.Dataset, rows: int, path: Path) -> None:

@@ -18,6 +18,7 @@ import numpy as np
 from h5py import h5d, h5p, h5s, h5t
 
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.results.growing_file import append_rows
 
 ROOT = "VTKHDF"
 _FRAME = "frame_"
@@ -73,9 +74,9 @@ def append(
     none = np.zeros_like(numbers)
     of_steps = {"Values": times, "PartOffsets": none, "NumberOfParts": none + 1, "PointOffsets": moved}
     for name, rows in of_steps.items():
-        _extend(steps[name], rows)
+        append_rows(steps[name], rows)
     for name in ("CellOffsets", "ConnectivityIdOffsets"):
-        _extend(steps[name], np.zeros((n, steps[name].shape[1]), dtype=np.int64))
+        append_rows(steps[name], np.zeros((n, steps[name].shape[1]), dtype=np.int64))
     steps.attrs["NSteps"] = int(numbers[-1]) + 1
 
 
@@ -176,17 +177,11 @@ def _append_values(data: h5py.Group, offsets: h5py.Group, numbers: IntArray, val
                 offsets[name] = offsets[next(iter(offsets))]
             else:
                 _make_growing(offsets, name, (), "i8", _STEPS_IN_CHUNK)
-        _extend(data[name], array.reshape(-1, *row))
+        append_rows(data[name], array.reshape(-1, *row))
     if values:
         name, array = next(iter(values.items()))
-        _extend(offsets[name], numbers * array.shape[1])
+        append_rows(offsets[name], numbers * array.shape[1])
 
 
 def _make_growing(group: h5py.Group, name: str, row: tuple[int, ...], dtype: object, rows: int) -> None:
     group.create_dataset(name, (0, *row), dtype, maxshape=(None, *row), chunks=(rows, *row))
-
-
-def _extend(dataset: h5py.Dataset, rows: object) -> None:
-    known, new = dataset.shape[0], np.asarray(rows)
-    dataset.resize(known + len(new), axis=0)
-    dataset[known:] = new

@@ -52,7 +52,7 @@ def test_versions_of_numba_have_their_own_caches(package: Path, monkeypatch: pyt
 
 
 def test_the_package_depends_on_all_its_kernels() -> None:
-    names = {str(path.relative_to(compiled.PACKAGE)) for path in compiled._sources(compiled.PACKAGE)}
+    names = compiled._sources(compiled.PACKAGE).keys()
     assert {"riser/beam3d.py", "riser/bending.py", "sea/morison_law.py", "core/matrix.py"} <= names
     assert not {"whole_run.py", "__main__.py", "results/observer.py"} & names
 

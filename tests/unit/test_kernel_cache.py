@@ -36,6 +36,7 @@ print(sum(twice.stats.cache_hits.values()), sum(twice.stats.cache_misses.values(
 KERNELS = """
 import sys
 import numpy as np
+from numba.core import entrypoints
 from riser_soil.core.compiled import njit
 
 @njit
@@ -53,7 +54,28 @@ def least(x):
     return pair(x)[0]
 
 for name in sys.argv[1:]:
-    print(globals()[name](1.5), "numba.np.linalg" in sys.modules)
+    made = globals()[name](1.5)
+    modules = not {"numba.np.linalg", "numba.np.arrayobj"}.isdisjoint(sys.modules)
+    print(made, modules or entrypoints._already_initialized)
+"""
+
+ERROR = """
+from riser_soil.core.compiled import njit
+
+@njit
+def checked(x):
+    if x > 1.0:
+        raise ValueError("too large", x)
+    return x
+
+@njit
+def twice(x):
+    return 2.0 * checked(x)
+
+try:
+    twice(1.5)
+except ValueError as err:
+    print(*err.args)
 """
 
 
@@ -102,3 +124,9 @@ def test_a_kernel_that_is_read_is_no_compiler_and_is_compiled_into_others(folder
         *("3.0", "False"),
         *("1.5", "True"),
     ]
+
+
+def test_a_kernel_that_is_read_tells_errors_with_their_values(folder: Path) -> None:
+    (folder / "error.py").write_text(ERROR, encoding="utf-8")
+    for _ in range(2):
+        assert printed(folder, "error.py") == ["too", "large", "1.5"]

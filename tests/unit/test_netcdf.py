@@ -4,12 +4,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import h5netcdf
 import h5py
 import numpy as np
 import xarray as xr
 
 from riser_soil.results import Run
 from riser_soil.results.netcdf import HEALTH, SERIES, SeriesFile
+from riser_soil.results.netcdf_layout import Variable, lay_out
 from tests.support.recorded_run import Catenary, record
 
 ARC = np.linspace(0.0, 100.0, 11)
@@ -144,3 +146,40 @@ def test_without_sections_there_is_nothing_of_them(tmp_path: Path) -> None:
     with h5py.File(tmp_path / "results.nc") as file:
         assert "soil_settlement" in file
         assert not {"section", "offset", "section_arc", "settlement_across"} & set(file)
+
+
+def test_the_layout_is_that_of_h5netcdf(tmp_path: Path) -> None:
+    sizes = {"time": None, "arc": 4, "section": 2}
+    variables = {
+        "position": Variable(("time", "arc"), "m", "place", "up"),
+        "trough": Variable(("time", "section"), "m", "depth"),
+        "stage": Variable(("time",), "1", "number", dtype="i4"),
+        "time": Variable(("time",), "s", "time"),
+        "arc": Variable(("arc",), "m", "arc length"),
+    }
+    with h5py.File(tmp_path / "ours.nc", "w", track_order=True) as file:
+        lay_out(file, sizes, variables)
+    with h5netcdf.File(tmp_path / "theirs.nc", "w") as file:
+        file.dimensions = sizes
+        for name, variable in variables.items():
+            made = file.create_variable(name, variable.dims, variable.dtype)
+            for attribute, text in variable.attributes.items():
+                made.attrs[attribute] = text
+    assert described(tmp_path / "ours.nc") == described(tmp_path / "theirs.nc")
+
+
+def described(path: Path) -> dict[str, object]:
+    """Each dataset with its shape, type and attributes, and the scales that it points to."""
+    with h5py.File(path) as file:
+        return {name: (*_shape(made), _attributes(made)) for name, made in file.items()}
+
+
+def _shape(made: h5py.Dataset) -> tuple[object, ...]:
+    return made.shape, made.maxshape, made.dtype
+
+
+def _attributes(made: h5py.Dataset) -> dict[str, object]:
+    found = {name: np.asarray(value).tolist() for name, value in made.attrs.items() if not name.endswith("_LIST")}
+    scales = [made.file[refs[0]].name for refs in made.attrs.get("DIMENSION_LIST", ())]
+    users = sorted((made.file[ref].name, int(axis)) for ref, axis in made.attrs.get("REFERENCE_LIST", ()))
+    return found | {"scales": scales, "users": users}
