@@ -268,16 +268,13 @@ def factorise(room: MatrixRoom, progress: NewtonProgress) -> None:
 @njit
 def improve(room: MatrixRoom, step: StepNumbers, dofs: Dofs) -> None:
     """Take what the factorised tangent answers to the residual off the increments."""
-    for n in range(step.u.shape[0]):
-        for i in range(step.u.shape[1]):
-            if dofs.fixed[n, i]:
-                dofs.residual[n, i] = 0.0
-    change = dofs.residual.reshape(dofs.residual.size)
+    size = dofs.residual.size
+    fixed, change, u = dofs.fixed.reshape(size), dofs.residual.reshape(size), step.u.reshape(size)
+    for k in range(size):
+        change[k] = 0.0 if fixed[k] else change[k]
     banded.solve(room.ab, room.pivots, change, room.band)
-    for n in range(step.u.shape[0]):
-        for i in range(step.u.shape[1]):
-            if not dofs.fixed[n, i]:
-                step.u[n, i] -= dofs.residual[n, i]
+    for k in range(size):
+        u[k] -= 0.0 if fixed[k] else change[k]
 
 
 @njit
