@@ -230,6 +230,11 @@ class SeabedContact(LineContact):
         """Increments of a first guess that lands, see `landing`."""
         if not self.active:
             return guess.u
+        if self._covered is None:
+            increments = guess.u.copy()
+            ground, moved = self.ground.numbers, self.line.nodal(increments)
+            seabed_stations.land(self._frame, ground, self._radius_of_nodes, self.law.start, self.line.x, moved)
+            return increments
         moved = self.line.nodal(guess.u)[:, : self.line.dimension]
         present, guessed = (self._clearance(x) for x in (self.line.x, self.line.x + moved))
         return landing_predictor(guess, self.line.translation_dofs[:, -1], present, guessed, self.law.start)

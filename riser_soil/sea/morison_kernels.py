@@ -74,12 +74,13 @@ def _still_tangent(part: StillWaterNumbers, at: Configuration, maps: Maps, weigh
         for g in range(ng):
             v, a, tau, stretch = _see(part, at, e, e * ng + g)
             N, weighted = part.at.N[e, g], part.at.weighted[e, g]
-            law.put_drag_derivatives(v, tau, stretch, drag, weights.force, room.by_v, room.by_slope, at.D)
-            law.put_added_derivatives(a, tau, stretch, mass, weights.inertia, room.by_a, room.by_slope, at.D)
             moved = N, room.by_a, maps.acceleration_rows[e]
             if weights.force == 0.0:  # the mass alone is asked for, at rest
+                law.put_added_derivatives(a, tau, stretch, mass, weights.inertia, room.by_a, room.by_slope, at.D)
                 add_weighed(part.element, weighted, (moved,), at.D, at.R)
             else:
+                law.put_drag_derivatives(v, tau, stretch, drag, weights.force, room.by_v, room.by_slope, at.D)
+                law.put_added_derivatives(a, tau, stretch, mass, weights.inertia, room.by_a, room.by_slope, at.D)
                 slope = part.at.dN[e, g], room.by_slope, maps.place_rows[e]
                 add_weighed(part.element, weighted, (slope, (N, room.by_v, maps.rate_rows[e]), moved), at.D, at.R)
         add_pulled_back(K[e], at.P[e], part.element, at.D, at.R)
