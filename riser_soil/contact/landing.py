@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 
 
@@ -18,5 +17,17 @@ def landing_predictor(guess: State, heights: IntArray, present: Array, guessed: 
     force begins, `start` [m].
     """
     increments = guess.u.copy()
-    increments[heights] += np.maximum(np.minimum(present, -0.5 * start) - guessed, 0.0)
+    _lift_each(increments, heights, present, guessed, start)
     return increments
+
+
+@njit
+def _lift_each(increments: Array, heights: IntArray, present: Array, guessed: Array, start: float) -> None:
+    for n in range(heights.size):
+        increments[heights[n]] += lift(present[n], guessed[n], start)
+
+
+@njit
+def lift(present: float, guessed: float, start: float) -> float:
+    """How far a node is raised; arguments as in `landing_predictor`."""
+    return max(min(present, -0.5 * start) - guessed, 0.0)

@@ -253,6 +253,11 @@ class SeabedContact(LineContact):
         """Increments of a first guess that lands, see `landing`."""
         if not self.active:
             return guess.u
+        if self._covered is None:
+            increments = guess.u.copy()
+            ground, moved = self.ground.numbers, self.line.nodal(increments)
+            seabed_stations.land(self._frame, ground, self._radius_of_nodes, self.law.start, self.line.x, moved)
+            return increments
         moved = self.line.nodal(guess.u)[:, : self.line.dimension]
         x, radius, start = self.line.x + moved, self._radius_of_nodes, self.law.start
         low = np.flatnonzero(self._penetration(x[:, None], radius)[0][:, 0] > -start)

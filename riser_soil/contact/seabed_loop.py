@@ -14,6 +14,7 @@ from riser_soil.contact.work_along_step import work_at
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.rows import add_pulled_back, add_weighed, held
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.line import Line
@@ -62,7 +63,7 @@ class SeabedNumbers(NamedTuple):
     reach: float
     cover: Any
     found: Found
-    element: stations.ElementRoom
+    element: Array
     f: Array
     by: Array
 
@@ -97,7 +98,7 @@ def seabed_numbers(
     penetration, force, slope, stored = (np.zeros((ne, ng)) for _ in range(4))
     touches, after = np.zeros(ne, dtype=np.bool_), np.zeros(memory.shape[2])
     found = Found(touches, position, normal, penetration, force, slope, stored, np.full((ne, ng), -1), after)
-    element = stations.element_room(ng, 2 * line.ndof, fixed(d))
+    element = stations.element_room(2 * line.ndof, fixed(d))
     room = element, np.zeros(d), np.zeros((d, d))
     given = at, share, radius, memory.copy(), frame_of(line), ground, law.numbers, float(law.reach)
     return SeabedNumbers(*given, Bare(-1) if cover is None else cover, found, *room)
@@ -128,11 +129,13 @@ def _is_covered(part: SeabedNumbers, place: Array, e: int, g: int) -> bool:
 
 @add_forces.of(SeabedNumbers)
 def _contact_forces(part: SeabedNumbers, at: Configuration, out: LineForces) -> None:
-    found = part.found
+    found, ng = part.found, part.share.shape[1]
     for e in range(part.radius.size):
         touches = False
-        for g in range(part.share.shape[1]):
-            stations.put_value(part.at.N[e, g], at.q[e], found.position[e, g], at.D)
+        for g in range(ng):
+            x = stations.value_at(part.at.N, e * ng + g, at.q, e, at.D)
+            for i in range(len(at.D)):
+                found.position[e, g, i] = x[i]
             value, normal, _ = distance_in(part.frame, part.ground, padded(found.position[e, g]))
             found.penetration[e, g] = part.radius[e] - value
             put(normal, found.normal[e, g])
@@ -154,7 +157,8 @@ def _press(part: SeabedNumbers, at: Configuration, e: int, out: LineForces) -> N
         force, slope, stored = answer(part.law, found.penetration[e, g], part.memory[e, g], found.after)
         found.force[e, g], found.slope[e, g], found.stored[e, g] = force, slope, stored
         put(scale(-force, padded(found.normal[e, g])), part.f)
-        stations.add_integrand(part.at.weighted[e, g], part.f, out.end_q[e], at.D)
+        p = e * part.share.shape[1] + g
+        stations.add_integrand_at(part.at.weighted, p, held(part.f, at.D), out.end_q, e, at.D)
 
 
 @add_tangent.of(SeabedNumbers)
@@ -163,12 +167,13 @@ def _contact_tangent(part: SeabedNumbers, at: Configuration, maps: Maps, weights
     for e in range(part.radius.size):
         if not found.touches[e]:
             continue
-        stations.begin_changes(room)
+        room[:] = 0.0
         for g in range(part.share.shape[1]):
             _, _, bend = distance_in(part.frame, part.ground, padded(found.position[e, g]))
             put_matrix(by_position(found.force[e, g], found.slope[e, g], padded(found.normal[e, g]), bend), part.by)
-            stations.add_change(room, g, part.at.N[e, g], part.by, maps.place_rows[e], at.D, at.R)
-        stations.add_element(K[e], room, part.at.weighted[e], at.P[e], at.D, at.R)
+            pressed = part.at.N[e, g], part.by, maps.place_rows[e]
+            add_weighed(room, part.at.weighted[e, g], (pressed,), at.D, at.R)
+        add_pulled_back(K[e], at.P[e], room, at.D, at.R)
 
 
 @add_energy.of(SeabedNumbers)
@@ -231,7 +236,8 @@ def _friction_forces(part: FrictionNumbers, at: Configuration, out: LineForces) 
         for g in range(contact.share.shape[1]):
             t, _, _ = return_map(_elastic(part, e, g), max(contact.found.force[e, g], 0.0), part.mu)
             put(scale(-1.0, vector_of(read_along(part.along[e, g]), t)), part.resistance[e, g])
-            stations.add_integrand(contact.at.weighted[e, g], part.resistance[e, g], out.end_q[e], at.D)
+            p = e * contact.share.shape[1] + g
+            stations.add_integrand_at(contact.at.weighted, p, held(part.resistance[e, g], at.D), out.end_q, e, at.D)
 
 
 @add_tangent.of(FrictionNumbers)
@@ -240,7 +246,7 @@ def _friction_tangent(part: FrictionNumbers, at: Configuration, maps: Maps, weig
     for e in range(part.stiffness.size):
         if not found.touches[e]:
             continue
-        stations.begin_changes(room)
+        room[:] = 0.0
         for g in range(contact.share.shape[1]):
             force, normal = found.force[e, g], padded(found.normal[e, g])
             _, by_elastic, by_N = return_map(_elastic(part, e, g), max(force, 0.0), part.mu)
@@ -249,8 +255,9 @@ def _friction_tangent(part: FrictionNumbers, at: Configuration, maps: Maps, weig
             put_matrix(
                 resistance_by_position(ways, part.stiffness[e], by_elastic, by_N, slope, normal), contact.by
             )
-            stations.add_change(room, g, contact.at.N[e, g], contact.by, maps.place_rows[e], at.D, at.R)
-        stations.add_element(K[e], room, contact.at.weighted[e], at.P[e], at.D, at.R)
+            dragged = contact.at.N[e, g], contact.by, maps.place_rows[e]
+            add_weighed(room, contact.at.weighted[e, g], (dragged,), at.D, at.R)
+        add_pulled_back(K[e], at.P[e], room, at.D, at.R)
 
 
 @add_energy.of(FrictionNumbers)

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from riser_soil.contact.landing import lift
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser.line import Line
@@ -86,6 +87,17 @@ def over_ground(
             put(gradient, normal[e, g])
             if bend.size > 0:
                 put_matrix(hessian, bend[e, g])
+
+
+@njit
+def land(frame: LineFrame, ground: Any, radius: Array, start: float, x: Array, moved: Array) -> None:
+    """Raise the increments (nn, ndof) of nodes at x (nn, d) that would sink, see `landing`; radius (nn,)."""
+    d = x.shape[1]
+    for n in range(x.shape[0]):
+        at = padded(x[n])
+        present, _, _ = distance_in(frame, ground, at)
+        guessed, _, _ = distance_in(frame, ground, add(at, padded(moved[n, :d])))
+        moved[n, d - 1] += lift(present - radius[n] - start, guessed - radius[n] - start, start)
 
 
 @njit

@@ -3,7 +3,7 @@
 A matrix of n rows with b entries on either side of its diagonal lies there by rows: entry (i, j) at ab[i, j - i + b],
 |j - i| <= b. Row exchanges fill b further places to the right. Below the last row there are b rows of zeros, so that
 all rows are alike and their loops have lengths that are known beforehand. The factors of elimination lie to the left of
-their pivot: that of row k + i at ab[k, i - 1].
+their pivot: that of row k + i at ab[k, i - 1]. In the pivot's own place lies its inverse.
 
 Rows are exchanged only for a pivot below a tenth of the largest entry: a riser's matrix then needs hardly any exchange,
 and rows without fill have half the work. Source: Golub & Van Loan, Matrix Computations (2013), 4.3; Duff, Erisman &
@@ -42,6 +42,7 @@ def factorise(ab: Array, pivots: IntArray, B: Size) -> bool:
             for j in range(2 * len(B) + 1):
                 ab[k, b + j], ab[p, b + j - (p - k)] = ab[p, b + j - (p - k)], ab[k, b + j]
         inverse, start = 1.0 / ab[k, b], k * width + b + 1
+        ab[k, b] = inverse
         for i in range(1, len(B) + 1):
             factor = ab[k + i, b - i] * inverse
             ab[k, i - 1] = factor
@@ -70,22 +71,61 @@ def _pivot(ab: Array, k: int, B: Size) -> int:
 @njit
 def solve(ab: Array, pivots: IntArray, x: Array, B: Size) -> None:
     """Solve with the factors of `factorise`: the right-hand side x (n,) becomes the solution."""
-    n, b, filled = pivots.size, len(B), False
+    b, wide = len(B), _take_off(ab, pivots, x, B)
+    whole = max(pivots.size - 2 * b, 0)  # rows that have all of their numbers within the matrix
+    _insert(ab, x, pivots.size, whole, b)
+    if b > 0:
+        _insert_whole(ab, x, whole, min(wide, whole), b, b)
+        _insert_whole(ab, x, min(wide, whole), 0, b, 2 * b)
+
+
+@njit
+def _take_off(ab: Array, pivots: IntArray, x: Array, B: Size) -> int:
+    """Take multiples of each row's number off those below it; the row from which on none has any fill."""
+    n, wide = pivots.size, 0
     for k in range(n):
         p = pivots[k]
         if p != k:
-            x[k], x[p], filled = x[p], x[k], True
-        for i in range(min(b, n - 1 - k)):
-            x[k + 1 + i] -= ab[k, i] * x[k]
-    for k in range(n - 1, -1, -1):
-        m = min(2 * b if filled else b, n - 1 - k)
-        even, odd = 0.0, 0.0  # two sums, which needn't wait for each other; the latest number is added last
-        for j in range(m, 1, -2):
-            even += ab[k, b + j] * x[k + j]
-            odd += ab[k, b + j - 1] * x[k + j - 1]
-        if m % 2:
-            odd += ab[k, b + 1] * x[k + 1]
-        x[k] = (x[k] - even - odd) / ab[k, b]
+            x[k], x[p], wide = x[p], x[k], max(wide, p)
+        own = x[k]
+        if k + len(B) < n:
+            for i in range(len(B)):
+                x[k + 1 + i] -= ab[k, i] * own
+        else:
+            for i in range(n - 1 - k):
+                x[k + 1 + i] -= ab[k, i] * own
+    return wide
+
+
+@njit
+def _insert(ab: Array, x: Array, end: int, first: int, b: int) -> None:
+    """Solve for the rows before `end`, down to the first, which the matrix' end may cut short."""
+    for k in range(end - 1, first - 1, -1):
+        total = x[k]
+        for j in range(1, min(2 * b, x.size - 1 - k) + 1):
+            total -= ab[k, b + j] * x[k + j]
+        x[k] = total * ab[k, b]
+
+
+@njit
+def _insert_whole(ab: Array, x: Array, end: int, first: int, b: int, reach: int) -> None:
+    """The same for rows with as many numbers beyond their pivots as `reach` says.
+
+    But one product all of a row is there before the number found last is: the rest is added in two sums.
+    """
+    if end <= first:
+        return
+    found = x[end]
+    for k in range(end - 1, first - 1, -1):
+        even, odd = x[k], 0.0
+        for j in range(2, reach + 1):
+            if j % 2:
+                odd += ab[k, b + j] * x[k + j]
+            else:
+                even -= ab[k, b + j] * x[k + j]
+        inverse = ab[k, b]
+        found = (even - odd) * inverse - ab[k, b + 1] * inverse * found
+        x[k] = found
 
 
 @njit
@@ -113,9 +153,8 @@ def inverse_at(ab: Array, pivots: IntArray, at: IntArray, B: Size) -> Array:
             if factor != 0.0:
                 for c in range(m):
                     x[k, c] -= factor * x[k + j, c]
-        inverse = 1.0 / ab[k, b]
         for c in range(m):
-            x[k, c] *= inverse
+            x[k, c] *= ab[k, b]
     return x[at]
 
 

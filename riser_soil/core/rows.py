@@ -1,22 +1,24 @@
 """Rows of numbers as whole vectors, for compiled code.
 
 A loop over a short row isn't vectorised, as its compiler can't know that what is written lies apart from what is read.
-Here a row whose length is known beforehand is read as one vector before anything is written.
+Here a row whose length is known beforehand is read as whole vectors before anything is written (`row_code`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from llvmlite import ir
 from numba import types
-from numba.extending import intrinsic, overload
+from numba.extending import overload
 
+from riser_soil.core import row_code
 from riser_soil.core.arrays import Array
+from riser_soil.core.row_code import Size
 
-DOUBLE, FUSED = ir.DoubleType(), ("contract",)
-Size = tuple[int, ...]  # of `compiled.fixed`; or an array, where a length is not known as it is compiled
+Term = tuple[Array, Array, Array]
+Vector = Array | tuple[float, ...]
 
 
 def add_multiple(out: Array, at: int, factor: float, rows: Array, start: int, N: Size) -> None:
@@ -33,7 +35,7 @@ def _chosen(out: Any, at: Any, factor: Any, rows: Any, start: Any, N: Any) -> An
     if isinstance(N, types.BaseTuple) and len(N) == 0:
         return lambda out, at, factor, rows, start, N: None
     if isinstance(N, types.BaseTuple):
-        return lambda out, at, factor, rows, start, N: _add(out, at, factor, rows, start, N)
+        return lambda out, at, factor, rows, start, N: row_code.add_multiple(out, at, factor, rows, start, N)
 
     def one_by_one(out: Array, at: int, factor: float, rows: Array, start: int, N: Array) -> None:
         flat, given = out.reshape(out.size), rows.reshape(rows.size)
@@ -43,90 +45,102 @@ def _chosen(out: Any, at: Any, factor: Any, rows: Any, start: Any, N: Any) -> An
     return one_by_one
 
 
-def add_shaped(
-    out: Array, at: int, four: Array, first: int, A: Array, row: int, rows: Array, start: int, D: Size, R: Size
-) -> None:
-    """Add row `row` of A (d, d) times `rows` (d, n), its blocks of d, r, d and r columns times four factors.
+def held(values: Vector, D: Size) -> tuple[float, ...]:
+    """Two or three numbers, as D says, apart from the array: what is written later can't change them."""
+    return tuple(values[: len(D)])
 
-    out, four, A, rows: contiguous, of any shape; at, first and start: where in them what is meant begins, counted in
-    single numbers. n = 2 (d + r), d = len(D), r = len(R).
+
+@overload(held, inline="always", strict=False)
+def _held(values: Any, D: Any) -> Any:
+    if len(D) == 2:
+        return lambda values, D: (values[0], values[1])
+    return lambda values, D: (values[0], values[1], values[2])
+
+
+def times(factor: float, vector: tuple[float, ...]) -> tuple[float, ...]:
+    """A vector of two or three numbers times a factor."""
+    return tuple(factor * each for each in vector)
+
+
+@overload(times, inline="always", strict=False)
+def _times(factor: Any, vector: Any) -> Any:
+    if len(vector) == 2:
+        return lambda factor, vector: (factor * vector[0], factor * vector[1])
+    return lambda factor, vector: (factor * vector[0], factor * vector[1], factor * vector[2])
+
+
+def numbers_at(values: Array, start: int, D: Size) -> tuple[float, ...]:
+    """len(D) numbers of a contiguous array of any shape, from `start` on, counted in single numbers."""
+    return tuple(values.reshape(-1)[start : start + len(D)].tolist())
+
+
+@overload(numbers_at, inline="always", strict=False)
+def _numbers(values: Any, start: Any, D: Any) -> Any:
+    return lambda values, start, D: row_code.numbers_at(values, start, D)
+
+
+def combined(terms: Sequence[tuple[float, Array, int]], D: Size) -> tuple[float, ...]:
+    """Sum of vectors (d,), each a factor times numbers of an array from a place on, as in `numbers_at`."""
+    factors, vectors = zip(*((factor, numbers_at(values, at, D)) for factor, values, at in terms), strict=True)
+    return tuple((np.array(factors) @ np.array(vectors)).tolist())
+
+
+@overload(combined, inline="always", strict=False)
+def _sum(terms: Any, D: Any) -> Any:
+    return lambda terms, D: row_code.combined(terms, D)
+
+
+def add_shares(F: Array, start: int, four: Array, first: int, f: tuple[float, ...], D: Size) -> None:
+    """Add to four vectors of `F`, from `start` on, f (d,) times one of `four`, from `first` on; as in `numbers_at`."""
+    d = len(D)
+    shares = np.outer(four.reshape(-1)[first : first + 4], f)
+    F.reshape(-1)[start : start + 4 * d] += shares.ravel()
+
+
+@overload(add_shares, inline="always", strict=False)
+def _shares(F: Any, start: Any, four: Any, first: Any, f: Any, D: Any) -> Any:
+    return lambda F, start, four, first, f, D: row_code.add_shares(F, start, four, first, f, D)
+
+
+def add_weighed(S: Array, weights: Array, terms: Sequence[Term], D: Size, R: Size) -> None:
+    """Add to each of S (4, d, n) its weight (4,) times a sum of terms: a matrix (d, d) times rows (d, n), whose blocks
+    of d, r, d and r columns count with four factors (4,). A term is the three of them, factors first.
+
+    All contiguous; n = 2 (d + r), d = len(D), r = len(R).
     """
-    d, n = len(D), 2 * (len(D) + len(R))
-    factors = np.repeat(four.reshape(-1)[first : first + 4], [d, len(R)] * 2)
-    product = A.reshape(-1)[row * d : row * d + d] @ rows.reshape(-1)[start : start + d * n].reshape(d, n)
-    out.reshape(-1)[at : at + n] += factors * product
+    blocks = [len(D), len(R)] * 2
+    change = sum(np.repeat(four, blocks) * (A @ rows) for four, A, rows in terms)
+    S += weights[:, None, None] * change
 
 
-@overload(add_shaped, inline="always", strict=False)
-def _shaped(
-    out: Any, at: Any, four: Any, first: Any, A: Any, row: Any, rows: Any, start: Any, D: Any, R: Any
-) -> Any:
-    return lambda out, at, four, first, A, row, rows, start, D, R: _add_shaped(
-        out, at, four, first, A, row * len(D), rows, start, D, R
-    )
+@overload(add_weighed, inline="always", strict=False)
+def _weighed(S: Any, weights: Any, terms: Any, D: Any, R: Any) -> Any:
+    return lambda S, weights, terms, D, R: row_code.add_weighed(S, weights, terms, D, R)
 
 
-@intrinsic
-def _add(context: Any, out: Any, at: Any, factor: Any, rows: Any, start: Any, N: Any) -> Any:
-    """What `add_multiple` does."""
-    signature = types.void(out, types.intp, types.float64, rows, types.intp, N)
-
-    def add(target: Any, builder: Any, signature: Any, given: Any) -> Any:
-        place = _Places(target, builder, signature, given)
-        to = place(0, len(N))
-        before, row = builder.load(to, align=8), builder.load(place(3, len(N)), align=8)
-        factors = _spread(builder, [given[2]], [0] * len(N))
-        builder.store(builder.fadd(before, builder.fmul(factors, row, flags=FUSED), flags=FUSED), to, align=8)
-        return target.get_dummy_value()
-
-    return signature, add
+def put_blocks(S: Array, M: Array, factor: float, rows: Array, D: Size, R: Size) -> None:
+    """Write to S (4, d, n) rows (d, n), whose blocks of d, r, d and r columns count with `factor` times a row of
+    M (4, 4). All contiguous.
+    """
+    S[...] = factor * np.repeat(M, [len(D), len(R)] * 2, axis=1)[:, None, :] * rows
 
 
-@intrinsic
-def _add_shaped(
-    context: Any, out: Any, at: Any, four: Any, first: Any, A: Any, row: Any, rows: Any, start: Any, D: Any, R: Any
-) -> Any:
-    """What `add_shaped` does; row: where it begins in A."""
-    d, n = len(D), 2 * (len(D) + len(R))
-    blocks = [*[0] * d, *[1] * len(R), *[2] * d, *[3] * len(R)]
-    signature = types.void(out, types.intp, four, types.intp, A, types.intp, rows, types.intp, D, R)
-
-    def add(target: Any, builder: Any, signature: Any, given: Any) -> Any:
-        place = _Places(target, builder, signature, given)
-        to = place(0, n)
-        before = builder.load(to, align=8)
-        factors = _spread(builder, [builder.load(place(2, shift=k)) for k in range(4)], blocks)
-        product = None
-        for j in range(d):
-            by = _spread(builder, [builder.load(place(4, shift=j))], [0] * n)
-            part = builder.fmul(by, builder.load(place(6, n, shift=j * n), align=8), flags=FUSED)
-            product = part if product is None else builder.fadd(product, part, flags=FUSED)
-        builder.store(builder.fadd(before, builder.fmul(factors, product, flags=FUSED), flags=FUSED), to, align=8)
-        return target.get_dummy_value()
-
-    return signature, add
+@overload(put_blocks, inline="always", strict=False)
+def _blocks(S: Any, M: Any, factor: Any, rows: Any, D: Any, R: Any) -> Any:
+    return lambda S, M, factor, rows, D, R: row_code.put_blocks(S, M, factor, rows, D, R)
 
 
-class _Places:
-    """Pointers to a number, or to n of them, in arrays that are given each with the place of the first number."""
-
-    def __init__(self, target: Any, builder: Any, signature: Any, given: Any) -> None:
-        self._target, self._builder, self._kinds, self._given = target, builder, signature.args, given
-
-    def __call__(self, k: int, n: int | None = None, shift: int = 0) -> Any:
-        kind, builder = self._kinds[k], self._builder
-        assert kind.layout == "C"
-        assert kind.dtype == types.float64
-        data = self._target.make_array(kind)(self._target, builder, self._given[k]).data
-        first = builder.gep(builder.gep(data, [self._given[k + 1]]), [self._target.get_constant(types.intp, shift)])
-        return first if n is None else builder.bitcast(first, ir.VectorType(DOUBLE, n).as_pointer())
+def add_pulled_back(out: Array, P: Array, S: Array, D: Size, R: Size) -> None:
+    """Add to out (n, n) rows of S (4, d, n): the first and third d as they are, the second and fourth by the transposes
+    of P (2, d, r). All contiguous.
+    """
+    d, ndof = len(D), len(D) + len(R)
+    for side in range(2):
+        at = side * ndof
+        out[at : at + d] += S[2 * side]
+        out[at + d : at + ndof] += P[side].T @ S[2 * side + 1]
 
 
-def _spread(builder: Any, values: list[Any], blocks: list[int]) -> Any:
-    """A vector of numbers; blocks: which of the values stands where."""
-    kind = ir.VectorType(DOUBLE, len(values))
-    few = ir.Constant(kind, ir.Undefined)
-    for n, value in enumerate(values):
-        few = builder.insert_element(few, value, ir.IntType(32)(n))
-    where = ir.Constant(ir.VectorType(ir.IntType(32), len(blocks)), blocks)
-    return builder.shuffle_vector(few, ir.Constant(kind, ir.Undefined), where)
+@overload(add_pulled_back, inline="always", strict=False)
+def _pulled_back(out: Any, P: Any, S: Any, D: Any, R: Any) -> Any:
+    return lambda out, P, S, D, R: row_code.add_pulled_back(out, P, S, D, R)

@@ -14,7 +14,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.core.rows import add_multiple, add_shaped
+from riser_soil.core.rows import add_pulled_back, put_blocks
 
 Four = tuple[float, float, float, float]
 Size = tuple[int, ...]  # of `fixed`: D for the dimension d, R for the r rotation dofs
@@ -162,7 +162,7 @@ def collect_nodal(F: Array, P: Array, nodal: Array, D: Size, R: Size) -> None:
 @njit
 def put_rows(P: Array, shift: float, out: Array, D: Size, R: Size) -> None:
     """Write how the coordinates of positions and tangents at an element's ends follow its dofs, to out (d, n): a row
-    for each coordinate; positions by `shift`, tangents by P (2, d, r). `add_shaped` takes them, with shape functions.
+    for each coordinate; positions by `shift`, tangents by P (2, d, r). `core.rows` takes them, with shape functions.
     """
     n = len(D) + len(R)
     for i in range(len(D)):
@@ -193,31 +193,10 @@ def add_mass(out: Array, scale: float, P: Array, columns: Array, shift: float, M
 @njit
 def add_mass_to(out: Array, scale: float, P: Array, rows: Array, M: Array, D: Size, R: Size) -> None:
     """What `add_mass` does, for compiled code; rows: see `put_rows`."""
-    d, n = len(D), 2 * (len(D) + len(R))
-    S, one = np.zeros((4, d, n)), np.zeros((d, d))  # M D of one element
-    for i in range(d):
-        one[i, i] = scale
+    S = np.empty((4, len(D), 2 * (len(D) + len(R))))  # M D of one element
     for e in range(P.shape[0]):
-        for a in range(4):
-            for i in range(len(D)):
-                for c in range(2 * (len(D) + len(R))):
-                    S[a, i, c] = 0.0
-                add_shaped(S, (a * d + i) * n, M, (e * 4 + a) * 4, one, i, rows, e * d * n, D, R)
-        add_rows(out[e], P[e], S, D, R)
-
-
-@njit
-def add_rows(out: Array, P: Array, S: Array, D: Size, R: Size) -> None:
-    """Add P^T S of one element to out (n, n); S: (4, d, n), rows conjugate to q, columns by the dofs."""
-    d, n = len(D), len(D) + len(R)
-    for side in range(2):
-        first = 2 * side * d * 2 * n  # of the positions in S; the tangents follow
-        for i in range(len(D)):
-            add_multiple(out, (side * n + i) * 2 * n, 1.0, S, first + i * 2 * n, D + R + D + R)
-        for k in range(len(R)):
-            for i in range(len(D)):
-                at = first + (d + i) * 2 * n
-                add_multiple(out, (side * n + d + k) * 2 * n, P[side, i, k], S, at, D + R + D + R)
+        put_blocks(S, M[e], scale, rows[e], D, R)
+        add_pulled_back(out[e], P[e], S, D, R)
 
 
 @njit

@@ -122,11 +122,14 @@ class PlanarFrames:
 
 @njit
 def put_ends(angle: Array, alpha0: Array, end_angle: Array, tangent: Array, normal: Array) -> None:
-    """Write angle (ne, 2), tangent and normal (ne, 2, 2) of element ends."""
+    """Write angle (ne, 2), tangent and normal (ne, 2, 2) of element ends; two at one angle share its sine."""
+    known, cosine, sine = math.nan, math.nan, math.nan
     for e in range(alpha0.shape[0]):
         for side in range(2):
-            end_angle[e, side] = angle[e + side] + alpha0[e, side]
-            cosine, sine = math.cos(end_angle[e, side]), math.sin(end_angle[e, side])
+            found = angle[e + side] + alpha0[e, side]
+            if found != known:
+                known, cosine, sine = found, math.cos(found), math.sin(found)
+            end_angle[e, side] = found
             tangent[e, side, 0], tangent[e, side, 1] = cosine, sine
             normal[e, side, 0], normal[e, side, 1] = -sine, cosine
 

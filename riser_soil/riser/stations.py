@@ -13,10 +13,11 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.core.rows import add_multiple, add_shaped
-from riser_soil.riser.hermite import Size, add_rows, put_rows, shapes, slopes
+from riser_soil.core.rows import add_pulled_back, add_shares, add_weighed, combined, numbers_at, times
+from riser_soil.riser.hermite import Size, put_rows, shapes, slopes
 
 POINTS = 0.5 + np.sqrt(0.6) * np.array([-0.5, 0.0, 0.5])
+FOUR = fixed(4)
 GAUSS = np.array([5.0, 8.0, 5.0]) / 18.0
 
 
@@ -125,6 +126,29 @@ def _unit_tangents(dN: Array, chord: Array, ends: Array, D: Size) -> tuple[Array
 
 
 @njit
+def value_at(N: Array, p: int, q: Array, e: int, D: Size) -> tuple[float, ...]:
+    """Value (d,) at station p of all, N (ne, ng, 4), which lies in element e, of q (ne, 4, d)."""
+    (N1, N2, N3, N4), d, at = numbers_at(N, 4 * p, FOUR), len(D), 4 * len(D) * e
+    found: tuple[float, ...] = combined(((N1, q, at), (N2, q, at + d), (N3, q, at + 2 * d), (N4, q, at + 3 * d)), D)
+    return found
+
+
+@njit
+def unit_tangent_at(
+    dN: Array, p: int, chord: Array, ends: Array, e: int, D: Size
+) -> tuple[tuple[float, ...], float]:
+    """Unit tangent (d,) at station p of all, dN (ne, ng, 4), which lies in element e, and the stretch |x'| there; chord
+    (ne, d), ends: end tangents (ne, 2, d).
+    """
+    (_, by_first, by_chord, by_second), d, square = numbers_at(dN, 4 * p, FOUR), len(D), 0.0
+    slope = combined(((by_chord, chord, d * e), (by_first, ends, 2 * d * e), (by_second, ends, 2 * d * e + d)), D)
+    for i in range(len(D)):
+        square += slope[i] * slope[i]
+    stretch = math.sqrt(square)
+    return times(1.0 / stretch, slope), stretch
+
+
+@njit
 def put_unit_tangent(dN: Array, chord: Array, ends: Array, tau: Array, D: Size) -> float:
     """Write the unit tangent (d,) at one station, dN (4,), of an element with end tangents (2, d); its stretch |x'|."""
     square = 0.0
@@ -162,6 +186,12 @@ def add_integrand(weighted: Array, f: Array, F: Array, D: Size) -> None:
             F[a, i] += weighted[a] * f[i]
 
 
+@njit
+def add_integrand_at(weighted: Array, p: int, f: tuple[float, ...], F: Array, e: int, D: Size) -> None:
+    """The same of station p of all, weighted (ne, ng, 4), which lies in element e, with F (ne, 4, d)."""
+    add_shares(F, 4 * len(D) * e, weighted, 4 * p, f, D)
+
+
 def inner(share: Array, f: Array, g: Array) -> float:
     """Sum over the stations of f . g, each (ne, ng, d), times their shares (ne, ng)."""
     total: float = _inner(share, f, g)
@@ -197,48 +227,10 @@ class Derivatives(NamedTuple):
     acceleration: Array
 
 
-class ElementRoom(NamedTuple):
-    """Room for one element: how the forces at its stations follow its dofs (ng, d, n), and how what is conjugate to q
-    does (4, d, n).
-    """
-
-    change: Array
-    S: Array
-
-
 @njit
-def element_room(ng: int, n: int, D: Size) -> ElementRoom:
-    """Room for an element of n dofs with ng stations."""
-    return ElementRoom(np.empty((ng, len(D), n)), np.empty((4, len(D), n)))
-
-
-@njit
-def begin_changes(room: ElementRoom) -> None:
-    """Write zero to how the forces at an element's stations follow its dofs."""
-    room.change[:] = 0.0
-
-
-@njit
-def add_change(room: ElementRoom, g: int, shape: Array, by: Array, rows: Array, D: Size, R: Size) -> None:
-    """Add how the force at station g of an element follows its dofs: by its derivative (d, d) by what has there the
-    shape functions `shape` (4,) or their derivatives, and of which rows (d, n) tell how it follows, see `put_rows`.
-    """
-    d, n = len(D), 2 * (len(D) + len(R))
-    for i in range(len(D)):
-        add_shaped(room.change, (g * d + i) * n, shape, 0, by, i, rows, 0, D, R)
-
-
-@njit
-def add_element(out: Array, room: ElementRoom, weighted: Array, P: Array, D: Size, R: Size) -> None:
-    """Add to out (n, n) of an element the integral of what is in the room; weighted (ng, 4), P (2, d, r)."""
-    n = 2 * (len(D) + len(R))
-    room.S[:] = 0.0
-    for g in range(room.change.shape[0]):
-        for a in range(4):
-            for i in range(len(D)):
-                at = (g * len(D) + i) * n
-                add_multiple(room.S, (a * len(D) + i) * n, weighted[g, a], room.change, at, D + R + D + R)
-    add_rows(out, P, room.S, D, R)
+def element_room(n: int, D: Size) -> Array:
+    """Room for how what is conjugate to q of an element follows its n dofs (4, d, n)."""
+    return np.empty((4, len(D), n))
 
 
 def add_tangent(out: Array, at: Stations, by: Derivatives, columns: DofDerivatives) -> None:
@@ -251,19 +243,18 @@ def add_tangent(out: Array, at: Stations, by: Derivatives, columns: DofDerivativ
 def _add_tangent(out: Array, at: tuple, by: tuple, columns: tuple, D: Size, R: Size) -> None:
     """Takes plain tuples: numba reads named ones half a microsecond slower."""
     at, by, columns = Stations(*at), Derivatives(*by), DofDerivatives(*columns)
-    room, shape = element_room(by.slope.shape[1], out.shape[1], D), (len(D), out.shape[1])
+    room, shape = element_room(out.shape[1], D), (len(D), out.shape[1])
     places, rates, accelerations = np.empty(shape), np.empty(shape), np.empty(shape)
     for e in range(by.slope.shape[0]):
         put_rows(columns.q[e], 1.0, places, D, R)
         put_rows(columns.rate[e], columns.shift_v, rates, D, R)
         put_rows(columns.acceleration[e], columns.shift_a, accelerations, D, R)
-        begin_changes(room)
+        room[:] = 0.0
         for g in range(by.slope.shape[1]):
-            add_change(room, g, at.dN[e, g], by.slope[e, g], places, D, R)
-            add_change(room, g, at.N[e, g], by.position[e, g], places, D, R)
-            add_change(room, g, at.N[e, g], by.rate[e, g], rates, D, R)
-            add_change(room, g, at.N[e, g], by.acceleration[e, g], accelerations, D, R)
-        add_element(out[e], room, at.weighted[e], columns.q[e], D, R)
+            N, slope = at.N[e, g], (at.dN[e, g], by.slope[e, g], places)
+            moved = (N, by.position[e, g], places), (N, by.rate[e, g], rates), (N, by.acceleration[e, g], accelerations)
+            add_weighed(room, at.weighted[e, g], (slope, *moved), D, R)
+        add_pulled_back(out[e], columns.q[e], room, D, R)
 
 
 def add_stiffness(out: Array, at: Stations, elements: IntArray, by_position: Array, P: Array) -> None:
@@ -277,11 +268,11 @@ def add_stiffness(out: Array, at: Stations, elements: IntArray, by_position: Arr
 def _add_stiffness(
     out: Array, N: Array, weighted: Array, elements: IntArray, by_position: Array, P: Array, D: Size, R: Size
 ) -> None:
-    room, rows = element_room(by_position.shape[1], out.shape[1], D), np.empty((len(D), out.shape[1]))
+    room, rows = element_room(out.shape[1], D), np.empty((len(D), out.shape[1]))
     for m in range(elements.size):
         e = elements[m]
         put_rows(P[e], 1.0, rows, D, R)
-        begin_changes(room)
+        room[:] = 0.0
         for g in range(by_position.shape[1]):
-            add_change(room, g, N[e, g], by_position[m, g], rows, D, R)
-        add_element(out[e], room, weighted[e], P[e], D, R)
+            add_weighed(room, weighted[e, g], ((N[e, g], by_position[m, g], rows),), D, R)
+        add_pulled_back(out[e], P[e], room, D, R)

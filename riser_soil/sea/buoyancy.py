@@ -74,7 +74,7 @@ class DryStations:
             flat=flat,
             f=np.zeros(d),
             by_x=np.zeros((d, d)),
-            change=element_room(pipe.at.N.shape[1], 2 * pipe.line.ndof, fixed(d)),
+            change=element_room(2 * pipe.line.ndof, fixed(d)),
         )
 
 

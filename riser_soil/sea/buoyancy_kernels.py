@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
+from riser_soil.core.rows import add_pulled_back, add_weighed
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
@@ -30,7 +31,7 @@ class DryStationNumbers(NamedTuple):
     flat: bool
     f: Array
     by_x: Array
-    change: stations.ElementRoom
+    change: Array
 
 
 class DryPipeNumbers(NamedTuple):
@@ -75,14 +76,15 @@ def _station_tangent(part: DryStationNumbers, at: Configuration, maps: Maps, wei
     water, up = part.seen.end, len(at.D) - 1
     for m in range(part.element.size):
         e = part.element[m]
-        stations.begin_changes(part.change)
+        part.change[:] = 0.0
         for g in range(part.share.shape[1]):
             p = m * part.share.shape[1] + g
             slope = -weights.force * part.displaced[m] * wet_slope(water.immersion[p], part.span[m, g])
             for j in range(len(at.D)):
                 part.by_x[up, j] = slope * water.immersion_gradient[p, j]
-            stations.add_change(part.change, g, part.at.N[m, g], part.by_x, maps.place_rows[e], at.D, at.R)
-        stations.add_element(K[e], part.change, part.at.weighted[m], at.P[e], at.D, at.R)
+            sunk = part.at.N[m, g], part.by_x, maps.place_rows[e]
+            add_weighed(part.change, part.at.weighted[m, g], (sunk,), at.D, at.R)
+        add_pulled_back(K[e], at.P[e], part.change, at.D, at.R)
 
 
 @add_energy.of(DryStationNumbers)

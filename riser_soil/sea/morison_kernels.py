@@ -7,19 +7,19 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.compiled import njit
+from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.rows import Vector, add_pulled_back, add_weighed, numbers_at
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
 from riser_soil.sea import morison_law as law
 
+PAIR = fixed(2)
+
 
 class StationRoom(NamedTuple):
-    """Room for what is found at one station (d,), and for derivatives of the force there (d, d)."""
+    """Room for the force at one station (d,), and for its derivatives (d, d)."""
 
-    v: Array
-    a: Array
-    tau: Array
     f: Array
     by_v: Array
     by_a: Array
@@ -28,7 +28,7 @@ class StationRoom(NamedTuple):
 
 def station_room(d: int) -> StationRoom:
     """Room for a line of d dimensions."""
-    return StationRoom(*(np.empty(d) for _ in range(4)), *(np.empty((d, d)) for _ in range(3)))
+    return StationRoom(np.empty(d), *(np.empty((d, d)) for _ in range(3)))
 
 
 class StillWaterNumbers(NamedTuple):
@@ -41,83 +41,83 @@ class StillWaterNumbers(NamedTuple):
     drag: Array
     mass: Array
     room: StationRoom
-    element: stations.ElementRoom
+    element: Array
 
 
 @njit
-def _see(part: StillWaterNumbers, at: Configuration, e: int, g: int) -> float:
-    """Velocity, acceleration and unit tangent at a station into the room; the stretch |x'|."""
-    stations.put_value(part.at.N[e, g], at.rate[e], part.room.v, at.D)
-    stations.put_value(part.at.N[e, g], at.acceleration[e], part.room.a, at.D)
-    stretch: float = stations.put_unit_tangent(part.at.dN[e, g], at.chord[e], at.tangent[e], part.room.tau, at.D)
-    return stretch
+def _see(part: StillWaterNumbers, at: Configuration, e: int, p: int) -> tuple[Vector, Vector, Vector, float]:
+    """Velocity, acceleration and unit tangent at station p of all, in element e; the stretch |x'|."""
+    v, a = stations.value_at(part.at.N, p, at.rate, e, at.D), stations.value_at(part.at.N, p, at.acceleration, e, at.D)
+    tau, stretch = stations.unit_tangent_at(part.at.dN, p, at.chord, at.tangent, e, at.D)
+    return v, a, tau, stretch
 
 
 @add_forces.of(StillWaterNumbers)
 def _still_forces(part: StillWaterNumbers, at: Configuration, out: LineForces) -> None:
-    room = part.room
+    f, ng, weighted = part.room.f, part.at.N.shape[1], part.at.weighted
     for e in range(part.drag.shape[0]):
-        for g in range(part.at.N.shape[1]):
-            _see(part, at, e, g)
-            law.put_added(room.a, room.tau, part.mass[e], room.f, at.D)
-            stations.add_integrand(part.at.weighted[e, g], room.f, out.inertia_q[e], at.D)
-            law.put_drag(room.v, room.tau, part.drag[e], room.f, at.D)
-            stations.add_integrand(part.at.weighted[e, g], room.f, out.force_q[e], at.D)
+        drag, mass = numbers_at(part.drag, 2 * e, PAIR), numbers_at(part.mass, 2 * e, PAIR)
+        for p in range(e * ng, (e + 1) * ng):
+            v, a, tau, _ = _see(part, at, e, p)
+            law.put_added(a, tau, mass, f, at.D)
+            stations.add_integrand_at(weighted, p, numbers_at(f, 0, at.D), out.inertia_q, e, at.D)
+            law.put_drag(v, tau, drag, f, at.D)
+            stations.add_integrand_at(weighted, p, numbers_at(f, 0, at.D), out.force_q, e, at.D)
 
 
 @add_tangent.of(StillWaterNumbers)
 def _still_tangent(part: StillWaterNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    room = part.room
+    room, ng = part.room, part.at.N.shape[1]
     for e in range(part.drag.shape[0]):
-        stations.begin_changes(part.element)
-        for g in range(part.at.N.shape[1]):
-            stretch = _see(part, at, e, g)
-            axis = room.tau, stretch
-            N, element = part.at.N[e, g], part.element
-            if weights.force == 0.0:  # the mass alone is asked for
-                room.by_slope[...] = 0.0
+        drag, mass = numbers_at(part.drag, 2 * e, PAIR), numbers_at(part.mass, 2 * e, PAIR)
+        part.element[:] = 0.0
+        for g in range(ng):
+            v, a, tau, stretch = _see(part, at, e, e * ng + g)
+            N, weighted = part.at.N[e, g], part.at.weighted[e, g]
+            moved = N, room.by_a, maps.acceleration_rows[e]
+            if weights.force == 0.0:  # the mass alone is asked for, at rest
+                law.put_added_derivatives(a, tau, stretch, mass, weights.inertia, room.by_a, room.by_slope, at.D)
+                add_weighed(part.element, weighted, (moved,), at.D, at.R)
             else:
-                law.put_drag_derivatives(room.v, *axis, part.drag[e], weights.force, room.by_v, room.by_slope, at.D)
-                stations.add_change(element, g, N, room.by_v, maps.rate_rows[e], at.D, at.R)
-            law.put_added_derivatives(room.a, *axis, part.mass[e], weights.inertia, room.by_a, room.by_slope, at.D)
-            stations.add_change(element, g, part.at.dN[e, g], room.by_slope, maps.place_rows[e], at.D, at.R)
-            stations.add_change(element, g, N, room.by_a, maps.acceleration_rows[e], at.D, at.R)
-        stations.add_element(K[e], part.element, part.at.weighted[e], at.P[e], at.D, at.R)
+                law.put_drag_derivatives(v, tau, stretch, drag, weights.force, room.by_v, room.by_slope, at.D)
+                law.put_added_derivatives(a, tau, stretch, mass, weights.inertia, room.by_a, room.by_slope, at.D)
+                slope = part.at.dN[e, g], room.by_slope, maps.place_rows[e]
+                add_weighed(part.element, weighted, (slope, (N, room.by_v, maps.rate_rows[e]), moved), at.D, at.R)
+        add_pulled_back(K[e], at.P[e], part.element, at.D, at.R)
 
 
 @add_energy.of(StillWaterNumbers)
 def _still_energy(part: StillWaterNumbers, at: Configuration, energy: Array) -> None:
-    room = part.room
+    f, ng = part.room.f, part.at.N.shape[1]
     for e in range(part.drag.shape[0]):
-        for g in range(part.at.N.shape[1]):
-            _see(part, at, e, g)
-            law.put_added(room.v, room.tau, part.mass[e], room.f, at.D)
+        mass = numbers_at(part.mass, 2 * e, PAIR)
+        for g in range(ng):
+            v, _, tau, _ = _see(part, at, e, e * ng + g)
+            law.put_added(v, tau, mass, f, at.D)
             for i in range(len(at.D)):
-                energy[0] += 0.5 * part.share[e, g] * room.v[i] * room.f[i]
+                energy[0] += 0.5 * part.share[e, g] * v[i] * f[i]
 
 
 @add_work.of(StillWaterNumbers)
 def _still_work(part: StillWaterNumbers, first: Configuration, last: Configuration, work: Array) -> None:
     """Drag dissipates; a change of the added mass as it turns is external, see `Morison`."""
-    room, D = part.room, last.D
-    before, v, first_tau = np.empty(len(D)), np.empty(len(D)), np.empty(len(D))
+    f, ng, D = part.room.f, part.at.N.shape[1], last.D
+    before, mean = np.empty(len(D)), np.empty(len(D))
     for e in range(part.drag.shape[0]):
-        for g in range(part.at.N.shape[1]):
-            _see(part, first, e, g)
-            law.put_drag(room.v, room.tau, part.drag[e], before, D)
+        drag, mass = numbers_at(part.drag, 2 * e, PAIR), numbers_at(part.mass, 2 * e, PAIR)
+        for g in range(ng):
+            p = e * ng + g
+            first_v, _, first_tau, _ = _see(part, first, e, p)
+            law.put_drag(first_v, first_tau, drag, before, D)
+            v, _, tau, _ = _see(part, last, e, p)
+            law.put_drag(v, tau, drag, f, D)
+            began, ended = stations.value_at(part.at.N, p, first.q, e, D), stations.value_at(part.at.N, p, last.q, e, D)
             for i in range(len(D)):
-                v[i], first_tau[i] = room.v[i], room.tau[i]
-            _see(part, last, e, g)
-            law.put_drag(room.v, room.tau, part.drag[e], room.f, D)
+                work[0] += 0.5 * part.share[e, g] * (before[i] + f[i]) * (ended[i] - began[i])
+                mean[i] = 0.5 * (first_v[i] + v[i])
+            law.put_added(mean, first_tau, mass, before, D)
+            law.put_added(mean, tau, mass, f, D)
             for i in range(len(D)):
-                moved = 0.0
-                for a in range(4):
-                    moved += part.at.N[e, g, a] * (last.q[e, a, i] - first.q[e, a, i])
-                work[0] += 0.5 * part.share[e, g] * (before[i] + room.f[i]) * moved
-                v[i] = 0.5 * (v[i] + room.v[i])
-            law.put_added(v, first_tau, part.mass[e], before, D)
-            law.put_added(v, room.tau, part.mass[e], room.f, D)
-            for i in range(len(D)):
-                changed = 0.5 * part.share[e, g] * v[i] * (room.f[i] - before[i])
+                changed = 0.5 * part.share[e, g] * mean[i] * (f[i] - before[i])
                 work[1] += changed
                 work[2] += changed

@@ -8,6 +8,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.rows import add_pulled_back, add_weighed, held
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size
@@ -76,7 +77,7 @@ class MovingWaterNumbers(NamedTuple):
     room: FlowRoom
     first: FlowRoom
     by: FlowDerivatives
-    change: stations.ElementRoom
+    change: Array
 
 
 def moving_water(water: WaterInLoop, pipe: Pipe, drag: Array, mass: Array) -> MovingWaterNumbers:
@@ -99,19 +100,18 @@ def moving_water(water: WaterInLoop, pipe: Pipe, drag: Array, mass: Array) -> Mo
         room=room,
         first=first,
         by=FlowDerivatives(*(np.zeros((d, d)) for _ in FlowDerivatives._fields)),
-        change=stations.element_room(pipe.at.N.shape[1], n, fixed(d)),
+        change=stations.element_room(n, fixed(d)),
     )
 
 
 @njit
 def _move(part: MovingWaterNumbers, at: Configuration, m: int, g: int, room: FlowRoom) -> float:
     """Motion and tangent of the pipe at a station; the stretch |x'|."""
-    e = part.element[m]
-    stations.put_value(part.at.N[m, g], at.rate[e], room.v, at.D)
-    stations.put_value(part.at.N[m, g], at.acceleration[e], room.a, at.D)
-    stretch: float = stations.put_unit_tangent(part.at.dN[m, g], at.chord[e], at.tangent[e], room.tau, at.D)
-    if part.alike:
-        room.tau[:] = 0.0
+    e, p = part.element[m], m * part.share.shape[1] + g
+    v, a = stations.value_at(part.at.N, p, at.rate, e, at.D), stations.value_at(part.at.N, p, at.acceleration, e, at.D)
+    tau, stretch = stations.unit_tangent_at(part.at.dN, p, at.chord, at.tangent, e, at.D)
+    for i in range(len(at.D)):
+        room.v[i], room.a[i], room.tau[i] = v[i], a[i], 0.0 if part.alike else tau[i]
     return stretch
 
 
@@ -155,8 +155,9 @@ def _forces(part: MovingWaterNumbers, at: Configuration, out: LineForces) -> Non
             for i in range(len(at.D)):
                 room.inertia[i] *= share
                 room.force[i] *= share
-            stations.add_integrand(part.at.weighted[m, g], room.inertia, out.inertia_q[e], at.D)
-            stations.add_integrand(part.at.weighted[m, g], room.force, out.force_q[e], at.D)
+            p = m * part.share.shape[1] + g
+            stations.add_integrand_at(part.at.weighted, p, held(room.inertia, at.D), out.inertia_q, e, at.D)
+            stations.add_integrand_at(part.at.weighted, p, held(room.force, at.D), out.force_q, e, at.D)
 
 
 @add_tangent.of(MovingWaterNumbers)
@@ -164,17 +165,16 @@ def _tangent(part: MovingWaterNumbers, at: Configuration, maps: Maps, weights: L
     by = part.by
     for m in range(part.element.size):
         e = part.element[m]
-        stations.begin_changes(part.change)
+        part.change[:] = 0.0
         for g in range(part.share.shape[1]):
             stretch = _move(part, at, m, g, part.room)
             _resist(part, part.seen.end, m, g, part.room, at.D)
             _differentiate(part, part.seen.end, m, g, stretch, weights, at.D)
             N, places = part.at.N[m, g], maps.place_rows[e]
-            stations.add_change(part.change, g, part.at.dN[m, g], by.by_slope, places, at.D, at.R)
-            stations.add_change(part.change, g, N, by.by_x, places, at.D, at.R)
-            stations.add_change(part.change, g, N, by.by_v, maps.rate_rows[e], at.D, at.R)
-            stations.add_change(part.change, g, N, by.by_a, maps.acceleration_rows[e], at.D, at.R)
-        stations.add_element(K[e], part.change, part.at.weighted[m], at.P[e], at.D, at.R)
+            placed = (part.at.dN[m, g], by.by_slope, places), (N, by.by_x, places)
+            moved = (N, by.by_v, maps.rate_rows[e]), (N, by.by_a, maps.acceleration_rows[e])
+            add_weighed(part.change, part.at.weighted[m, g], (*placed, *moved), at.D, at.R)
+        add_pulled_back(K[e], at.P[e], part.change, at.D, at.R)
 
 
 @njit
@@ -240,12 +240,12 @@ def _resisted(
     part: MovingWaterNumbers, first: Configuration, last: Configuration, m: int, g: int, before: float, after: float
 ) -> float:
     """Work per length against the mean force of a step, at a station."""
-    e, N, total = part.element[m], part.at.N[m, g], 0.0
+    e, p, total = part.element[m], m * part.share.shape[1] + g, 0.0
+    began = stations.value_at(part.at.N, p, first.q, e, last.D)
+    ended = stations.value_at(part.at.N, p, last.q, e, last.D)
     for i in range(len(last.D)):
-        moved = 0.0
-        for a in range(4):
-            moved += N[a] * (last.q[e, a, i] - first.q[e, a, i])
-        total += 0.5 * (before * part.first.force[i] + after * part.room.force[i]) * moved
+        mean = 0.5 * (before * part.first.force[i] + after * part.room.force[i])
+        total += mean * (ended[i] - began[i])
     return total
 
 

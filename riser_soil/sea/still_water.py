@@ -70,9 +70,9 @@ class StillWater:
         """Those of a pipe where it is one all along."""
         if self.pipe.points_alone:
             return self.seen_in(water_in_loop(self.pipe, Sea(None).numbers))
-        d, n, at = self.pipe.line.dimension, 2 * self.pipe.line.ndof, self.pipe.at
-        room = element_room(at.N.shape[1], n, fixed(d))
-        return StillWaterNumbers(at, self.pipe.share, self._drag, self.mass, station_room(d), room)
+        d, n = self.pipe.line.dimension, 2 * self.pipe.line.ndof
+        room = station_room(d), element_room(n, fixed(d))
+        return StillWaterNumbers(self.pipe.at, self.pipe.share, self._drag, self.mass, *room)
 
     def seen_in(self, water: WaterInLoop) -> MovingWaterNumbers:
         return moving_water(water, self.pipe, self._drag, self.mass)

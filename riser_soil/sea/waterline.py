@@ -12,7 +12,8 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.riser.hermite import Size, add_rows, shape
+from riser_soil.core.rows import add_pulled_back
+from riser_soil.riser.hermite import Size, shape
 from riser_soil.riser.stations import POINTS
 from riser_soil.sea.wet_section import dry_height, wet_share, wet_slope
 
@@ -233,4 +234,4 @@ def add_element_tangent(
     put_slopes(points, at, room.by_height, room.by_surface)
     put_by_q(room.by_height, room.by_surface, N, gradient, room.by_q, D)
     put_by_dofs(room.by_q, P, weight, room.S, D, R)
-    add_rows(out, P, room.S, D, R)
+    add_pulled_back(out, P, room.S, D, R)

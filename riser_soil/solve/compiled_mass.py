@@ -163,13 +163,12 @@ class CompiledMass:
 @njit
 def weigh(room: MatrixRoom, mass: MassNumbers) -> None:
     """Divide element matrices by the levers, so that all masses are in kg."""
-    K, inverse, ndof = room.K, mass.inverse, mass.inverse.shape[1]
-    for e in range(K.shape[0]):
-        for row in range(2):
-            for i in range(ndof):
-                for j in range(ndof):
-                    K[e, row * ndof + i, j] *= inverse[e + row, i] * inverse[e, j]
-                    K[e, row * ndof + i, ndof + j] *= inverse[e + row, i] * inverse[e + 1, j]
+    n, inverse = room.K.shape[1], mass.inverse.reshape(mass.inverse.size)
+    for e in range(room.K.shape[0]):
+        K, of_ends = room.K[e], inverse[e * (n // 2) : e * (n // 2) + n]
+        for i in range(n):
+            for j in range(n):
+                K[i, j] *= of_ends[i] * of_ends[j]
 
 
 @njit

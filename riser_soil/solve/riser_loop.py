@@ -13,7 +13,8 @@ from typing import NamedTuple
 from riser_soil.core import banded
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.bound import Calls, call_each
-from riser_soil.core.compiled import njit
+from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.rows import add_multiple
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size, add_geometric, collect_nodal, scatter
 from riser_soil.riser.part_kernels import LineForces, LineWeights
@@ -21,6 +22,7 @@ from riser_soil.solve.round_off import ROUND_OFF, STALLED
 
 GOING_ON, CONVERGED, NOT_FINITE, SINGULAR, DIVERGED, TOO_MANY, OUTGROWN = range(7)
 DIVERGES = 1e6  # times the first norm
+ONE = fixed(1)
 
 
 class StepNumbers(NamedTuple):
@@ -248,14 +250,11 @@ def judge_round_off(room: MatrixRoom, dofs: Dofs, progress: NewtonProgress) -> N
 def fill(room: MatrixRoom, dofs: Dofs) -> None:
     """Sum element matrices into the banded one, with ones on the diagonal for what is fixed."""
     K, ab, fixed = room.K, room.ab, dofs.fixed
-    ndof = fixed.shape[1]
-    b = 2 * ndof - 1
+    b, n, ndof, width = len(room.band), len(room.band) + 1, fixed.shape[1], ab.shape[1]
     ab[:] = 0.0
     for e in range(K.shape[0]):
-        for i in range(2 * ndof):
-            row = ab[e * ndof + i, b - i : b - i + 2 * ndof]
-            for j in range(2 * ndof):
-                row[j] += K[e, i, j]
+        for i in range(len(room.band) + 1):
+            add_multiple(ab, (e * ndof + i) * width + b - i, 1.0, K, (e * n + i) * n, room.band + ONE)
     for k, held in enumerate(fixed.ravel()):
         if held:
             ab[k] = 0.0
@@ -274,16 +273,13 @@ def factorise(room: MatrixRoom, progress: NewtonProgress) -> None:
 @njit
 def improve(room: MatrixRoom, step: StepNumbers, dofs: Dofs) -> None:
     """Take what the factorised tangent answers to the residual off the increments."""
-    for n in range(step.u.shape[0]):
-        for i in range(step.u.shape[1]):
-            if dofs.fixed[n, i]:
-                dofs.residual[n, i] = 0.0
-    change = dofs.residual.reshape(dofs.residual.size)
+    size = dofs.residual.size
+    fixed, change, u = dofs.fixed.reshape(size), dofs.residual.reshape(size), step.u.reshape(size)
+    for k in range(size):
+        change[k] = 0.0 if fixed[k] else change[k]
     banded.solve(room.ab, room.pivots, change, room.band)
-    for n in range(step.u.shape[0]):
-        for i in range(step.u.shape[1]):
-            if not dofs.fixed[n, i]:
-                step.u[n, i] -= dofs.residual[n, i]
+    for k in range(size):
+        u[k] -= 0.0 if fixed[k] else change[k]
 
 
 @njit

@@ -71,6 +71,24 @@ def test_banded_factors_solve(n: int, b: int, diagonal: float) -> None:
     np.testing.assert_allclose(load, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
 
 
+@pytest.mark.parametrize(("n", "b"), [(40, 5), (66, 11)])
+def test_fill_of_some_rows_alone_is_solved_for(n: int, b: int) -> None:
+    """Rows are exchanged in the middle, so that those before and after it have no fill."""
+    rng, (ab, band) = np.random.default_rng(n), banded.room(n, b)
+    dense, load, pivots = np.zeros((n, n)), rng.normal(size=n), np.zeros(n, dtype=np.int64)
+    for i in range(n):
+        for j in range(max(0, i - b), min(n, i + b + 1)):
+            ab[i, j - i + b] = dense[i, j] = rng.normal() * (0.01 if i > j else 1.0) + (9.0 if i == j else 0.0)
+    ab[n // 2 + b, 0] = dense[n // 2 + b, n // 2] = 1e4  # beside a pivot that is far smaller
+    found = load.copy()
+    assert banded.factorise(ab, pivots, band)
+    assert pivots[n // 2] == n // 2 + b
+    assert (pivots[: n // 2] == np.arange(n // 2)).all()
+    assert (pivots[n // 2 + b + 1 :] == np.arange(n // 2 + b + 1, n)).all()
+    banded.solve(ab, pivots, found, band)
+    np.testing.assert_allclose(found, np.linalg.solve(dense, load), rtol=1e-9, atol=1e-12)
+
+
 def test_rows_stay_where_their_pivots_are_large_enough() -> None:
     ab, band = banded.room(5, 1)
     pivots = np.zeros(5, dtype=np.int64)

@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.core.rows import Size, add_multiple, add_shaped
+from riser_soil.core.rows import (
+    Size,
+    add_multiple,
+    add_pulled_back,
+    add_shares,
+    add_weighed,
+    combined,
+    held,
+    numbers_at,
+    put_blocks,
+    times,
+)
 
 
 @njit
@@ -37,19 +50,100 @@ def test_what_is_read_is_read_before_anything_is_written(to: int) -> None:
 
 
 @njit
-def _shaped(out: Array, at: int, four: Array, A: Array, row: int, rows: Array, D: Size, R: Size) -> None:
-    add_shaped(out, at, four, 4, A, row, rows, rows.size // 2, D, R)
+def _read(values: Array, rest: Array, D: Size) -> Any:
+    vector = numbers_at(values, 5, D)
+    kept = held(vector, D), held(values[1], D), times(2.0, vector)
+    values[...] = 0.0
+    return kept, combined(((2.0, rest, 3), (-1.0, rest, 7)), D)
 
 
-@pytest.mark.parametrize(("d", "r"), [(2, 1), (3, 3)])
-def test_rows_are_weighed_by_four_shape_functions(d: int, r: int) -> None:
+@pytest.mark.parametrize("d", [2, 3])
+def test_numbers_are_read_as_vectors(d: int) -> None:
+    values, rest = np.arange(12.0).reshape(3, 4), np.arange(10.0, 22.0)
+    expected = [5.0, 6.0, 7.0][:d], [4.0, 5.0, 6.0][:d], [10.0, 12.0, 14.0][:d]
+    for read in (_read, _read.py_func):
+        kept, total = read(values.copy(), rest, fixed(d))
+        np.testing.assert_array_equal(kept, expected)
+        np.testing.assert_array_equal(total, 2.0 * rest[3 : 3 + d] - rest[7 : 7 + d])
+
+
+@njit
+def _shared(F: Array, start: int, four: Array, first: int, f: tuple[float, ...], D: Size) -> None:
+    add_shares(F, start, four, first, f, D)
+
+
+@pytest.mark.parametrize("f", [(2.0, -3.0), (2.0, -3.0, 5.0)])
+def test_shares_of_a_vector_are_added(f: tuple[float, ...]) -> None:
+    rng, d = np.random.default_rng(1), len(f)
+    F, four = rng.normal(size=(2, 4, d)), rng.normal(size=(3, 4))
+    expected, interpreted = F.copy(), F.copy()
+    expected[1] += np.outer(four[2], f)
+    add_shares(interpreted, 4 * d, four, 8, f, fixed(d))
+    _shared(F, 4 * d, four, 8, f, fixed(d))
+    np.testing.assert_allclose(F, expected, rtol=1e-14)
+    np.testing.assert_allclose(interpreted, expected, rtol=1e-14)
+
+
+@njit
+def _weighed(S: Array, weights: Array, terms: Any, D: Size, R: Size) -> None:
+    add_weighed(S, weights, terms, D, R)
+
+
+@njit
+def _blocks(S: Array, M: Array, factor: float, rows: Array, D: Size, R: Size) -> None:
+    put_blocks(S, M, factor, rows, D, R)
+
+
+@njit
+def _pulled_back(out: Array, P: Array, S: Array, D: Size, R: Size) -> None:
+    add_pulled_back(out, P, S, D, R)
+
+
+PLANE_AND_SPACE = pytest.mark.parametrize(("d", "r"), [(2, 1), (3, 3)])
+
+
+@PLANE_AND_SPACE
+@pytest.mark.parametrize("count", [1, 3])
+def test_rows_are_weighed_by_four_shape_functions(d: int, r: int, count: int) -> None:
     rng, n = np.random.default_rng(1), 2 * (d + r)
-    out, four, A, rows = (rng.normal(size=shape) for shape in ((3, n), (2, 4), (d, d), (2, d, n)))
-    expected, interpreted = out.copy(), out.copy()
+    S, weights = rng.normal(size=(4, d, n)), rng.normal(size=4)
+    terms = tuple((rng.normal(size=4), rng.normal(size=(d, d)), rng.normal(size=(d, n))) for _ in range(count))
+    expected, interpreted = S.copy(), S.copy()
     for c in range(n):
         block = 2 * (c // (d + r)) + (c % (d + r) >= d)
-        expected[1, c] += four[1, block] * sum(A[1, j] * rows[1, j, c] for j in range(d))
-    add_shaped(interpreted, n, four, 4, A, 1, rows, d * n, fixed(d), fixed(r))
-    _shaped(out, n, four, A, 1, rows, fixed(d), fixed(r))
+        for four, A, rows in terms:
+            expected[:, :, c] += np.outer(weights, four[block] * (A @ rows[:, c]))
+    add_weighed(interpreted, weights, terms, fixed(d), fixed(r))
+    _weighed(S, weights, terms, fixed(d), fixed(r))
+    np.testing.assert_allclose(S, expected, rtol=1e-12)
+    np.testing.assert_allclose(interpreted, expected, rtol=1e-12)
+
+
+@PLANE_AND_SPACE
+def test_blocks_of_rows_are_written_by_the_rows_of_a_matrix(d: int, r: int) -> None:
+    rng, n = np.random.default_rng(1), 2 * (d + r)
+    M, rows, expected = rng.normal(size=(4, 4)), rng.normal(size=(d, n)), np.empty((4, d, n))
+    for c in range(n):
+        block = 2 * (c // (d + r)) + (c % (d + r) >= d)
+        expected[:, :, c] = 2.5 * np.outer(M[:, block], rows[:, c])
+    found, interpreted = np.empty_like(expected), np.empty_like(expected)
+    put_blocks(interpreted, M, 2.5, rows, fixed(d), fixed(r))
+    _blocks(found, M, 2.5, rows, fixed(d), fixed(r))
+    np.testing.assert_allclose(found, expected, rtol=1e-13)
+    np.testing.assert_allclose(interpreted, expected, rtol=1e-13)
+
+
+@PLANE_AND_SPACE
+def test_rows_of_tangents_are_pulled_back(d: int, r: int) -> None:
+    rng, ndof = np.random.default_rng(1), d + r
+    out, P, S = (rng.normal(size=shape) for shape in ((2 * ndof, 2 * ndof), (2, d, r), (4, d, 2 * ndof)))
+    expected, interpreted = out.copy(), out.copy()
+    for side in range(2):
+        for i in range(d):
+            expected[side * ndof + i] += S[2 * side, i]
+            for k in range(r):
+                expected[side * ndof + d + k] += P[side, i, k] * S[2 * side + 1, i]
+    add_pulled_back(interpreted, P, S, fixed(d), fixed(r))
+    _pulled_back(out, P, S, fixed(d), fixed(r))
     np.testing.assert_allclose(out, expected, rtol=1e-13)
     np.testing.assert_allclose(interpreted, expected, rtol=1e-13)

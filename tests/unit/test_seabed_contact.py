@@ -80,6 +80,19 @@ def test_forces_are_the_derivative_of_the_stored_energy(dimension: int) -> None:
 
 
 @both_dimensions
+def test_the_first_guess_lands_as_it_does_beside_soil(dimension: int) -> None:
+    """Where the seabed may be covered, its nodes are looked up one array at a time."""
+    at = sample(dimension)
+    ground = Plane.sloping(START - np.array([0.0, 0.0, 0.1]), 0.1, 0.3)
+    radius, guess = np.full(at.line.length.size, 0.1), at.state(1)
+    alone = SeabedContact(at.line, radius, ground, ROUND)
+    beside = SeabedContact(at.line, radius, ground, ROUND, covered=lambda x: np.zeros(len(x), dtype=bool))
+    found = alone.predict(guess)
+    assert np.abs(found - guess.u).max() > 0.0
+    np.testing.assert_allclose(found, beside.predict(guess), rtol=1e-12, atol=1e-12)
+
+
+@both_dimensions
 @pytest.mark.parametrize("rule", RULES)
 def test_sum_and_nodal_forces_of_a_line_pressed_evenly(dimension: int, rule: str) -> None:
     """A level line 0.2 m deep everywhere feels k 0.2 on its length, whatever the rule."""
