@@ -1,6 +1,6 @@
 """What the same answers cost by other programs: tables and plot of docs/peers.md.
 
-    python -m benchmarks.peers [--results FOLDER] [--page]
+    python -m benchmarks.peers [--results FOLDER] [--case NAME] [--page]
 
 Runs that have left a file in the folder are not repeated. A program that is not in its environment is left out.
 """
@@ -16,7 +16,7 @@ from benchmarks.peers.case import CASES, Case, Record
 from benchmarks.peers.draw import draw
 from benchmarks.peers.in_turn import ROOT, file_of, measure
 from benchmarks.peers.judge import RANGE, TENSIONS, Judged, apart, cheapest, consensus, errors, kept_error, quantities
-from benchmarks.peers.ladder import PROGRAMS
+from benchmarks.peers.ladder import FINEST, PROGRAMS
 from benchmarks.peers.measure import read
 from demos.page import publish, table
 from riser_soil.results.derived import peak
@@ -40,9 +40,8 @@ class Compared:
 
     @property
     def voices(self) -> list[dict[str, float]]:
-        """Of the programs whose finest run is as fine as the others': explicit ones are not that patient."""
-        explicit = {program.name for program in PROGRAMS if program.explicit}
-        return [values for name, values in self.finest.items() if name not in explicit]
+        """Of the programs that have computed the finest run: explicit ones are not that patient, others fail."""
+        return [values for name, values in self.finest.items() if FINEST[self.case.name] in self.found[name]]
 
     @property
     def agreed(self) -> dict[str, float]:
@@ -59,10 +58,10 @@ class Compared:
         return Judged(*size, run.seconds / self.case.duration, error)
 
 
-def main(results: Path, page: bool) -> None:
+def main(results: Path, cases: Sequence[str], page: bool) -> None:
     results.mkdir(parents=True, exist_ok=True)
-    measure(list(CASES), results)
-    compared = [_compared(case, results) for case in CASES.values()]
+    measure(cases, results)
+    compared = [_compared(CASES[case], results) for case in cases]
     blocks: dict[str, str] = {}
     for each in compared:
         name, judged = each.case.name, each.judged()
@@ -73,6 +72,8 @@ def main(results: Path, page: bool) -> None:
             f"{name} runs": runs_page(judged),
         }
     publish(blocks, results, PAGE if page else None)
+    if len(cases) < len(CASES):
+        return
     least = {each.case.name: apart(each.voices) for each in compared}
     draw({each.case.name: each.judged() for each in compared}, least, PLOT if page else results / PLOT.name)
 
@@ -146,5 +147,6 @@ if __name__ == "__main__":
     )
     parser.add_argument("--results", type=Path, default=ROOT / "results" / "peers", help="folder for runs and tables")
     parser.add_argument("--page", action="store_true", help="write tables and plot into docs/peers.md, too")
+    parser.add_argument("--case", choices=CASES, help="one of the cases alone, without the plot of all")
     given = parser.parse_args()
-    main(given.results, given.page)
+    main(given.results, [given.case] if given.case else list(CASES), given.page)

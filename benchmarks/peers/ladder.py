@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-ELEMENTS = (20, 30, 40, 60, 80, 120, 160)
+ELEMENTS = {
+    "catenary": (20, 30, 40, 60, 80, 120, 160),
+    "tank": (20, 30, 40, 60, 80, 120, 160, 240, 320, 640),  # a floor that acts at nodes wants many
+}
 STEPS = (0.2, 0.125, 0.08, 0.05)  # s, of implicit schemes; both cases last a multiple of each
-FINEST = (320, 0.0125)
+FINEST = {"catenary": (320, 0.0125), "tank": (1280, 0.0125)}
 # Explicit: half of what an axial wave needs for an element [s]; half of that changes nothing in five digits.
 WAVE_STEPS = {
     "catenary": {20: 0.002, 40: 0.001, 80: 0.0005, 160: 0.00025},
@@ -38,8 +41,8 @@ class Program:
         if self.explicit:
             yield from WAVE_STEPS[case].items()
             return
-        yield from ((elements, step) for elements in ELEMENTS for step in STEPS)
-        yield FINEST
+        yield from ((elements, step) for elements in ELEMENTS[case] for step in STEPS)
+        yield FINEST[case]
 
 
 PROGRAMS = (
