@@ -98,7 +98,8 @@ class CondensedNewton:
         guess = State(step.t, step.guess[at].copy(), still.v[at], still.a[at])
         self._line.prescribe(step.t, guess.u, guess.v, guess.a)
         self._still = still
-        limits = self._limits._replace(answers_load=self.rests or bool(step.guess.any()))
+        guessed = bool(step.guess[~self.system.prescribed].any())
+        limits = self._limits._replace(answers_load=self.rests or guessed)  # as in `Newton`
         for _ in range(MOST_BEGUN):
             self._border.begin(step.before, step.guess)
             self._prescribe_anew()
