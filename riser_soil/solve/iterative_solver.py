@@ -2,8 +2,10 @@
 
 The preconditioner takes three corrections, each of what the one before has left (Schwarz' method, symmetric and
 multiplicative): the riser with the soil's unknowns that it may touch, factorised together, as neither knows the other's
-answer to a stiff contact; all of the soil by a cycle of smoothed aggregation (PETSc's GAMG), which is told the soil's
-rigid motions; the riser once more. Memory and work of a cycle grow in proportion to the unknowns.
+answer to a stiff contact; all of the soil by a cycle of plain aggregation (PETSc's GAMG), which is told the soil's
+rigid motions; the riser once more. Memory and work of a cycle grow in proportion to the unknowns. What the riser's
+corrections change and need of the residual takes their columns and rows of the matrix alone. Smoothed aggregation would
+take as many iterations on clay that hardly changes its volume, and three times as long to be set up for a tangent.
 """
 
 from __future__ import annotations
@@ -21,7 +23,12 @@ from riser_soil.solve.linear_solver import PREFIX, LinearSystems, defaults
 from riser_soil.solve.python_context import PythonContext
 
 TOLERANCE, MOST_ITERATIONS, RESTART = 1e-4, 500, 100  # share of the residual that may be left
-MULTIGRID = {"soil_pc_gamg_reuse_interpolation": "true"}  # of the first tangent, for all of its pattern
+MULTIGRID = {  # read when it is made and, of its levels, when it is set up
+    "soil_pc_gamg_reuse_interpolation": "true",  # of the first tangent, for all of its pattern
+    "soil_pc_gamg_agg_nsmooths": "0",
+    "soil_mg_levels_ksp_max_it": "3",
+    "soil_mg_levels_ksp_chebyshev_esteig": "0,0.03,0,1.1",  # stretched cells: all that aggregates don't correct
+}
 
 
 class Solid(Field, Protocol):
@@ -42,7 +49,7 @@ class IterativeSolver(PythonContext, LinearSystems):
 
     def __init__(self, system: System, solid: Solid) -> None:
         self._system, self._solid = system, solid
-        self._corrections: list[_Correction] = []
+        self._corrections: _Corrections | None = None
 
     def serve(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
         """Solve what this KSP is asked for, to a relative tolerance."""
@@ -55,23 +62,15 @@ class IterativeSolver(PythonContext, LinearSystems):
     def setUp(self, pc: PETSc.PC) -> None:
         """Called by PETSc for each new tangent."""
         matrix, _ = pc.getOperators()
-        if not self._corrections:
-            near, soil = self._near(matrix), self._soil(matrix)
-            self._corrections = [near, soil, near]
-            self._left = matrix.createVecLeft()
-        for correction in self._corrections[:2]:
-            correction.take(matrix)
+        with defaults(MULTIGRID):
+            if self._corrections is None:
+                self._corrections = _Corrections(matrix, self._near(matrix), self._soil(matrix))
+            self._corrections.take(matrix)
 
     def apply(self, pc: PETSc.PC, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Called by PETSc: y, about the solution of the system for x."""
-        matrix, _ = pc.getOperators()
-        y.set(0.0)
-        x.copy(self._left)
-        for number, correction in enumerate(self._corrections):
-            if number > 0:
-                matrix.mult(y, self._left)
-                self._left.aypx(-1.0, x)
-            correction.add(self._left, y)
+        assert self._corrections is not None
+        self._corrections.apply(x, y)
 
     def _near(self, matrix: PETSc.Mat) -> _Correction:
         """The riser and all that the pattern couples it with."""
@@ -94,8 +93,7 @@ class IterativeSolver(PythonContext, LinearSystems):
         solver = PETSc.PC().create(matrix.comm)
         solver.setType("gamg")
         solver.setOptionsPrefix(PREFIX + "soil_")
-        with defaults(MULTIGRID):
-            solver.setFromOptions()
+        solver.setFromOptions()
         soil = _Correction(matrix, index[mine], solver)
         soil.matrix.setNearNullSpace(_rigid_motions(self._solid.points[mine // 3], mine % 3, soil.matrix))
         return soil
@@ -110,37 +108,75 @@ class IterativeSolver(PythonContext, LinearSystems):
 
     def forget(self) -> None:
         """Drop all that belongs to the present matrix."""
-        for correction in self._corrections[:2]:
+        if self._corrections is not None:
+            self._corrections.destroy()
+        self._corrections = None
+
+
+class _Corrections:
+    """That of the riser and what it may touch, that of the soil, the first once more."""
+
+    def __init__(self, matrix: PETSc.Mat, near: _Correction, soil: _Correction) -> None:
+        first, last = matrix.getOwnershipRange()
+        self._all = PETSc.IS().createStride(last - first, first, 1, comm=matrix.comm)
+        self._near, self._soil = near, soil
+        self._columns = matrix.createSubMatrix(self._all, near.rows)
+        self._rows = matrix.createSubMatrix(near.rows, self._all)
+        self._left, self._near_left = self._columns.createVecLeft(), self._rows.createVecLeft()
+
+    def take(self, matrix: PETSc.Mat) -> None:
+        """Take the values of a matrix of the same pattern."""
+        matrix.createSubMatrix(self._all, self._near.rows, self._columns)
+        matrix.createSubMatrix(self._near.rows, self._all, self._rows)
+        for correction in (self._near, self._soil):
+            correction.take(matrix)
+
+    def apply(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
+        """y, about the solution of the system for x; each takes what the ones before have left."""
+        near, soil = self._near, self._soil
+        asked = x.array_r[near.place]
+        y.set(0.0)
+        near.add(asked, y)
+        self._columns.mult(near.found, self._left)
+        self._left.aypx(-1.0, x)
+        soil.add(self._left.array_r[soil.place], y)
+        self._rows.mult(y, self._near_left)
+        near.add(asked - self._near_left.array_r, y)
+
+    def destroy(self) -> None:
+        for correction in (self._near, self._soil):
             correction.destroy()
-        self._corrections = []
+        for thing in (self._columns, self._rows, self._left, self._near_left, self._all):
+            thing.destroy()
 
 
 class _Correction:
-    """Solver of some rows of a matrix, on the rank that owns them: sorted (n,)."""
+    """Solver of some rows of a matrix, on the rank that owns them: sorted (n,).
+
+    place: (n,) of them among the rank's rows; found: its last answer.
+    """
 
     def __init__(self, matrix: PETSc.Mat, rows: IntArray, solver: PETSc.PC) -> None:
-        self._rows = PETSc.IS().createGeneral(rows.astype(PETSc.IntType), comm=matrix.comm)
-        self.matrix = matrix.createSubMatrix(self._rows, self._rows)
-        self._found = self.matrix.createVecLeft()
+        self.place = rows - matrix.getOwnershipRange()[0]
+        self.rows = PETSc.IS().createGeneral(rows.astype(PETSc.IntType), comm=matrix.comm)
+        self.matrix = matrix.createSubMatrix(self.rows, self.rows)
+        self.found, self._residual = self.matrix.createVecs()
         self._solver = solver
         solver.setOperators(self.matrix)
 
     def take(self, matrix: PETSc.Mat) -> None:
         """Take the values of a matrix of the same pattern."""
-        matrix.createSubMatrix(self._rows, self._rows, self.matrix)
+        matrix.createSubMatrix(self.rows, self.rows, self.matrix)
         self._solver.setUp()
 
-    def add(self, residual: PETSc.Vec, to: PETSc.Vec) -> None:
-        """Add what the rows' residual asks for."""
-        mine = residual.getSubVector(self._rows)
-        self._solver.apply(mine, self._found)
-        residual.restoreSubVector(self._rows, mine)
-        part = to.getSubVector(self._rows)
-        part.axpy(1.0, self._found)
-        to.restoreSubVector(self._rows, part)
+    def add(self, residual: Array, to: PETSc.Vec) -> None:
+        """Add what the residual (n,) of the rows asks for."""
+        self._residual.array_w[:] = residual
+        self._solver.apply(self._residual, self.found)
+        to.array_w[self.place] += self.found.array_r
 
     def destroy(self) -> None:
-        for thing in (self._solver, self.matrix, self._found, self._rows):
+        for thing in (self._solver, self.matrix, self.found, self._residual, self.rows):
             thing.destroy()
 
 

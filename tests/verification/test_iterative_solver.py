@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mpi4py import MPI
+from petsc4py import PETSc
 from typer.testing import CliRunner
 
 from riser_soil.__main__ import app
@@ -17,6 +18,7 @@ from riser_soil.core.system import System, Timer
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve import iterative_solver, stability
+from riser_soil.solve.iterative_solver import IterativeSolver
 from riser_soil.stages import LayingCounter, run_stage
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
 from tests.support.on_ranks import mpirun
@@ -76,3 +78,25 @@ def test_nothing_is_factorised_to_judge_stability(
     start = State.at_rest(0.0, assembly.size)
     run_stage(assembly, assembly.scene.stages[0], start, LayingCounter(), Timer.new())
     assert any(len(system.model.fields) > 1 for system in counted) == judged
+
+
+def test_a_tangent_of_clay_takes_few_iterations(monkeypatch: pytest.MonkeyPatch) -> None:
+    """13 on average; 18 with two steps of the smoother, or where a correction misses what the one before has left."""
+    cycles: list[PETSc.PC] = []
+    tangents: list[PETSc.PC] = []
+    apply, set_up = IterativeSolver.apply, IterativeSolver.setUp
+
+    def applied(solver: IterativeSolver, pc: PETSc.PC, x: PETSc.Vec, y: PETSc.Vec) -> None:
+        cycles.append(pc)
+        apply(solver, pc, x, y)
+
+    def set_anew(solver: IterativeSolver, pc: PETSc.PC) -> None:
+        tangents.append(pc)
+        set_up(solver, pc)
+
+    monkeypatch.setattr(IterativeSolver, "apply", applied)
+    monkeypatch.setattr(IterativeSolver, "setUp", set_anew)
+    assembly = build(scene_from_mapping(on_clay("iterative")), MPI.COMM_SELF)
+    start = State.at_rest(0.0, assembly.size)
+    run_stage(assembly, assembly.scene.stages[0], start, LayingCounter(), Timer.new())
+    assert 5 * len(tangents) < len(cycles) < 15 * len(tangents)
