@@ -72,7 +72,7 @@ def _pivot(ab: Array, k: int, B: Size) -> int:
 def solve(ab: Array, pivots: IntArray, x: Array, B: Size) -> None:
     """Solve with the factors of `factorise`: the right-hand side x (n,) becomes the solution."""
     b, wide = len(B), _take_off(ab, pivots, x, B)
-    whole = max(pivots.size - 2 * b, 0)  # rows that have all of their numbers within the matrix
+    whole = max(pivots.size - 2 * b, 0) if b > 0 else 0  # rows that have all of their numbers within the matrix
     _insert(ab, x, pivots.size, whole, b)
     if b > 0:
         _insert_whole(ab, x, whole, min(wide, whole), b, b)

@@ -217,6 +217,13 @@ class CondensedNewton:
         lost = self._border.taken() - last + first
         return Work(dissipated=lost, by_scheme=lost)
 
+    def state(self) -> Saved:
+        """What contact has stored at the times known: found anew it would be the same but to round-off."""
+        return {"times": np.array([*self._stored]), "stored": np.array([*self._stored.values()])}
+
+    def restore(self, saved: Saved) -> None:
+        self._stored = dict(zip(saved["times"].tolist(), saved["stored"].tolist(), strict=True))
+
     def require_stable(self, solution: Solution) -> None:
         """Time steps need not be stable equilibria."""
 

@@ -71,6 +71,20 @@ def test_banded_factors_solve(n: int, b: int, diagonal: float) -> None:
     np.testing.assert_allclose(load, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
 
 
+@pytest.mark.parametrize(("n", "b"), [(1, 0), (4, 0), (1, 2), (2, 3), (4, 1), (5, 2)])
+def test_narrow_and_short_bands_are_solved_for(n: int, b: int) -> None:
+    rng, (ab, band), pivots = np.random.default_rng(b), banded.room(n, b), np.zeros(n, dtype=np.int64)
+    dense, load = 9.0 * np.eye(n), rng.normal(size=n)
+    for i in range(n):
+        for j in range(max(0, i - b), min(n, i + b + 1)):
+            dense[i, j] += rng.normal()
+            ab[i, j - i + b] = dense[i, j]
+    found = load.copy()
+    assert banded.factorise(ab, pivots, band)
+    banded.solve(ab, pivots, found, band)
+    np.testing.assert_allclose(found, np.linalg.solve(dense, load), rtol=1e-12)
+
+
 @pytest.mark.parametrize(("n", "b"), [(40, 5), (66, 11)])
 def test_fill_of_some_rows_alone_is_solved_for(n: int, b: int) -> None:
     """Rows are exchanged in the middle, so that those before and after it have no fill."""
