@@ -28,6 +28,7 @@ from riser_soil.riser.part_kernels import (
     forces_of,
 )
 from riser_soil.solve import riser_loop as loop
+from riser_soil.solve.numbered_parts import NumberedParts
 from riser_soil.solve.packed_riser import matrix_room
 from riser_soil.solve.riser_loop import Dofs, MatrixRoom, NewtonProgress, StepNumbers
 from riser_soil.solve.riser_mass import projectors
@@ -158,6 +159,11 @@ class CompiledMass:
     def _know(self, moving: Array) -> None:
         self._mass.moving[...], self._known = moving, True
         self._mass.whole[...] = (moving == np.eye(moving.shape[1])).all(axis=(1, 2))
+
+
+def mass_of(line: Line, parts: NumberedParts, prescribed: BoolArray, levers: Array) -> CompiledMass:
+    """Inverse of a line's mass, by its parts; see `CompiledMass`."""
+    return CompiledMass(line, parts.in_groups("IF"), parts.in_groups("I"), prescribed, levers, parts.bring_to)
 
 
 @njit

@@ -5,11 +5,8 @@ A step that it can't solve, as where contact opens so that steps want shortening
 
 from __future__ import annotations
 
-import math
 import time
-from collections.abc import Sequence
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -19,22 +16,20 @@ from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
-from riser_soil.riser.line_part import LinePart, overrides
-from riser_soil.riser.part_kernels import add_work
+from riser_soil.riser.line_part import LinePart
 from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.riser.sections import Elements
 from riser_soil.soil.condensed import CondensedSoil
 from riser_soil.solve import riser_loop
-from riser_soil.solve.compiled_mass import CompiledMass
+from riser_soil.solve.compiled_mass import CompiledMass, mass_of
 from riser_soil.solve.newton import Newton
+from riser_soil.solve.numbered_parts import NumberedParts
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.riser_loop import StopLimits
 from riser_soil.solve.soil_border import SoilBorder
 from riser_soil.solve.solution import NewtonSettings, Solution, Step
 
 MOST_BEGUN = 8  # times that a step is begun with other pairs or dofs before it is left to `Newton`
-
-Numbered = Sequence[tuple[Any, tuple[Any, ...]]]  # parts of a line
 
 
 def condensed_newton(system: System, settings: NewtonSettings) -> CondensedNewton | None:
@@ -49,7 +44,7 @@ def condensed_newton(system: System, settings: NewtonSettings) -> CondensedNewto
     if len(numbered) < len(rest):
         return None
     border = SoilBorder(contact.line, contact, soil, touch)
-    return CondensedNewton(system, settings, numbered, contact, soil, border)
+    return CondensedNewton(system, settings, NumberedParts(numbered), contact, soil, border)
 
 
 class CondensedNewton:
@@ -59,24 +54,21 @@ class CondensedNewton:
         self,
         system: System,
         settings: NewtonSettings,
-        parts: Numbered,
+        parts: NumberedParts,
         contact: SurfaceContact,
         soil: CondensedSoil,
         border: SoilBorder,
     ) -> None:
         self.system, self.settings, self._newton = system, settings, Newton(system, settings)
         self.iterations, self.rests = 0, False
-        self._contact, self._soil, self._border, self._numbered = contact, soil, border, parts
+        self._contact, self._soil, self._border, self._parts = contact, soil, border, parts
         (line,) = system.model.lines
         assert isinstance(line, Line)
         self._line, self._at, most = line, slice(0, line.size), settings.max_iterations
         given = system.prescribed[self._at], system.levers[self._at], most
-        self._riser = PackedRiser(line, [held for _, held in parts], *given, border)
+        self._riser = PackedRiser(line, parts.numbers, *given, border)
         self._limits = StopLimits(settings.tolerance, settings.floor, 0.0, most, settings.least_iterations, False)
-        self._nothing, self._t = np.zeros(system.numbering.size), math.nan
-        self._renewed = [part for part, _ in parts if overrides(part, "renew_numbers")]
-        kernels = [(part, type(held) in add_work.kernels) for part, held in parts]
-        self._turning = [(part, kernel) for part, kernel in kernels if kernel or overrides(part, "work")]
+        self._nothing = np.zeros(system.numbering.size)
         self._reached = soil.top.reached  # as the system has it
         self._solved: State | None = None  # by the compiled loop
         self._stored = dict[float, float]()  # contact's energy [J] by the time of states
@@ -84,7 +76,7 @@ class CondensedNewton:
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError."""
         since = time.perf_counter()
-        self._bring(step.before.t, step.t)
+        self._parts.bring(step.before.t, step.t)
         norms = self._norms(step)
         self.system.clock.add("riser and soil", since)
         found = self._by_newton(step) if norms is None else Solution(self._state(step), self._forces(), norms)
@@ -154,23 +146,10 @@ class CondensedNewton:
             whole[self._at] = group.ravel()
         return forces
 
-    def _bring(self, start: float, end: float) -> None:
-        """Write what depends on the time into the parts' numbers, for a step between two times."""
-        for part in self._renewed:
-            part.renew_numbers(start, end)
-        self._t = end
-
-    def _bring_to(self, t: float) -> None:
-        if self._t != t:
-            self._bring(t, t)
-
     @cached_property
     def _mass_of_line(self) -> CompiledMass:
-        bulk, inertial = (
-            [held for part, held in self._numbered if set(part.traits.groups) & set(groups)] for groups in ("IF", "I")
-        )
-        given = self.system.prescribed[self._at], self.system.levers[self._at], self._bring_to
-        return CompiledMass(self._line, bulk, inertial, *given)
+        given = self.system.prescribed[self._at], self.system.levers[self._at]
+        return mass_of(self._line, self._parts, *given)
 
     @cached_property
     def mass(self) -> MassAmongOthers:
@@ -199,9 +178,7 @@ class CondensedNewton:
         since = time.perf_counter()
         work = {part.name: Work() for part in self.system.model.parts}
         stored, rows = self._riser.account(of_line(before, self._at))
-        compiled = iter(rows.tolist())
-        for part, kernel in self._turning:
-            work[part.name] += Work(*next(compiled)) if kernel else part.work(before, solution.state)
+        self._parts.add_work(before, solution.state, rows.tolist(), work)
         work[self._soil.name] += self._soil.work(before, solution.state)
         work[self._contact.name] += self._work_of_contact(before, solution.state.t)
         potential = Energy(potential=self._border.potential)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Sequence
 from functools import cached_property, lru_cache
@@ -15,13 +14,13 @@ from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
-from riser_soil.riser.part_kernels import add_work
 from riser_soil.riser.section_forces import nodal_residual
 from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.riser.sections import Elements
 from riser_soil.solve import riser_loop
-from riser_soil.solve.compiled_mass import CompiledMass
+from riser_soil.solve.compiled_mass import CompiledMass, mass_of
 from riser_soil.solve.element_forces import AcceptedForces, ElementForces
+from riser_soil.solve.numbered_parts import NumberedParts
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, largest_at, told
 
@@ -53,18 +52,15 @@ class RiserNewton:
         self._line, most = line, settings.max_iterations
         self._riser = PackedRiser(line, [held for _, held in parts], system.prescribed, system.levers, most)
         self._solved: State | None = None  # last, where no forces may have jumped since
-        self._numbered, self._t, self._free = parts, math.nan, np.flatnonzero(~system.prescribed)
+        self._parts, self._free = NumberedParts(parts), np.flatnonzero(~system.prescribed)
         self._nothing = np.zeros(line.size)
-        self._renewed = [part for part, _ in parts if overrides(part, "renew_numbers")]
         self._no_work = {part.name: Work() for part, _ in parts}
         self._on_nodes = [part for part, _ in parts if overrides(part, "nodal_forces")]
-        kernels = [(part, type(held) in add_work.kernels) for part, held in parts]
-        self._turning = [(part, kernel) for part, kernel in kernels if kernel or overrides(part, "work")]
 
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError."""
         since, self._solved = time.perf_counter(), None
-        self._bring(step.before.t, step.t)
+        self._parts.bring(step.before.t, step.t)
         scheme = step.scheme
         self._riser.begin(self._guess(step), scheme.past(step.start), scheme.weights(step.dt), self._limits(step))
         outcome, taken = self._riser.solve()
@@ -80,25 +76,10 @@ class RiserNewton:
         self._solved = state if self.system.smooth else None
         return Solution(state, self._found(), norms)
 
-    def _bring(self, start: float, end: float) -> None:
-        """Write what depends on the time into the parts' numbers, for a step between two times."""
-        for part in self._renewed:
-            part.renew_numbers(start, end)
-        self._t = end
-
-    def _bring_to(self, t: float) -> None:
-        if self._t != t:
-            self._bring(t, t)
-
     @cached_property
     def mass(self) -> CompiledMass:
         """Inverse of the line's mass."""
-        bulk, inertial = (
-            [held for part, held in self._numbered if set(part.traits.groups) & set(groups)] for groups in ("IF", "I")
-        )
-        return CompiledMass(
-            self._line, bulk, inertial, self.system.prescribed, self.system.levers, self._bring_to
-        )
+        return mass_of(self._line, self._parts, self.system.prescribed, self.system.levers)
 
     def bulk_forces(self, state: State) -> Forces:
         """Forces of groups I and F at an accepted state, those of group E zero."""
@@ -120,17 +101,17 @@ class RiserNewton:
         return solved is not None and self._accepted.whole and state.v is solved.v and state.a is solved.a
 
     def _found_at(self, state: State) -> ElementForces:
-        if self._t != state.t or not self.system.smooth:  # contact has a new history since the step was solved
-            self._bring(state.t, state.t)
+        if self._parts.t != state.t or not self.system.smooth:  # contact has a new history since the step was solved
+            self._parts.bring(state.t, state.t)
         return self._accepted.found(state)
 
     @cached_property
     def _accepted(self) -> AcceptedForces:
-        return AcceptedForces(self._line, self._numbered)
+        return AcceptedForces(self._line, self._parts.numbered)
 
     @cached_property
     def _at_solution(self) -> ElementForces:
-        return ElementForces(self._line, self._riser.at, self._riser.forces, [part for part, _ in self._numbered])
+        return ElementForces(self._line, self._riser.at, self._riser.forces, self._parts.parts)
 
     def nodal_residual(self, line: Line, state: State) -> Array | None:
         """Of what acts on the line's nodes (nn, ndof) without holding them."""
@@ -141,9 +122,7 @@ class RiserNewton:
         since = time.perf_counter()
         work = dict(self._no_work)
         energy, rows = self._riser.account(before)
-        compiled = iter(rows.tolist())
-        for part, kernel in self._turning:
-            work[part.name] += Work(*next(compiled)) if kernel else part.work(before, solution.state)
+        self._parts.add_work(before, solution.state, rows.tolist(), work)
         self.system.clock.add("riser alone", since)
         return Energy(*energy.tolist()), work
 
