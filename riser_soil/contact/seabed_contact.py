@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from riser_soil.contact import seabed_stations
 from riser_soil.contact.landing import landing_predictor
 from riser_soil.contact.line_contact import ContactAlongLine, LineContact
-from riser_soil.contact.pairing import Cover
 from riser_soil.contact.seabed_loop import SeabedNumbers, seabed_numbers
 from riser_soil.contact.station_forces import StationForces
 from riser_soil.contact.work_along_step import work_along_step
@@ -32,9 +31,11 @@ CoveredBySoil = Callable[[Array], BoolArray]
 class Covering(Protocol):
     """What lies on the seabed in places as compiled code has it, see `CoveredBySoil`."""
 
-    def cover(self) -> Cover: ...
+    def cover(self) -> Any:
+        """Its numbers, of a type with a kernel of `seabed_loop.covered_by`."""
+        ...
 
-    def renew_cover(self, cover: Cover) -> None:
+    def renew_cover(self, cover: Any) -> None:
         """Let it be that of the present place."""
         ...
 

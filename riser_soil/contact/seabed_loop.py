@@ -8,7 +8,6 @@ import numpy as np
 
 from riser_soil.contact.coulomb import Pair, return_map
 from riser_soil.contact.friction_stations import elastic_guess, read_along, resistance_by_position, vector_of
-from riser_soil.contact.pairing import Cover, facet_below
 from riser_soil.contact.seabed_stations import LineFrame, by_position, distance_in, frame_of, global_place
 from riser_soil.contact.work_along_step import work_at
 from riser_soil.core.arrays import Array, BoolArray, IntArray
@@ -90,7 +89,7 @@ def seabed_numbers(
     memory: Array,
     ground: Any,
     law: NormalLaw,
-    cover: Cover | None = None,
+    cover: Any = None,
 ) -> SeabedNumbers:
     """With the room that they need; ground: its numbers; cover: what lies on it in places, if anything."""
     (ne, ng), d = share.shape, line.dimension
@@ -112,11 +111,6 @@ def covered_by(cover: Any, x: Vec, known: int) -> Any:
 @covered_by.of(Bare)
 def _never(cover: Bare, x: Vec, known: int) -> int:
     return cover.nothing
-
-
-@covered_by.of(Cover)
-def _by_surface(cover: Cover, x: Vec, known: int) -> int:
-    return facet_below(cover, x[0], x[1], known)
 
 
 @njit

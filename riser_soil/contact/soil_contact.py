@@ -11,7 +11,7 @@ from riser_soil.contact.candidates import CandidatePairs
 from riser_soil.contact.ground import DeformedSurface
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.line_contact import ContactAlongLine, LineContact
-from riser_soil.contact.pairing import Cover
+from riser_soil.contact.seabed_cover import Cover
 from riser_soil.contact.suction import SuctionLaw
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Forces, MatrixBlock, State, Traits, Weights
