@@ -78,15 +78,15 @@ def first_contact_in_mid_step() -> Trial:
 @stress_case()
 def penalty_of_1e12_struck_at_10_m_per_s() -> Trial:
     """A pipe falls 5 m on a ground of 1e12 N/m2 in steps of 0.01 s: energy never grows, in the end the ground bears the
-    weight.
+    weight. How long it rattles until then, up to 6 s, hangs on round-off.
     """
 
     def answers(run: Run) -> Iterator[Answer]:
         yield between("greatest height [m]", float(run["position"][:, :, 2].max()), -5.2, 1e-9)
-        last = run.time > 5.0
+        last = run.time > 9.0
         yield near("mean contact force at rest [N]", run["contact_force_sum"][last][:, 2].mean(), 40.0 * W, rel=1e-2)
 
-    return one(level_pipe(5.0, 1e12, 0.01, 6.0), answers)
+    return one(level_pipe(5.0, 1e12, 0.01, 10.0), answers)
 
 
 def sinking(drag: float) -> Callable[[], Trial]:
