@@ -222,12 +222,13 @@ def _spread(block: Array, e: int, rows: IntArray, nodes: IntArray, K: Array, bor
 
 
 @njit
-def add_touch_work(
+def put_touch_work(
     touch: TouchNumbers, top: TopMotion, first: Configuration, last: Configuration, room: TouchRoom, work: Array
 ) -> None:
-    """Add to work (1,) what the force at a step's end, found last, takes along the step [J]: see `SurfaceContact.work`.
+    """Write to work (1,) what the force at a step's end, found last, takes along the step [J]: see
+    `SurfaceContact.work`.
     """
-    near, nv = room.near, touch.surface.facets.shape[1]
+    near, nv, taken = room.near, touch.surface.facets.shape[1], 0.0
     N, dN = np.empty(nv), np.empty((nv, 2))
     for i in range(room.found[POINTS]):
         n, e = _normal(touch, near, i, N, dN), near.element[i]
@@ -239,4 +240,5 @@ def add_touch_work(
             for a in range(4):
                 for k in range(touch.basis.shape[1]):
                     moved -= n[j] * shares[a] * touch.basis[j, k] * (last.q[e, a, k] - first.q[e, a, k])
-        work[0] -= room.force[i] * moved
+        taken -= room.force[i] * moved
+    work[0] = taken

@@ -77,19 +77,20 @@ class CondensedNewton:
         """Solve a step or raise NotConvergedError."""
         since = time.perf_counter()
         self._parts.bring(step.before.t, step.t)
-        norms = self._norms(step)
+        still = step.scheme.trial(step.before, step.t, step.dt, self._nothing)
+        norms = self._norms(step, still)
         self.system.clock.add("riser and soil", since)
-        found = self._by_newton(step) if norms is None else Solution(self._state(step), self._forces(), norms)
+        found = self._by_newton(step) if norms is None else Solution(self._state(step, still), self._forces(), norms)
         self._solved, self.rests = None if norms is None else found.state, False
         return found
 
-    def _norms(self, step: Step) -> list[float] | None:
-        """Norms of the residual on the way to balance; None where the loop does not get there."""
+    def _norms(self, step: Step, still: State) -> list[float] | None:
+        """Norms of the residual on the way to balance; None where the loop does not get there. still: the step without
+        increments.
+        """
         at, scheme, past = self._at, step.scheme, step.scheme.past(step.start)
-        still = scheme.trial(step.before, step.t, step.dt, self._nothing)
         guess = State(step.t, step.guess[at].copy(), still.v[at], still.a[at])
         self._line.prescribe(step.t, guess.u, guess.v, guess.a)
-        self._still = still
         guessed = bool(step.guess[~self.system.prescribed].any())
         limits = self._limits._replace(answers_load=self.rests or guessed)  # as in `Newton`
         for _ in range(MOST_BEGUN):
@@ -121,9 +122,9 @@ class CondensedNewton:
         finally:
             self.iterations += self._newton.iterations - before
 
-    def _state(self, step: Step) -> State:
+    def _state(self, step: Step, still: State) -> State:
         """The state found."""
-        line, weights, still = self._riser.solved(step.t), step.scheme.weights(step.dt), self._still
+        line, weights = self._riser.solved(step.t), step.scheme.weights(step.dt)
         dofs, moved = self._border.increments
         u, v, a = self._nothing.copy(), still.v, still.a
         u[self._at], v[self._at], a[self._at], u[dofs] = line.u, line.v, line.a, moved
@@ -191,7 +192,7 @@ class CondensedNewton:
         if first is None:
             first = self._contact.energy(before).potential
         self._stored = {before.t: first, t: last}
-        lost = self._border.taken() - last + first
+        lost = self._border.taken - last + first
         return Work(dissipated=lost, by_scheme=lost)
 
     def state(self) -> Saved:

@@ -24,8 +24,8 @@ from riser_soil.contact.surface_loop import (
     Watched,
     add_touch,
     add_touch_tangent,
-    add_touch_work,
     move_top,
+    put_touch_work,
 )
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.bound import Bound
@@ -52,7 +52,7 @@ class SoilBorder:
     """The soil's reached dofs with their contact; kernels of both, bound to where they read and write.
 
     touch: the contact's numbers. potential: the contact's energy in the last trial [J]; taken: what its force took in
-    the last step [J].
+    the step accounted for last [J].
     """
 
     def __init__(self, line: Line, contact: SurfaceContact, soil: CondensedSoil, touch: TouchNumbers) -> None:
@@ -104,7 +104,7 @@ class SoilBorder:
 
     def account(self, then: Packed, now: Packed) -> list[Bound]:
         """Kernels that find what contact took in the step."""
-        return [Bound(add_touch_work, self._numbers, self._motion, then, now, self._room, Packed(self._taken))]
+        return [Bound(put_touch_work, self._numbers, self._motion, then, now, self._room, Packed(self._taken))]
 
     def begin(self, before: State, guess: Array) -> None:
         """Begin a step with a first guess (size,) of all local increments."""
@@ -187,11 +187,9 @@ class SoilBorder:
     def potential(self) -> float:
         return float(self._found.energy[0])
 
+    @property
     def taken(self) -> float:
-        """What contact's force took in the step accounted for last [J]."""
-        found = float(self._taken[0])
-        self._taken[0] = 0.0
-        return found
+        return float(self._taken[0])
 
 
 def _room(count: int, nodes: int) -> TouchRoom:
