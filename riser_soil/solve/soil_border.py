@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from riser_soil.contact.closest_point import Axis
-from riser_soil.contact.near_points import PairsByFacet, points_room
+from riser_soil.contact.near_points import FEW, PairsByFacet, points_room
 from riser_soil.contact.surface_contact import SurfaceContact
 from riser_soil.contact.surface_loop import (
     BEYOND,
@@ -43,7 +43,6 @@ from riser_soil.solve.bordered_loop import (
     judge_with_border,
 )
 
-FEW = 1024  # points for which there is room at first
 SHARE = 0.25  # of the range around the pipe by which soil may move before the pairs are looked for anew
 NONE: IntArray = np.empty(0, dtype=np.int64)
 
