@@ -7,6 +7,9 @@ from functools import cache
 import numpy as np
 import pytest
 
+from riser_soil.contact.closest_point import Axis
+from riser_soil.contact.near_points import PairsByFacet, boxes
+from riser_soil.contact.surface_loop import Watched, _leaves
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
@@ -207,3 +210,19 @@ def test_what_has_no_kernels_is_left_to_newton(changed: Mapping, why: str) -> No
     assert isinstance(found, Newton)
     found.destroy()
     system.destroy()
+
+
+@pytest.mark.parametrize(
+    ("moved", "left"),
+    [((0.0, 0.0, 0.0), False), ((0.2, 0.0, 0.0), True), ((0.0, -0.2, 0.0), True), ((0.0, 0.0, -0.2), True)],
+)
+@pytest.mark.parametrize("above", [False, True])
+def test_an_element_that_leaves_its_box_is_noticed_unless_it_is_above_the_soil(
+    moved: tuple[float, float, float], left: bool, above: bool
+) -> None:
+    q = np.array([[[0.0, 0.0, 0.1], [1.0, 0.0, 0.0], [1.0, 0.0, 0.1], [1.0, 0.0, 0.0]]])
+    low, high = boxes(Axis(q, np.ones(1), np.full(1, 0.1)), 0.1, 0.1)
+    q[:, ::2] += np.array(moved)
+    none = np.empty(0, dtype=np.int64)
+    watched = Watched(PairsByFacet(none, none, none), low, high, -1.0 if above else 1.0)
+    assert _leaves(Axis(q, np.ones(1), np.full(1, 0.1)), watched) == (left and not above)
