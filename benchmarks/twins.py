@@ -111,10 +111,11 @@ def matrices(line: Line) -> Array:
 def elastic(stage: TimedStage, state: State) -> Action:
     line = stage.assembly.line
     elements, trial, K = elastic_elements(line, stage.assembly.elements), line.trial(state), matrices(line)
+    weight = np.ones(trial.chord.shape)
 
     def act() -> None:
-        elements.forces(trial)
-        elements.add_tangent(K, 1.0, trial)
+        elements.forces(trial, weight)
+        elements.add_tangent(K, 1.0, trial, weight)
 
     return act
 

@@ -42,7 +42,7 @@ class Beam(LinePart):
         return np.asarray(self.factor(trial.state.t) * self._load)
 
     def _element_forces(self, trial: Trial) -> Array:
-        return self._elastic.forces(trial) + self._elastic.load_forces(trial, self._load_at(trial))
+        return self._elastic.forces(trial, self._load_at(trial))
 
     def element_forces(self, state: State) -> tuple[None, Array]:
         """Element residuals (inertia, force), each (ne, 2 ndof) or None."""
@@ -53,8 +53,7 @@ class Beam(LinePart):
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         trial, K = self.line.trial(state), values[self.line.name]
-        self._elastic.add_tangent(K, weights.force, trial)
-        self._elastic.add_load_tangent(K, weights.force, trial, self._load_at(trial))
+        self._elastic.add_tangent(K, weights.force, trial, self._load_at(trial))
 
     def numbers(self) -> PlanarBeam | SpatialBeam:
         kind = PlanarBeam if self.line.dimension == 2 else SpatialBeam

@@ -15,6 +15,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
+from riser_soil.riser.bow_load import BowLoad, bow_load, bow_potential, chord_force, end_moment, turned
 from riser_soil.riser.corotation import (
     SpatialCorotated,
     SpatialNodalForces,
@@ -39,7 +40,7 @@ from riser_soil.riser.strain3d import (
 )
 from riser_soil.riser.stress3d import energy, stress, stress_change
 from riser_soil.riser.swing_twist import SwingTwist, moment, moment_variation, rate, split
-from riser_soil.riser.vectors import Mat, Vec, add, matrix, sub, vecmat, vector
+from riser_soil.riser.vectors import Mat, Vec, add, dot, matrix, scale, sub, vecmat, vector
 
 STILL = (0.0, 0.0, 0.0)
 
@@ -91,6 +92,7 @@ class SpatialResponse(NamedTuple):
     mu1: Vec  # generalised moments of the ends
     mu2: Vec
     forces: SpatialNodalForces
+    load: BowLoad
 
 
 @njit
@@ -128,35 +130,67 @@ def stiffness(ref: SpatialReference, section: SpatialSection, e: int) -> Stiffne
 
 
 @njit
+def element_shape(e: int, chord: Array, frame1: Array, frame2: Array, ref: SpatialReference) -> Shape:
+    """Configuration of element e; arguments as in `forces`."""
+    found: Shape = shape(ref.L[e], vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
+    return found
+
+
+@njit
 def strain_energy(chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, section: SpatialSection) -> Array:
     """Strain energy (ne,) in J; arguments as in `forces`."""
     U = np.empty(len(chord))
     for e in range(len(chord)):
-        U[e] = element_energy(e, chord, frame1, frame2, ref, section)
+        U[e] = element_energy(e, element_shape(e, chord, frame1, frame2, ref), ref, section)
     return U
 
 
 @njit
-def element_energy(
-    e: int, chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, section: SpatialSection
-) -> float:
-    """That of element e."""
-    at = shape(ref.L[e], vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
+def element_energy(e: int, at: Shape, ref: SpatialReference, section: SpatialSection) -> float:
+    """Strain energy of element e."""
     return energy(stiffness(ref, section, e), at.strain, difference(at.strain, _unstressed(ref, e)))
 
 
 @njit
-def respond(L: float, at: Shape, elastic: Strain, s: Stress) -> SpatialResponse:
-    """Forces of the stress s, which comes from the strains `elastic`."""
-    mu1, mu2 = conjugate(L, at.end1.angles, at.end2.angles, at.stations, s)
-    m1, m2 = moment(at.end1, mu1), moment(at.end2, mu2)
-    return SpatialResponse(elastic, s, mu1, mu2, nodal_forces(at.frame.length, s.axial / L, m1, m2))
+def load_potential(
+    chord: Array, frame1: Array, frame2: Array, middle: Array, ref: SpatialReference, load: Array
+) -> Array:
+    """Potential (ne,) [J] of a load per length (ne, 3) [N/m] on elements with their middles (ne, 3); see `bow_load`."""
+    V = np.empty(len(chord))
+    for e in range(len(chord)):
+        at, w = element_shape(e, chord, frame1, frame2, ref), vector(load[e])
+        V[e] = element_potential(at, ref.L[e], w, vector(middle[e]))
+    return V
 
 
 @njit
-def _respond(D: Stiffness, unstressed: Strain, at: Shape) -> SpatialResponse:
+def element_potential(at: Shape, L: float, w: Vec, middle: Vec) -> float:
+    """That of one element."""
+    potential: float = bow_potential(bow_load(at.frame.axes, L, w), at.end1.angles, at.end2.angles)
+    return potential - L * dot(w, middle)
+
+
+@njit
+def respond(L: float, at: Shape, elastic: Strain, s: Stress, load: BowLoad) -> SpatialResponse:
+    """Forces of the stress s, which comes from the strains `elastic`, and of a load."""
+    by_stress1, by_stress2 = conjugate(L, at.end1.angles, at.end2.angles, at.stations, s)
+    by_load = end_moment(load)
+    mu1, mu2 = add(by_stress1, by_load), sub(by_stress2, by_load)
+    return SpatialResponse(elastic, s, mu1, mu2, _all_forces(at, s.axial / L, mu1, mu2, load), load)
+
+
+@njit
+def _all_forces(at: Shape, N: float, mu1: Vec, mu2: Vec, load: BowLoad) -> SpatialNodalForces:
+    """Forces of the chord force N, of generalised moments of the ends, and of a load as the frame turns under it."""
+    by_turning = chord_force(load, at.frame.length, at.end1.angles, at.end2.angles)
+    forces = nodal_forces(at.frame.length, N, moment(at.end1, mu1), moment(at.end2, mu2))
+    return plus(forces, SpatialNodalForces(by_turning, STILL, STILL))
+
+
+@njit
+def _respond(D: Stiffness, unstressed: Strain, at: Shape, w: Vec) -> SpatialResponse:
     elastic = difference(at.strain, unstressed)
-    return respond(D.L, at, elastic, stress(D, at.strain, elastic))
+    return respond(D.L, at, elastic, stress(D, at.strain, elastic), bow_load(at.frame.axes, D.L, w))
 
 
 @njit
@@ -173,11 +207,15 @@ def put_forces(axes: Mat, forces: SpatialNodalForces, out: Array) -> None:
 
 
 @njit
-def forces(chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, section: SpatialSection) -> Array:
-    """Internal forces f (ne, 12) for chords (ne, 3) and section frames (ne, 3, 3) of both ends."""
+def forces(
+    chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, section: SpatialSection, load: Array
+) -> Array:
+    """Internal forces f (ne, 12) less those of a load per length (ne, 3) [N/m], for chords (ne, 3) and section frames
+    (ne, 3, 3) of both ends.
+    """
     f = np.empty((len(chord), 12))
     for e in range(len(chord)):
-        put_element_forces(e, chord, frame1, frame2, ref, section, f[e])
+        put_element_forces(e, chord, frame1, frame2, ref, section, load, f[e])
     return f
 
 
@@ -189,12 +227,22 @@ def put_element_forces(
     frame2: Array,
     ref: SpatialReference,
     section: SpatialSection,
+    load: Array,
     f: Array,
 ) -> None:
     """Write forces f (12,) of element e; all else as in `forces`."""
-    at = shape(ref.L[e], vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
-    response = _respond(stiffness(ref, section, e), _unstressed(ref, e), at)
+    at, w = element_shape(e, chord, frame1, frame2, ref), vector(load[e])
+    response = _respond(stiffness(ref, section, e), _unstressed(ref, e), at, w)
+    _put_loaded_forces(ref.L[e], at, response, w, f)
+
+
+@njit
+def _put_loaded_forces(L: float, at: Shape, response: SpatialResponse, w: Vec, f: Array) -> None:
+    """Write an element's forces, those of the load on its nodes among them."""
     put_forces(at.frame.axes, response.forces, f)
+    for i in range(3):
+        f[i] -= 0.5 * L * w[i]
+        f[6 + i] -= 0.5 * L * w[i]
 
 
 @njit
@@ -218,10 +266,16 @@ def forces_change(
     """Change of an element's forces when it moves, its strains change and its stresses change by ds."""
     elastic1, elastic2 = conjugate(L, at.end1.angles, at.end2.angles, at.stations, ds)
     geometric1, geometric2 = conjugate_change(L, at.stations, response.stress, change, m.da, m.db)
-    dm1 = add(moment(at.end1, add(elastic1, geometric1)), moment_variation(at.end1, response.mu1, m.spin1))
-    dm2 = add(moment(at.end2, add(elastic2, geometric2)), moment_variation(at.end2, response.mu2, m.spin2))
-    stressed = nodal_forces(at.frame.length, ds.axial / L, dm1, dm2)
-    moved = SpatialNodalForces(lengthen(at.frame.length, response.forces, m.stretch), STILL, STILL)
+    load, length = turned(response.load, m.spin), at.frame.length
+    by_load = end_moment(load)
+    dmu1, dmu2 = add(add(elastic1, geometric1), by_load), sub(add(elastic2, geometric2), by_load)
+    dm1 = add(moment(at.end1, dmu1), moment_variation(at.end1, response.mu1, m.spin1))
+    dm2 = add(moment(at.end2, dmu2), moment_variation(at.end2, response.mu2, m.spin2))
+    stressed = nodal_forces(length, ds.axial / L, dm1, dm2)
+    pulled = add(
+        chord_force(load, length, at.end1.angles, at.end2.angles), chord_force(response.load, length, m.da, m.db)
+    )
+    moved = SpatialNodalForces(add(pulled, lengthen(length, response.forces, m.stretch)), STILL, STILL)
     return plus(plus(stressed, moved), turn(response.forces, m.spin))
 
 
@@ -246,9 +300,28 @@ def _tangent(D: Stiffness, at: Shape, response: SpatialResponse, room: Array, K:
     for i in range(3):
         for k in range(3):
             moves[i, k] = moves[3 + i, 3 + k] = moves[6 + i, 6 + k] = axes[i][k]
-    for k in range(9):
+    for k in range(8):
         _put_change(D, at, response, moves, changes, k)
+    _put_last_change(at, response, changes)
     _spread(changes, K)
+
+
+@njit
+def _put_last_change(at: Shape, response: SpatialResponse, changes: Array) -> None:
+    """Write how the forces change as node 2 spins about the third axis: as the whole element turns about it, they turn
+    with it, and the load on them changes. So eight moves are left to compute, which fill vectors.
+    """
+    axes, length = at.frame.axes, at.frame.length
+    spin = (axes[0][2], axes[1][2], axes[2][2])
+    load = turned(response.load, spin)
+    by_load = end_moment(load)
+    whole = plus(turn(response.forces, spin), _all_forces(at, 0.0, by_load, scale(-1.0, by_load), load))
+    x, y = length * axes[0][0], length * axes[0][1]
+    for row, local in ((0, whole.force), (3, whole.moment1), (6, whole.moment2)):
+        change = vecmat(local, axes)
+        for i in range(3):
+            by_chord = x * changes[row + i, 1] - y * changes[row + i, 0]
+            changes[row + i, 8] = change[i] - changes[row + i, 5] - by_chord
 
 
 @njit
@@ -281,12 +354,12 @@ def _spread(changes: Array, K: Array) -> None:
 
 @njit
 def forces_and_tangent(
-    chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, section: SpatialSection
+    chord: Array, frame1: Array, frame2: Array, ref: SpatialReference, section: SpatialSection, load: Array
 ) -> tuple[Array, Array]:
-    """Internal forces f (ne, 12) and their derivative K (ne, 12, 12) by displacements and spatial spins."""
+    """Forces f (ne, 12) as in `forces`, and their derivative K (ne, 12, 12) by displacements and spatial spins."""
     f, K, room = np.empty((len(chord), 12)), np.empty((len(chord), 12, 12)), tangent_room()
     for e in range(len(chord)):
-        put_element(e, chord, frame1, frame2, ref, section, room, f[e], K[e])
+        put_element(e, chord, frame1, frame2, ref, section, load, room, f[e], K[e])
     return f, K
 
 
@@ -298,6 +371,7 @@ def put_element(
     frame2: Array,
     ref: SpatialReference,
     section: SpatialSection,
+    load: Array,
     room: Array,
     f: Array,
     K: Array,
@@ -305,8 +379,8 @@ def put_element(
     """Write forces f (12,) and tangent K (12, 12) of element e; room: `tangent_room`; all else as in
     `forces_and_tangent`.
     """
-    D = stiffness(ref, section, e)
-    at = shape(D.L, vector(chord[e]), matrix(frame1[e]), matrix(frame2[e]))
-    response = _respond(D, _unstressed(ref, e), at)
-    put_forces(at.frame.axes, response.forces, f)
+    D, w = stiffness(ref, section, e), vector(load[e])
+    at = element_shape(e, chord, frame1, frame2, ref)
+    response = _respond(D, _unstressed(ref, e), at, w)
+    _put_loaded_forces(D.L, at, response, w, f)
     _tangent(D, at, response, room, K)

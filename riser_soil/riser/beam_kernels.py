@@ -8,9 +8,10 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.riser import beam2d, beam3d, increments, planar_load, uniform_load
+from riser_soil.riser import beam2d, beam3d, increments, planar_load
 from riser_soil.riser.configuration import Maps, PlanarConfiguration, SpatialConfiguration
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent
+from riser_soil.riser.vectors import vector
 
 
 class PlanarBeam(NamedTuple):
@@ -52,11 +53,10 @@ def _planar_forces(part: PlanarBeam, at: PlanarConfiguration, out: LineForces) -
 def _spatial_forces(part: SpatialBeam, at: SpatialConfiguration, out: LineForces) -> None:
     f = np.empty(12)
     for e in range(part.length.size):
-        beam3d.put_element_forces(e, at.chord, at.frame1, at.frame2, part.reference, part.section, f)
+        beam3d.put_element_forces(e, at.chord, at.frame1, at.frame2, part.reference, part.section, part.load, f)
         increments.element_to_increments(e, f, at.H)
         for i in range(12):
             out.force_e[e, i] += f[i]
-    uniform_load.add_residual(at.D, at.chord, at.tangent, part.length, part.load, out.force_q)
 
 
 @add_tangent.of(PlanarBeam)
@@ -75,14 +75,11 @@ def _planar_tangent(part: PlanarBeam, at: PlanarConfiguration, maps: Maps, weigh
 def _spatial_tangent(part: SpatialBeam, at: SpatialConfiguration, maps: Maps, weights: LineWeights, K: Array) -> None:
     f, own, room = np.empty(12), np.empty((12, 12)), beam3d.tangent_room()
     for e in range(part.length.size):
-        beam3d.put_element(e, at.chord, at.frame1, at.frame2, part.reference, part.section, room, f, own)
+        beam3d.put_element(e, at.chord, at.frame1, at.frame2, part.reference, part.section, part.load, room, f, own)
         increments.tangent_to_increments(e, f, own, at.H, at.Rn, at.Theta)
         for i in range(12):
             for j in range(12):
                 K[e, i, j] += weights.force * own[i, j]
-    uniform_load.add_tangent_to(
-        at.D, at.R, K, weights.force, at.P, at.chord, at.tangent, part.length, part.load
-    )
 
 
 @add_energy.of(PlanarBeam)
@@ -96,11 +93,8 @@ def _planar_energy(part: PlanarBeam, at: PlanarConfiguration, energy: Array) -> 
 
 @add_energy.of(SpatialBeam)
 def _spatial_energy(part: SpatialBeam, at: SpatialConfiguration, energy: Array) -> None:
-    middle, room = np.empty(3), np.empty(3)
     for e in range(part.length.size):
-        energy[1] += beam3d.element_energy(e, at.chord, at.frame1, at.frame2, part.reference, part.section)
-        for i in range(3):
-            middle[i] = 0.5 * (at.x[e, i] + at.x[e + 1, i])
-        energy[2] += uniform_load.element_potential(
-            at.D, at.chord[e], middle, at.tangent[e], part.length[e], part.load[e], room
-        )
+        seen, x, w = beam3d.element_shape(e, at.chord, at.frame1, at.frame2, part.reference), at.x, vector(part.load[e])
+        energy[1] += beam3d.element_energy(e, seen, part.reference, part.section)
+        middle = 0.5 * (x[e, 0] + x[e + 1, 0]), 0.5 * (x[e, 1] + x[e + 1, 1]), 0.5 * (x[e, 2] + x[e + 1, 2])
+        energy[2] += beam3d.element_potential(seen, part.length[e], w, middle)

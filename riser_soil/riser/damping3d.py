@@ -26,6 +26,7 @@ from riser_soil.riser.beam3d import (
     stiffness,
     strain_of,
 )
+from riser_soil.riser.bow_load import NO_LOAD
 from riser_soil.riser.corotation import SpatialNodalForces
 from riser_soil.riser.increments import rows_to_increments
 from riser_soil.riser.strain3d import Stiffness, strain_change_variation, total
@@ -73,7 +74,7 @@ def _flow(at: Shape, chord_rate: Vec, spin1: Vec, spin2: Vec) -> ElementVelociti
 @njit
 def _respond(D: Stiffness, at: Shape, flow: ElementVelocities) -> SpatialResponse:
     strain_rates = strain_of(D.L, at, flow.rates)
-    return respond(D.L, at, strain_rates, linear_stress(D, strain_rates))
+    return respond(D.L, at, strain_rates, linear_stress(D, strain_rates), NO_LOAD)
 
 
 @njit

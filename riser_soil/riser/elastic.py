@@ -10,7 +10,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.riser import beam2d, beam3d, increments, planar_load, uniform_load
+from riser_soil.riser import beam2d, beam3d, increments, planar_load
 from riser_soil.riser.line import Line
 from riser_soil.riser.planar_directors import PlanarFrames, PlanarOrientation
 from riser_soil.riser.sections import Elements
@@ -46,20 +46,12 @@ class ElasticElements(ABC):
         return float(np.sum(self.kernels.strain_energy(*self.at(trial))))
 
     @abstractmethod
-    def forces(self, trial: Trial) -> Array:
-        """(ne, 2 ndof), conjugate to the dofs."""
+    def forces(self, trial: Trial, load: Array) -> Array:
+        """(ne, 2 ndof), conjugate to the dofs, less those of a load per length (ne, d) [N/m]."""
 
     @abstractmethod
-    def add_tangent(self, out: Array, weight: float, trial: Trial) -> None:
-        """Add weight times the tangents to out (ne, 2 ndof, 2 ndof)."""
-
-    @abstractmethod
-    def load_forces(self, trial: Trial, load: Array) -> Array:
-        """Residual (ne, 2 ndof) of a load per length (ne, d) [N/m]."""
-
-    @abstractmethod
-    def add_load_tangent(self, out: Array, weight: float, trial: Trial, load: Array) -> None:
-        """Add weight times the derivative of that residual to out (ne, 2 ndof, 2 ndof)."""
+    def add_tangent(self, out: Array, weight: float, trial: Trial, load: Array) -> None:
+        """Add weight times the derivative of the forces to out (ne, 2 ndof, 2 ndof)."""
 
     @abstractmethod
     def load_potential(self, trial: Trial, load: Array) -> float:
@@ -84,16 +76,12 @@ class PlanarElements(ElasticElements):
         angle = trial.turn.end_angle
         return trial.chord, angle[:, 0], angle[:, 1]
 
-    def forces(self, trial: Trial) -> Array:
-        return np.asarray(beam2d.forces(*self.at(trial)))
+    def forces(self, trial: Trial, load: Array) -> Array:
+        by_load = planar_load.forces(*self.configuration(trial), self._line.length, load)
+        return np.asarray(beam2d.forces(*self.at(trial)) + by_load)
 
-    def add_tangent(self, out: Array, weight: float, trial: Trial) -> None:
+    def add_tangent(self, out: Array, weight: float, trial: Trial, load: Array) -> None:
         _add_planar_tangent(out, weight, *self.at(trial))
-
-    def load_forces(self, trial: Trial, load: Array) -> Array:
-        return np.asarray(planar_load.forces(*self.configuration(trial), self._line.length, load))
-
-    def add_load_tangent(self, out: Array, weight: float, trial: Trial, load: Array) -> None:
         planar_load.add_tangent(out, weight, *self.configuration(trial), self._line.length, load)
 
     def load_potential(self, trial: Trial, load: Array) -> float:
@@ -115,30 +103,16 @@ class SpatialElements(ElasticElements):
         turn = spatial(trial)
         return trial.chord, turn.frame1, turn.frame2
 
-    def forces(self, trial: Trial) -> Array:
-        return np.asarray(_spatial_forces(*self.at(trial), spatial(trial).H))
+    def forces(self, trial: Trial, load: Array) -> Array:
+        return np.asarray(_spatial_forces(*self.at(trial), load, spatial(trial).H))
 
-    def add_tangent(self, out: Array, weight: float, trial: Trial) -> None:
+    def add_tangent(self, out: Array, weight: float, trial: Trial, load: Array) -> None:
         turn = spatial(trial)
-        _add_spatial_tangent(out, weight, *self.at(trial), (turn.H, turn.Rn, turn.Theta))
-
-    def load_forces(self, trial: Trial, load: Array) -> Array:
-        return trial.pull_back(self._load_conjugate(trial, load))
-
-    def add_load_tangent(self, out: Array, weight: float, trial: Trial, load: Array) -> None:
-        trial.add_turning(out, weight, self._load_conjugate(trial, load))
-        turn = trial.turn
-        uniform_load.add_tangent(out, weight, turn.P, trial.chord, turn.tangent, self._line.length, load)
-
-    def _load_conjugate(self, trial: Trial, load: Array) -> Array:
-        """Residual of the load conjugate to q (ne, 4, 3), found once for a trial, which sees one load."""
-        at = trial.chord, trial.turn.tangent, self._line.length, load
-        found: Array = trial.once((self, "load"), lambda _: uniform_load.residual(*at))
-        return found
+        _add_spatial_tangent(out, weight, *self.at(trial), load, (turn.H, turn.Rn, turn.Theta))
 
     def load_potential(self, trial: Trial, load: Array) -> float:
-        at = trial.chord, _middle(trial), trial.turn.tangent
-        return float(np.sum(uniform_load.potential(*at, self._line.length, load)))
+        at = *self.configuration(trial), _middle(trial), self.reference
+        return float(np.sum(beam3d.load_potential(*at, load)))
 
 
 def _middle(trial: Trial) -> Array:
@@ -178,9 +152,10 @@ def _spatial_forces(
     frame2: Array,
     reference: beam3d.SpatialReference,
     section: beam3d.SpatialSection,
+    load: Array,
     H: Array,
 ) -> Array:
-    f = beam3d.forces(chord, frame1, frame2, reference, section)
+    f = beam3d.forces(chord, frame1, frame2, reference, section, load)
     increments.forces_to_increments(f, H)
     return f
 
@@ -194,12 +169,13 @@ def _add_spatial_tangent(
     frame2: Array,
     reference: beam3d.SpatialReference,
     section: beam3d.SpatialSection,
+    load: Array,
     nodes: tuple[Array, Array, Array],
 ) -> None:
     """nodes: H, Rn and Theta, see `increments`."""
     f, K, room = np.empty(12), np.empty((12, 12)), beam3d.tangent_room()
     for e in range(len(chord)):
-        beam3d.put_element(e, chord, frame1, frame2, reference, section, room, f, K)
+        beam3d.put_element(e, chord, frame1, frame2, reference, section, load, room, f, K)
         increments.tangent_to_increments(e, f, K, nodes[0], nodes[1], nodes[2])
         _add(out[e], weight, K)
 

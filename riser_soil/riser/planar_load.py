@@ -1,11 +1,12 @@
 """Uniform load per length on elements in a plane: its potential, residual and tangent.
 
-That of `uniform_load`, whose psi_i is in a plane the angle theta_i from the chord to an end's tangent times the load
-w.n across the chord. theta_1 - theta_2 does not change as the chord turns, so that with w per unstressed length L
+An element bows from its chord by a cubic with the angles theta_i from the chord to the tangents of its ends, by which
+`beam2d` measures its bending, too; with w.n, the load across the chord, and w per unstressed length L, the potential is
 
     V = -w.(x1 + x2) L/2 - (theta_1 - theta_2) w.n L^2/12
 
-depends on the chord by its direction alone. Forces (N) and moments (N m) are ordered as in `beam2d`.
+theta_1 - theta_2 does not change as the chord turns, so V depends on the chord by its direction alone. In space
+`bow_load` is the same. Forces (N) and moments (N m) are ordered as in `beam2d`.
 """
 
 from __future__ import annotations

@@ -90,9 +90,8 @@ class SpaceChain:
         R = self.R @ np.array([rotations.exp(vector(t)) for t in Theta])
         H = self.R @ np.array([rotations.left_tangent(vector(t)) for t in Theta])
         chord = np.diff(self.x + step[:, :3], axis=0)
-        f, K = beam3d.forces_and_tangent(
-            chord, R[:-1] @ self.T0[0], R[1:] @ self.T0[1], self.ref, self.section
-        )
+        ends = R[:-1] @ self.T0[0], R[1:] @ self.T0[1]
+        f, K = beam3d.forces_and_tangent(chord, *ends, self.ref, self.section, np.zeros(chord.shape))
         f[-1, 6:] -= tip_load
         increments.to_increments(f, K, H, self.R, Theta)
         return assemble(f, K)

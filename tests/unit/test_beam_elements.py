@@ -13,8 +13,10 @@ from riser_soil.core.arrays import Array
 from riser_soil.riser import (
     beam2d,
     beam3d,
+    bow_load,
     corotation,
     increments,
+    planar_load,
     rotations,
     strain3d,
     stress3d,
@@ -50,15 +52,26 @@ class Space(NamedTuple):
     section: beam3d.SpatialSection
     chord: Array
     frames: Array
+    load: Array  # (ne, 3)
+
+    def at(self, moved: Array) -> tuple[Array, Array, Array]:
+        """Chords and frames of the ends, moved by (ne, 12) displacements and spatial rotations."""
+        first, second = (np.array([exp(w) for w in moved[:, at : at + 3]]) for at in (3, 9))
+        return self.chord + moved[:, 6:9] - moved[:, :3], first @ self.frames[0], second @ self.frames[1]
 
     def call(self, function: Callable, moved: Array | None = None) -> Array:
-        """function at this configuration, moved by (ne, 12) displacements and spatial rotations."""
-        s = np.zeros((NE, 12)) if moved is None else moved
-        ends = [np.array([exp(w) for w in s[:, at : at + 3]]) @ self.frames[i] for i, at in ((0, 3), (1, 9))]
-        return function(self.chord + s[:, 6:9] - s[:, :3], *ends, self.ref, self.section)
+        """Forces, or what else the function finds of them, at this configuration or where it has moved to."""
+        return function(*self.at(np.zeros((NE, 12)) if moved is None else moved), self.ref, self.section, self.load)
+
+    def energy(self, moved: Array) -> Array:
+        """Strain energy and potential of the load."""
+        at, middle = self.at(moved), 0.5 * (moved[:, :3] + moved[:, 6:9])
+        return beam3d.strain_energy(*at, self.ref, self.section) + beam3d.load_potential(
+            *at, middle, self.ref, self.load
+        )
 
 
-def space(curved: float, rotation: float, seed: int = 7) -> Space:
+def space(curved: float, rotation: float, seed: int = 7, load: float = 0.0) -> Space:
     rng = np.random.default_rng(seed)
     L, base = 1.0 + rng.random(NE), turns(rng, 1.0, NE)
     chord0 = (L * (1.0 - curved**2 / 8))[:, None] * base[:, :, 0]
@@ -68,7 +81,11 @@ def space(curved: float, rotation: float, seed: int = 7) -> Space:
     chord = np.einsum("eij,ej->ei", rigid, chord0) * 1.02
     frames = np.array([turns(rng, rotation, NE) @ rigid @ end for end in frames0])
     ref = beam3d.reference(chord0, frames0[0], frames0[1], L)
-    return Space(chord0, frames0, ref, section, chord, frames)
+    return Space(chord0, frames0, ref, section, chord, frames, load * rng.normal(size=(NE, 3)))
+
+
+def loaded_space(curved: float, rotation: float) -> Space:
+    return space(curved, rotation, load=20.0)
 
 
 class Plane(NamedTuple):
@@ -87,6 +104,10 @@ class Plane(NamedTuple):
         ends = self.directions[0] + s[:, 2], self.directions[1] + s[:, 5]
         return function(self.chord + s[:, 3:5] - s[:, :2], *ends, self.ref, self.section)
 
+    def energy(self, moved: Array) -> Array:
+        """Strain energy."""
+        return self.call(beam2d.strain_energy, moved)
+
 
 def plane(curved: float, rotation: float, seed: int = 7) -> Plane:
     rng = np.random.default_rng(seed)
@@ -100,11 +121,11 @@ def plane(curved: float, rotation: float, seed: int = 7) -> Plane:
     return Plane(chord0.T, directions0, ref, section, chord.T, directions)
 
 
-def derivative(elements: Space | Plane, function: Callable, n: int, step: float = 3e-3) -> Array:
+def derivative(function: Callable[[Array], Array], n: int, step: float = 3e-3) -> Array:
     """Sixth-order finite differences by the n dofs of each element; the last index is the dof."""
     columns = []
     for unit in np.eye(n):
-        moves = [c * elements.call(function, np.tile(k * step * unit, (NE, 1))) for k, c in STENCIL.items()]
+        moves = [c * function(np.tile(k * step * unit, (NE, 1))) for k, c in STENCIL.items()]
         columns.append(np.sum(moves, axis=0) / step)
     return np.stack(columns, axis=-1)
 
@@ -115,7 +136,9 @@ def difference(a: Array, b: Array) -> float:
 
 
 CASES = pytest.mark.parametrize(
-    ("build", "module", "n"), [(plane, beam2d, 6), (space, beam3d, 12)], ids=["2D", "3D"]
+    ("build", "module", "n"),
+    [(plane, beam2d, 6), (space, beam3d, 12), (loaded_space, beam3d, 12)],
+    ids=["2D", "3D", "3D under load"],
 )
 
 
@@ -126,7 +149,7 @@ def test_forces_are_the_gradient_of_the_energy(
     build: Callable[[float, float], Space | Plane], module: ModuleType, n: int, curved: float, rotation: float
 ) -> None:
     elements = build(curved, rotation)
-    assert difference(elements.call(module.forces), derivative(elements, module.strain_energy, n)) < TOLERANCE
+    assert difference(elements.call(module.forces), derivative(elements.energy, n)) < TOLERANCE
 
 
 @CASES
@@ -137,7 +160,7 @@ def test_tangent_is_the_derivative_of_the_forces(
 ) -> None:
     elements = build(curved, rotation)
     f, K = elements.call(module.forces_and_tangent)
-    assert difference(K, derivative(elements, module.forces, n)) < TOLERANCE
+    assert difference(K, derivative(lambda moved: elements.call(module.forces, moved), n)) < TOLERANCE
     assert difference(f, elements.call(module.forces)) < 1e-14
 
 
@@ -195,14 +218,18 @@ def upright(directions: Array) -> Array:
 
 @SHAPES
 @ROTATIONS
-def test_plane_is_space_restricted_to_a_plane(curved: float, rotation: float) -> None:
+@pytest.mark.parametrize("load", [0.0, 20.0], ids=["unloaded", "under load"])
+def test_plane_is_space_restricted_to_a_plane(curved: float, rotation: float, load: float) -> None:
     flat = plane(curved, rotation)
+    w = load * np.random.default_rng(2).normal(size=(NE, 2))
     in_space = flat.chord0 @ np.eye(3)[[0, 2]], flat.chord @ np.eye(3)[[0, 2]]
     frames0, frames = upright(flat.directions0), upright(flat.directions)
     section = beam3d.SpatialSection(flat.section.EA, 3 * flat.section.EI, flat.section.EI, flat.section.EI)
     ref = beam3d.reference(in_space[0], frames0[0], frames0[1], flat.ref.L)
-    f3, K3 = beam3d.forces_and_tangent(in_space[1], frames[0], frames[1], ref, section)
+    f3, K3 = beam3d.forces_and_tangent(in_space[1], frames[0], frames[1], ref, section, w @ np.eye(3)[[0, 2]])
     f2, K2 = flat.call(beam2d.forces_and_tangent)
+    f2 += planar_load.forces(flat.chord, *flat.directions, flat.ref.L, w)
+    planar_load.add_tangent(K2, 1.0, flat.chord, *flat.directions, flat.ref.L, w)
     assert difference(f3 @ TO_PLANE.T, f2) < 1e-12
     assert difference(TO_PLANE @ K3 @ TO_PLANE.T, K2) < 1e-12
     assert np.abs(np.delete(f3, PLANAR, axis=1)).max() < 1e-12 * EA
@@ -232,7 +259,7 @@ def increments_forces(elements: Space, nodes: Nodes, moved: Array) -> Array:
     ends = []
     for Rn, Theta, end in ((nodes.Rn[:-1], Theta1, nodes.ends[0]), (nodes.Rn[1:], Theta2, nodes.ends[1])):
         ends.append(Rn @ np.array([exp(t) for t in Theta]) @ end)
-    f = beam3d.forces(elements.chord + moved[6:9] - moved[:3], *ends, elements.ref, elements.section)
+    f = beam3d.forces(elements.chord + moved[6:9] - moved[:3], *ends, elements.ref, elements.section, elements.load)
     for n, Theta, at in ((0, Theta1, 3), (1, Theta2, 9)):
         H = nodes.Rn[n : n + NE] @ np.array([rotations.left_tangent(vector(t)) for t in Theta])
         f[:, at : at + 3] = np.einsum("eji,ej->ei", H, f[:, at : at + 3])
@@ -242,7 +269,7 @@ def increments_forces(elements: Space, nodes: Nodes, moved: Array) -> Array:
 @SHAPES
 @pytest.mark.parametrize("angle", [0.0, 1e-3, 0.7])
 def test_tangent_by_rotation_vectors_is_the_symmetric_hessian(curved: float, angle: float) -> None:
-    elements = space(curved, 0.8)
+    elements = loaded_space(curved, 0.8)
     nodes = nodes_of(elements, angle)
     f, K = elements.call(beam3d.forces_and_tangent)
     by_spins = K.copy()
@@ -258,7 +285,7 @@ def test_tangent_by_rotation_vectors_is_the_symmetric_hessian(curved: float, ang
 
 
 def test_forces_alone_and_with_tangent_transform_alike() -> None:
-    elements = space(0.3, 0.8)
+    elements = loaded_space(0.3, 0.8)
     nodes = nodes_of(elements, 0.7)
     alone = elements.call(beam3d.forces)
     f, K = elements.call(beam3d.forces_and_tangent)
@@ -278,6 +305,8 @@ LEFT_OUT = {
     "swing and twist": (beam3d, "moment_variation", lambda *_: beam3d.STILL),
     "gradients of the strains": (beam3d, "conjugate_change", lambda *_: (beam3d.STILL, beam3d.STILL)),
     "torque rate": (beam3d, "stress_change", lambda D, _, __, change: stress3d.linear_stress(D, change)),
+    "turn under the load": (beam3d, "turned", lambda *_: bow_load.NO_LOAD),
+    "load along the chord": (beam3d, "chord_force", lambda *_: beam3d.STILL),
 }
 
 
@@ -289,7 +318,7 @@ def interpret(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("term", LEFT_OUT)
 def test_each_geometric_term_of_the_tangent_matters(term: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    elements = space(0.0, 0.6)
+    elements = loaded_space(0.0, 0.6)
     interpret(monkeypatch)
     _, K = elements.call(beam3d.forces_and_tangent.py_func)
     assert difference(K, elements.call(beam3d.forces_and_tangent)[1]) < 1e-14

@@ -1,11 +1,11 @@
-"""Shape functions, consistent integrals, quadrature stations, and the potential of uniform loads."""
+"""Shape functions, consistent integrals, quadrature stations, and the angle over its sine."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from riser_soil.riser import hermite, stations, uniform_load
+from riser_soil.riser import hermite, stations
 from riser_soil.riser.angle_over_sine import angle_over_sine
 
 L = np.array([0.5, 2.0, 7.0])
@@ -49,20 +49,3 @@ def test_angle_over_sine_and_its_derivatives(theta: float) -> None:
     assert (1.0 - c * c) * bend == pytest.approx(g + 3.0 * c * slope, abs=1e-11)
     if theta == 0.0:
         assert (slope, bend) == pytest.approx((-1.0 / 3.0, 4.0 / 15.0))
-
-
-def test_across_a_shallow_chord_a_load_acts_like_on_a_fixed_beam() -> None:
-    chord, tangent = np.array([[2.0, 0.0]]), np.array([[[1.0, 0.0], [1.0, 0.0]]])
-    F = uniform_load.residual(chord, tangent, np.array([2.0]), np.array([[0.0, -30.0]]))
-    assert F[0, :, 1] == pytest.approx([30.0, 10.0, 30.0, -10.0])
-
-
-def test_a_uniform_load_makes_the_same_residual_as_hermite_on_straight_lines() -> None:
-    turn = np.array([0.6, 0.8])
-    chord, tangent = 2.0 * turn[None], np.broadcast_to(turn, (1, 2, 2)).copy()
-    w = np.array([[3.0, -5.0]])
-    F = uniform_load.residual(chord, tangent, np.array([2.0]), w)
-    along, normal = F @ turn, F @ np.array([-0.8, 0.6])
-    expected = -hermite.uniform_load(np.array([2.0]))[0] * (w[0] @ np.array([-0.8, 0.6]))
-    assert normal[0] == pytest.approx(expected)
-    assert along[0, [0, 2]] == pytest.approx(-w[0] @ turn)

@@ -1,4 +1,4 @@
-"""Uniform load on plane elements: that of elements in space, and its tangent."""
+"""Uniform load on plane elements: its potential, and the derivatives of that."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from riser_soil.riser import hermite, planar_load, uniform_load
+from riser_soil.riser import hermite, planar_load
 
 NE = 6
 
@@ -48,18 +48,33 @@ def loaded() -> Loaded:
     return Loaded(chord, first, second, 1.0 + rng.random(NE), rng.normal(size=(NE, 2)))
 
 
-def test_forces_are_those_of_a_load_in_space(loaded: Loaded) -> None:
-    F = uniform_load.residual(loaded.chord, loaded.tangents(), loaded.length, loaded.load)
-    normals = loaded.tangents(turned=0.5 * np.pi)[..., None]
-    expected = hermite.pull_back(F, np.ascontiguousarray(normals))
-    assert planar_load.forces(*loaded) == pytest.approx(expected, rel=1e-13, abs=1e-14)
-
-
-def test_potential_is_that_of_a_load_in_space(loaded: Loaded) -> None:
+def test_potential_is_that_of_a_cubic_by_the_angles_of_its_ends(loaded: Loaded) -> None:
+    """By vectors: each end's angle from the chord over its sine, times the load across the chord along its tangent."""
     middle = np.random.default_rng(8).normal(size=(NE, 2))
     chord, *ends, length, load = loaded
-    expected = uniform_load.potential(chord, middle, loaded.tangents(), length, load)
-    assert planar_load.potential(chord, *ends, middle, length, load) == pytest.approx(expected, rel=1e-13, abs=1e-14)
+    expected = -length * np.sum(load * middle, axis=1)
+    along = chord / np.linalg.norm(chord, axis=1, keepdims=True)
+    for t, sign in zip(np.moveaxis(loaded.tangents(), 1, 0), (-1.0, 1.0), strict=True):
+        cosine = np.sum(along * t, axis=1)
+        over_sine = 1.0 / np.sinc(np.arccos(np.clip(cosine, -1.0, 1.0)) / np.pi)
+        across = np.sum(load * t, axis=1) - cosine * np.sum(load * along, axis=1)
+        expected += sign * over_sine * across * length**2 / 12.0
+    assert planar_load.potential(chord, *ends, middle, length, load) == pytest.approx(expected, rel=1e-12, abs=1e-13)
+
+
+def test_across_its_chord_a_load_acts_like_on_a_fixed_beam() -> None:
+    chord, straight = np.array([[2.0, 0.0]]), np.zeros(1)
+    f = planar_load.forces(chord, straight, straight, np.array([2.0]), np.array([[0.0, -30.0]]))
+    assert f[0] == pytest.approx([0.0, 30.0, 10.0, 0.0, 30.0, -10.0])
+
+
+def test_it_makes_the_same_residual_as_hermite_on_straight_lines() -> None:
+    turn, normal, w = np.array([0.6, 0.8]), np.array([-0.8, 0.6]), np.array([[3.0, -5.0]])
+    direction = np.arctan2([0.8], [0.6])
+    f = planar_load.forces(2.0 * turn[None], direction, direction, np.array([2.0]), w)[0]
+    shares = -hermite.uniform_load(np.array([2.0]))[0] * (w[0] @ normal)
+    assert [f[:2] @ normal, f[2], f[3:5] @ normal, f[5]] == pytest.approx(shares)
+    assert [f[:2] @ turn, f[3:5] @ turn] == pytest.approx([-w[0] @ turn] * 2)
 
 
 def test_tangent_is_the_derivative_of_the_forces(loaded: Loaded) -> None:
