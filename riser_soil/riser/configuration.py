@@ -144,6 +144,11 @@ def place(at: Configuration, base: Base, u: Array, v: Array, a: Array) -> None:
 
 
 @bound_by_type
+def put_rates(at: Configuration, v: Array, a: Array) -> None:
+    """Write other rates v and accelerations a (nn, ndof) of the dofs, in the same place."""
+
+
+@bound_by_type
 def put_magnitudes(at: Configuration, out: Array) -> None:
     """Write the sizes (nn, ndof) of a configuration's coordinates, see `Field.magnitudes`."""
 
@@ -172,40 +177,57 @@ def put_tangled(at: Configuration, out: IntArray) -> None:
 
 @place.of(PlanarConfiguration)
 def _place_in_plane(at: PlanarConfiguration, base: PlanarBase, u: Array, v: Array, a: Array) -> None:
-    _move(at, base, u, v, a)
+    _move(at, base, u)
     for n in range(u.shape[0]):
         at.angle[n] = base.angle[n] + u[n, 2]
-    ne = at.P.shape[0]
-    normal = at.P.reshape((ne, 2, 2))
+    normal = at.P.reshape((at.P.shape[0], 2, 2))
     planar_directors.put_ends(at.angle, base.alpha0, at.end_angle, at.tangent, normal)
-    planar_directors.put_motion(at.tangent, normal, v, a, at.rate, at.acceleration)
     hermite.put_interleaved(at.x, at.tangent, at.q, at.D)
+    put_rates(at, v, a)
 
 
 @place.of(SpatialConfiguration)
 def _place_in_space(at: SpatialConfiguration, base: SpatialBase, u: Array, v: Array, a: Array) -> None:
-    _move(at, base, u, v, a)
+    _move(at, base, u)
     for n in range(u.shape[0]):
         for i in range(3):
             at.Theta[n, i] = u[n, 3 + i]
             for j in range(3):
                 at.Rn[n, i, j] = base.R[n, i, j]
     spatial_directors.orient(base.R, at.Theta, base.T0, at.frames, at.H, at.frame1, at.frame2, at.tangent, at.P)
-    spatial_directors.put_motion(at.frames, base.T0, v, a, at.rate, at.acceleration)
     hermite.put_interleaved(at.x, at.tangent, at.q, at.D)
+    put_rates(at, v, a)
 
 
 @njit
-def _move(at: Configuration, base: Base, u: Array, v: Array, a: Array) -> None:
+def _move(at: Configuration, base: Base, u: Array) -> None:
     nn, d = at.x.shape
     for n in range(nn):
         for i in range(d):
             at.x[n, i] = base.x[n, i] + u[n, i]
-        for i in range(u.shape[1]):
-            at.v[n, i], at.a[n, i] = v[n, i], a[n, i]
     for e in range(nn - 1):
         for i in range(d):
             at.chord[e, i] = base.chord[e, i] + (u[e + 1, i] - u[e, i])
+
+
+@put_rates.of(PlanarConfiguration)
+def _put_planar_rates(at: PlanarConfiguration, v: Array, a: Array) -> None:
+    _keep(at, v, a)
+    normal = at.P.reshape((at.P.shape[0], 2, 2))
+    planar_directors.put_motion(at.tangent, normal, v, a, at.rate, at.acceleration)
+
+
+@put_rates.of(SpatialConfiguration)
+def _put_spatial_rates(at: SpatialConfiguration, v: Array, a: Array) -> None:
+    _keep(at, v, a)
+    spatial_directors.put_motion(at.frames, at.T0, v, a, at.rate, at.acceleration)
+
+
+@njit
+def _keep(at: Configuration, v: Array, a: Array) -> None:
+    for n in range(v.shape[0]):
+        for i in range(v.shape[1]):
+            at.v[n, i], at.a[n, i] = v[n, i], a[n, i]
 
 
 @put_magnitudes.of(PlanarConfiguration)

@@ -8,19 +8,20 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.core.rows import Vector, add_pulled_back, add_weighed, numbers_at
+from riser_soil.core.rows import add_pulled_back, add_weighed, held
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.hermite import Size
 from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
 from riser_soil.sea import morison_law as law
 
 PAIR = fixed(2)
+LANES = 24  # stations at once: those of eight elements, or so, each number of them on whole vectors
 
 
 class StationRoom(NamedTuple):
-    """Room for the force at one station (d,), and for its derivatives (d, d)."""
+    """Room for the derivatives (d, d) of the force at one station."""
 
-    f: Array
     by_v: Array
     by_a: Array
     by_slope: Array
@@ -28,7 +29,7 @@ class StationRoom(NamedTuple):
 
 def station_room(d: int) -> StationRoom:
     """Room for a line of d dimensions."""
-    return StationRoom(np.empty(d), *(np.empty((d, d)) for _ in range(3)))
+    return StationRoom(*(np.empty((d, d)) for _ in StationRoom._fields))
 
 
 class StillWaterNumbers(NamedTuple):
@@ -44,80 +45,197 @@ class StillWaterNumbers(NamedTuple):
     element: Array
 
 
+class Lanes(NamedTuple):
+    """What the water's resistance depends on at LANES stations, a column each: velocity, acceleration and unit tangent
+    (d, LANES), the stretch |x'| (LANES,), and coefficients of drag and mass (2, LANES).
+    """
+
+    v: Array
+    a: Array
+    tau: Array
+    stretch: Array
+    drag: Array
+    mass: Array
+
+
+class StepLanes(NamedTuple):
+    """The same where a step starts and where it ends; places there (d, LANES)."""
+
+    first: Lanes
+    last: Lanes
+    began: Array
+    ended: Array
+
+
 @njit
-def _see(part: StillWaterNumbers, at: Configuration, e: int, p: int) -> tuple[Vector, Vector, Vector, float]:
-    """Velocity, acceleration and unit tangent at station p of all, in element e; the stretch |x'|."""
-    v, a = stations.value_at(part.at.N, p, at.rate, e, at.D), stations.value_at(part.at.N, p, at.acceleration, e, at.D)
-    tau, stretch = stations.unit_tangent_at(part.at.dN, p, at.chord, at.tangent, e, at.D)
-    return v, a, tau, stretch
+def _lanes(rows: Array, D: Size) -> Lanes:
+    """The first 3 d + 5 rows of a room. It is to be allocated where loops over its lanes are: the compiler then knows
+    its size, and that what they write lies apart from what they read, as it must to do them on vectors.
+    """
+    d = len(D)
+    after = 3 * d + 1
+    coefficients = rows[after : after + 2], rows[after + 2 : after + 4]
+    return Lanes(rows[:d], rows[d : 2 * d], rows[2 * d : 3 * d], rows[3 * d], *coefficients)
+
+
+@njit
+def _see(part: StillWaterNumbers, at: Configuration, first: int, after: int, seen: Lanes) -> None:
+    """Write what there is at the stations of elements first to after, but for accelerations."""
+    ng, D = part.at.N.shape[1], at.D
+    for e in range(first, after):
+        for g in range(ng):
+            k, p = (e - first) * ng + g, e * ng + g
+            v = stations.value_at(part.at.N, p, at.rate, e, D)
+            tau, seen.stretch[k] = stations.unit_tangent_at(part.at.dN, p, at.chord, at.tangent, e, D)
+            for i in range(len(D)):
+                seen.v[i, k], seen.tau[i, k] = v[i], tau[i]
+            for i in range(2):
+                seen.drag[i, k], seen.mass[i, k] = part.drag[e, i], part.mass[e, i]
+
+
+@njit
+def _see_values(part: StillWaterNumbers, q: Array, first: int, after: int, out: Array, D: Size) -> None:
+    """Write the values of q, q' or q'' (ne, 4, d) at those stations to columns of out (d, LANES)."""
+    ng = part.at.N.shape[1]
+    for e in range(first, after):
+        for g in range(ng):
+            value = stations.value_at(part.at.N, e * ng + g, q, e, D)
+            for i in range(len(D)):
+                out[i, (e - first) * ng + g] = value[i]
 
 
 @add_forces.of(StillWaterNumbers)
 def _still_forces(part: StillWaterNumbers, at: Configuration, out: LineForces) -> None:
-    f, ng, weighted = part.room.f, part.at.N.shape[1], part.at.weighted
-    for e in range(part.drag.shape[0]):
-        drag, mass = numbers_at(part.drag, 2 * e, PAIR), numbers_at(part.mass, 2 * e, PAIR)
-        for p in range(e * ng, (e + 1) * ng):
-            v, a, tau, _ = _see(part, at, e, p)
-            law.put_added(a, tau, mass, f, at.D)
-            stations.add_integrand_at(weighted, p, numbers_at(f, 0, at.D), out.inertia_q, e, at.D)
-            law.put_drag(v, tau, drag, f, at.D)
-            stations.add_integrand_at(weighted, p, numbers_at(f, 0, at.D), out.force_q, e, at.D)
+    ne, ng, D, weighted = part.drag.shape[0], part.at.N.shape[1], at.D, part.at.weighted
+    d = len(D)
+    seen, inertia, force = _lanes(np.zeros((3 * d + 5, LANES)), D), np.zeros((d, LANES)), np.zeros((d, LANES))
+    for first in range(0, ne, LANES // ng):
+        after = min(first + LANES // ng, ne)
+        _see(part, at, first, after, seen)
+        _see_values(part, at.acceleration, first, after, seen.a, D)
+        for k in range(LANES):
+            _put_forces(seen, inertia, force, k, D)
+        for e in range(first, after):
+            for g in range(ng):
+                k, p = (e - first) * ng + g, e * ng + g
+                stations.add_integrand_at(weighted, p, held(inertia[:, k], D), out.inertia_q, e, D)
+                stations.add_integrand_at(weighted, p, held(force[:, k], D), out.force_q, e, D)
+
+
+@njit
+def _put_forces(seen: Lanes, inertia: Array, force: Array, k: int, D: Size) -> None:
+    """Write the resistance at one station, by groups."""
+    tau = held(seen.tau[:, k], D)
+    law.put_added(held(seen.a[:, k], D), tau, held(seen.mass[:, k], PAIR), inertia[:, k], D)
+    law.put_drag(held(seen.v[:, k], D), tau, held(seen.drag[:, k], PAIR), force[:, k], D)
 
 
 @add_tangent.of(StillWaterNumbers)
 def _still_tangent(part: StillWaterNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    room, ng = part.room, part.at.N.shape[1]
-    for e in range(part.drag.shape[0]):
-        drag, mass = numbers_at(part.drag, 2 * e, PAIR), numbers_at(part.mass, 2 * e, PAIR)
-        part.element[:] = 0.0
-        for g in range(ng):
-            v, a, tau, stretch = _see(part, at, e, e * ng + g)
-            N, weighted = part.at.N[e, g], part.at.weighted[e, g]
-            moved = N, room.by_a, maps.acceleration_rows[e]
-            if weights.force == 0.0:  # the mass alone is asked for, at rest
-                law.put_added_derivatives(a, tau, stretch, mass, weights.inertia, room.by_a, room.by_slope, at.D)
-                add_weighed(part.element, weighted, (moved,), at.D, at.R)
-            else:
-                law.put_drag_derivatives(v, tau, stretch, drag, weights.force, room.by_v, room.by_slope, at.D)
-                law.put_added_derivatives(a, tau, stretch, mass, weights.inertia, room.by_a, room.by_slope, at.D)
-                slope = part.at.dN[e, g], room.by_slope, maps.place_rows[e]
-                add_weighed(part.element, weighted, (slope, (N, room.by_v, maps.rate_rows[e]), moved), at.D, at.R)
-        add_pulled_back(K[e], at.P[e], part.element, at.D, at.R)
+    ne, ng, D, mass_alone = part.drag.shape[0], part.at.N.shape[1], at.D, weights.force == 0.0
+    d, room = len(D), part.room
+    seen, by = _lanes(np.zeros((3 * d + 5, LANES)), D), np.zeros((3, d, d, LANES))
+    for first in range(0, ne, LANES // ng):
+        after = min(first + LANES // ng, ne)
+        _see(part, at, first, after, seen)
+        _see_values(part, at.acceleration, first, after, seen.a, D)
+        for k in range(LANES):
+            _put_derivatives(seen, by, k, weights, D)
+        for e in range(first, after):
+            part.element[:] = 0.0
+            for g in range(ng):
+                _take(by, (e - first) * ng + g, room, D)
+                N, weighted = part.at.N[e, g], part.at.weighted[e, g]
+                moved = N, room.by_a, maps.acceleration_rows[e]
+                if mass_alone:  # is asked for, at rest
+                    add_weighed(part.element, weighted, (moved,), D, at.R)
+                else:
+                    slope = part.at.dN[e, g], room.by_slope, maps.place_rows[e]
+                    add_weighed(part.element, weighted, (slope, (N, room.by_v, maps.rate_rows[e]), moved), D, at.R)
+            add_pulled_back(K[e], at.P[e], part.element, D, at.R)
+
+
+@njit
+def _put_derivatives(seen: Lanes, by: Array, k: int, weights: LineWeights, D: Size) -> None:
+    """Write the weighted derivatives by velocity, acceleration and slope at one station."""
+    tau, stretch, by_slope = held(seen.tau[:, k], D), seen.stretch[k], by[2, :, :, k]
+    v, drag = held(seen.v[:, k], D), held(seen.drag[:, k], PAIR)
+    law.put_drag_derivatives(v, tau, stretch, drag, weights.force, by[0, :, :, k], by_slope, D)
+    a, mass = held(seen.a[:, k], D), held(seen.mass[:, k], PAIR)
+    law.put_added_derivatives(a, tau, stretch, mass, weights.inertia, by[1, :, :, k], by_slope, D)
+
+
+@njit
+def _take(by: Array, k: int, room: StationRoom, D: Size) -> None:
+    """Read the derivatives at one station of many."""
+    for i in range(len(D)):
+        for j in range(len(D)):
+            room.by_v[i, j], room.by_a[i, j], room.by_slope[i, j] = by[0, i, j, k], by[1, i, j, k], by[2, i, j, k]
 
 
 @add_energy.of(StillWaterNumbers)
 def _still_energy(part: StillWaterNumbers, at: Configuration, energy: Array) -> None:
-    f, ng = part.room.f, part.at.N.shape[1]
-    for e in range(part.drag.shape[0]):
-        mass = numbers_at(part.mass, 2 * e, PAIR)
-        for g in range(ng):
-            v, _, tau, _ = _see(part, at, e, e * ng + g)
-            law.put_added(v, tau, mass, f, at.D)
-            for i in range(len(at.D)):
-                energy[0] += 0.5 * part.share[e, g] * v[i] * f[i]
+    ne, ng, D = part.drag.shape[0], part.at.N.shape[1], at.D
+    d = len(D)
+    seen, f, kinetic = _lanes(np.zeros((3 * d + 5, LANES)), D), np.zeros((d, LANES)), np.zeros((1, LANES))
+    for first in range(0, ne, LANES // ng):
+        after = min(first + LANES // ng, ne)
+        _see(part, at, first, after, seen)
+        for k in range(LANES):
+            _put_kinetic(seen, f, kinetic, k, D)
+        for e in range(first, after):
+            for g in range(ng):
+                energy[0] += part.share[e, g] * kinetic[0, (e - first) * ng + g]
+
+
+@njit
+def _put_kinetic(seen: Lanes, f: Array, kinetic: Array, k: int, D: Size) -> None:
+    """Write the kinetic energy per length of the added mass at one station."""
+    v, total = held(seen.v[:, k], D), 0.0
+    law.put_added(v, held(seen.tau[:, k], D), held(seen.mass[:, k], PAIR), f[:, k], D)
+    for i in range(len(D)):
+        total += 0.5 * v[i] * f[i, k]
+    kinetic[0, k] = total
 
 
 @add_work.of(StillWaterNumbers)
 def _still_work(part: StillWaterNumbers, first: Configuration, last: Configuration, work: Array) -> None:
     """Drag dissipates; a change of the added mass as it turns is external, see `Morison`."""
-    f, ng, D = part.room.f, part.at.N.shape[1], last.D
-    before, mean = np.empty(len(D)), np.empty(len(D))
-    for e in range(part.drag.shape[0]):
-        drag, mass = numbers_at(part.drag, 2 * e, PAIR), numbers_at(part.mass, 2 * e, PAIR)
-        for g in range(ng):
-            p = e * ng + g
-            first_v, _, first_tau, _ = _see(part, first, e, p)
-            law.put_drag(first_v, first_tau, drag, before, D)
-            v, _, tau, _ = _see(part, last, e, p)
-            law.put_drag(v, tau, drag, f, D)
-            began, ended = stations.value_at(part.at.N, p, first.q, e, D), stations.value_at(part.at.N, p, last.q, e, D)
-            for i in range(len(D)):
-                work[0] += 0.5 * part.share[e, g] * (before[i] + f[i]) * (ended[i] - began[i])
-                mean[i] = 0.5 * (first_v[i] + v[i])
-            law.put_added(mean, first_tau, mass, before, D)
-            law.put_added(mean, tau, mass, f, D)
-            for i in range(len(D)):
-                changed = 0.5 * part.share[e, g] * mean[i] * (f[i] - before[i])
-                work[1] += changed
-                work[2] += changed
+    ne, ng, D = part.drag.shape[0], part.at.N.shape[1], last.D
+    d = len(D)
+    rows, room, done = np.zeros((8 * d + 10, LANES)), np.zeros((3, d, LANES)), np.zeros((2, LANES))
+    seen = StepLanes(_lanes(rows, D), _lanes(rows[3 * d + 5 :], D), rows[6 * d + 10 : 7 * d + 10], rows[7 * d + 10 :])
+    for begun in range(0, ne, LANES // ng):
+        after = min(begun + LANES // ng, ne)
+        _see(part, first, begun, after, seen.first)
+        _see(part, last, begun, after, seen.last)
+        _see_values(part, first.q, begun, after, seen.began, D)
+        _see_values(part, last.q, begun, after, seen.ended, D)
+        for k in range(LANES):
+            _put_work(seen, room, done, k, D)
+        for e in range(begun, after):
+            for g in range(ng):
+                k, share = (e - begun) * ng + g, part.share[e, g]
+                work[0] += share * done[0, k]
+                work[1] += share * done[1, k]
+                work[2] += share * done[1, k]
+
+
+@njit
+def _put_work(seen: StepLanes, room: Array, done: Array, k: int, D: Size) -> None:
+    """Write the work per length of the mean drag at one station, and half the change of the added mass along the mean
+    velocity.
+    """
+    before, after, mean, lost, changed = room[0, :, k], room[1, :, k], room[2, :, k], 0.0, 0.0
+    drag, mass = held(seen.last.drag[:, k], PAIR), held(seen.last.mass[:, k], PAIR)
+    tau, turned = held(seen.first.tau[:, k], D), held(seen.last.tau[:, k], D)
+    law.put_drag(held(seen.first.v[:, k], D), tau, drag, before, D)
+    law.put_drag(held(seen.last.v[:, k], D), turned, drag, after, D)
+    for i in range(len(D)):
+        lost += 0.5 * (before[i] + after[i]) * (seen.ended[i, k] - seen.began[i, k])
+        mean[i] = 0.5 * (seen.first.v[i, k] + seen.last.v[i, k])
+    law.put_added(mean, tau, mass, before, D)
+    law.put_added(mean, turned, mass, after, D)
+    for i in range(len(D)):
+        changed += 0.5 * mean[i] * (after[i] - before[i])
+    done[0, k], done[1, k] = lost, changed

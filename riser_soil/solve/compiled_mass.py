@@ -16,7 +16,7 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.packed import Packed
 from riser_soil.core.part import Forces, State
 from riser_soil.core.saved_state import Saved
-from riser_soil.riser.configuration import base_of, maps_for, place, put_maps, room_for
+from riser_soil.riser.configuration import maps_for, put_maps
 from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import (
     LineWeights,
@@ -30,6 +30,7 @@ from riser_soil.riser.part_kernels import (
 from riser_soil.solve import riser_loop as loop
 from riser_soil.solve.numbered_parts import NumberedParts
 from riser_soil.solve.packed_riser import matrix_room
+from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.riser_loop import Dofs, MatrixRoom, NewtonProgress, StepNumbers
 from riser_soil.solve.riser_mass import projectors
 
@@ -49,26 +50,23 @@ class MassNumbers(NamedTuple):
 class CompiledMass:
     """A `InverseMass` of one line, by the kernels of its parts; and the bulk forces of an accepted state.
 
-    bulk, inertial: numbers of the parts with forces in groups I and F, and in I; prescribed, levers (size,): of the
-    line's dofs; bring: writes what depends on the time into the numbers.
+    placed: the line where it is accepted; bulk, inertial: numbers of the parts with forces in groups I and F, and in I;
+    prescribed, levers (size,): of the line's dofs; bring: writes what depends on the time into the numbers.
     """
 
     def __init__(
         self,
         line: Line,
+        placed: PlacedLine,
         bulk: Sequence[Numbers],
         inertial: Sequence[Numbers],
         prescribed: BoolArray,
         levers: Array,
         bring: Callable[[float], None],
     ) -> None:
-        self._line, self._bring, self._free = line, bring, ~prescribed
+        self._line, self._bring, self._free, self._placed = line, bring, ~prescribed, placed
         shape = line.nodes, line.ndof
-        base = base_of(line)
-        self._base = Packed(type(base)(*map(np.copy, base)))
         self._forces, self._energy, self._known = forces_of(line), np.zeros(3), False
-        self._placed: tuple[float, Array, Array] | None = None  # time, rates and place of what was placed last
-        self._rates = np.zeros(shape), np.zeros(shape)
         self._step, self._room = StepNumbers(*(np.zeros(shape) for _ in range(6))), matrix_room(line)
         self._dofs = Dofs(np.zeros(shape, dtype=bool), np.ones(shape), *(np.zeros(shape) for _ in range(3)))
         moving, whole = np.zeros((*shape, line.ndof)), np.zeros(line.nodes, dtype=bool)
@@ -78,22 +76,18 @@ class CompiledMass:
 
     def _bind_state(self, bulk: Sequence[Numbers], inertial: Sequence[Numbers]) -> None:
         """Bind the kernels of forces and kinetic energy in motion."""
-        at, still = room_for(self._line), np.zeros(self._step.u.shape)
-        here, forces, energy = map(Packed, (at, self._forces, self._energy))
-        moving = bound(place, at, self._base, *map(Packed, (still, *self._rates)))
+        here, forces, energy = map(Packed, (self._placed.at, self._forces, self._energy))
         each = [bound(add_forces, numbers, here, forces) for numbers in bulk]
-        self._find_forces = in_turn(moving, Bound(loop.clear, forces), *each, Bound(loop.collect, here, forces))
-        self._place = moving
+        self._find_forces = in_turn(Bound(loop.clear, forces), *each, Bound(loop.collect, here, forces))
         self._find_energy = in_turn(*(bound(add_energy, numbers, here, energy) for numbers in inertial))
 
     def _bind_mass(self, inertial: Sequence[Numbers]) -> None:
         """Bind the kernels of the mass at rest."""
-        at, still = room_for(self._line), Packed(np.zeros(self._step.u.shape))
+        at = self._placed.at
         here, room, dofs, mass = map(Packed, (at, self._room, self._dofs, self._mass))
         K, progress = Packed(self._room.K), Packed(NewtonProgress(np.zeros(1), np.zeros(2, dtype=np.int64)))
         maps, weights = Packed(maps_for(self._line)._replace(shift_a=1.0)), Packed(LineWeights(1.0, 0.0))
         self._find_matrices = in_turn(
-            bound(place, at, self._base, still, still, still),
             *(bound(find_water, numbers, here) for numbers in inertial if type(numbers) in find_water.kernels),
             bound(put_maps, at, maps),
             Bound(loop.clear_tangent, room),
@@ -109,36 +103,24 @@ class CompiledMass:
 
     def bulk_forces(self, state: State) -> Forces:
         """Forces of groups I and F at an accepted state, those of group E left out."""
-        self._put(state)
+        self._bring(state.t)
+        self._placed.move(state)
         self._find_forces()
         forces = self._forces
         return Forces(*(group.ravel().copy() for group in (forces.inertia, forces.force, forces.end)))
 
     def kinetic_energy(self, state: State) -> float:
         """Kinetic energy [J] at an accepted state."""
-        placed = self._placed
-        if placed is None or placed[0] != state.t or placed[1] is not state.v or placed[2] is not self._line.x:
-            self._put(state)
-            self._place()
+        self._bring(state.t)
+        self._placed.move(state, velocities_alone=True)
         self._energy[:] = 0.0
         self._find_energy()
         return float(self._energy[0])
 
-    def _put(self, state: State) -> None:
-        self._bring(state.t)
-        self._renew_base()
-        for kept, given in zip(self._rates, (state.v, state.a), strict=True):
-            kept.ravel()[:] = given
-        self._placed = state.t, state.v, self._line.x
-
-    def _renew_base(self) -> None:
-        for kept, given in zip(self._base.value, base_of(self._line), strict=True):
-            kept[...] = given
-
     def accelerations(self, t: float, force: Array) -> Array:
         """a with M a = force, in the accepted configuration at time t."""
         self._bring(t)
-        self._renew_base()
+        self._placed.stand()
         self._find_matrices()
         if not self._known:
             self._know(projectors(self._room.K, self._free))
@@ -161,9 +143,12 @@ class CompiledMass:
         self._mass.whole[...] = (moving == np.eye(moving.shape[1])).all(axis=(1, 2))
 
 
-def mass_of(line: Line, parts: NumberedParts, prescribed: BoolArray, levers: Array) -> CompiledMass:
+def mass_of(
+    line: Line, placed: PlacedLine, parts: NumberedParts, prescribed: BoolArray, levers: Array
+) -> CompiledMass:
     """Inverse of a line's mass, by its parts; see `CompiledMass`."""
-    return CompiledMass(line, parts.in_groups("IF"), parts.in_groups("I"), prescribed, levers, parts.bring_to)
+    groups = parts.in_groups("IF"), parts.in_groups("I")
+    return CompiledMass(line, placed, *groups, prescribed, levers, parts.bring_to)
 
 
 @njit

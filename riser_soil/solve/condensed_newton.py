@@ -25,6 +25,7 @@ from riser_soil.solve.compiled_mass import CompiledMass, mass_of
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.numbered_parts import NumberedParts
 from riser_soil.solve.packed_riser import PackedRiser
+from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.riser_loop import StopLimits
 from riser_soil.solve.soil_border import SoilBorder
 from riser_soil.solve.solution import NewtonSettings, Solution, Step
@@ -66,7 +67,8 @@ class CondensedNewton:
         assert isinstance(line, Line)
         self._line, self._at, most = line, slice(0, line.size), settings.max_iterations
         given = system.prescribed[self._at], system.levers[self._at], most
-        self._riser = PackedRiser(line, parts.numbers, *given, border)
+        self._placed = PlacedLine(line)
+        self._riser = PackedRiser(line, self._placed, parts.numbers, *given, border)
         self._limits = StopLimits(settings.tolerance, settings.floor, 0.0, most, settings.least_iterations, False)
         self._nothing = np.zeros(system.numbering.size)
         self._reached = soil.top.reached  # as the system has it
@@ -150,7 +152,7 @@ class CondensedNewton:
     @cached_property
     def _mass_of_line(self) -> CompiledMass:
         given = self.system.prescribed[self._at], self.system.levers[self._at]
-        return mass_of(self._line, self._parts, *given)
+        return mass_of(self._line, self._placed, self._parts, *given)
 
     @cached_property
     def mass(self) -> MassAmongOthers:

@@ -18,10 +18,7 @@ from riser_soil.core.part import State
 from riser_soil.riser.configuration import (
     Configuration,
     PlanarConfiguration,
-    base_of,
-    place,
     put_moment_maps,
-    room_for,
 )
 from riser_soil.riser.hermite import put_pulled_back
 from riser_soil.riser.line import Line
@@ -37,6 +34,7 @@ from riser_soil.riser.section_forces import (
 from riser_soil.riser.section_kernels import SectionForces, put_section_forces
 from riser_soil.riser.sections import Elements
 from riser_soil.solve import riser_loop as loop
+from riser_soil.solve.placed_line import PlacedLine
 
 
 class ElementForces:
@@ -93,34 +91,28 @@ class ElementForces:
 class AcceptedForces:
     """What the parts of a line put within its elements at an accepted state: room of its own beside that of the loop.
 
-    parts: with the numbers that were asked for last. whole: whether the loop's forces tell the same, where it has
-    solved for the state: in the axes in which that step began, which parts with viscous forces don't know any more.
+    placed: the line there; parts: with the numbers that were asked for last. whole: whether the loop's forces tell the
+    same, where it has solved for the state: in the axes in which that step began, which parts with viscous forces don't
+    know any more.
     """
 
-    def __init__(self, line: Line, parts: Sequence[tuple[LinePart, tuple[Any, ...]]]) -> None:
-        self._line, shape = line, (line.nodes, line.ndof)
+    def __init__(self, line: Line, placed: PlacedLine, parts: Sequence[tuple[LinePart, tuple[Any, ...]]]) -> None:
+        self._placed = placed
         within = [(part, part.numbers_within(numbers)) for part, numbers in parts]
         damped = any(overrides(part, "viscous_forces") for part, _ in parts)
         self.whole = not damped and all(own is given for (_, own), (_, given) in zip(within, parts, strict=True))
-        base = base_of(line)
-        self._base = Packed(type(base)(*map(np.copy, base)))
-        self._rates = np.zeros(shape), np.zeros(shape)
-        at, out = room_for(line), forces_of(line)
-        here, forces = Packed(at), Packed(out)
+        out = forces_of(line)
+        here, forces = Packed(placed.at), Packed(out)
         self._find = in_turn(
-            bound(place, at, self._base, *map(Packed, (np.zeros(shape), *self._rates))),
             Bound(loop.clear, forces),
             *(bound(add_forces, numbers, here, forces) for _, numbers in within if numbers is not None),
         )
         asked = [part for part, numbers in within if numbers is None]
-        self._forces = ElementForces(line, at, out, [part for part, _ in parts], asked)
+        self._forces = ElementForces(line, placed.at, out, [part for part, _ in parts], asked)
 
     def found(self, state: State) -> ElementForces:
         """At an accepted state, to whose time the numbers have been brought."""
-        for kept, given in zip(self._base.value, base_of(self._line), strict=True):
-            kept[...] = given
-        for kept, given in zip(self._rates, (state.v, state.a), strict=True):
-            kept.ravel()[:] = given
+        self._placed.move(state)
         self._find()
         return self._forces
 

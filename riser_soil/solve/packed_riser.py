@@ -33,6 +33,7 @@ from riser_soil.riser.part_kernels import (
     forces_of,
 )
 from riser_soil.solve import riser_loop as loop
+from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.riser_loop import Dofs, MatrixRoom, NewtonProgress, StepNumbers, StopLimits
 
 if TYPE_CHECKING:
@@ -44,20 +45,21 @@ Numbers = tuple[Any, ...]
 class PackedRiser:
     """A line and its parts, whose arrays it shares; at, step, forces, dofs, room, progress: what the loop writes to.
 
-    numbers: of the parts; prescribed, levers (size,): of the line's dofs; most: iterations of a step; border: unknowns
-    beside them, if any.
+    placed: the line where it is accepted; numbers: of the parts; prescribed, levers (size,): of the line's dofs; most:
+    iterations of a step; border: unknowns beside them, if any.
     """
 
     def __init__(
         self,
         line: Line,
+        placed: PlacedLine,
         numbers: Sequence[Numbers],
         prescribed: BoolArray,
         levers: Array,
         most: int,
         border: SoilBorder | None = None,
     ) -> None:
-        self._line, shape = line, (line.nodes, line.ndof)
+        self._line, self._placed, shape = line, placed, (line.nodes, line.ndof)
         self.step, self.forces, self.room = StepNumbers(*_zeros(6, shape)), forces_of(line), matrix_room(line)
         self._begun = [values.ravel() for values in (self.step.u, self.step.v0, self.step.a0, self.step.past)]
         self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
@@ -118,13 +120,10 @@ class PackedRiser:
     def _bind_account(self, numbers: Sequence[Numbers], border: SoilBorder | None) -> None:
         """Bind the kernels of energy and work."""
         turning = [each for each in numbers if type(each) in add_work.kernels]
-        still, *self._before = _zeros(3, self.step.u.shape)
         self._energy, self._work = np.zeros(3), np.zeros((len(turning), 4))
-        first = room_for(self._line)
-        then, now, energy = Packed(first), Packed(self.at), Packed(self._energy)
+        then, now, energy = map(Packed, (self._placed.at, self.at, self._energy))
         rows = [Packed(row) for row in self._work]
         self._account = in_turn(
-            bound(place, first, self._base, *map(Packed, (still, *self._before))),
             Bound(loop.clear_account, energy, Packed(self._work)),
             *(bound(add_energy, each, now, energy) for each in numbers),
             *(bound(add_work, each, then, now, row) for each, row in zip(turning, rows, strict=True)),
@@ -167,8 +166,7 @@ class PackedRiser:
 
     def account(self, before: State) -> tuple[Array, Array]:
         """Energy (3,) at the end of the step solved last, and work (parts that have kernels for it, 4) in it."""
-        for kept, rates in zip(self._before, (before.v, before.a), strict=True):
-            kept.ravel()[:] = rates
+        self._placed.move(before)
         self._account()
         return self._energy, self._work
 

@@ -22,6 +22,7 @@ from riser_soil.solve.compiled_mass import CompiledMass, mass_of
 from riser_soil.solve.element_forces import AcceptedForces, ElementForces
 from riser_soil.solve.numbered_parts import NumberedParts
 from riser_soil.solve.packed_riser import PackedRiser
+from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, largest_at, told
 
 WHY = {
@@ -50,7 +51,8 @@ class RiserNewton:
         (line,) = system.model.lines
         assert isinstance(line, Line)
         self._line, most = line, settings.max_iterations
-        self._riser = PackedRiser(line, [held for _, held in parts], system.prescribed, system.levers, most)
+        self._placed, numbers = PlacedLine(line), [held for _, held in parts]
+        self._riser = PackedRiser(line, self._placed, numbers, system.prescribed, system.levers, most)
         self._solved: State | None = None  # last, where no forces may have jumped since
         self._parts, self._free = NumberedParts(parts), np.flatnonzero(~system.prescribed)
         self._nothing = np.zeros(line.size)
@@ -79,7 +81,7 @@ class RiserNewton:
     @cached_property
     def mass(self) -> CompiledMass:
         """Inverse of the line's mass."""
-        return mass_of(self._line, self._parts, self.system.prescribed, self.system.levers)
+        return mass_of(self._line, self._placed, self._parts, self.system.prescribed, self.system.levers)
 
     def bulk_forces(self, state: State) -> Forces:
         """Forces of groups I and F at an accepted state, those of group E zero."""
@@ -107,7 +109,7 @@ class RiserNewton:
 
     @cached_property
     def _accepted(self) -> AcceptedForces:
-        return AcceptedForces(self._line, self._parts.numbered)
+        return AcceptedForces(self._line, self._placed, self._parts.numbered)
 
     @cached_property
     def _at_solution(self) -> ElementForces:

@@ -19,6 +19,7 @@ from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.packed_riser import PackedRiser
+from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.riser_loop import CONVERGED, StopLimits
 from riser_soil.solve.riser_mass import RiserMass
 from riser_soil.solve.riser_newton import RiserNewton, riser_newton
@@ -54,7 +55,7 @@ class Compiled:
     def __init__(self, at: Sample, parts: list[Any], before: State, state: State) -> None:
         line = at.line
         numbers, free = [part.numbers() for part in parts], np.zeros(line.size, dtype=bool)
-        self.riser = PackedRiser(line, numbers, free, np.ones(line.size), most=1)
+        self.riser = PackedRiser(line, PlacedLine(line), numbers, free, np.ones(line.size), most=1)
         for part in parts:
             part.renew_numbers(before.t, state.t)
         v, a = state.v - WEIGHTS.shift_v * state.u, state.a - WEIGHTS.shift_a * state.u
