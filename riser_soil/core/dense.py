@@ -1,54 +1,49 @@
-"""Dense LU factorisation with partial pivoting, for compiled code, where LAPACK's errors could not be told.
+"""Dense LU factorisation with partial pivoting in compiled code: LAPACK's, which numba reaches, but tells by raising.
 
-Source: Golub & Van Loan, Matrix Computations (2013), 3.4.
+LAPACK takes a matrix by columns, so of one that lies by rows it factorises the transpose, P A' = L U. A x = b is solved
+with U' first and with L' then, both of them read along their rows.
 """
 
 from __future__ import annotations
+
+from numba import types
+from numba.np.linalg import _LAPACK, F_INT_nptype
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
 
 HUGE = 1e300  # a pivot beyond it is no number to divide by
+PIVOT = F_INT_nptype  # the type of LAPACK's pivots
+_DOUBLE = ord("d")
+_getrf = _LAPACK().numba_xxgetrf(types.float64)
 
 
 @njit
 def factorise(a: Array, pivots: IntArray) -> bool:
-    """Factorise a matrix (n, n) in place; whether it is regular. pivots (n,): the rows that were taken as pivots'."""
+    """Factorise a matrix (n, n) in place; whether it is regular. pivots (n,) of type PIVOT."""
     n = pivots.size
+    if n == 0:
+        return True
+    if _getrf(_DOUBLE, n, n, a.ctypes, n, pivots.ctypes) != 0:
+        return False
+    regular = True
     for k in range(n):
-        p = k
-        for i in range(k + 1, n):
-            if abs(a[i, k]) > abs(a[p, k]):
-                p = i
-        if not 0.0 < abs(a[p, k]) < HUGE:
-            return False
-        pivots[k] = p
-        if p != k:
-            for j in range(n):
-                a[k, j], a[p, j] = a[p, j], a[k, j]
-        inverse, row = 1.0 / a[k, k], a[k, k + 1 :]
-        for i in range(k + 1, n):
-            factor = a[i, k] * inverse
-            a[i, k] = factor
-            if factor != 0.0:
-                below = a[i, k + 1 :]
-                for j in range(row.size):
-                    below[j] -= factor * row[j]
-    return True
+        regular = regular and 0.0 < abs(a[k, k]) < HUGE
+    return regular
 
 
 @njit
 def solve(a: Array, pivots: IntArray, x: Array) -> None:
     """Solve with the factors of `factorise`: the right-hand side x (n,) becomes the solution."""
     n = pivots.size
-    for k in range(n):
-        p = pivots[k]
+    for i in range(n):
+        x[i] = (x[i] - product(a, i, 0, i, x)) / a[i, i]
+    for i in range(n - 2, -1, -1):
+        x[i] -= product(a, i, i + 1, n, x)
+    for k in range(n - 1, -1, -1):
+        p = pivots[k] - 1
         if p != k:
             x[k], x[p] = x[p], x[k]
-    for i in range(1, n):
-        x[i] -= product(a, i, 0, i, x)
-    for i in range(n - 1, -1, -1):
-        x[i] = (x[i] - product(a, i, i + 1, n, x)) / a[i, i]
 
 
 @njit

@@ -29,6 +29,7 @@ from riser_soil.contact.surface_loop import (
 )
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.bound import Bound
+from riser_soil.core.dense import PIVOT
 from riser_soil.core.packed import Packed
 from riser_soil.core.part import State
 from riser_soil.riser.line import Line
@@ -71,7 +72,7 @@ class SoilBorder:
         n, nodes = self._line.size, self._line.nodes
         matrices = np.zeros((nb, nb)), np.zeros((n, nb)), np.zeros(nodes, dtype=np.bool_)
         border = Border(np.zeros(nb), np.zeros(nb), *matrices)
-        factors = Factors(np.zeros((nb, nb)), np.zeros(nb, np.int64), np.zeros(n, np.int64), np.zeros(1, np.int64))
+        factors = Factors(np.zeros((nb, nb)), np.zeros(nb, PIVOT), np.zeros(n, np.int64), np.zeros(1, np.int64))
         return border, SoilNumbers(np.zeros((nb, nb)), np.zeros(nb)), factors
 
     def _motion_of(self, by: Array, nodes: IntArray) -> TopMotion:

@@ -14,7 +14,7 @@ def test_it_solves(n: int) -> None:
     a, b = random.normal(size=(n, n)), random.normal(size=n)
     if n > 1:
         a[0, 0] = 0.0  # rows must be exchanged
-    factors, x, pivots = a.copy(), b.copy(), np.zeros(n, dtype=np.int64)
+    factors, x, pivots = a.copy(), b.copy(), np.zeros(n, dtype=dense.PIVOT)
     assert dense.factorise(factors, pivots)
     dense.solve(factors, pivots, x)
     np.testing.assert_allclose(x, np.linalg.solve(a, b), rtol=1e-9, atol=1e-12)
@@ -24,4 +24,4 @@ def test_it_solves(n: int) -> None:
 def test_a_matrix_without_an_inverse_is_told(value: float) -> None:
     a = np.eye(4)
     a[2, 2] = value
-    assert not dense.factorise(a, np.zeros(4, dtype=np.int64))
+    assert not dense.factorise(a, np.zeros(4, dtype=dense.PIVOT))
