@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 from llvmlite import ir
@@ -74,28 +75,60 @@ def add_shares(context: Any, F: Any, start: Any, four: Any, first: Any, f: Any, 
 @intrinsic
 def add_weighed(context: Any, S: Any, weights: Any, terms: Any, D: Any, R: Any) -> Any:
     """See `rows`; each row is read once."""
-    d, n = len(D), 2 * (len(D) + len(R))
 
     def add(target: Any, builder: Any, signature: Any, given: Any) -> Any:
-        rows_of, change = _Rows(builder, n), [list[Any]() for _ in range(d)]
-        for t, kinds in enumerate(terms):
-            term = builder.extract_value(given[2], t)
-            four, A, rows = (_data(target, builder, k, builder.extract_value(term, i)) for i, k in enumerate(kinds))
-            factors = rows_of.blocks(four, D, R)
-            for j in range(d):
-                row = rows_of.times(factors, rows_of.load(_at(builder, rows, j * n)))
-                for i in range(d):
-                    by = rows_of.spread(builder.load(_at(builder, A, i * d + j)))
-                    change[i] = rows_of.sum(change[i], rows_of.times(by, row))
+        rows_of = _Rows(builder, 2 * (len(D) + len(R)))
+        change = _change(target, builder, rows_of, terms, given[2], D, R)
         to, weight = _data(target, builder, S, given[0]), _data(target, builder, weights, given[1])
-        of_shape = [rows_of.spread(builder.load(_at(builder, weight, a))) for a in range(4)]
-        for a in range(4):
-            for i in range(d):
-                at = _at(builder, to, (a * d + i) * n)
-                rows_of.store(rows_of.sum(rows_of.load(at), rows_of.times(of_shape[a], change[i])), at)
+        for a, i, at in _rows_of_shapes(builder, rows_of, to, len(D)):
+            by = rows_of.spread(builder.load(_at(builder, weight, a)))
+            rows_of.store(rows_of.sum(rows_of.load(at), rows_of.times(by, change[i])), at)
         return target.get_dummy_value()
 
     return types.void(S, weights, terms, D, R), add
+
+
+@intrinsic
+def put_weighed(context: Any, S: Any, stations: Any, D: Any, R: Any) -> Any:
+    """See `rows`; S is not read."""
+
+    def put(target: Any, builder: Any, signature: Any, given: Any) -> Any:
+        rows_of, each = _Rows(builder, 2 * (len(D) + len(R))), list[tuple[Any, Any]]()
+        for k, (weights, terms) in enumerate(stations):
+            weight, values = (builder.extract_value(builder.extract_value(given[1], k), i) for i in range(2))
+            change = _change(target, builder, rows_of, terms, values, D, R)
+            each.append((_data(target, builder, weights, weight), change))
+        for a, i, at in _rows_of_shapes(builder, rows_of, _data(target, builder, S, given[0]), len(D)):
+            total = list[Any]()
+            for weight, change in each:
+                by = rows_of.spread(builder.load(_at(builder, weight, a)))
+                total = rows_of.sum(total, rows_of.times(by, change[i]))
+            rows_of.store(total, at)
+        return target.get_dummy_value()
+
+    return types.void(S, stations, D, R), put
+
+
+def _change(target: Any, builder: Any, rows_of: _Rows, terms: Any, values: Any, D: Size, R: Size) -> list[list[Any]]:
+    """Sum of the terms of `rows.add_weighed`: d rows."""
+    d, change = len(D), [list[Any]() for _ in range(len(D))]
+    for t, kinds in enumerate(terms):
+        term = builder.extract_value(values, t)
+        four, A, rows = (_data(target, builder, k, builder.extract_value(term, i)) for i, k in enumerate(kinds))
+        factors = rows_of.blocks(four, D, R)
+        for j in range(d):
+            row = rows_of.times(factors, rows_of.load(_at(builder, rows, j * 2 * (d + len(R)))))
+            for i in range(d):
+                by = rows_of.spread(builder.load(_at(builder, A, i * d + j)))
+                change[i] = rows_of.sum(change[i], rows_of.times(by, row))
+    return change
+
+
+def _rows_of_shapes(builder: Any, rows_of: _Rows, to: Any, d: int) -> Iterator[tuple[int, int, Any]]:
+    """Shape function, coordinate and place of each row of S (4, d, n)."""
+    for a in range(4):
+        for i in range(d):
+            yield a, i, _at(builder, to, (a * d + i) * rows_of.n)
 
 
 @intrinsic
@@ -160,7 +193,7 @@ class _Rows:
     """Arithmetic of rows of n numbers, each a list of vectors."""
 
     def __init__(self, builder: Any, n: int) -> None:
-        self._builder, self._places, self._n = builder, list[tuple[int, int]](), n
+        self._builder, self._places, self.n = builder, list[tuple[int, int]](), n
         while (at := sum(width for _, width in self._places)) < n:
             self._places.append((at, next(width for width in WIDTHS if at + width <= n)))
 
@@ -187,7 +220,7 @@ class _Rows:
         """A row of the same number."""
         kind = ir.VectorType(DOUBLE, 1)
         one = self._builder.insert_element(ir.Constant(kind, ir.Undefined), value, INDEX(0))
-        return self._shuffled(one, [0] * self._n)
+        return self._shuffled(one, [0] * self.n)
 
     def blocks(self, four: Any, D: Size, R: Size) -> list[Any]:
         """A row of four numbers, each as often as its block has columns."""
@@ -205,7 +238,7 @@ class _Rows:
         values = ir.Constant(ir.VectorType(DOUBLE, d), ir.Undefined)
         for i in range(d):
             values = self._builder.insert_element(values, self._builder.extract_value(numbers, i), INDEX(i))
-        return self._shuffled(values, [k % d for k in range(self._n)])
+        return self._shuffled(values, [k % d for k in range(self.n)])
 
     def numbers(self, row: list[Any]) -> list[Any]:
         """The single numbers of a row."""

@@ -118,6 +118,18 @@ def _weighed(S: Any, weights: Any, terms: Any, D: Any, R: Any) -> Any:
     return lambda S, weights, terms, D, R: row_code.add_weighed(S, weights, terms, D, R)
 
 
+def put_weighed(S: Array, stations: Sequence[tuple[Array, Sequence[Term]]], D: Size, R: Size) -> None:
+    """Write to S the sum over some stations, each its weights (4,) and its terms as in `add_weighed`."""
+    S[...] = 0.0
+    for weights, terms in stations:
+        add_weighed(S, weights, terms, D, R)
+
+
+@overload(put_weighed, inline="always", strict=False)
+def _put_weighed(S: Any, stations: Any, D: Any, R: Any) -> Any:
+    return lambda S, stations, D, R: row_code.put_weighed(S, stations, D, R)
+
+
 def put_blocks(S: Array, M: Array, factor: float, rows: Array, D: Size, R: Size) -> None:
     """Write to S (4, d, n) rows (d, n), whose blocks of d, r, d and r columns count with `factor` times a row of
     M (4, 4). All contiguous.

@@ -8,7 +8,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import fixed, njit
-from riser_soil.core.rows import add_pulled_back, add_weighed, held
+from riser_soil.core.rows import Term, add_pulled_back, held, put_weighed, times
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size
@@ -16,11 +16,12 @@ from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, a
 from riser_soil.sea import morison_law as law
 
 PAIR = fixed(2)
+NG = len(stations.THREE_POINTS.points)
 LANES = 24  # stations at once: those of eight elements, or so, each number of them on whole vectors
 
 
 class StationRoom(NamedTuple):
-    """Room for the derivatives (d, d) of the force at one station."""
+    """Room for the derivatives (ng, d, d) of the force at the stations of an element."""
 
     by_v: Array
     by_a: Array
@@ -29,7 +30,7 @@ class StationRoom(NamedTuple):
 
 def station_room(d: int) -> StationRoom:
     """Room for a line of d dimensions."""
-    return StationRoom(*(np.empty((d, d)) for _ in StationRoom._fields))
+    return StationRoom(*(np.empty((NG, d, d)) for _ in StationRoom._fields))
 
 
 class StillWaterNumbers(NamedTuple):
@@ -132,27 +133,58 @@ def _put_forces(seen: Lanes, inertia: Array, force: Array, k: int, D: Size) -> N
 
 @add_tangent.of(StillWaterNumbers)
 def _still_tangent(part: StillWaterNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array) -> None:
-    ne, ng, D, mass_alone = part.drag.shape[0], part.at.N.shape[1], at.D, weights.force == 0.0
-    d, room = len(D), part.room
+    if weights.force == 0.0:
+        _add_mass(part, at, maps, weights.inertia, K)
+    else:
+        _add_whole_tangent(part, at, maps, weights, K)
+
+
+@njit
+def _add_mass(part: StillWaterNumbers, at: Configuration, maps: Maps, weight: float, K: Array) -> None:
+    """The tangent at rest but for drag: the mass alone."""
+    D, room, N, moved = at.D, part.room, part.at.N, maps.acceleration_rows
+    for e in range(part.mass.shape[0]):
+        for g in range(NG):
+            tau, stretch = stations.unit_tangent_at(part.at.dN, e * NG + g, at.chord, at.tangent, e, D)
+            at_rest = times(0.0, tau)
+            law.put_added_derivatives(
+                at_rest, tau, stretch, part.mass[e], weight, room.by_a[g], room.by_slope[g], D
+            )
+        weighted, by = part.at.weighted[e], room.by_a
+        first = weighted[0], ((N[e, 0], by[0], moved[e]),)
+        second = weighted[1], ((N[e, 1], by[1], moved[e]),)
+        third = weighted[2], ((N[e, 2], by[2], moved[e]),)
+        put_weighed(part.element, (first, second, third), D, at.R)
+        add_pulled_back(K[e], at.P[e], part.element, D, at.R)
+
+
+@njit
+def _add_whole_tangent(
+    part: StillWaterNumbers, at: Configuration, maps: Maps, weights: LineWeights, K: Array
+) -> None:
+    ne, D, d, room = part.drag.shape[0], at.D, len(at.D), part.room
     seen, by = _lanes(np.zeros((3 * d + 5, LANES)), D), np.zeros((3, d, d, LANES))
-    for first in range(0, ne, LANES // ng):
-        after = min(first + LANES // ng, ne)
+    for first in range(0, ne, LANES // NG):
+        after = min(first + LANES // NG, ne)
         _see(part, at, first, after, seen)
         _see_values(part, at.acceleration, first, after, seen.a, D)
         for k in range(LANES):
             _put_derivatives(seen, by, k, weights, D)
         for e in range(first, after):
-            part.element[:] = 0.0
-            for g in range(ng):
-                _take(by, (e - first) * ng + g, room, D)
-                N, weighted = part.at.N[e, g], part.at.weighted[e, g]
-                moved = N, room.by_a, maps.acceleration_rows[e]
-                if mass_alone:  # is asked for, at rest
-                    add_weighed(part.element, weighted, (moved,), D, at.R)
-                else:
-                    slope = part.at.dN[e, g], room.by_slope, maps.place_rows[e]
-                    add_weighed(part.element, weighted, (slope, (N, room.by_v, maps.rate_rows[e]), moved), D, at.R)
+            for g in range(NG):
+                _take(by, (e - first) * NG + g, g, room, D)
+            each = _terms(part, maps, e, 0), _terms(part, maps, e, 1), _terms(part, maps, e, 2)
+            put_weighed(part.element, each, D, at.R)
             add_pulled_back(K[e], at.P[e], part.element, D, at.R)
+
+
+@njit
+def _terms(part: StillWaterNumbers, maps: Maps, e: int, g: int) -> tuple[Array, tuple[Term, Term, Term]]:
+    """Weights of a station and what its force follows from, see `add_weighed`."""
+    N, room = part.at.N[e, g], part.room
+    slope = part.at.dN[e, g], room.by_slope[g], maps.place_rows[e]
+    moved = (N, room.by_v[g], maps.rate_rows[e]), (N, room.by_a[g], maps.acceleration_rows[e])
+    return part.at.weighted[e, g], (slope, *moved)
 
 
 @njit
@@ -166,11 +198,12 @@ def _put_derivatives(seen: Lanes, by: Array, k: int, weights: LineWeights, D: Si
 
 
 @njit
-def _take(by: Array, k: int, room: StationRoom, D: Size) -> None:
+def _take(by: Array, k: int, g: int, room: StationRoom, D: Size) -> None:
     """Read the derivatives at one station of many."""
     for i in range(len(D)):
         for j in range(len(D)):
-            room.by_v[i, j], room.by_a[i, j], room.by_slope[i, j] = by[0, i, j, k], by[1, i, j, k], by[2, i, j, k]
+            of_v, of_a, of_slope = by[0, i, j, k], by[1, i, j, k], by[2, i, j, k]
+            room.by_v[g, i, j], room.by_a[g, i, j], room.by_slope[g, i, j] = of_v, of_a, of_slope
 
 
 @add_energy.of(StillWaterNumbers)

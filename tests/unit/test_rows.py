@@ -19,6 +19,7 @@ from riser_soil.core.rows import (
     held,
     numbers_at,
     put_blocks,
+    put_weighed,
     times,
 )
 
@@ -90,6 +91,11 @@ def _weighed(S: Array, weights: Array, terms: Any, D: Size, R: Size) -> None:
 
 
 @njit
+def _put_weighed(S: Array, stations: Any, D: Size, R: Size) -> None:
+    put_weighed(S, stations, D, R)
+
+
+@njit
 def _blocks(S: Array, M: Array, factor: float, rows: Array, D: Size, R: Size) -> None:
     put_blocks(S, M, factor, rows, D, R)
 
@@ -116,6 +122,23 @@ def test_rows_are_weighed_by_four_shape_functions(d: int, r: int, count: int) ->
     add_weighed(interpreted, weights, terms, fixed(d), fixed(r))
     _weighed(S, weights, terms, fixed(d), fixed(r))
     np.testing.assert_allclose(S, expected, rtol=1e-12)
+    np.testing.assert_allclose(interpreted, expected, rtol=1e-12)
+
+
+@PLANE_AND_SPACE
+def test_rows_of_three_stations_are_written_at_once(d: int, r: int) -> None:
+    rng, n = np.random.default_rng(1), 2 * (d + r)
+
+    def term() -> tuple[Array, Array, Array]:
+        return rng.normal(size=4), rng.normal(size=(d, d)), rng.normal(size=(d, n))
+
+    stations = tuple((rng.normal(size=4), (term(), term())) for _ in range(3))
+    expected, found, interpreted = np.zeros((4, d, n)), np.full((4, d, n), np.nan), np.full((4, d, n), np.nan)
+    for weights, terms in stations:
+        _weighed(expected, weights, terms, fixed(d), fixed(r))
+    put_weighed(interpreted, stations, fixed(d), fixed(r))
+    _put_weighed(found, stations, fixed(d), fixed(r))
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
     np.testing.assert_allclose(interpreted, expected, rtol=1e-12)
 
 
