@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -33,11 +33,9 @@ from riser_soil.riser.part_kernels import (
     forces_of,
 )
 from riser_soil.solve import riser_loop as loop
+from riser_soil.solve.loop_border import LoopBorder
 from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.riser_loop import Dofs, MatrixRoom, NewtonProgress, StepNumbers, StopLimits
-
-if TYPE_CHECKING:
-    from riser_soil.solve.soil_border import SoilBorder
 
 Numbers = tuple[Any, ...]
 
@@ -46,7 +44,7 @@ class PackedRiser:
     """A line and its parts, whose arrays it shares; at, step, forces, dofs, room, progress: what the loop writes to.
 
     placed: the line where it is accepted; numbers: of the parts; prescribed, levers (size,): of the line's dofs; most:
-    iterations of a step; border: unknowns beside them, if any.
+    iterations of a step; border: what stands beside them.
     """
 
     def __init__(
@@ -57,7 +55,7 @@ class PackedRiser:
         prescribed: BoolArray,
         levers: Array,
         most: int,
-        border: SoilBorder | None = None,
+        border: LoopBorder | None = None,
     ) -> None:
         self._line, self._placed, shape = line, placed, (line.nodes, line.ndof)
         self.step, self.forces, self.room = StepNumbers(*_zeros(6, shape)), forces_of(line), matrix_room(line)
@@ -69,12 +67,14 @@ class PackedRiser:
         self._maps, self._weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
         self._weighed = Weights(0.0, 0.0, 0.0, 0.0)  # as in both
         self._limits = Packed(StopLimits(0.0, 0.0, 0.0, most, 0, False))
-        self._bind(numbers, border)
-        self._bind_account(numbers, border)
+        self._border = LoopBorder() if border is None else border
+        self._bind(numbers)
+        self._bind_account(numbers)
 
-    def _bind(self, numbers: Sequence[Numbers], border: SoilBorder | None) -> None:
+    def _bind(self, numbers: Sequence[Numbers]) -> None:
         """Bind the kernels of the loop to where they read and write."""
-        at = self.at = room_for(self._line)
+        at, border = room_for(self._line), self._border
+        self.at = at
         written = self.step, self.forces, self.dofs, self.room, self.progress
         now, step, forces, dofs, room, progress = map(Packed, (at, *written))
         maps, weights, limits, K = self._maps, self._weights, self._limits, Packed(self.room.K)
@@ -83,19 +83,18 @@ class PackedRiser:
             bound(place, at, self._base, *map(Packed, (self.step.u, self.step.v, self.step.a))),
             Bound(loop.clear, forces),
             *(bound(add_forces, each, now, forces) for each in numbers),
-            *([] if border is None else border.forces(now, forces)),
+            *border.forces(now, forces),
             Bound(loop.collect, now, forces),
             Bound(loop.combine, forces, step, weights, dofs),
+            border.judge(forces, dofs, limits, progress),
         ]
-        judged = forces, dofs, limits, progress
-        evaluate.append(Bound(loop.judge, *judged) if border is None else border.judge(*judged))
 
         def tangent(maps: Packed) -> list[Bound]:
             return [
                 bound(put_maps, at, maps),
                 Bound(loop.clear_tangent, room),
                 *(bound(add_tangent, each, now, maps, weights, K) for each in numbers),
-                *([] if border is None else border.tangent(now, K)),
+                *border.tangent(now, K),
                 Bound(loop.weigh, forces, weights, room),
                 bound(put_turning, at, Packed(self.room.conjugate), Packed(self.room.turning)),
                 Bound(loop.turn, room),
@@ -105,19 +104,15 @@ class PackedRiser:
         put_sizes = bound(put_magnitudes, at, Packed(self.dofs.sizes))
         probe = [*at_held_rates, put_sizes, Bound(loop.judge_round_off, room, dofs, progress)]
         put_tangent = [*tangent(maps), Bound(loop.fill, room, dofs)]
-        if border is None:
-            factorise, improve = Bound(loop.factorise, room, progress), [Bound(loop.improve, room, step, dofs)]
-        else:
-            probe = []
-            factorise, improve = border.factorise(room, dofs, progress), [border.improve(room, step, dofs)]
-        renew = [*put_tangent, factorise]
-        tables = (Packed(calls(*kernels)) for kernels in (evaluate, probe, renew, improve))
+        renew = [*put_tangent, border.factorise(room, dofs, progress)]
+        each = evaluate, probe if border.knows_round_off else [], renew, [border.improve(room, step, dofs)]
+        tables = (Packed(calls(*kernels)) for kernels in each)
         self._tangled = np.zeros(1, dtype=np.int64)
         solve = Bound(loop.solve_step, *tables, limits, progress)
         self._solve = in_turn(solve, bound(put_tangled, at, Packed(self._tangled)))
         self.evaluate, self.put_tangent = in_turn(*evaluate), in_turn(*put_tangent, put_sizes)
 
-    def _bind_account(self, numbers: Sequence[Numbers], border: SoilBorder | None) -> None:
+    def _bind_account(self, numbers: Sequence[Numbers]) -> None:
         """Bind the kernels of energy and work."""
         turning = [each for each in numbers if type(each) in add_work.kernels]
         self._energy, self._work = np.zeros(3), np.zeros((len(turning), 4))
@@ -127,7 +122,7 @@ class PackedRiser:
             Bound(loop.clear_account, energy, Packed(self._work)),
             *(bound(add_energy, each, now, energy) for each in numbers),
             *(bound(add_work, each, then, now, row) for each, row in zip(turning, rows, strict=True)),
-            *([] if border is None else border.account(then, now)),
+            *self._border.account(then, now),
         )
 
     def begin(self, state: State, past: Array | None, weights: Weights, limits: StopLimits) -> None:

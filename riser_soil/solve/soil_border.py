@@ -43,17 +43,20 @@ from riser_soil.solve.bordered_loop import (
     improve_with_border,
     judge_with_border,
 )
+from riser_soil.solve.loop_border import LoopBorder
 
 SHARE = 0.25  # of the range around the pipe by which soil may move before the pairs are looked for anew
 NONE: IntArray = np.empty(0, dtype=np.int64)
 
 
-class SoilBorder:
+class SoilBorder(LoopBorder):
     """The soil's reached dofs with their contact; kernels of both, bound to where they read and write.
 
     touch: the contact's numbers. potential: the contact's energy in the last trial [J]; taken: what its force took in
     the step accounted for last [J].
     """
+
+    knows_round_off = False
 
     def __init__(self, line: Line, contact: SurfaceContact, soil: CondensedSoil, touch: TouchNumbers) -> None:
         self._line, self._contact, self._soil, self._top = line, contact, soil, soil.top
