@@ -4,7 +4,7 @@ Arrays are of double precision and of 64-bit integers. Their types leave the wid
 its functions only that they return a floating or an integer type, and one annotation has to hold for numpy 1 and 2.
 """
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -13,3 +13,8 @@ Array = npt.NDArray[np.floating[Any]]
 ComplexArray = npt.NDArray[np.complexfloating[Any, Any]]
 IntArray = npt.NDArray[np.signedinteger[Any]]
 BoolArray = npt.NDArray[np.bool_]
+
+
+def listed(values: npt.NDArray[Any]) -> list[Any]:
+    """Numbers of an array, which has axes, as Python's own: a list of them, or of lists."""
+    return cast(list[Any], values.tolist())

@@ -14,7 +14,7 @@ from numba import types
 from numba.extending import overload
 
 from riser_soil.core import row_code
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, listed
 from riser_soil.core.row_code import Size
 
 Term = tuple[Array, Array, Array]
@@ -71,7 +71,7 @@ def _times(factor: Any, vector: Any) -> Any:
 
 def numbers_at(values: Array, start: int, D: Size) -> tuple[float, ...]:
     """len(D) numbers of a contiguous array of any shape, from `start` on, counted in single numbers."""
-    return tuple(values.reshape(-1)[start : start + len(D)].tolist())
+    return tuple(listed(values.reshape(-1)[start : start + len(D)]))
 
 
 @overload(numbers_at, inline="always", strict=False)

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from riser_soil.contact.surface_contact import SurfaceContact
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, listed
 from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
@@ -102,7 +102,7 @@ class CondensedNewton:
             outcome, taken = self._riser.solve()
             self.iterations += taken
             if outcome == riser_loop.CONVERGED and self._border.holds and not self._line.tangled(self._riser.tangled):
-                return list(self._riser.progress.norms[: taken + 1].tolist())
+                return listed(self._riser.progress.norms[: taken + 1])
             if outcome != riser_loop.OUTGROWN:
                 return None
             self._border.widen()
@@ -181,12 +181,12 @@ class CondensedNewton:
         since = time.perf_counter()
         work = {part.name: Work() for part in self.system.model.parts}
         stored, rows = self._riser.account(of_line(before, self._at))
-        self._parts.add_work(before, solution.state, rows.tolist(), work)
+        self._parts.add_work(before, solution.state, listed(rows), work)
         work[self._soil.name] += self._soil.work(before, solution.state)
         work[self._contact.name] += self._work_of_contact(before, solution.state.t)
         potential = Energy(potential=self._border.potential)
         self.system.clock.add("riser and soil", since)
-        return Energy(*stored.tolist()) + potential + self._soil.energy(solution.state), work
+        return Energy(*listed(stored)) + potential + self._soil.energy(solution.state), work
 
     def _work_of_contact(self, before: State, t: float) -> Work:
         """See `SurfaceContact.work`: without a history all is the time scheme's."""
@@ -202,7 +202,7 @@ class CondensedNewton:
         return {"times": np.array([*self._stored]), "stored": np.array([*self._stored.values()])}
 
     def restore(self, saved: Saved) -> None:
-        self._stored = dict(zip(saved["times"].tolist(), saved["stored"].tolist(), strict=True))
+        self._stored = dict(zip(listed(saved["times"]), listed(saved["stored"]), strict=True))
 
     def require_stable(self, solution: Solution) -> None:
         """Time steps need not be stable equilibria."""

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from riser_soil.core import banded
-from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array, BoolArray, listed
 from riser_soil.core.bound import Bound, calls, in_turn
 from riser_soil.core.packed import Packed
 from riser_soil.core.part import State, Weights
@@ -152,7 +152,7 @@ class PackedRiser:
     def solve(self) -> tuple[int, int]:
         """Solve the step: the outcome, see `riser_loop`, and the number of iterations."""
         self._solve()
-        outcome, taken = self.progress.ending.tolist()
+        outcome, taken = listed(self.progress.ending)
         return outcome, taken
 
     def solved(self, t: float) -> State:

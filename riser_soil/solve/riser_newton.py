@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, listed
 from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
@@ -68,7 +68,7 @@ class RiserNewton:
         outcome, taken = self._riser.solve()
         self.rests = False
         self.iterations += taken
-        norms: list[float] = self._riser.progress.norms[: taken + 1].tolist()
+        norms: list[float] = listed(self._riser.progress.norms[: taken + 1])
         self.system.clock.add("riser alone", since)
         if outcome != riser_loop.CONVERGED:
             raise NotConvergedError(self._reason(outcome, norms))
@@ -124,9 +124,9 @@ class RiserNewton:
         since = time.perf_counter()
         work = dict(self._no_work)
         energy, rows = self._riser.account(before)
-        self._parts.add_work(before, solution.state, rows.tolist(), work)
+        self._parts.add_work(before, solution.state, listed(rows), work)
         self.system.clock.add("riser alone", since)
-        return Energy(*energy.tolist()), work
+        return Energy(*listed(energy)), work
 
     def _guess(self, step: Step) -> State:
         """The first guess, with the rates of no increments but those that are prescribed."""

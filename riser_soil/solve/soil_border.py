@@ -67,7 +67,8 @@ class SoilBorder(LoopBorder):
         self._room, self._numbers = Packed(self._found), Packed(touch)
         self._motion = Packed(self._motion_of(np.zeros((0, 0)), NONE))
         self._border, self._held, self._factors = (Packed(each) for each in self._empty(0))
-        self._taken, self._seen = np.zeros(1), np.empty((0, 3))
+        self._taken: Array = np.zeros(1)
+        self._seen: Array = np.empty((0, 3))
         self._reached: Reached | None = None  # as it was taken last
 
     def _empty(self, nb: int) -> tuple[Border, SoilNumbers, Factors]:
