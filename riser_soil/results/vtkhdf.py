@@ -1,30 +1,31 @@
 """VTKHDF layout of the pictures' HDF5 files: VTK 9.3, ParaView 5.12 and later ones open them by themselves, with times.
 
 One group is of that layout, VTKHDF: points, cells, values on both, and for each instant where its own begin. Values of
-all instants stand one after the other, a chunk for each, so that a frame costs the same however many there are. What
-they share is stored once: a mesh that stays, a line's cells; offsets that are the same for several values are links to
-one array. Beside it each instant has a group of windows on its values, for XDMF: its newer reader knows no parts of
-datasets.
+all instants stand one after the other, in chunks of an instant or of several small ones, so that a frame costs the same
+however many there are. What they share is stored once: a mesh that stays, a line's cells; offsets that are the same for
+several values are links to one array. XDMF finds the values of an instant by their place in the file, see `Instants`.
 Source: VTK's file formats, "VTKHDF File Format", version 2.0.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import h5py
 import numpy as np
-from h5py import h5d, h5p, h5s, h5t
+from h5py import h5d, h5p, h5s
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.results.growing_file import append_rows
 
 ROOT = "VTKHDF"
-_FRAME = "frame_"
+_VIEWS = "views"
 _TYPES = {4: 10, 8: 12, 10: 24}  # tetrahedron, hexahedron, second-order tetrahedron, by their points
 _KINDS_OF_LINES = ("Vertices", "Lines", "Polygons", "Strips")
 _STEPS_IN_CHUNK = 128
+_BYTES_IN_CHUNK = 1 << 14  # of values, or those of one instant
 
 
 def lay_out(store: h5py.File, cells: IntArray, points: Array | None, polyline: bool) -> None:
@@ -81,14 +82,15 @@ def append(
 
 
 def cut_back(store: h5py.File, frames: int) -> None:
-    """Take the instants after the first `frames` away, with their windows."""
+    """Take the instants after the first `frames` away, with their views."""
+    views = store.get(_VIEWS, {})
+    for name in [name for name in views if int(name.rpartition("_")[2]) >= frames]:
+        del views[name]
     root = store[ROOT]
-    for group in [name for name in store if name.startswith(_FRAME) and int(name.removeprefix(_FRAME)) >= frames]:
-        del store[group]
     steps = root["Steps"]
     for kind in ("Point", "Cell"):
         for values in root[f"{kind}Data"].values():
-            values.resize(frames * values.chunks[0], axis=0)
+            values.resize(frames * _rows(root, kind), axis=0)
         for offsets in steps[f"{kind}DataOffsets"].values():
             offsets.resize(frames, axis=0)
     for steps_of in steps.values():
@@ -113,10 +115,17 @@ def values_at(store: h5py.File, number: int) -> dict[str, Array]:
     """Values on points and cells of one instant, by their names."""
     found = {}
     for kind in ("Point", "Cell"):
+        rows = _rows(store[ROOT], kind)
         for name, values in store[ROOT][f"{kind}Data"].items():
-            rows = values.chunks[0]
             found[name] = values[number * rows : (number + 1) * rows]
     return found
+
+
+def _rows(root: h5py.Group, kind: str) -> int:
+    """Of an instant: points or cells."""
+    if kind == "Cell" and _KINDS_OF_LINES[1] in root:
+        root = root[_KINDS_OF_LINES[1]]
+    return int(root[f"NumberOf{kind}s"][0])
 
 
 def _add_cells(group: h5py.Group, cells: IntArray) -> None:
@@ -127,52 +136,66 @@ def _add_cells(group: h5py.Group, cells: IntArray) -> None:
     group["Offsets"] = points * np.arange(count + 1, dtype=np.int64)
 
 
-class Windows:
-    """Makes datasets of one instant's values alone, for readers that know no parts of datasets: views, which store no
-    number. What all instants share is found once.
+class Instants:
+    """Where the values of single instants are, for readers that know no parts of datasets. What all instants share is
+    found once.
     """
 
     def __init__(self, store: h5py.File) -> None:
-        self._store, self._frame, self._group = store, "", store["/"]
+        self._root, self._views = store[ROOT], store.require_group(_VIEWS)
         self._sources: dict[tuple[str, str], _Source] = {}
+        self._rows = dict[str, int]()
 
-    def make(self, kind: str, name: str, number: int) -> str:
-        """The path of the values of one quantity at an instant."""
-        source = self._sources.get((kind, name))
-        if source is None:
-            source = self._sources[kind, name] = _source(self._store[ROOT][f"{kind}Data"][name])
-        frame = f"{_FRAME}{number:06d}"
-        if frame != self._frame:
-            self._frame, self._group = frame, self._store.require_group(frame)
-        rows, *row = source.shape
-        source.values.select_hyperslab((number * rows, *(0 for _ in row)), source.shape)
-        layout = h5p.create(h5p.DATASET_CREATE)
-        layout.set_virtual(source.view, b".", source.path, source.values)
-        h5d.create(self._group.id, name.encode(), source.kind, source.view, layout)
-        return f"{frame}/{name}"
+    def offset(self, kind: str, name: str, number: int) -> int:
+        """The place of the first byte of a quantity's values at an instant, which lie together, in this file."""
+        source = self._source(kind, name)
+        in_chunk, first = source.values.chunks[0], number * source.shape[0]
+        chunk = first // in_chunk
+        if chunk not in source.places:
+            corner = (chunk * in_chunk, *(0 for _ in source.shape[1:]))
+            source.places[chunk] = source.values.id.get_chunk_info_by_coord(corner).byte_offset
+        return int(source.places[chunk] + (first - chunk * in_chunk) * source.bytes_of_row)
+
+    def view(self, kind: str, name: str, number: int) -> str:
+        """The path of a dataset of a quantity's values at an instant alone, which stores no number."""
+        source = self._source(kind, name)
+        source.space.select_hyperslab((number * source.shape[0], *(0 for _ in source.shape[1:])), source.shape)
+        layout, view = h5p.create(h5p.DATASET_CREATE), f"{name}_{number:06d}"
+        layout.set_virtual(source.of_one, b".", source.values.name.encode(), source.space)
+        h5d.create(self._views.id, view.encode(), source.values.id.get_type(), source.of_one, layout)
+        return f"{_VIEWS}/{view}"
+
+    def _source(self, kind: str, name: str) -> _Source:
+        if (kind, name) not in self._sources:
+            if kind not in self._rows:
+                self._rows[kind] = _rows(self._root, kind)
+            values = self._root[f"{kind}Data"][name]
+            shape = self._rows[kind], *values.shape[1:]
+            spaces = h5s.create_simple(values.shape), h5s.create_simple(shape)
+            row = values.dtype.itemsize * math.prod(shape[1:])
+            self._sources[kind, name] = _Source(values, *spaces, shape, row, {})
+        return self._sources[kind, name]
 
 
 class _Source(NamedTuple):
-    """Values of all instants: path, type and space, and the space and shape of one instant's."""
+    """Values of all instants, their space, and the space and shape of one instant's; bytes of a row, and where chunks
+    begin in the file, by number.
+    """
 
-    path: bytes
-    kind: h5t.TypeID
-    values: h5s.SpaceID
-    view: h5s.SpaceID
+    values: h5py.Dataset
+    space: h5s.SpaceID
+    of_one: h5s.SpaceID
     shape: tuple[int, ...]
-
-
-def _source(values: h5py.Dataset) -> _Source:
-    shape = values.chunks[0], *values.shape[1:]
-    spaces = h5s.create_simple(values.shape), h5s.create_simple(shape)
-    return _Source(values.name.encode(), values.id.get_type(), *spaces, shape)
+    bytes_of_row: int
+    places: dict[int, int]
 
 
 def _append_values(data: h5py.Group, offsets: h5py.Group, numbers: IntArray, values: Mapping[str, Array]) -> None:
     for name, array in values.items():
         rows, row = array.shape[1], array.shape[2:]
         if name not in data:
-            _make_growing(data, name, row, array.dtype, rows)
+            together = max(_BYTES_IN_CHUNK // max(array[0].nbytes, 1), 1)
+            _make_growing(data, name, row, array.dtype, rows * together)
             if len(offsets):
                 offsets[name] = offsets[next(iter(offsets))]
             else:

@@ -7,6 +7,7 @@ refers to them, so that the XML never refers to missing data.
 from __future__ import annotations
 
 import io
+import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -89,8 +90,8 @@ class XdmfFile:
         with appending(self._heavy) as store:
             on_points, on_cells = (_stacked([getattr(f, of) for f in frames]) for of in ("on_points", "on_cells"))
             vtkhdf.append(store, [frame.time for frame in frames], on_points, on_cells, frames[0].geometry)
-            windows = vtkhdf.Windows(store)
-            grids = [self._grid(windows, self._frames + i, frame) for i, frame in enumerate(frames)]
+            instants = vtkhdf.Instants(store)
+            grids = [self._grid(instants, self._frames + i, frame) for i, frame in enumerate(frames)]
         self._frames += len(grids)
         self._waiting.clear()
         self._append("".join(grids))
@@ -135,13 +136,15 @@ class XdmfFile:
         elif self._text is not None and at >= 0:
             self._text.update({at: _FOOT.encode()}, at + len(_FOOT))
 
-    def _grid(self, windows: vtkhdf.Windows, number: int, frame: Frame) -> str:
-        on = {"Point": frame.on_points, "Cell": frame.on_cells}
-        items = {
-            name: self._item(windows.make(kind, name, number), v.shape)
-            for kind, values in on.items()
-            for name, v in values.items()
-        }
+    def _grid(self, instants: vtkhdf.Instants, number: int, frame: Frame) -> str:
+        on, items = {"Point": frame.on_points, "Cell": frame.on_cells}, {}
+        for kind, values in on.items():
+            for name, v in values.items():
+                if name == frame.geometry or v.dtype != np.float64:
+                    # VTK's reader keeps points as long as they have the same name, which bytes of one file have.
+                    items[name] = self._item(instants.view(kind, name, number), v.shape)
+                else:
+                    items[name] = self._bytes(instants.offset(kind, name, number), v.shape)
         points = self._points if frame.geometry is None else items[frame.geometry]
         lines = [
             f'{_GRID}{number:06d}" GridType="Uniform">',
@@ -158,6 +161,13 @@ class XdmfFile:
         return (
             f'<DataItem Dimensions="{_words(shape)}" NumberType="{number}" Precision="8" Format="HDF">'
             f"{self._heavy_name}:/{where}</DataItem>"
+        )
+
+    def _bytes(self, offset: int, shape: Sequence[int]) -> str:
+        """Double numbers that lie in the VTKHDF file from a byte on."""
+        return (
+            f'<DataItem Dimensions="{_words(shape)}" NumberType="Float" Precision="8" Format="Binary" '
+            f'Endian="{sys.byteorder.capitalize()}" Seek="{offset}">{self._heavy_name}</DataItem>'
         )
 
     def _append(self, grids: str) -> None:

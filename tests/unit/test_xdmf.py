@@ -120,10 +120,42 @@ def test_vtkhdf_is_cut_back_and_goes_on(tmp_path: Path) -> None:
         found = vtkhdf.values_at(store, 2)
         np.testing.assert_array_equal(found["displacement"], points + 2.0)
         assert (found["stress"].tolist(), found["p"].tolist()) == ([2.0], [3.0])
-        windows = vtkhdf.Windows(store)
-        paths = {(name, n): windows.make("Cell", name, n) for n in (1, 2) for name in ("stress", "p")}
-        seen = {key: store[path][...].tolist() for key, path in paths.items()}
-        assert seen == {("stress", 1): [1.0], ("p", 1): [3.0], ("stress", 2): [2.0], ("p", 2): [3.0]}
+        instants = vtkhdf.Instants(store)
+        keys = [(name, n) for n in (1, 2) for name in ("stress", "p")]
+        views = {(name, n): store[instants.view("Cell", name, n)][...].tolist() for name, n in keys}
+        offsets = {(name, n): instants.offset("Cell", name, n) for name, n in keys}
         steps = store[vtkhdf.ROOT]["Steps"]
         assert steps["PointDataOffsets"]["displacement"][...].tolist() == [0, 8, 16]
         assert {len(rows) for rows in steps.values() if isinstance(rows, h5py.Dataset)} == {3}
+    expected = {("stress", 1): [1.0], ("p", 1): [3.0], ("stress", 2): [2.0], ("p", 2): [3.0]}
+    assert views == expected
+    content = (tmp_path / "soil.vtkhdf").read_bytes()
+    assert {key: [np.frombuffer(content, count=1, offset=at)[0]] for key, at in offsets.items()} == expected
+
+
+@pytest.mark.parametrize(("points", "instants"), [(8, 700), (3000, 5)])
+def test_bytes_of_an_instant_are_found_in_chunks_of_several_and_of_one(
+    tmp_path: Path, points: int, instants: int
+) -> None:
+    """Some are written with the first ones' chunk half full."""
+    rng, path = np.random.default_rng(3), tmp_path / "soil.vtkhdf"
+    values = {"displacement": rng.normal(size=(instants, points, 3)), "height": rng.normal(size=(instants, points))}
+    with h5py.File(path, "w") as store:
+        vtkhdf.lay_out(store, np.arange(8)[None, :], rng.normal(size=(points, 3)), polyline=False)
+        for some in np.array_split(np.arange(instants), 4):
+            vtkhdf.append(store, some.tolist(), {name: of[some] for name, of in values.items()}, {})
+        found = vtkhdf.Instants(store)
+        places = {name: [found.offset("Point", name, n) for n in range(instants)] for name in values}
+    content = path.read_bytes()
+    for name, written in values.items():
+        read = [np.frombuffer(content, count=written[0].size, offset=at) for at in places[name]]
+        np.testing.assert_array_equal(read, written.reshape(instants, -1))
+
+
+def test_numbers_that_are_not_double_come_back_too(tmp_path: Path) -> None:
+    points, layer = np.random.default_rng(2).uniform(size=(8, 3)), np.array([7])
+    file = XdmfFile(tmp_path / "soil.xdmf", "soil", np.arange(8)[None, :], points)
+    for time in (0.0, 1.0):
+        file.add(Frame(time, {"displacement": points}, {"layer": layer}))
+    file.flush()
+    assert [frame["cell:layer"].tolist() for frame in read_by_vtk(tmp_path / "soil.xdmf")[1]] == [[7], [7]]
