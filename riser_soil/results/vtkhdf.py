@@ -59,8 +59,9 @@ def append(
     on_points: Mapping[str, Array],
     on_cells: Mapping[str, Array],
     geometry: str | None = None,
-) -> None:
-    """Instants (n,) [s], with the same names as those before. Values (n, np) or (n, np, 3), on cells alike.
+) -> int:
+    """Instants (n,) [s], with the same names as those before; the number of the first of them in this file. Values (n,
+    np) or (n, np, 3), on cells alike.
 
     geometry: name of the values on points that are the points.
     """
@@ -79,6 +80,7 @@ def append(
     for name in ("CellOffsets", "ConnectivityIdOffsets"):
         append_rows(steps[name], np.zeros((n, steps[name].shape[1]), dtype=np.int64))
     steps.attrs["NSteps"] = int(numbers[-1]) + 1
+    return int(numbers[0])
 
 
 def cut_back(store: h5py.File, frames: int) -> None:

@@ -89,9 +89,9 @@ class XdmfFile:
         frames = self._waiting
         with appending(self._heavy) as store:
             on_points, on_cells = (_stacked([getattr(f, of) for f in frames]) for of in ("on_points", "on_cells"))
-            vtkhdf.append(store, [frame.time for frame in frames], on_points, on_cells, frames[0].geometry)
-            instants = vtkhdf.Instants(store)
-            grids = [self._grid(instants, self._frames + i, frame) for i, frame in enumerate(frames)]
+            times, instants = [frame.time for frame in frames], vtkhdf.Instants(store)
+            first = vtkhdf.append(store, times, on_points, on_cells, frames[0].geometry)
+            grids = [self._grid(instants, first + i, self._frames + i, frame) for i, frame in enumerate(frames)]
         self._frames += len(grids)
         self._waiting.clear()
         self._append("".join(grids))
@@ -136,7 +136,8 @@ class XdmfFile:
         elif self._text is not None and at >= 0:
             self._text.update({at: _FOOT.encode()}, at + len(_FOOT))
 
-    def _grid(self, instants: vtkhdf.Instants, number: int, frame: Frame) -> str:
+    def _grid(self, instants: vtkhdf.Instants, number: int, in_run: int, frame: Frame) -> str:
+        """number: of the frame in the VTKHDF file; in_run: in a run that may have had other files before."""
         on, items = {"Point": frame.on_points, "Cell": frame.on_cells}, {}
         for kind, values in on.items():
             for name, v in values.items():
@@ -147,7 +148,7 @@ class XdmfFile:
                     items[name] = self._bytes(instants.offset(kind, name, number), v.shape)
         points = self._points if frame.geometry is None else items[frame.geometry]
         lines = [
-            f'{_GRID}{number:06d}" GridType="Uniform">',
+            f'{_GRID}{in_run:06d}" GridType="Uniform">',
             f'<Time Value="{float(frame.time)!r}"/>',
             self._topology,
             f'<Geometry GeometryType="XYZ">{points}</Geometry>',
