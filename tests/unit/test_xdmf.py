@@ -152,6 +152,18 @@ def test_bytes_of_an_instant_are_found_in_chunks_of_several_and_of_one(
         np.testing.assert_array_equal(read, written.reshape(instants, -1))
 
 
+def test_a_run_that_goes_on_with_a_file_of_its_own_refers_to_what_is_in_it(tmp_path: Path) -> None:
+    file = XdmfFile(tmp_path / "riser.xdmf", "riser", polyline(7), polyline=True)
+    file.restore({"frames": np.array(300)})
+    for time in (5.0, 6.0):
+        file.add(Frame(time, {"tension": LINE[:, 0] + time, "position": LINE + time}, geometry="position"))
+    file.flush()
+    times, frames = read_by_vtk(tmp_path / "riser.xdmf")
+    for time, frame in zip(times, frames, strict=True):
+        np.testing.assert_array_equal(frame["points"], LINE + time)
+        np.testing.assert_array_equal(frame["point:tension"], LINE[:, 0] + time)
+
+
 def test_numbers_that_are_not_double_come_back_too(tmp_path: Path) -> None:
     points, layer = np.random.default_rng(2).uniform(size=(8, 3)), np.array([7])
     file = XdmfFile(tmp_path / "soil.xdmf", "soil", np.arange(8)[None, :], points)
