@@ -98,16 +98,15 @@ def unmasked() -> Iterator[None]:
     """Raises the Interruption of a signal where another exception has taken its place.
 
     One that came within compiled code makes a SystemError of its caller, one within the import of a compiled module an
-    ImportError; where an import was cut off and its caller tried another way, anything may have followed.
+    ImportError, one within pydantic's making of a model a SchemaError; where an import was cut off and its caller tried
+    another way, anything may have followed.
     """
     try:
         yield
     except (RiserSoilError, OSError):
         raise
     except Exception as err:
-        end = _interruption_behind(err)
-        if end is None and isinstance(err, (SystemError, ImportError)):
-            end = _pending.latest
+        end = _interruption_behind(err) or _pending.latest
         if end is not None and not end.concluded:
             raise end from None
         raise

@@ -81,6 +81,20 @@ def test_a_signal_within_an_import_is_one_all_the_same(capsys: pytest.CaptureFix
         raise ImportError("no such module")
 
 
+def test_a_signal_within_a_model_in_the_making_is_one_all_the_same() -> None:
+    """pydantic makes an error of its own of whatever is raised there, and keeps its text alone."""
+
+    def fails() -> None:
+        with suppress(Interruption):
+            signal.raise_signal(signal.SIGINT)
+        raise ValueError("Error building `literal` serializer: Interruption")
+
+    with pytest.raises(Interruption), handling_signals():
+        fails()
+    with pytest.raises(ValueError, match="another one"), handling_signals():
+        raise ValueError("another one")
+
+
 @pytest.mark.parametrize("concluded", [False, True])
 def test_what_follows_of_an_import_cut_off_by_a_signal_is_the_signal(concluded: bool) -> None:
     """h5py tries another of its modules where one fails; numpy is left half imported then."""
