@@ -61,7 +61,7 @@ class ElasticElements(ABC):
 class PlanarElements(ElasticElements):
     """Elements of a planar line; EI is EI_y, as the second section axis is normal to the plane.
 
-    Forces and tangent cost a quarter of those of `SpatialElements` (`benchmarks.twins`).
+    Forces and tangent cost less than half of those of `SpatialElements` (`benchmarks.twins`).
     """
 
     kernels: ClassVar[ModuleType] = beam2d
