@@ -1,8 +1,8 @@
 """Two-node corotational Euler-Bernoulli elements in a vertical plane: forces and tangent from one energy.
 
 `beam3d` in a plane, at less than half of its cost (`benchmarks.twins`), with in-plane coordinates (p, z) and angles
-positive from p to z. An element sees its chord x2 - x1 (m) and the directions of the section tangents at its ends (rad).
-The chord's length l and the angles theta_i from the chord to the tangents store
+positive from p to z. An element sees its chord x2 - x1 (m) and the directions of the section tangents at its ends
+(rad). The chord's length l and the angles theta_i from the chord to the tangents store
 
     U = EA L strain^2 / 2 + bending,
 
