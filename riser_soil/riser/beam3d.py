@@ -15,7 +15,6 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.riser.bow_load import BowLoad, bow_load, bow_potential, chord_force, end_moment, turned
 from riser_soil.riser.corotation import (
     SpatialCorotated,
     SpatialNodalForces,
@@ -26,6 +25,7 @@ from riser_soil.riser.corotation import (
     plus,
     turn,
 )
+from riser_soil.riser.spatial_load import BowLoad, bow_load, bow_potential, chord_force, end_moment, turned
 from riser_soil.riser.strain3d import (
     Station,
     Stiffness,
@@ -155,7 +155,7 @@ def element_energy(e: int, at: Shape, ref: SpatialReference, section: SpatialSec
 def load_potential(
     chord: Array, frame1: Array, frame2: Array, middle: Array, ref: SpatialReference, load: Array
 ) -> Array:
-    """Potential (ne,) [J] of a load per length (ne, 3) [N/m] on elements with their middles (ne, 3); see `bow_load`."""
+    """Potential (ne,) [J] of a load per length (ne, 3) [N/m] on elements with their middles (ne, 3): `spatial_load`."""
     V = np.empty(len(chord))
     for e in range(len(chord)):
         at, w = element_shape(e, chord, frame1, frame2, ref), vector(load[e])

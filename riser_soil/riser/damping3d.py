@@ -26,9 +26,9 @@ from riser_soil.riser.beam3d import (
     stiffness,
     strain_of,
 )
-from riser_soil.riser.bow_load import NO_LOAD
 from riser_soil.riser.corotation import SpatialNodalForces
 from riser_soil.riser.increments import rows_to_increments
+from riser_soil.riser.spatial_load import NO_LOAD
 from riser_soil.riser.strain3d import Stiffness, strain_change_variation, total
 from riser_soil.riser.stress3d import linear_stress
 from riser_soil.riser.swing_twist import rate, rate_variation

@@ -6,7 +6,7 @@ An element bows from its chord by a cubic with the angles theta_i from the chord
     V = -w.(x1 + x2) L/2 - (theta_1 - theta_2) w.n L^2/12
 
 theta_1 - theta_2 does not change as the chord turns, so V depends on the chord by its direction alone. In space
-`bow_load` is the same. Forces (N) and moments (N m) are ordered as in `beam2d`.
+`spatial_load` is the same. Forces (N) and moments (N m) are ordered as in `beam2d`.
 """
 
 from __future__ import annotations

@@ -17,11 +17,12 @@ from riser_soil.sea import morison_law as law
 
 PAIR = fixed(2)
 NG = len(stations.THREE_POINTS.points)
-LANES = 24  # stations at once: those of eight elements, or so, each number of them on whole vectors
+ELEMENTS = 8  # at once, so that numbers of their stations fill whole vectors
+LANES = ELEMENTS * NG  # stations at once
 
 
 class StationRoom(NamedTuple):
-    """Room for the derivatives (ng, d, d) of the force at the stations of an element."""
+    """Room for the derivatives (NG, d, d) of the force at the stations of an element."""
 
     by_v: Array
     by_a: Array
@@ -34,8 +35,8 @@ def station_room(d: int) -> StationRoom:
 
 
 class StillWaterNumbers(NamedTuple):
-    """Stations and their shares (ne, ng) of arc length [m], coefficients of drag and mass (ne, 2) as in `StillWater`,
-    and room for one station and one element.
+    """Stations and their shares (ne, NG) of arc length [m], coefficients of drag and mass (ne, 2) as in `StillWater`,
+    and room for the stations of one element, NG, and for it.
     """
 
     at: stations.Stations
@@ -82,10 +83,10 @@ def _lanes(rows: Array, D: Size) -> Lanes:
 @njit
 def _see(part: StillWaterNumbers, at: Configuration, first: int, after: int, seen: Lanes) -> None:
     """Write what there is at the stations of elements first to after, but for accelerations."""
-    ng, D = part.at.N.shape[1], at.D
+    D = at.D
     for e in range(first, after):
-        for g in range(ng):
-            k, p = (e - first) * ng + g, e * ng + g
+        for g in range(NG):
+            k, p = (e - first) * NG + g, e * NG + g
             v = stations.value_at(part.at.N, p, at.rate, e, D)
             tau, seen.stretch[k] = stations.unit_tangent_at(part.at.dN, p, at.chord, at.tangent, e, D)
             for i in range(len(D)):
@@ -97,28 +98,27 @@ def _see(part: StillWaterNumbers, at: Configuration, first: int, after: int, see
 @njit
 def _see_values(part: StillWaterNumbers, q: Array, first: int, after: int, out: Array, D: Size) -> None:
     """Write the values of q, q' or q'' (ne, 4, d) at those stations to columns of out (d, LANES)."""
-    ng = part.at.N.shape[1]
     for e in range(first, after):
-        for g in range(ng):
-            value = stations.value_at(part.at.N, e * ng + g, q, e, D)
+        for g in range(NG):
+            value = stations.value_at(part.at.N, e * NG + g, q, e, D)
             for i in range(len(D)):
-                out[i, (e - first) * ng + g] = value[i]
+                out[i, (e - first) * NG + g] = value[i]
 
 
 @add_forces.of(StillWaterNumbers)
 def _still_forces(part: StillWaterNumbers, at: Configuration, out: LineForces) -> None:
-    ne, ng, D, weighted = part.drag.shape[0], part.at.N.shape[1], at.D, part.at.weighted
+    ne, D, weighted = part.drag.shape[0], at.D, part.at.weighted
     d = len(D)
     seen, inertia, force = _lanes(np.zeros((3 * d + 5, LANES)), D), np.zeros((d, LANES)), np.zeros((d, LANES))
-    for first in range(0, ne, LANES // ng):
-        after = min(first + LANES // ng, ne)
+    for first in range(0, ne, ELEMENTS):
+        after = min(first + ELEMENTS, ne)
         _see(part, at, first, after, seen)
         _see_values(part, at.acceleration, first, after, seen.a, D)
         for k in range(LANES):
             _put_forces(seen, inertia, force, k, D)
         for e in range(first, after):
-            for g in range(ng):
-                k, p = (e - first) * ng + g, e * ng + g
+            for g in range(NG):
+                k, p = (e - first) * NG + g, e * NG + g
                 stations.add_integrand_at(weighted, p, held(inertia[:, k], D), out.inertia_q, e, D)
                 stations.add_integrand_at(weighted, p, held(force[:, k], D), out.force_q, e, D)
 
@@ -164,8 +164,8 @@ def _add_whole_tangent(
 ) -> None:
     ne, D, d, room = part.drag.shape[0], at.D, len(at.D), part.room
     seen, by = _lanes(np.zeros((3 * d + 5, LANES)), D), np.zeros((3, d, d, LANES))
-    for first in range(0, ne, LANES // NG):
-        after = min(first + LANES // NG, ne)
+    for first in range(0, ne, ELEMENTS):
+        after = min(first + ELEMENTS, ne)
         _see(part, at, first, after, seen)
         _see_values(part, at.acceleration, first, after, seen.a, D)
         for k in range(LANES):
@@ -208,38 +208,26 @@ def _take(by: Array, k: int, g: int, room: StationRoom, D: Size) -> None:
 
 @add_energy.of(StillWaterNumbers)
 def _still_energy(part: StillWaterNumbers, at: Configuration, energy: Array) -> None:
-    ne, ng, D = part.drag.shape[0], part.at.N.shape[1], at.D
-    d = len(D)
-    seen, f, kinetic = _lanes(np.zeros((3 * d + 5, LANES)), D), np.zeros((d, LANES)), np.zeros((1, LANES))
-    for first in range(0, ne, LANES // ng):
-        after = min(first + LANES // ng, ne)
-        _see(part, at, first, after, seen)
-        for k in range(LANES):
-            _put_kinetic(seen, f, kinetic, k, D)
-        for e in range(first, after):
-            for g in range(ng):
-                energy[0] += part.share[e, g] * kinetic[0, (e - first) * ng + g]
-
-
-@njit
-def _put_kinetic(seen: Lanes, f: Array, kinetic: Array, k: int, D: Size) -> None:
-    """Write the kinetic energy per length of the added mass at one station."""
-    v, total = held(seen.v[:, k], D), 0.0
-    law.put_added(v, held(seen.tau[:, k], D), held(seen.mass[:, k], PAIR), f[:, k], D)
-    for i in range(len(D)):
-        total += 0.5 * v[i] * f[i, k]
-    kinetic[0, k] = total
+    f, D = np.empty(len(at.D)), at.D
+    for e in range(part.mass.shape[0]):
+        for g in range(NG):
+            p = e * NG + g
+            v = stations.value_at(part.at.N, p, at.rate, e, D)
+            tau, _ = stations.unit_tangent_at(part.at.dN, p, at.chord, at.tangent, e, D)
+            law.put_added(v, tau, part.mass[e], f, D)
+            for i in range(len(D)):
+                energy[0] += 0.5 * part.share[e, g] * v[i] * f[i]
 
 
 @add_work.of(StillWaterNumbers)
 def _still_work(part: StillWaterNumbers, first: Configuration, last: Configuration, work: Array) -> None:
     """Drag dissipates; a change of the added mass as it turns is external, see `Morison`."""
-    ne, ng, D = part.drag.shape[0], part.at.N.shape[1], last.D
+    ne, D = part.drag.shape[0], last.D
     d = len(D)
     rows, room, done = np.zeros((8 * d + 10, LANES)), np.zeros((3, d, LANES)), np.zeros((2, LANES))
     seen = StepLanes(_lanes(rows, D), _lanes(rows[3 * d + 5 :], D), rows[6 * d + 10 : 7 * d + 10], rows[7 * d + 10 :])
-    for begun in range(0, ne, LANES // ng):
-        after = min(begun + LANES // ng, ne)
+    for begun in range(0, ne, ELEMENTS):
+        after = min(begun + ELEMENTS, ne)
         _see(part, first, begun, after, seen.first)
         _see(part, last, begun, after, seen.last)
         _see_values(part, first.q, begun, after, seen.began, D)
@@ -247,8 +235,8 @@ def _still_work(part: StillWaterNumbers, first: Configuration, last: Configurati
         for k in range(LANES):
             _put_work(seen, room, done, k, D)
         for e in range(begun, after):
-            for g in range(ng):
-                k, share = (e - begun) * ng + g, part.share[e, g]
+            for g in range(NG):
+                k, share = (e - begun) * NG + g, part.share[e, g]
                 work[0] += share * done[0, k]
                 work[1] += share * done[1, k]
                 work[2] += share * done[1, k]

@@ -13,7 +13,6 @@ from riser_soil.core.bound import Bound, calls, in_turn
 from riser_soil.core.packed import Packed
 from riser_soil.core.part import State, Weights
 from riser_soil.riser.configuration import (
-    base_of,
     maps_for,
     place,
     put_magnitudes,
@@ -62,8 +61,6 @@ class PackedRiser:
         self._begun = [values.ravel() for values in (self.step.u, self.step.v0, self.step.a0, self.step.past)]
         self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
         self.progress = NewtonProgress(np.zeros(most + 1), np.zeros(2, dtype=np.int64))
-        base = base_of(line)
-        self._base = Packed(type(base)(*map(np.copy, base)))
         self._maps, self._weights = Packed(maps_for(line)), Packed(LineWeights(0.0, 0.0))
         self._weighed = Weights(0.0, 0.0, 0.0, 0.0)  # as in both
         self._limits = Packed(StopLimits(0.0, 0.0, 0.0, most, 0, False))
@@ -80,7 +77,7 @@ class PackedRiser:
         maps, weights, limits, K = self._maps, self._weights, self._limits, Packed(self.room.K)
         evaluate = [
             Bound(loop.follow, step, maps, dofs),
-            bound(place, at, self._base, *map(Packed, (self.step.u, self.step.v, self.step.a))),
+            bound(place, at, self._placed.base, *map(Packed, (self.step.u, self.step.v, self.step.a))),
             Bound(loop.clear, forces),
             *(bound(add_forces, each, now, forces) for each in numbers),
             *border.forces(now, forces),
@@ -130,8 +127,7 @@ class PackedRiser:
 
         state: the first guess, and the rates of no increments but those that are prescribed; past: see `time_scheme`.
         """
-        for kept, given in zip(self._base.value, base_of(self._line), strict=True):
-            kept[...] = given
+        self._placed.bring()
         u, v, a, earlier = self._begun
         u[:], v[:], a[:], earlier[:] = state.u, state.v, state.a, 0.0 if past is None else past
         if weights != self._weighed:

@@ -13,18 +13,29 @@ from riser_soil.riser.part_kernels import bound
 
 
 class PlacedLine:
-    """The accepted configuration `at` of a line, placed once for all that ask in turn, with rates as each asks for."""
+    """The accepted configuration `at` of a line, placed once for all that ask in turn, with rates as each asks for.
+
+    base: what it follows from, for trials too, as it was brought last.
+    """
 
     def __init__(self, line: Line) -> None:
         self._line, self.at, shape = line, room_for(line), (line.nodes, line.ndof)
         base = base_of(line)
-        self._base = Packed(type(base)(*map(np.copy, base)))
+        self.base = Packed(type(base)(*map(np.copy, base)))
         self._rates, still = (np.zeros(shape), np.zeros(shape)), Packed(np.zeros(shape))
-        self._place = bound(place, self.at, self._base, still, still, still)
+        self._place = bound(place, self.at, self.base, still, still, still)
         self._put = bound(put_rates, self.at, *map(Packed, self._rates))
         self._stand = bound(put_rates, self.at, still, still)
-        self._at: Array | None = None  # the places of its nodes where it was placed last
+        self._brought: Array | None = None  # the places of its nodes as they were when the base was brought last
+        self._at: Array | None = None  # and when it was placed
         self._with: tuple[Array | None, Array | None] = None, None  # the rates that it has there
+
+    def bring(self) -> None:
+        """Bring the base to where the line is accepted now; a line that is accepted elsewhere has other arrays."""
+        if self._brought is not self._line.x:
+            for kept, given in zip(self.base.value, base_of(self._line), strict=True):
+                kept[...] = given
+            self._brought = self._line.x
 
     def move(self, state: State, velocities_alone: bool = False) -> None:
         """With the rates of an accepted state; its accelerations may not matter."""
@@ -45,9 +56,7 @@ class PlacedLine:
 
     def _renew(self) -> None:
         """Place it, unless it is where it was."""
-        if self._at is self._line.x:
-            return
-        for kept, given in zip(self._base.value, base_of(self._line), strict=True):
-            kept[...] = given
-        self._place()
-        self._at, self._with = self._line.x, (None, None)
+        if self._at is not self._line.x:
+            self.bring()
+            self._place()
+            self._at, self._with = self._line.x, (None, None)

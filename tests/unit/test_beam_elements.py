@@ -13,11 +13,11 @@ from riser_soil.core.arrays import Array
 from riser_soil.riser import (
     beam2d,
     beam3d,
-    bow_load,
     corotation,
     increments,
     planar_load,
     rotations,
+    spatial_load,
     strain3d,
     stress3d,
     swing_twist,
@@ -305,7 +305,7 @@ LEFT_OUT = {
     "swing and twist": (beam3d, "moment_variation", lambda *_: beam3d.STILL),
     "gradients of the strains": (beam3d, "conjugate_change", lambda *_: (beam3d.STILL, beam3d.STILL)),
     "torque rate": (beam3d, "stress_change", lambda D, _, __, change: stress3d.linear_stress(D, change)),
-    "turn under the load": (beam3d, "turned", lambda *_: bow_load.NO_LOAD),
+    "turn under the load": (beam3d, "turned", lambda *_: spatial_load.NO_LOAD),
     "load along the chord": (beam3d, "chord_force", lambda *_: beam3d.STILL),
 }
 

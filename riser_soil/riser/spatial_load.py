@@ -46,7 +46,7 @@ def bow_potential(load: BowLoad, a: Vec, b: Vec) -> float:
 
 @njit
 def end_moment(load: BowLoad) -> Vec:
-    """Generalised moment conjugate to the angles of the first end [N m]; that of the second is its opposite."""
+    """Fixed-end moment: conjugate to the angles of the first end [N m]; that of the second is its opposite."""
     return (0.0, load.twelfth * load.w[2], -load.twelfth * load.w[1])
 
 
