@@ -10,7 +10,7 @@ chord, and the twist is linear:
 
 Where curvature and moment point different ways (unequal stiffnesses, curved unstressed shape), the
 torque varies along the element by P = (curvature x moment)_x per length. The deviation of the twist from
-the line between the ends that this causes is condensed; its energy is -P^2 L^3/(24 GJ). All these terms
+the line between the ends that this causes is condensed, see `stress3d`. All these terms
 together make the element fourth-order accurate; without any of them it is second-order.
 
 The strains do not change when the frame turns about the chord.

@@ -1,9 +1,16 @@
 """Strain energy of a two-node element in space, its gradient and its Hessian by the strains of `strain3d`.
 
-    U = EA L axial^2 / 2 + GJ twist^2 / (2 L) + L/4 (sum of k.D k over both stations) - P^2 L^3 / (24 GJ)
+    U = EA L axial^2 / 2 + GJ twist^2 / (2 L) + L/4 (sum of k.D k over both stations) - h P^2 L^3 / (24 GJ)
 
 with all strains less those of the unstressed element, D = diag(EIy, EIz), and P = (mean curvature x mean
-moment)_x.
+moment)_x, the torque rate. The last term is what the twist sets free that deviates from the line between the ends by
+a (1 - 4 x^2/L^2), x from the middle. It is stiffened by GJ and, as it turns the curvature k, by k'.D k' with k' normal
+to k; of both the least energy by a has
+
+    h = 1 / (1 + (EIz ky^2 + EIy kz^2) L^2 / (10 GJ)).
+
+As P^2 <= (k'.D k') (k.D k), k elastic, U stays positive: an element bent about its soft axis that is long for its
+stiffness ratio would otherwise gain energy without end by bending about the stiff one.
 """
 
 
@@ -34,12 +41,26 @@ def _twist_compliance(D: Stiffness) -> float:
 
 
 @njit
+def _share(k: Pair, D: Stiffness) -> float:
+    """h for the mean curvature k."""
+    return 1.0 / (1.0 + 0.1 * D.L**2 / D.GJ * (D.EIz * k[0] ** 2 + D.EIy * k[1] ** 2))
+
+
+@njit
+def _share_slopes(k: Pair, D: Stiffness, h: float) -> Pair:
+    """Derivatives of h by the mean curvature."""
+    by = -0.2 * D.L**2 / D.GJ * h**2
+    return by * D.EIz * k[0], by * D.EIy * k[1]
+
+
+@njit
 def energy(D: Stiffness, total: Strain, elastic: Strain) -> float:
     """Strain energy U (J)."""
     U = 0.5 * (D.EA * D.L * elastic.axial**2 + D.GJ / D.L * elastic.twist**2)
     U += 0.25 * D.L * D.EIy * (elastic.first[0] ** 2 + elastic.second[0] ** 2)
     U += 0.25 * D.L * D.EIz * (elastic.first[1] ** 2 + elastic.second[1] ** 2)
-    return U - 0.5 * _twist_compliance(D) * _torque_rate(_mean(total), _mean(elastic), D) ** 2
+    k = _mean(total)
+    return U - 0.5 * _twist_compliance(D) * _share(k, D) * _torque_rate(k, _mean(elastic), D) ** 2
 
 
 @njit
@@ -65,17 +86,27 @@ def _less(s: Stress, moment: Pair) -> Stress:
 def stress(D: Stiffness, total: Strain, elastic: Strain) -> Stress:
     """Gradient of U by the strains `total`, of which `elastic` exceeds the unstressed ones."""
     k, e = _mean(total), _mean(elastic)
-    Ky, Kz = _torque_rate_slopes(k, e, D)
-    half = 0.5 * _twist_compliance(D) * _torque_rate(k, e, D)
-    return _less(linear_stress(D, elastic), (half * Ky, half * Kz))
+    return _less(linear_stress(D, elastic), _twisting_moment(D, k, e))
+
+
+@njit
+def _twisting_moment(D: Stiffness, k: Pair, e: Pair) -> Pair:
+    """What P takes off the moment of each station."""
+    P, h, half = _torque_rate(k, e, D), _share(k, D), 0.5 * _twist_compliance(D)
+    (Py, Pz), (hy, hz) = _torque_rate_slopes(k, e, D), _share_slopes(k, D, h)
+    return half * P * (h * Py + 0.5 * P * hy), half * P * (h * Pz + 0.5 * P * hz)
 
 
 @njit
 def stress_change(D: Stiffness, total: Strain, elastic: Strain, change: Strain) -> Stress:
     """Hessian of U times a change of the strains."""
     k, e, dk = _mean(total), _mean(elastic), _mean(change)
-    Ky, Kz = _torque_rate_slopes(k, e, D)
-    dKy, dKz = _torque_rate_slopes(dk, dk, D)
-    half = 0.5 * _twist_compliance(D) * _torque_rate(k, e, D)
-    dhalf = 0.5 * _twist_compliance(D) * (Ky * dk[0] + Kz * dk[1])
-    return _less(linear_stress(D, change), (half * dKy + dhalf * Ky, half * dKz + dhalf * Kz))
+    P, h, half = _torque_rate(k, e, D), _share(k, D), 0.5 * _twist_compliance(D)
+    (Py, Pz), (hy, hz) = _torque_rate_slopes(k, e, D), _share_slopes(k, D, h)
+    dPy, dPz = _torque_rate_slopes(dk, dk, D)
+    dP, dh = Py * dk[0] + Pz * dk[1], hy * dk[0] + hz * dk[1]
+    bent = _share_slopes(dk, D, h)
+    dhy, dhz = 2.0 * dh / h * hy + bent[0], 2.0 * dh / h * hz + bent[1]
+    first = half * (dP * (h * Py + P * hy) + P * (dh * Py + h * dPy + 0.5 * P * dhy))
+    second = half * (dP * (h * Pz + P * hz) + P * (dh * Pz + h * dPz + 0.5 * P * dhz))
+    return _less(linear_stress(D, change), (first, second))

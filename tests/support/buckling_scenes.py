@@ -31,12 +31,15 @@ def blade(elements: int, force: float) -> Mapping:
     return riser_scene(static(loads=[load]), pipe=pipe, length=1.0, elements=elements, **ends, **more)
 
 
-def frame(elements: int, force: float) -> Mapping:
-    """The right-angle frame of `test_space_beams`, N and mm, its joint bent within the two elements beside it."""
-    across, deep = 71240.0 * 30.0 * 0.6**3 / 12.0, 71240.0 * 0.6 * 30.0**3 / 12.0
-    pipe = {"EA": 71240.0 * 18.0, "EI_y": deep, "EI_z": across, "GJ": 71240.0 / 2.62 * 30.0 * 0.6**3 / 3.0}
+def frame(elements: int, force: float, across: float = 0.0) -> Mapping:
+    """The right-angle frame of `test_space_beams`, N and mm, its joint bent within the two elements beside it.
+
+    force: in its plane, positive pulls the clamped leg; across: out of it.
+    """
+    soft, deep = 71240.0 * 30.0 * 0.6**3 / 12.0, 71240.0 * 0.6 * 30.0**3 / 12.0
+    pipe = {"EA": 71240.0 * 18.0, "EI_y": deep, "EI_z": soft, "GJ": 71240.0 / 2.62 * 30.0 * 0.6**3 / 3.0}
     points = [[0.0, 0.0, 0.0], [240.0, 0.0, 0.0], [240.0, 0.0, -240.0]]
-    load = {"at": "end", "force": [force, 0.0, 0.0]}
+    load = {"at": "end", "force": [force, across, 0.0]}
     ends: Mapping = {"start": prescribed(0.0, 0.0, 0.0, rotation="fixed"), "end": "free"}
     more: Mapping = {"riser": {"unstressed": {"points": points}}, "dimension": 3}
     return riser_scene(static(loads=[load]), pipe=pipe, length=480.0, elements=elements, **ends, **more)

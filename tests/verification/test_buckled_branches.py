@@ -137,6 +137,15 @@ def test_frame_of_640_elements(tmp_path: Path) -> None:
     assert found[1] > 0.2 * 240.0
 
 
+@pytest.mark.parametrize("elements", [20, 40, pytest.param(640, marks=pytest.mark.verify)])
+def test_pushed_frame_far_beyond_buckling(elements: int, tmp_path: Path) -> None:
+    """Pushed by twice the load at which it buckles, 0.68 N (Simo & Vu-Quoc 1986), with 1e-4 N across: the strip's
+    stiffnesses are as 2,500 to 1, and an element of 24 mm turns by 0.2 rad about the soft axis. Beside 640 elements.
+    """
+    found, _ = tip(frame(elements, -1.36, across=1e-4), tmp_path)
+    assert found == pytest.approx([-15.41, 234.71, -132.45], abs=0.01 * 240.0)
+
+
 def test_the_least_stabilising_drag() -> None:
     asked = list[float]()
 
