@@ -245,8 +245,10 @@ class LineField(Field, Protocol):
         """A better first guess of a step than the increments of `guess`, by its prescribed motion; a copy."""
         ...
 
-    def inadmissible(self, state: State) -> str:
-        """Why a state in balance is none of the thing modelled, the same on all ranks; empty for a good one."""
+    def inadmissible(self, state: State, before: State | None = None) -> str:
+        """Why a state in balance is none of the thing modelled, or none that one step leads to from an accepted state
+        `before`, the same on all ranks; empty for a good one.
+        """
         ...
 
     def in_new_axes(self, conjugate: Array, increments: Array) -> Array:

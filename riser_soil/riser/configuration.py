@@ -15,8 +15,8 @@ from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.riser import hermite, planar_directors, spatial_directors
 from riser_soil.riser.hermite import Size
-from riser_soil.riser.line import Line
-from riser_soil.riser.line_kernels import first_folded
+from riser_soil.riser.line import MOST_SWING, Line
+from riser_soil.riser.line_kernels import first_folded, first_swung
 from riser_soil.riser.planar_directors import PlanarFrames
 
 
@@ -171,8 +171,10 @@ def put_moment_maps(at: Configuration, axes: Array, maps: Array) -> None:
 
 
 @bound_by_type
-def put_tangled(at: Configuration, out: IntArray) -> None:
-    """Write the number of the first element that is folded or wound up, see `Line.inadmissible`; ne without any."""
+def put_tangled(at: Configuration, base: Base, out: IntArray) -> None:
+    """Write the numbers (2,) of the first element that is folded or wound up, and of the first that swings too far from
+    the accepted configuration, see `Line.inadmissible`; ne without any.
+    """
 
 
 @place.of(PlanarConfiguration)
@@ -291,10 +293,16 @@ def _put_moment_maps_in_space(at: SpatialConfiguration, axes: Array, maps: Array
 
 
 @put_tangled.of(PlanarConfiguration)
-def _put_tangled_in_plane(at: PlanarConfiguration, out: IntArray) -> None:
+def _put_tangled_in_plane(at: PlanarConfiguration, base: PlanarBase, out: IntArray) -> None:
+    tangent, normal = np.empty(at.tangent.shape), np.empty(at.tangent.shape)
+    planar_directors.put_ends(base.angle, base.alpha0, np.empty(base.alpha0.shape), tangent, normal)
+    out[1] = first_swung(base.chord, tangent, at.chord, at.tangent, MOST_SWING)
     out[0] = min(first_folded(at.chord, at.tangent), planar_directors.first_wound(at.end_angle))
 
 
 @put_tangled.of(SpatialConfiguration)
-def _put_tangled_in_space(at: SpatialConfiguration, out: IntArray) -> None:
+def _put_tangled_in_space(at: SpatialConfiguration, base: SpatialBase, out: IntArray) -> None:
+    tangent, first, second = np.empty(at.tangent.shape), np.empty(at.frame1.shape), np.empty(at.frame2.shape)
+    spatial_directors.put_end_frames(base.R, base.T0, first, second, tangent)
+    out[1] = first_swung(base.chord, tangent, at.chord, at.tangent, MOST_SWING)
     out[0] = min(first_folded(at.chord, at.tangent), spatial_directors.first_wound(at.Theta))

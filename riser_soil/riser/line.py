@@ -6,6 +6,7 @@ an angle, p along the horizontal unit vector d, the angle positive from d toward
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -20,12 +21,14 @@ from riser_soil.riser import hermite
 from riser_soil.riser.directors import Frames
 from riser_soil.riser.ends import End, Motion, SupportRotation
 from riser_soil.riser.free_turns import free_turns, unit_lengths
-from riser_soil.riser.line_kernels import after_increments, first_folded, motion_in_axes, spread_motion
+from riser_soil.riser.line_kernels import after_increments, first_folded, first_swung, motion_in_axes, spread_motion
 from riser_soil.riser.planar_directors import PlanarFrames
 from riser_soil.riser.spatial_directors import SpatialFrames
 from riser_soil.riser.trial import Trial
 
 UP = np.array([0.0, 0.0, 1.0])
+MOST_SWING = 0.2  # rad by which an element's end may turn against its chord in a time step
+BENT_DOUBLE = 1.2  # rad from its chord, beyond which an end was on its way to be folded
 
 
 @dataclass(frozen=True, eq=False)
@@ -324,25 +327,59 @@ class Line:
         """Forces and moments (size,), moments over the line's length."""
         return forces * (unit_lengths(self.x.shape, self.ndof, float(self.arc[-1])) / self.arc[-1]).ravel()
 
-    def inadmissible(self, state: State) -> str:
-        """Where an element is folded (an end's tangent points against its chord) or wound up by whole turns.
+    def inadmissible(self, state: State, before: State | None = None) -> str:
+        """Where an element is folded (an end's tangent points against its chord) or wound up by whole turns; or swings
+        too far to be followed in a time step from the accepted state `before`.
 
         A step of Newton's method that goes far astray ends in such a tangle; it balances the loads, even stably, but is
-        not physical for a pipe, and an end spring would count the turns.
+        not physical for a pipe, and an end spring would count the turns. A slack wire that is let go snaps into waves
+        of its elements: steps that jump over these turn the tension's energy into a motion that there is not.
         """
         trial = self.trial(state)
-        return self.tangled(min(first_folded(trial.chord, trial.turn.tangent), trial.turn.first_wound))
+        folded = min(first_folded(trial.chord, trial.turn.tangent), trial.turn.first_wound)
+        swung = self.length.size
+        if before is not None:
+            left = self.trial(before)
+            swung = first_swung(left.chord, left.turn.tangent, trial.chord, trial.turn.tangent, MOST_SWING)
+        return self.tangled(folded, swung)
 
-    def tangled(self, element: int) -> str:
-        """What to say of the first element that is folded or wound up; nothing where there is none, the number of
-        elements.
+    def tangled(self, folded: int, swung: int) -> str:
+        """What to say of the first element that is folded or wound up, and of the first that swings too far in a step;
+        nothing where there is none, the number of elements.
         """
-        if element == self.length.size:
-            return ""
-        return (
+        if folded < self.length.size:
+            return self._folded(folded)
+        if swung < self.length.size:
+            return f"the element at arc {self.arc[swung]:.6g} m bends by more than {MOST_SWING:g} rad in the step"
+        return ""
+
+    def _folded(self, element: int) -> str:
+        """Of an element that was bent double before, its bend is told, which no shorter step prevents."""
+        folded = (
             f"the riser is folded at arc {self.arc[element]:.6g} m, where an element's end turns by more than "
-            "90 degrees from its chord; start nearer to the shape sought, or take shorter elements or steps"
+            "90 degrees from its chord"
         )
+        first, second = self._swings(element)
+        swing = max(abs(first), abs(second))
+        if swing < BENT_DOUBLE:
+            return f"{folded}; start nearer to the shape sought, or take shorter elements or steps"
+        length, radius = self.length[element], self.length[element] / abs(first - second)
+        return (
+            f"{folded}; it had come to {math.degrees(swing):.0f} degrees before: loads or motion close a bend there, "
+            f"whose radius is down to {radius:.3g} m, {radius / self.outer_diameter[element]:.2g} diameters, on an "
+            f"element of {length:.3g} m; much shorter elements follow it further, and tell whether it becomes a kink"
+        )
+
+    def _swings(self, element: int) -> tuple[float, float]:
+        """Angles [rad] from the chord of an element, where it is accepted, to the tangents at its ends; of the second
+        with the sign by which it turns to the first's side.
+        """
+        ends = self.frames.turn(np.zeros((self.nodes, self.frames.dofs))).tangent[element]
+        chord = self.chord[element] / np.linalg.norm(self.chord[element])
+        along = ends @ chord
+        across = ends - np.outer(along, chord)
+        first, second = np.arctan2(np.linalg.norm(across, axis=1), along)
+        return float(first), math.copysign(second, float(across[0] @ across[1]))
 
     def to_global(self, x: Array) -> Array:
         """Global positions (…, 3) of in-plane (or global) coordinates (…, d)."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from riser_soil.core.arrays import Array
@@ -57,3 +59,44 @@ def first_folded(chord: Array, tangent: Array) -> int:
             if ahead <= 0.0:
                 return e
     return chord.shape[0]
+
+
+@njit
+def first_swung(chord0: Array, tangent0: Array, chord: Array, tangent: Array, most: float) -> int:
+    """First element with an end whose tangent turns against the chord by more than `most` [rad], from one configuration
+    to another; ne without any. Chords (ne, d), turned from one to the other the shortest way; tangents (ne, 2, d).
+    """
+    ne, d = chord.shape
+    first, second = np.empty(d), np.empty(d)
+    for e in range(ne):
+        _put_unit(chord0[e], first)
+        _put_unit(chord[e], second)
+        for side in range(2):
+            if _cosine_of_swing(first, tangent0[e, side], second, tangent[e, side]) < math.cos(most):
+                return e
+    return ne
+
+
+@njit
+def _put_unit(vector: Array, out: Array) -> None:
+    square = 0.0
+    for i in range(out.size):
+        square += vector[i] ** 2
+    for i in range(out.size):
+        out[i] = vector[i] / math.sqrt(square)
+
+
+@njit
+def _cosine_of_swing(chord0: Array, tangent0: Array, chord: Array, tangent: Array) -> float:
+    """Of the angle between a tangent and another one that goes along as the chord turns; all are unit vectors."""
+    between, tangents, along0, along, both0, both = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(chord.size):
+        between += chord0[i] * chord[i]
+        tangents += tangent0[i] * tangent[i]
+        along0 += chord0[i] * tangent0[i]
+        along += chord[i] * tangent[i]
+        both0 += (chord0[i] + chord[i]) * tangent0[i]
+        both += (chord0[i] + chord[i]) * tangent[i]
+    if between <= -1.0:
+        return -1.0
+    return tangents - both0 * both / (1.0 + between) + 2.0 * along0 * along

@@ -101,7 +101,7 @@ class CondensedNewton:
             self._riser.begin(guess, None if past is None else past[at], scheme.weights(step.dt), limits)
             outcome, taken = self._riser.solve()
             self.iterations += taken
-            if outcome == riser_loop.CONVERGED and self._border.holds and not self._line.tangled(self._riser.tangled):
+            if outcome == riser_loop.CONVERGED and self._border.holds and not self._line.tangled(*self._riser.tangled):
                 return listed(self._riser.progress.norms[: taken + 1])
             if outcome != riser_loop.OUTGROWN:
                 return None

@@ -182,8 +182,9 @@ class Newton:
 
     def require_admissible(self, state: State) -> None:
         """Raise NotConvergedError where a state in balance is none of the line."""
+        before = self._step.before if self._step.scheme.dynamic else None
         for line in self.system.model.lines:
-            if reason := line.inadmissible(state):
+            if reason := line.inadmissible(state, before):
                 raise NotConvergedError(reason)
 
     def require_stable(self, solution: Solution) -> None:

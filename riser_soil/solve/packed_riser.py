@@ -104,9 +104,9 @@ class PackedRiser:
         renew = [*put_tangent, border.factorise(room, dofs, progress)]
         each = evaluate, probe if border.knows_round_off else [], renew, [border.improve(room, step, dofs)]
         tables = (Packed(calls(*kernels)) for kernels in each)
-        self._tangled = np.zeros(1, dtype=np.int64)
+        self._tangled = np.zeros(2, dtype=np.int64)
         solve = Bound(loop.solve_step, *tables, limits, progress)
-        self._solve = in_turn(solve, bound(put_tangled, at, Packed(self._tangled)))
+        self._solve = in_turn(solve, bound(put_tangled, at, self._placed.base, Packed(self._tangled)))
         self.evaluate, self.put_tangent = in_turn(*evaluate), in_turn(*put_tangent, put_sizes)
 
     def _bind_account(self, numbers: Sequence[Numbers]) -> None:
@@ -141,9 +141,10 @@ class PackedRiser:
         self._weights.renew(LineWeights(weights.inertia, weights.force))
 
     @property
-    def tangled(self) -> int:
-        """First element that is folded or wound up in the last trial, see `Line.inadmissible`; ne without any."""
-        return int(self._tangled[0])
+    def tangled(self) -> tuple[int, int]:
+        """First elements that are folded, and that swing too far, in the last trial: `Line.tangled`."""
+        folded, swung = listed(self._tangled)
+        return folded, swung
 
     def solve(self) -> tuple[int, int]:
         """Solve the step: the outcome, see `riser_loop`, and the number of iterations."""

@@ -72,7 +72,7 @@ class RiserNewton:
         self.system.clock.add("riser alone", since)
         if outcome != riser_loop.CONVERGED:
             raise NotConvergedError(self._reason(outcome, norms))
-        if reason := self._line.tangled(self._riser.tangled):
+        if reason := self._line.tangled(*self._riser.tangled):
             raise NotConvergedError(reason)
         state = self._riser.solved(step.t)
         self._solved = state if self.system.smooth else None

@@ -148,19 +148,21 @@ def require_mass(at: Sample, parts: list[Any]) -> None:
 
 
 def require_tangles(dimension: int) -> None:
-    """Elements that are folded or wound up are those that the line tells of; in a plane an angle counts whole turns."""
+    """Elements that are folded, wound up or swing too far are those that the line tells of; in a plane an angle counts
+    whole turns.
+    """
     at, anything = sample(dimension, shaken=False), StopLimits(0.0, np.inf, 0.0, 1, 0, True)
     line, parts, told = at.line, [at.beam()], []
-    for node, turn in ((0, 0.0), (1, 0.1), (1, 2.0), (line.nodes - 1, 2.0), (line.nodes - 1, -3.5)):
+    for node, turn in ((0, 0.0), (1, 0.1), (1, 0.3), (1, 2.0), (line.nodes - 1, 2.0), (line.nodes - 1, -3.5)):
         state = at.state(1, size=0.0)
         line.nodal(state.u)[node, -1] = turn
         compiled = Compiled(at, parts, state, state)
         compiled.riser.begin(state, None, WEIGHTS, anything)
         assert compiled.riser.solve()[0] == CONVERGED
-        told.append(line.tangled(compiled.riser.tangled))
-        assert told[-1] == line.inadmissible(state)
+        told.append(line.tangled(*compiled.riser.tangled))
+        assert told[-1] == line.inadmissible(state, at.state(1, size=0.0))
     assert told[0] == told[1] == ""
-    assert len(set(told)) == 3
+    assert len(set(told)) == 4
 
 
 def require_element_residual(newton: RiserNewton, line: Line, parts: list[Any], accepted: State) -> None:

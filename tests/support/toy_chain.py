@@ -28,7 +28,7 @@ class Chain:
     def predict(self, guess: State) -> Array:
         return guess.u
 
-    def inadmissible(self, state: State) -> str:
+    def inadmissible(self, state: State, before: State | None = None) -> str:
         return ""
 
     def in_new_axes(self, conjugate: Array, increments: Array) -> Array:

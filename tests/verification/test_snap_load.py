@@ -6,6 +6,8 @@ line each of them may create a little energy, and the sum once tore the line.
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -14,10 +16,12 @@ from scipy.optimize import brentq
 from riser_soil.assembly import build
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
+from riser_soil.results import Run
 from riser_soil.results.observer import riser_snapshot
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
+from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.driven_stage import Watcher
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene
@@ -28,10 +32,16 @@ PEAK = WEIGHT + np.sqrt(WEIGHT**2 + 2.0 * EA / L * WEIGHT * SLACK)
 """Tension [N] where all that the weight has fallen stretches the line."""
 
 
+def arc_of(length: float, slack: float) -> tuple[float, float]:
+    """Radius and half the angle of an arc whose chord is shorter by the slack."""
+    half = brentq(lambda a: np.sin(a) / a - (length - slack) / length, 0.01, 3.0)
+    return 0.5 * length / half, half
+
+
 def bow(points: int = 41) -> list[list[float]]:
     """An arc of the line's length between ends that are nearer by the slack, downwards."""
-    half = brentq(lambda a: np.sin(a) / a - (L - SLACK) / L, 0.01, 3.0)
-    radius, angle = 0.5 * L / half, np.linspace(-half, half, points)
+    radius, half = arc_of(L, SLACK)
+    angle = np.linspace(-half, half, points)
     aside, along = radius * (np.cos(angle) - np.cos(half)), radius * np.sin(angle) + 0.5 * (L - SLACK)
     return [[float(x), 0.0, -float(z)] for x, z in zip(aside, along, strict=True)]
 
@@ -77,3 +87,28 @@ def test_no_more_than_the_fall_gives(elements: int, time_step: float) -> None:
     print(f"{elements} elements, {time_step} s: {at_weight / PEAK:.4f}, {anywhere / PEAK:.4f} of it; {created} J")
     assert 0.9 * PEAK < at_weight <= anywhere < PEAK
     assert created < 0.05 * WEIGHT * SLACK
+
+
+def wire(time_step: float) -> Mapping:
+    """100 kg on 10 m of wire of 1 g/m, whose elements can't be pushed, hung as an arc with a chord of 95 %."""
+    radius, half = arc_of(10.0, 0.5)
+    angle = np.linspace(-half, half, 41)
+    aside, along = radius * (np.cos(angle) - np.cos(half)), radius * (np.sin(angle) + np.sin(half))
+    points = [[float(x), 0.0, -float(z)] for x, z in zip(aside, along, strict=True)]
+    pipe = {"EA": 1e6, "EI": 1e-4, "mass": 0.001, "outer_diameter": 0.001}
+    riser = {"attachments": [{"at": 10.0, "mass": 100.0}], "initial": {"points": points}}
+    ends: Mapping = {"start": prescribed(*points[0]), "end": "free", "riser": riser, "gravity": g}
+    return riser_scene(dynamic(0.8, time_step), pipe=pipe, length=10.0, elements=10, **ends)
+
+
+@pytest.mark.parametrize("time_step", [0.002, 0.001])
+def test_a_wire_that_flies_slack_takes_steps_of_its_own(time_step: float, tmp_path: Path) -> None:
+    """As the tension goes its elements whip about: steps in which one swings by 0.2 rad and more are cut. What such
+    steps made of the tension's energy once folded the wire. Peak as of a mass on a spring that falls by 0.5 m.
+    """
+    run(scene_from_mapping(wire(time_step)), tmp_path)
+    (stage,) = Run(tmp_path).summary["stages"]
+    peak = 981.0 + np.sqrt(981.0**2 + 2.0 * 1e5 * 981.0 * 0.5)
+    assert stage["extremes"]["min_effective_tension"]["max"] == pytest.approx(peak, rel=0.01)
+    assert stage["step_cuts"] > 0
+    assert Run(tmp_path).summary["finished"]

@@ -1,0 +1,44 @@
+"""How far ends of elements swing against their chords within a step: turns known beforehand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from riser_soil.core.arrays import Array
+from riser_soil.riser import rotations
+from riser_soil.riser.line_kernels import first_swung
+from riser_soil.riser.vectors import vector
+
+
+def turned(axis: Array, angle: float, v: Array) -> Array:
+    return np.array(rotations.exp(vector(angle * axis))) @ v
+
+
+def swung(spin: float, swing: float, twist: float, most: float) -> int:
+    """Of three elements the second one spins as a whole, and its second end swings and twists beyond that."""
+    along, aside, up = np.eye(3)
+    chord0 = np.stack([along, along, along])
+    tangent0 = np.repeat(turned(up, 0.1, along)[None, None], 6, axis=0).reshape(3, 2, 3)
+    chord, tangent = 2.0 * chord0, tangent0.copy()
+    chord[1] = 2.0 * turned(aside, spin, along)
+    tangent[1] = [turned(aside, spin, t) for t in tangent0[1]]
+    tangent[1, 1] = turned(aside, spin, turned(along, twist, turned(aside, swing, tangent0[1, 1])))
+    return int(first_swung(chord0, tangent0, chord, tangent, most))
+
+
+@pytest.mark.parametrize("spin", [0.0, 1.0, -3.0])
+@pytest.mark.parametrize("swing", [0.25, -0.25])
+def test_a_swing_counts_beyond_the_limit(spin: float, swing: float) -> None:
+    assert swung(spin, swing, 0.0, 0.24) == 1
+    assert swung(spin, swing, 0.0, 0.26) == 3
+
+
+def test_a_turn_of_the_whole_element_does_not_count() -> None:
+    assert swung(2.0, 0.0, 0.0, 1e-6) == 3
+    assert swung(2.0, 0.0, 0.5, 0.06) == 3  # about its chord it turns a tangent that is 0.1 from it by 0.05
+
+
+def test_an_element_that_points_back_has_swung() -> None:
+    chord0, tangent0 = np.array([[1.0, 0.0]]), np.array([[[1.0, 0.0], [1.0, 0.0]]])
+    assert first_swung(chord0, tangent0, -chord0, -tangent0, 3.0) == 0
