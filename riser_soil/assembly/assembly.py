@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from riser_soil.contact.contact import LoadsSoil, RiserContact
     from riser_soil.contact.cushion import Cushion
     from riser_soil.contact.friction import CoulombFriction
+    from riser_soil.contact.mesh_renewal import MeshRenewal
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.contact.soil_friction import SoilFriction
@@ -77,6 +78,7 @@ class Assembly:
     seabed: SeabedContact | None = None
     friction: CoulombFriction | None = None
     soil_friction: SoilFriction | None = None
+    mesh_renewal: MeshRenewal | None = None
     cushion: Cushion | None = None
     contact_stiffness: dict[str, float] = field(default_factory=dict)
     vessels: Vessels | None = None
@@ -234,7 +236,10 @@ class Assembly:
         parts += sea_loads(self.scene, self.line, self.elements, stage, self.attachments)
         cushion = [self.cushion] if self.cushion is not None and self.is_laid_in(stage) else []
         on_ground = [*self.contacts, *self.frictions, *cushion]
-        with_soil = [*on_ground, *self.soil_parts] if self.condensed is not None else [*self.soil_parts, *on_ground]
+        renewal = [] if self.mesh_renewal is None else [self.mesh_renewal]
+        with_soil = [*self.soil_parts, *on_ground, *renewal]
+        if self.condensed is not None:
+            with_soil = [*on_ground, *self.soil_parts]
         return Model([self.line], [*parts, *with_soil], self.ground_fields)
 
     def moved_in(self, stage: StaticStage) -> float:
@@ -300,6 +305,7 @@ def _add_ground(assembly: Assembly) -> None:
         contact = ground.soil_contact_of(scene, settings, line, elements, surface, stiffness["soil"])
         assembly.soil_contact = contact
         assembly.soil_friction = ground.soil_friction_of(scene, settings, contact, elements)
+        assembly.mesh_renewal = ground.mesh_renewal_of(soil, contact, assembly.soil_friction, line)
         if assembly.laying is not None or scene.stages[0].kind == "static":
             top = soil.surface.points
             assembly.cushion = ground.cushion_of(scene, contact, elements, top, assembly.comm)

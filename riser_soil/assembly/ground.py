@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from riser_soil.contact.cushion import Cushion
     from riser_soil.contact.friction import CoulombFriction
     from riser_soil.contact.law import Penalty
+    from riser_soil.contact.mesh_renewal import MeshRenewal
     from riser_soil.contact.seabed_contact import SeabedContact
     from riser_soil.contact.soil_contact import SoilContact
     from riser_soil.contact.soil_friction import SoilFriction
@@ -59,6 +60,7 @@ def soil_of(scene: Scene, given: SoilScene, line: Line, diameter: float, comm: A
         level=scene.seabed_level,
         unit_weight=weight_of(given),
         K0=given.K0,
+        moves=given.moves,
     )
 
 
@@ -120,6 +122,24 @@ def _surface_contact_of(
         upright=settings.soil_moves == "upright",
         along=line.direction[:2],
     )
+
+
+def mesh_renewal_of(
+    soil: Soil, contact: SoilContact, friction: SoilFriction | None, line: Line
+) -> MeshRenewal | None:
+    """What renews the mesh of soil that moves: a block of hexahedra under a riser along x or y; collective."""
+    from riser_soil.contact.surface_contact import SurfaceContact
+
+    if not soil.moves or not isinstance(contact, SurfaceContact):
+        return None
+    from riser_soil.contact.mesh_renewal import MeshRenewal
+    from riser_soil.soil.sections import sections_of
+
+    comm, across = soil.grid.nodes.comm, abs(float(line.direction[1])) > abs(float(line.direction[0]))
+    sections = sections_of(soil.mesh.points, int(across)) if comm.rank == 0 else None
+    if not comm.bcast(sections is not None):
+        return None
+    return MeshRenewal(soil, contact, friction, sections)
 
 
 def contact_width(scales: Scales, E: float) -> float:

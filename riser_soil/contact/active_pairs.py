@@ -7,7 +7,6 @@ from functools import cached_property
 
 import numpy as np
 
-from riser_soil.contact.cylinder_gap import FORMS
 from riser_soil.contact.near_points import NearPoints
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
@@ -17,7 +16,8 @@ from riser_soil.core.compiled import njit
 class ActivePairs:
     """What touches at a trial: n points in m pairs of an element and a facet.
 
-    points: the n points. pair (n,): of each point; element, facet (m,): of each pair. forms, C: see `gap_forms`.
+    points: the n points. pair (n,): of each point; element, facet (m,): of each pair. forms (n, k, nz), C: see
+    `gap_forms` and `row_forms`; by_place (n, nz): the form of the place on the axis.
     force (n,) [N] = area times pressure, slope (n,) [N/m]: derivative by the penetration; potential [J] of all.
     history (n, nh): of the pressure law after a step that ends here. dimension: d of the line.
     """
@@ -28,6 +28,7 @@ class ActivePairs:
     facet: IntArray
     forms: Array
     C: Array
+    by_place: Array
     force: Array
     slope: Array
     potential: float
@@ -112,13 +113,13 @@ def _add_in_dofs(out: Array, by_z: Array, P: Array) -> None:
 
 @njit
 def by_curvature(forms: Array, C: Array, force: Array, slope: Array) -> Array:
-    """Forms (n, 4, nz) times the matrices (n, 4, 4) with which forms·…·forms is d²ψ: of the law's slope, and of its
-    force by C, see `gap_forms`.
+    """Forms (n, k, nz) times the matrices (n, k, k) with which forms·…·forms is d²ψ: of the law's slope, and of its
+    force by C.
     """
     out = np.zeros_like(forms)
     for i in range(len(force)):
-        for a in range(FORMS):
-            for b in range(FORMS):
+        for a in range(forms.shape[1]):
+            for b in range(forms.shape[1]):
                 factor = slope[i] - force[i] * C[i, 0, 0] if a == b == 0 else -force[i] * C[i, a, b]
                 if factor != 0.0:
                     for c in range(forms.shape[2]):
@@ -128,10 +129,10 @@ def by_curvature(forms: Array, C: Array, force: Array, slope: Array) -> Array:
 
 @njit
 def add_products(out: Array, pair: IntArray, left: Array, right: Array) -> None:
-    """Add the sums of left (n, 4, nz) times right (n, 4, nz), by row and column, to those (m, nz, nz) of the pairs."""
+    """Add the sums of left (n, k, nz) times right (n, k, nz), by row and column, to those (m, nz, nz) of the pairs."""
     for i in range(len(pair)):
-        block, (r0, r1, r2, r3) = out[pair[i]], (right[i, 0], right[i, 1], right[i, 2], right[i, 3])
-        for r in range(left.shape[2]):
-            row, (l0, l1, l2, l3) = block[r], (left[i, 0, r], left[i, 1, r], left[i, 2, r], left[i, 3, r])
-            for c in range(len(row)):
-                row[c] += l0 * r0[c] + l1 * r1[c] + l2 * r2[c] + l3 * r3[c]
+        for k in range(left.shape[1]):
+            for r in range(left.shape[2]):
+                row, factor, columns = out[pair[i], r], left[i, k, r], right[i, k]
+                for c in range(len(row)):
+                    row[c] += factor * columns[c]

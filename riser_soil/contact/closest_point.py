@@ -43,7 +43,7 @@ def nearest(
         clearance = min(clearance, beside - axis.radius[e])
         if beside - axis.radius[e] >= within or beside >= distance:
             continue
-        along = _closest(axis.q[e], axis.length[e], p)
+        along = closest(axis.q[e], axis.length[e], p)
         c = combined(axis.q[e], axis_shape(along, axis.length[e]))
         rho = signed_distance(c, p, axis.radius[e])
         if abs(rho) < distance:
@@ -94,7 +94,7 @@ def signed_distance(c: tuple[float, float, float], p: tuple[float, float, float]
 
 
 @njit
-def _closest(q: Array, L: float, p: tuple[float, float, float]) -> float:
+def closest(q: Array, L: float, p: tuple[float, float, float]) -> float:
     """Place xi in 0..1 on an element's axis that is closest to a point."""
     xi = _along_chord(q, p)
     for _ in range(MAX_ITERATIONS):

@@ -22,23 +22,23 @@ from riser_soil.contact.closest_point import Axis, combined, signed_distance
 from riser_soil.contact.near_points import NearPoints, Surface, point_on
 from riser_soil.core.arrays import Array
 from riser_soil.core.compiled import njit
-from riser_soil.riser.hermite import Four, bend, slope
+from riser_soil.riser.hermite import bend, slope
 from riser_soil.riser.hermite import shape as axis_shape
 
 FORMS = 4
 PARALLEL = 1e-12  # sine of the angle below which two directions are one
 
 
-def gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array) -> tuple[Array, Array]:
-    """Linear forms (n, 4, 4 d + 3 nv) of the gap at some points and the symmetric matrices C (n, 4, 4) with which
-    δ²g = forms·C·forms; the first form is δg.
+def gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array) -> tuple[Array, Array, Array]:
+    """Linear forms (n, 4, 4 d + 3 nv) of the gap at some points, the symmetric matrices C (n, 4, 4) with which
+    δ²g = forms·C·forms, and the last form; the first is δg, the last δs.
 
     Columns: q of the element in axes basis (3, d), then the facet's nodes.
     """
     columns = 4 * basis.shape[1] + 3 * surface.facets.shape[1]
     forms, C = np.empty((len(near.gap), FORMS, columns)), np.zeros((len(near.gap), FORMS, FORMS))
     put_gap_forms(axis, surface, near, basis, forms, C)
-    return forms, C
+    return forms, C, forms[:, -1]
 
 
 @njit
@@ -49,18 +49,24 @@ def put_gap_forms(axis: Axis, surface: Surface, near: NearPoints, basis: Array, 
     for i in range(len(near.gap)):
         e, nodes, xi = near.element[i], surface.facets[near.facet[i]], near.along[i]
         p = point_on(surface.deformed, nodes, near.xi[i, 0], near.xi[i, 1], N, dN)
-        _frame(axis.q[e], axis.length[e], axis.radius[e], xi, p, vectors, C[i])
-        _fill(vectors, basis, axis_shape(xi, axis.length[e]), slope(xi, axis.length[e]), forms[i])
-        for k in range(FORMS):
-            for a in range(nv):
-                for j in range(3):
-                    forms[i, k, 4 * basis.shape[1] + 3 * a + j] = N[a] * vectors[k, 0, j]
+        frame(axis.q[e], axis.length[e], axis.radius[e], xi, p, vectors, C[i])
+        fill_axis(vectors, basis, xi, axis.length[e], forms[i])
+        fill_nodes(vectors, N, forms[i, :, 4 * basis.shape[1] :])
 
 
 @njit
-def _fill(vectors: Array, basis: Array, N: Four, dN: Four, forms: Array) -> None:
-    """Columns of q: -N times the forms' vectors by δp - N δq, and N' times those by N'δq."""
-    d = basis.shape[1]
+def fill_nodes(vectors: Array, N: Array, forms: Array) -> None:
+    """Write the facet's columns (4, 3 nv) of the forms of a point with the shape functions N (nv,)."""
+    for k in range(FORMS):
+        for a in range(len(N)):
+            for j in range(3):
+                forms[k, 3 * a + j] = N[a] * vectors[k, 0, j]
+
+
+@njit
+def fill_axis(vectors: Array, basis: Array, xi: float, L: float, forms: Array) -> None:
+    """Write the columns of q of the forms: -N times their vectors by δp - N δq, and N' times those by N'δq."""
+    d, N, dN = basis.shape[1], axis_shape(xi, L), slope(xi, L)
     for k in range(FORMS):
         for j in range(d):
             moved = sloped = 0.0
@@ -72,7 +78,7 @@ def _fill(vectors: Array, basis: Array, N: Four, dN: Four, forms: Array) -> None
 
 
 @njit
-def _frame(
+def frame(
     q: Array, L: float, radius: float, xi: float, p: tuple[float, float, float], vectors: Array, C: Array
 ) -> None:
     """Writes vectors (4, 2, 3) of the forms δg, b·(…), ε and δs, by δp - N δq and by N'δq; C (4, 4), see `gap_forms`.

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from riser_soil.contact.facets import QUAD
 from riser_soil.contact.gap import heights
 from riser_soil.contact.pairing import Cover, FacetSearch
 from riser_soil.core.arrays import Array, BoolArray, IntArray
@@ -53,6 +54,22 @@ class DeformedSurface:
         self.facets = np.ascontiguousarray(surface.facets, dtype=np.int64)
 
     @property
+    def has_quads(self) -> bool:
+        """Whether facets have four nodes."""
+        return self.facets.shape[1] == len(QUAD)
+
+    def put_across(self, along: Array) -> None:
+        """Number the nodes of facets of four so that eta runs across a horizontal direction (2,)."""
+        a, b, c, d = np.moveaxis(self._surface.points[self.facets][:, :, :2] @ along, 1, 0)
+        lengthwise = np.abs(c + d - a - b) > np.abs(b + c - a - d)
+        self.facets[lengthwise] = np.roll(self.facets[lengthwise], 1, axis=1)
+
+    def widths(self, points: Array) -> Array:
+        """Mean length (nf,) of the sides of facets of four that run along eta, nodes at points (np, 3) [m]."""
+        a, b, c, d = np.moveaxis(points[self.facets], 1, 0)
+        return np.asarray(0.5 * (np.linalg.norm(d - a, axis=1) + np.linalg.norm(c - b, axis=1)))
+
+    @property
     def end(self) -> int:
         """First local dof number behind the surface's."""
         return self._surface.offset + self._surface.size
@@ -71,6 +88,11 @@ class DeformedSurface:
     def at_first(self) -> Array:
         """Points (np, 3) of the surface before the riser came [m]."""
         return self._surface.points
+
+    @property
+    def measured(self) -> Array:
+        """Points (np, 3) of the surface where areas are taken [m]."""
+        return self.settled if self._surface.moves else self.at_first
 
     @property
     def settled(self) -> Array:

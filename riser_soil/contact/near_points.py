@@ -6,6 +6,7 @@ What lies beyond an element's reach is passed over, facet by facet and row by ro
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -21,14 +22,14 @@ FEW = 1024  # points for which there is room at first
 
 
 class Surface(NamedTuple):
-    """facets (nf, nv); their divisions (nf, 2) and the numbers (nf,) of their first integration points; undeformed and
-    deformed points (np, 3) [m].
+    """facets (nf, nv); their divisions (nf, 2) and the numbers (nf,) of their first integration points; points (np, 3)
+    [m] where areas are taken, and at a state.
     """
 
     facets: IntArray
     parts: IntArray
     first: IntArray
-    at_first: Array
+    measured: Array
     deformed: Array
 
 
@@ -77,12 +78,19 @@ def boxes(axis: Axis, above: float, around: float) -> tuple[Array, Array]:
     return low, high
 
 
-def near_points(axis: Axis, surface: Surface, elements: IntArray, facets: IntArray, within: float) -> NearPoints:
-    """Points of candidate pairs (m,) of an element and a facet whose gap is less than `within` [m]."""
+Fill = Callable[[Axis, Surface, PairsByFacet, float, NearPoints], int]
+
+
+def near_points(
+    axis: Axis, surface: Surface, elements: IntArray, facets: IntArray, within: float, fill: Fill
+) -> NearPoints:
+    """Points of candidate pairs (m,) of an element and a facet whose gap is less than `within` [m], as `fill` finds
+    them: `fill_near` or `fill_near_rows`.
+    """
     pairs, room = by_facet(elements, facets, len(surface.facets)), FEW
     while True:
         points = points_room(room)
-        found = fill_near(axis, surface, pairs, within, points)
+        found = fill(axis, surface, pairs, within, points)
         if found <= room:
             return first_of(points, found)
         room = found
@@ -163,7 +171,7 @@ def fill_near(axis: Axis, surface: Surface, pairs: PairsByFacet, within: float, 
                         fill_shape(xi, eta, N, dN)
                         out.element[n], out.facet[n], out.number[n] = e, f, surface.first[f] + k
                         out.along[n], out.xi[n, 0], out.xi[n, 1], out.gap[n] = along, xi, eta, gap
-                        out.area[n] = share * area(surface.at_first, nodes, dN)
+                        out.area[n] = share * area(surface.measured, nodes, dN)
                     n += 1
     return n
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.saved_state import Saved
@@ -30,6 +31,11 @@ class PointMemory:
         changed = np.any(rows != self._untouched, axis=1)
         order = np.argsort(numbers[changed])
         self.numbers, self.rows = numbers[changed][order], rows[changed][order]
+
+    def go_over(self, numbers: IntArray, before: Array, after: Array) -> None:
+        """Points (n,) that lay at places (n, 3) lie at others now: each takes the row of that which was nearest."""
+        if len(self.numbers):
+            self.keep(numbers, self.at(numbers[cKDTree(before).query(after)[1]]))
 
     def state(self) -> Saved:
         return {"numbers": self.numbers, "rows": self.rows}

@@ -118,14 +118,14 @@ class SoilFriction(LinePart):
         by_z = np.zeros((len(pressed.element), nz, nz))
         turning = np.einsum("ni,niz->nz", sliding.traction, sliding.moved.by_s_z)
         left = np.concatenate([sliding.moved.by_z, turning[:, None]], axis=1)
-        right = np.concatenate([self._traction_by_z(sliding), pressed.forms[:, 3:]], axis=1)
+        right = np.concatenate([self._traction_by_z(sliding), pressed.by_place[:, None]], axis=1)
         add_products(by_z, pressed.pair, -area * left, right)
         self.contact.add_tangent(values, sliding.found, by_z, sliding.gradient)
 
     def _traction_by_z(self, sliding: SlidingState) -> Array:
         """Derivative (n, 3, nz) of the traction."""
         moved, pressed, k = sliding.moved, sliding.found.pressed, self._stiffness
-        at, by_place = _along(moved.along, sliding.elastic), pressed.forms[:, 3]
+        at, by_place = _along(moved.along, sliding.elastic), pressed.by_place
         t, by_elastic, by_N = self._return(at, self._pressure(sliding.found))
         elastic = -k * np.einsum("nri,niz->nrz", moved.along, moved.by_z)
         turned = _along(moved.along_by_s, sliding.elastic) - k * _along(moved.along, moved.moved_by_s)
@@ -134,6 +134,11 @@ class SoilFriction(LinePart):
         components = by_elastic @ elastic + by_N[:, :, None] * pushed[:, None]
         out = np.einsum("nri,nrz->niz", moved.along, components)
         return np.asarray(out + np.einsum("nri,nr->ni", moved.along_by_s, t)[:, :, None] * by_place[:, None])
+
+    @property
+    def memory(self) -> PointMemory:
+        """Tractions of the points."""
+        return self._memory
 
     def energy(self, state: State) -> Energy:
         """Stored in what the surface gives elastically along itself."""

@@ -16,8 +16,17 @@ from riser_soil.contact.gap import heights
 from riser_soil.contact.integration_points import divisions
 from riser_soil.contact.landing import landing_predictor
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.near_points import NearPoints, PairsByFacet, Surface, boxes, by_facet, near_points
+from riser_soil.contact.near_points import (
+    NearPoints,
+    PairsByFacet,
+    Surface,
+    boxes,
+    by_facet,
+    fill_near,
+    near_points,
+)
 from riser_soil.contact.point_memory import PointMemory
+from riser_soil.contact.row_gap import fill_near_rows, gaps_of, points_of, row_forms
 from riser_soil.contact.soil_contact import SOIL, CandidateRange, SoilContact
 from riser_soil.contact.suction import SuctionLaw
 from riser_soil.contact.surface_loop import TouchNumbers
@@ -45,10 +54,11 @@ class SurfaceState:
 class SurfaceContact(SoilContact):
     """Part "contact": between the pipe's cylinder and the soil's surface, see `SoilContact`.
 
-    A point of the soil's surface bears the pressure p(−gap) times its undeformed area, along the normal from the pipe's
-    curved axis, and the element under whose axis it lies bears the opposite through its shape functions: neither the
-    riser's nodes nor those of the soil are special. All forces derive from the potential ∫ ψ(−gap) dA: the tangent is
-    symmetric, and the forces on riser and soil sum to zero in all directions.
+    A point of the soil's surface bears the pressure p(−gap) times its area where the step starts (before all steps, at
+    small strain), along the normal from the pipe's curved axis, and the element under whose axis it lies bears the
+    opposite through its shape functions: neither the riser's nodes nor those of the soil are special. Where the soil
+    moves, the gap is that of rows of points, see `row_gap`. All forces derive from the potential ∫ ψ(−gap) dA: the
+    tangent is symmetric, and the forces on riser and soil sum to zero in all directions.
 
     radius (ne,): of the pipe [m]. pressure: its law of the penetration, [N/m2] where other contacts have [N/m]; with a
     history, such as suction has, for each point of the soil. spacing: of the integration points along and across the
@@ -77,6 +87,10 @@ class SurfaceContact(SoilContact):
         half = 0.5 * self._soil.facet_size
         self._reach = reach or CandidateRange(half, min(half, AROUND * float(radius.max())))
         axis = line.basis[:2, 0] if along is None else along
+        self._by_rows = surface.moves and self._soil.has_quads
+        if self._by_rows:
+            self._soil.put_across(axis)
+            self._widths = self._soil.widths(surface.points)
         self._parts = divisions(surface.points, self._soil.facets, axis, spacing, float(line.length.min()))
         self._first = np.append(0, np.cumsum(self._parts.prod(axis=1)))[:-1]
         self._memory = PointMemory(pressure.initial_history(()))
@@ -94,20 +108,22 @@ class SurfaceContact(SoilContact):
         axis, surface = self.axis(trial), self.surface(deformed)
         reach = self._pressure.reach if len(self._memory.numbers) else self.law.start
         elements, facets = self._pairs(axis, deformed, CandidateRange(reach, reach))
-        near = near_points(axis, surface, elements, facets, reach)
+        fill = fill_near_rows if self._by_rows else fill_near
+        near = near_points(axis, surface, elements, facets, reach, fill)
         acting = self.law.active(-near.gap, self._memory.at(near.number))
         return deformed, self._pressed(axis, surface, near.of(acting))
 
     def _pressed(self, axis: Axis, surface: Surface, near: NearPoints) -> ActivePairs:
         """Forces at points near enough to have any."""
-        forms, C = gap_forms(axis, surface, near, self.line.basis)
+        forms, C, by_place = (row_forms if self._by_rows else gap_forms)(axis, surface, near, self.line.basis)
         if self._upright:
             first = 4 * self.line.dimension
             forms[:, :, first::3] = forms[:, :, first + 1 :: 3] = 0.0
         pair, element, facet = paired(near.element, near.facet, self.line.length.size)
         answer = self.law.update(-near.gap, self._memory.at(near.number))
         weighed = near.area * answer.force, near.area * answer.slope, float(near.area @ answer.stored)
-        return ActivePairs(near, pair, element, facet, forms, C, *weighed, answer.history, self.line.dimension)
+        touching = near, pair, element, facet, forms, C, by_place
+        return ActivePairs(*touching, *weighed, answer.history, self.line.dimension)
 
     def _seen(self, state: State) -> Array:
         """The surface's points (np, 3) as contact sees them [m]."""
@@ -136,7 +152,7 @@ class SurfaceContact(SoilContact):
 
     def surface(self, deformed: Array) -> Surface:
         """The soil's surface with its points at (np, 3) [m]."""
-        return Surface(self._soil.facets, self._parts, self._first, self._soil.at_first, deformed)
+        return Surface(self._soil.facets, self._parts, self._first, self._soil.measured, deformed)
 
     def axis(self, trial: Trial) -> Axis:
         """The riser's axis at a trial."""
@@ -313,6 +329,37 @@ class SurfaceContact(SoilContact):
         found = self.evaluate(state)
         return self._soil.stretch(found.deformed, found.pressed.facet)
 
+    def stretched(self, state: State) -> float:
+        """Largest width across the riser of a facet that presses, over that on its mesh at first; facets of four."""
+        found = self.evaluate(state)
+        facets = np.unique(found.pressed.facet)
+        now, first = self._soil.widths(found.deformed)[facets], self._widths[facets]
+        return float(np.max(now / first, initial=1.0))
+
+    def gaps(self, points: Array, state: State) -> Array:
+        """Between the pipe at a state and points (n, 3) [m]."""
+        return gaps_of(self.axis(self.line.trial(state)), points)[0]
+
+    def brought_to(self, points: Array, gaps: Array, state: State) -> Array:
+        """Points (n, 3), those near the pipe at given gaps (n,) from it [m]."""
+        near, out = gaps < AROUND * float(self._radius.max()), points.copy()
+        if near.any():
+            found, away = gaps_of(self.axis(self.line.trial(state)), points[near])
+            out[near] += (gaps[near] - found)[:, None] * away
+        return out
+
+    def surface_renewed(self, before: Array, memories: Sequence[PointMemory] = ()) -> None:
+        """The soil's surface has other nodes than those (np, 3) before: what is remembered of points, here and by
+        others, goes over to those that lie there now.
+        """
+        settled, axis = self._soil.settled, self.axis(self.line.trial(State.at_rest(0.0, self._soil.end)))
+        near = np.flatnonzero((gaps_of(axis, before)[0][self._soil.facets] < float(self._radius.max())).any(axis=1))
+        numbers, *places = points_of(self.surface(before), self.surface(settled), near)
+        for memory in (self._memory, *memories):
+            memory.go_over(numbers, *places)
+        self._widths = self._soil.widths(settled)
+        self.line.forget()
+
     def clearance(self, state: State) -> Array:
         """Gap (nn,) under the nodes less that at which the force begins [m]; inf beside the soil."""
         return self._above(self.line.trial(state), self._seen(state)) - self.law.start
@@ -347,3 +394,4 @@ class SurfaceContact(SoilContact):
         super().restore(saved)
         if self.active:
             self._memory.restore(within(saved, "points"))
+

@@ -12,6 +12,7 @@ A residual has no memory: it depends on the trial state alone. History changes o
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -243,6 +244,10 @@ class LineField(Field, Protocol):
 
     def predict(self, guess: State) -> Array:
         """A better first guess of a step than the increments of `guess`, by its prescribed motion; a copy."""
+        ...
+
+    def held(self) -> AbstractContextManager[None]:
+        """As long as this lasts all dofs are prescribed not to move."""
         ...
 
     def inadmissible(self, state: State, before: State | None = None) -> str:

@@ -1,4 +1,4 @@
-"""Optional roles of parts in the time stepping: adaptive sparsity pattern, predictor, momentum correction.
+"""Optional roles of parts in the time stepping: adaptive sparsity pattern, predictor, momentum correction, new mesh.
 
 A role that is declared without its methods, such as a misspelt one, is an error at the stage's start, and so are the
 methods of a role that is not declared. Parts that keep something from step to step are `Stateful`, see `saved_state`.
@@ -42,7 +42,31 @@ class MomentumCorrecting(Protocol):
         ...
 
 
-ROLES = (Adaptive, Predictor, Stateful, MomentumCorrecting)
+@runtime_checkable
+class Renewing(Protocol):
+    """A part that may change the discretisation between two steps."""
+
+    def renew(self, state: State) -> bool:
+        """Look whether that is due after a step that left an accepted state, and do it; whether it was, the same on all
+        ranks. Collective.
+        """
+        ...
+
+    def lose(self, energy: float) -> None:
+        """Take note of the energy [J] that was stored before and is not afterwards, once all is in balance again."""
+        ...
+
+
+@runtime_checkable
+class Limited(Protocol):
+    """A part whose trial states may be none of the thing modelled."""
+
+    def inadmissible(self, state: State) -> str:
+        """Why a state in balance is none, the same on all ranks; empty for a good one. Collective."""
+        ...
+
+
+ROLES = (Adaptive, Predictor, Stateful, MomentumCorrecting, Renewing, Limited)
 
 
 def with_role(parts: Iterable[Part], role: type) -> list[Any]:

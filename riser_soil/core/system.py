@@ -83,11 +83,11 @@ class System:
         blocks: dict[str, MatrixBlock] = {}
         for part in self._active:
             blocks.update(part.blocks())
-        self._couplings = [key for key, block in blocks.items() if _couples(block, self._end_of_lines)]
+        self._couplings = [key for key, block in blocks.items() if _couples(block, self.end_of_lines)]
         return Matrix(self.numbering, blocks, self.symmetric)
 
     @property
-    def _end_of_lines(self) -> int:
+    def end_of_lines(self) -> int:
         """Lines come first in local arrays."""
         return sum(line.size for line in self.model.lines)
 
@@ -99,7 +99,7 @@ class System:
     @property
     def line_rows(self) -> int:
         """How many of this rank's rows are the lines': its first ones."""
-        rows = self.numbering.index[: self._end_of_lines] - self.numbering.first
+        rows = self.numbering.index[: self.end_of_lines] - self.numbering.first
         return int(np.count_nonzero((rows >= 0) & (rows < self.numbering.owned)))
 
     @property

@@ -7,6 +7,8 @@ an angle, p along the horizontal unit vector d, the angle positive from d toward
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -129,6 +131,16 @@ class Line:
         prescribed[0, self.dimension] |= spin and self.dimension == 3
         self.prescribed: BoolArray = prescribed.ravel()
         self._prescribed_dofs: IntArray = np.flatnonzero(self.prescribed)
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """As long as this lasts all dofs are prescribed not to move."""
+        free = self.prescribed, self._prescribed_dofs
+        self.prescribed, self._prescribed_dofs = np.ones(self.size, dtype=bool), np.arange(self.size)
+        try:
+            yield
+        finally:
+            self.prescribed, self._prescribed_dofs = free
 
     @property
     def part(self) -> slice:

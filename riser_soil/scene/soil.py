@@ -187,6 +187,10 @@ class SoilScene(BaseModel):
         default=0.0, description="submerged unit weight, source of the initial stress [N/m3]"
     )
     K0: Ratio = Field(default=1.0, description="initial horizontal over vertical effective stress [-]")
+    strain: Literal["auto", "small", "large"] = Field(
+        default="auto",
+        description="whether cells move with the soil (large) or stay where they were (small); auto: small",
+    )
     inertia: Literal[False] = Field(
         default=False, description="whether the soil has mass; false: quasi-static"
     )
@@ -206,6 +210,12 @@ class SoilScene(BaseModel):
         feature = self.given_block.feature if self.given_block else None
         if feature is not None and isinstance(self.mesh, GeneratedMesh) and self.mesh.kind != "tet":
             raise wrong("mesh", "a trench or a groove is meshed in tetrahedra", "write kind: tet")
+        return self
+
+    @model_validator(mode="after")
+    def _elastic_at_small_strain(self) -> Self:
+        if self.strain == "large" and self.is_linear:
+            raise wrong("strain", "linear elastic soil is computed at small strain", "leave strain out")
         return self
 
     @model_validator(mode="after")
@@ -241,6 +251,11 @@ class SoilScene(BaseModel):
     def is_linear(self) -> bool:
         """Whether all of its laws are."""
         return all(law.linear for law in self.laws)
+
+    @property
+    def moves(self) -> bool:
+        """Whether its cells move with it."""
+        return self.strain == "large"
 
     @property
     def laws(self) -> list[SoilLaw]:

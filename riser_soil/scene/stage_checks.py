@@ -13,6 +13,7 @@ from riser_soil.scene.stages import DynamicStage, Load, MidpointScheme, StaticSt
 
 # Strain of a riser pulled straight beyond which a new position must be a mistake.
 _GREATEST_STRAIN = 0.1
+_DEEPEST = 1.5  # diameters that an axis may sink into soil
 
 
 def stage_conflicts(scene: Scene) -> Iterator[Problem]:
@@ -86,9 +87,20 @@ def _static(scene: Scene, n: int, stage: StaticStage) -> Iterator[Problem]:
         targets = {"start": stage.move.start, "end": stage.move.end}
         yield from _prescribed(ends, {("stages", n, "move", k): k for k, v in targets.items() if v is not None})
         for key, target in targets.items():
-            if scene.contact and target is not None and target[2] < (ground := ground_height(scene, target)):
-                allowed = f"must not lie below the seabed (z = {ground:g} m)"
+            if scene.contact and target is not None and target[2] < (lowest := _lowest(scene, target)):
+                allowed = f"must not lie below {_of_ground(scene)} (z = {lowest:g} m)"
                 yield Problem(("stages", n, "move", key), allowed, "move the end to a higher place")
+
+
+def _lowest(scene: Scene, target: Vector) -> float:
+    """Height [m] below which an end's axis can't go: that of the ground, or within soil that moves aside."""
+    moves = scene.soil is not None and scene.soil.moves
+    return ground_height(scene, target) - (_DEEPEST * scene.largest_diameter if moves else 0.0)
+
+
+def _of_ground(scene: Scene) -> str:
+    moves = scene.soil is not None and scene.soil.moves
+    return f"{_DEEPEST:g} diameters below the seabed" if moves else "the seabed"
 
 
 def _swings_freely(scene: Scene) -> bool:

@@ -64,6 +64,7 @@ class CondensedTop:
 
     name = "surface"
     space = "soil"
+    moves = False
 
     def __init__(self, soil: Soil) -> None:
         top = soil.surface

@@ -1,4 +1,4 @@
-"""Shape-function gradients at the quadrature points (B-bar); constant, since strains are small.
+"""Shape-function gradients at the quadrature points (B-bar) of cells with their nodes at given places.
 
 The strain-displacement operator B̄ replaces the volumetric part of the symmetric gradient by `volume`
 gradients: the cell's mean for hexahedra (mean dilatation: Hughes 1980, doi:10.1002/nme.1620150914; the full
@@ -32,29 +32,39 @@ class Gradients:
 
 def cell_gradients(family: Family, points: Array, cells: IntArray) -> Gradients:
     """Gradients of the cells (nc, nn) of nodes at points (n, 3); MeshError if a cell is inverted or flat."""
-    corners = points[cells[:, : family.vertices]]
+    at = points[cells]
     where, weights = family.quadrature()
-    jacobian = np.einsum("cvi,qvj->cqij", corners, family.map_gradients(where))
+    derivatives = family.gradients(where)
+    jacobian = _jacobian(derivatives, at)
     determinant = np.linalg.det(jacobian)
-    _check_shape(determinant, corners)
-    full = np.einsum("qnj,cqji->cqni", family.gradients(where), np.linalg.inv(jacobian))
+    _check_shape(determinant, at)
+    full = np.einsum("qnj,cqji->cqni", derivatives, np.linalg.inv(jacobian), optimize=True)
     dx = np.abs(determinant) * weights
     volume = np.einsum("cq,cqni->cni", dx, full)[:, None] / dx.sum(axis=1)[:, None, None, None]
-    return Gradients(full, volume if family.mean_dilatation else full, dx, _positions(family, where, corners))
+    positions = np.einsum("qn,cni->cqi", family.values(where), at, optimize=True)
+    return Gradients(full, volume if family.mean_dilatation else full, dx, positions)
 
 
-def _check_shape(determinant: Array, corners: Array) -> None:
+def skewness(family: Family, points: Array, cells: IntArray) -> Array:
+    """Least over mean determinant of the map in each cell (nc,), at quadrature points: 1 in bricks, 0 when it folds."""
+    determinant = np.linalg.det(_jacobian(family.gradients(family.quadrature()[0]), points[cells]))
+    determinant *= np.sign(determinant[:, :1])
+    return np.asarray(determinant.min(axis=1) / np.abs(determinant).mean(axis=1))
+
+
+def _jacobian(derivatives: Array, at: Array) -> Array:
+    """Of the maps (nc, nq, 3, 3) of cells with their nodes at (nc, nn, 3)."""
+    return np.asarray(np.einsum("cni,qnj->cqij", at, derivatives, optimize=True))
+
+
+def _check_shape(determinant: Array, at: Array) -> None:
     """The map's determinant keeps its sign and is not negligible beside the cell's size."""
-    span = np.ptp(corners, axis=1).max(axis=1) if len(corners) else np.zeros(0)
+    span = np.ptp(at, axis=1).max(axis=1) if len(at) else np.zeros(0)
     signed = determinant * np.sign(determinant[:, :1])
     bad = np.flatnonzero(signed.min(axis=1, initial=np.inf) <= 1e-9 * span**3)
     if len(bad):
-        x, y, z = corners[bad[0]].mean(axis=0)
+        x, y, z = at[bad[0]].mean(axis=0)
         raise MeshError(
             f"soil mesh: the cell at ({x:.4g}, {y:.4g}, {z:.4g}) m is inverted or flat "
             f"({len(bad)} such cells); mend the mesh"
         )
-
-
-def _positions(family: Family, where: Array, corners: Array) -> Array:
-    return np.einsum("qv,cvi->cqi", family.map_values(where), corners)

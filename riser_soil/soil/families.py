@@ -46,14 +46,6 @@ class Family:
         """Derivatives of the shape functions on the reference cell (nq, nn, 3)."""
         return _reference_gradients(self.cell, self.degree, points)
 
-    def map_gradients(self, points: Array) -> Array:
-        """The same of the straight-edged map from the reference cell, in the vertices (nq, vertices, 3)."""
-        return _reference_gradients(self.cell, 1, points)
-
-    def map_values(self, points: Array) -> Array:
-        """Weights of the vertices in the position of points on the reference cell (nq, vertices)."""
-        return np.asarray(_tabulate(self.cell, 1, points)[0, :, :, 0])
-
 
 def _reference_gradients(cell: basix.CellType, degree: int, points: Array) -> Array:
     return np.ascontiguousarray(np.moveaxis(_tabulate(cell, degree, points)[1:, :, :, 0], 0, 2))

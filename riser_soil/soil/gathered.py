@@ -37,12 +37,13 @@ def gather_rows(grid: DistributedMesh, rows: npt.NDArray[T]) -> npt.NDArray[T]:
     return rows[:0] if pieces is None else np.concatenate(pieces)
 
 
-def top_of(grid: DistributedMesh, mesh: GatheredMesh) -> SoilTop:
+def top_of(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> SoilTop:
     """The surface that looks upwards; without points where the mesh is not gathered."""
     facets = top_facets(grid, mesh)
     used = np.unique(facets)
     points = mesh.points[used]
-    return SoilTop(points, np.searchsorted(used, facets), components(used), grid.supported(points).ravel())
+    held = grid.supported(points).ravel()
+    return SoilTop(points, np.searchsorted(used, facets), components(used), held, moves)
 
 
 def top_facets(grid: DistributedMesh, mesh: GatheredMesh) -> IntArray:

@@ -41,6 +41,23 @@ def strain(full: Array, volume: Array, cells: IntArray, u: Array, out: Array) ->
 
 
 @njit
+def spin(full: Array, cells: IntArray, u: Array, out: Array) -> None:
+    """Axial vectors (nc, nq, 3) of the skew part of the gradient of the nodal displacements u (3n,), written to out."""
+    nc, nq, nn, _ = full.shape
+    for c in range(nc):
+        for q in range(nq):
+            x = y = z = 0.0
+            for a in range(nn):
+                i = 3 * cells[c, a]
+                ux, uy, uz = u[i], u[i + 1], u[i + 2]
+                gx, gy, gz = full[c, q, a, 0], full[c, q, a, 1], full[c, q, a, 2]
+                x += uz * gy - uy * gz
+                y += ux * gz - uz * gx
+                z += uy * gx - ux * gy
+            out[c, q, 0], out[c, q, 1], out[c, q, 2] = 0.5 * x, 0.5 * y, 0.5 * z
+
+
+@njit
 def add_internal_force(
     full: Array, volume: Array, weights: Array, cells: IntArray, stress: Array, out: Array
 ) -> None:

@@ -1,8 +1,9 @@
-"""Quasi-static, small-strain, elastoplastic soil: the part "soil"."""
+"""Quasi-static, elastoplastic soil at small or large strain: the part "soil"."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, NamedTuple
 
@@ -10,20 +11,29 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
-from riser_soil.core.saved_state import Saved, Stateful
+from riser_soil.core.roles import Limited
+from riser_soil.core.saved_state import Saved, Stateful, within
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
-from riser_soil.soil.element import Gradients, cell_gradients
+from riser_soil.soil.element import Gradients, cell_gradients, skewness
 from riser_soil.soil.field import SoilField, components
 from riser_soil.soil.gathered import GatheredMesh, gather, gather_rows, top_of
 from riser_soil.soil.grid import DistributedMesh, on_all_ranks
-from riser_soil.soil.law import PLASTIC_STRAIN, Formula, StressUpdate
+from riser_soil.soil.large_strain import moved_on
+from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Formula, StressUpdate
 from riser_soil.soil.layered import LayeredWeight
+from riser_soil.soil.transfer import nearest_rows
+
+FOLDS = 0.1  # skewness of a cell
+STRAINED = 1e-4  # of its size, that a cell's nodes move against each other before its gradients are made anew
 
 
 class Soil:
     """Part "soil": internal force of the soil minus its weight, in group E (taken at the end of the step).
+
+    Each step is linear about the geometry where it starts: that at first, or for soil at large strain (`moves`) the one
+    that the steps before have left, see `large_strain`. Strength belongs to the material and moves along.
 
     law: makes the law's formula from depths (n,) below `level` [m] and initial stress. unit_weight: submerged [N/m3],
     or by layers. start: "geostatic": vertical stress the weight above, horizontal K0 times that, in equilibrium with
@@ -44,27 +54,45 @@ class Soil:
         unit_weight: float | LayeredWeight,
         K0: float = 1.0,
         start: Literal["geostatic", "unstressed"] = "geostatic",
+        moves: bool = False,
     ) -> None:
         _check_level(grid, level)
-        self.grid = grid
+        self.grid, self.moves = grid, moves
         self.field = SoilField(grid)
         self.mesh: GatheredMesh = gather(grid)
-        self.surface = top_of(grid, self.mesh)
+        self.surface = top_of(grid, self.mesh, moves)
         self._cells = np.ascontiguousarray(grid.nodes.cells)
         self._gradients = on_all_ranks(
             grid.nodes.comm, lambda: cell_gradients(grid.family, grid.nodes.points, self._cells)
         )
         self._shape = self._gradients.weights.shape
-        depth = np.maximum(level - self._gradients.points[..., 2], 0.0).ravel()
         weight = LayeredWeight((), (unit_weight,)) if isinstance(unit_weight, int | float) else unit_weight
-        initial = _geostatic(weight.stress(depth), K0) if start == "geostatic" else np.zeros((depth.size, 6))
-        self.law = law(depth, initial)
-        self.traits = Traits("E", self.law.symmetric, roles=(Stateful,))
-        self._check_start(initial, depth, K0)
-        self._initial, self._found = initial, _at_rest(self.law, initial)
+        self._ground = _Ground(law, weight, K0, start == "geostatic")
+        self._depth = np.maximum(level - grid.nodes.points[:, 2], 0.0)  # of the nodes, before anything moved
+        self._take_material()
+        self.traits = Traits("E", self.law.symmetric, roles=(Limited, Stateful))
+        self._check_start(self._initial, self._at_points(self._depth), K0)
+        self._found = _at_rest(self.law, self._initial)
         self._last: _Answer | None = None
         self._unloads = False
-        self._load = self._internal(initial) if start == "geostatic" else self._weight(weight.at(depth))
+        self._volumes = self._gradients.weights.ravel()
+        self._load = self._internal(self._initial) if start == "geostatic" else self._weight()
+        self._held = self._load - self._weight()  # on the sides, and in place of what has been dug out
+        self._made_at = self._corners(grid.nodes.points)
+        self._spans = np.ptp(self._made_at, axis=1).min(axis=1)
+        self._stored = self._lifted = 0.0
+
+    def _take_material(self) -> None:
+        """Law, unit weight and initial stress at the points, of the depths that their material had at first."""
+        depth = self._at_points(self._depth)
+        self._initial, self._unit_weight = self._ground.stress(depth), self._ground.weight.at(depth)
+        self.law = self._ground.law(depth, self._initial)
+
+    def _at_points(self, nodal: Array) -> Array:
+        """Values (n, ...) at quadrature points of those (nodes, ...) at nodes."""
+        shape = self.grid.family.values(self.grid.family.quadrature()[0])
+        found = np.einsum("qa,ca...->cq...", shape, nodal[self._cells])
+        return np.asarray(found.reshape(-1, *nodal.shape[1:]))
 
     def blocks(self) -> dict[str, MatrixBlock]:
         rows = self.field.offset + components(self._cells)
@@ -95,11 +123,10 @@ class Soil:
         With σ0 the initial stress and εe the elastic strain since then, potential = ∫ σ0:εe − load·u, which is −∫ σ0:εp
         for a geostatic start: nothing, as long as K0 = 1.
         """
-        found = self._answer(state).found
-        displacement = self.field.total + self.field.own(state.u)
+        u, _, found, _ = self._answer(state)
+        started = float(np.einsum("n,ni,ni->", self._volumes, self._initial, found.elastic))
         return Energy(
-            strain=self._sum(found.stored),
-            potential=self._integral(self._initial, found.elastic) - float(self._load @ displacement),
+            strain=float(self._volumes @ found.stored), potential=started + self._lifted - float(self._load @ u)
         )
 
     def work(self, before: State, after: State) -> Work:
@@ -112,17 +139,113 @@ class Soil:
         product of the changes of their own stress and strain.
         """
         _, strain, found, _ = self._answer(after)
-        stored, elastic = found.stored - self._found.stored, found.elastic - self._found.elastic
-        taken = self._integral(found.stress, strain) - self._integral(self._initial, elastic)
-        by_scheme = 0.5 * self._integral(found.stress - self._found.stress, elastic)
-        return Work(dissipated=taken - self._sum(stored), by_scheme=by_scheme)
+        taken = self._integral(found.stress, strain)
+        by_scheme = 0.5 * self._integral(found.stress - self._found.stress, found.elastic - self._found.elastic)
+        return Work(dissipated=taken - self._stores(found) + self._stored, by_scheme=by_scheme)
+
+    def _stores(self, found: StressUpdate) -> float:
+        """Energy [J] since the start, what the initial stress has done included."""
+        return float(self._volumes @ (found.stored + mandel.product(self._initial, found.elastic)))
 
     def commit(self, state: State) -> None:
         """Soil that has not moved, and whose history has not changed, answers as before."""
         u, _, found, _ = self._answer(state)
+        self._stored, self._lifted = self._stores(found), self._lifted - float(self._load @ u)
+        if u.any() and self.moves:
+            found = self._move(u)
         if u.any() or not np.array_equal(found.history, self._found.history):
             self._last = None
         self._found = found._replace(tangent=np.empty(0))
+
+    def _move(self, u: Array) -> StressUpdate:
+        """Let the nodes move by u; the law's answer to that."""
+        found = moved_on(self.grid.family, self.points, self._cells, u, self.law, self._found.history)
+        self._renew_gradients(self.points + u.reshape(-1, 3))
+        self._load = self._held + self._weight()
+        return found
+
+    def _renew_gradients(self, points: Array) -> None:
+        """Of the cells that have strained since theirs were made; nodes at points (n, 3)."""
+        at = self._corners(points)
+        moved = at - self._made_at
+        moved -= moved.mean(axis=1, keepdims=True)
+        strained = np.flatnonzero(np.abs(moved).max(axis=(1, 2)) > STRAINED * self._spans)
+        if not strained.size:
+            return
+        self._made_at[strained] = at[strained]
+        made = cell_gradients(self.grid.family, points, self._cells[strained])
+        for name, values in vars(made).items():
+            vars(self._gradients)[name][strained] = values
+        if "_stiffness" in vars(self):
+            self._stiffness.moduli[strained] = np.nan
+
+    @property
+    def points(self) -> Array:
+        """Where this rank's nodes are (n, 3) [m]."""
+        return np.asarray(self.grid.nodes.points + self.field.total.reshape(-1, 3))
+
+    def gathered_points(self) -> Array:
+        """Where all nodes are (n, 3) [m], on rank 0; collective."""
+        return gather_rows(self.grid, self.points[: self.grid.nodes.owned])
+
+    @property
+    def skewed(self) -> float:
+        """Least `skewness` of this rank's cells."""
+        return float(np.min(skewness(self.grid.family, self.points, self._cells), initial=1.0))
+
+    def inadmissible(self, state: State) -> str:
+        """Where a step would fold a cell; collective."""
+        moved = self.points + self.field.own(state.u).reshape(-1, 3)
+        found = skewness(self.grid.family, moved, self._cells) if self.moves else np.ones(1)
+        worst = int(found.argmin()) if found.size else 0
+        mine = (float(found[worst]), moved[self._cells[worst]].mean(axis=0).tolist()) if found.size else (1.0, [])
+        least, at = min(self.grid.nodes.comm.allgather(mine))
+        if least > FOLDS:
+            return ""
+        return "a cell of the soil at ({:.4g}, {:.4g}, {:.4g}) m would fold".format(*at)
+
+    def take_mesh(self, points: Array) -> None:
+        """Go on with all nodes at points (n, 3) [m]; collective."""
+        before = self.points
+        after, number = points[self.grid.nodes.number], self.surface.global_index[::3] // 3
+        self.field.total = (after - self.grid.nodes.points).ravel()
+        self._move_to(before, after)
+        self.surface.committed = points[number] - self.surface.points if len(number) else self.surface.committed
+        self._stored = self._stores(self._found)
+
+    def _move_to(self, before: Array, after: Array) -> None:
+        nh = len(self.law.columns)
+        slope = np.einsum("cqni,cn->cqi", self._gradients.full, self._depth[self._cells]).reshape(-1, 3)
+        old, rows = self._at_points(before), [self._found.history, self._at_points(self._depth)[:, None], slope]
+        held = np.column_stack(rows)
+        of_nodes, way = nearest_rows(self.grid, old, after, held[:, nh:])
+        moved = np.any(after != before, axis=1) & (self._depth > 0.0)
+        depth = np.maximum(of_nodes[:, 0] + np.einsum("ni,ni->n", of_nodes[:, 1:], way), 0.0)
+        history, way = nearest_rows(self.grid, old, self._at_points(after), held[:, :nh])
+        self._depth = np.where(moved, depth, self._depth)
+        self._made_at = self._corners(after)
+        self._gradients = cell_gradients(self.grid.family, after, self._cells)
+        self._volumes = self._gradients.weights.ravel()
+        vars(self).pop("_stiffness", None)
+        self._take_material()
+        self._load, self._last = self._held + self._weight(), None
+        self._found = self._balanced_history(history, way)
+
+    def _balanced_history(self, history: Array, way: Array) -> StressUpdate:
+        """The law's answer to histories that come from points (n, 3) away: the mean stress beyond what the weight makes
+        of it by depth is one for all points of a cell.
+        """
+        first, by_height = self.law.columns.index(STRESS[0]), self._unit_weight[:, None] * self._ground.ratios
+        stress = history[:, first : first + 6]
+        stress += way[:, 2:] * by_height
+        height = self._at_points(self.points)[:, 2]
+        beyond = mandel.mean(stress) - height * mandel.mean(by_height)
+        stress += (np.repeat(self._cell_mean(beyond), self._shape[1]) - beyond)[:, None] * mandel.UNIT
+        return self.law.update(np.zeros_like(stress), history)._replace(tangent=np.empty(0))
+
+    def _corners(self, points: Array) -> Array:
+        """Nodes (nc, nn, 3) of the cells, at points (n, 3)."""
+        return points[self._cells]
 
     def output_mesh(self) -> SoilMesh:
         """The whole mesh for output on rank 0; empty elsewhere."""
@@ -174,19 +297,16 @@ class Soil:
         kernels.add_internal_force(g.full, g.volume, g.weights, self._cells, points, out)
         return out
 
-    def _weight(self, unit_weight: Array) -> Array:
-        """Nodal forces [N] of the submerged weight (n,) [N/m3], this rank's cells."""
+    def _weight(self) -> Array:
+        """Nodal forces [N] of the submerged weight, this rank's cells."""
         shape = self.grid.family.values(self.grid.family.quadrature()[0])
-        down = -np.einsum("cq,cq,qa->ca", unit_weight.reshape(self._shape), self._gradients.weights, shape)
+        down = -np.einsum("cq,cq,qa->ca", self._unit_weight.reshape(self._shape), self._gradients.weights, shape)
         out = np.zeros(self.field.size)
         out[2::3] = np.bincount(self._cells.ravel(), down.ravel(), minlength=self.field.size // 3)
         return out
 
     def _integral(self, a: Array, b: Array) -> float:
         return float(np.einsum("n,ni,ni->", self._gradients.weights.ravel(), a, b))
-
-    def _sum(self, values: Array) -> float:
-        return float(self._gradients.weights.ravel() @ values)
 
     def _cell_mean(self, values: Array) -> Array:
         w = self._gradients.weights
@@ -205,11 +325,32 @@ class Soil:
             )
 
     def state(self) -> Saved:
-        found = self._found
-        return {"stress": found.stress, "history": found.history, "stored": found.stored, "elastic": found.elastic}
+        found, energy = self._found, np.array([self._stored, self._lifted])
+        kept = {"stress": found.stress, "history": found.history, "stored": found.stored, "elastic": found.elastic}
+        return {"law/" + name: values for name, values in kept.items()} | {"energy": energy} | self._moved
+
+    @property
+    def _moved(self) -> Saved:
+        """What the gradients are made of, where cells move."""
+        if not self.moves:
+            return {}
+        return {"made_at": self._made_at.copy(), "depth": self._depth.copy(), "volumes": self._volumes.copy()}
 
     def restore(self, saved: Saved) -> None:
-        self._found, self._last = self._found._replace(**saved), None
+        self._found, self._last = self._found._replace(**within(saved, "law")), None
+        self._stored, self._lifted = (float(joules) for joules in saved["energy"])
+        if self.moves:
+            self._restore_geometry(saved["made_at"])
+            self._depth, self._volumes = saved["depth"].copy(), saved["volumes"].copy()
+            self._take_material()
+            self._load = self._held + self._weight()
+
+    def _restore_geometry(self, made_at: Array) -> None:
+        nc, nn, _ = made_at.shape
+        self._made_at = made_at.copy()
+        apart = np.arange(nc * nn).reshape(nc, nn)
+        self._gradients = cell_gradients(self.grid.family, made_at.reshape(-1, 3), apart)
+        vars(self).pop("_stiffness", None)
 
 
 class _Answer(NamedTuple):
@@ -233,6 +374,25 @@ class _Stiffness(NamedTuple):
         return cls(np.full((nc, nq, 6, 6), np.nan), np.zeros((nc, 3 * nn, 3 * nn)))
 
 
+@dataclass(frozen=True, eq=False)
+class _Ground:
+    """What soil is made of, by depth: law, submerged unit weight and initial stress, if any."""
+
+    law: Callable[[Array, Array], Formula]
+    weight: LayeredWeight
+    K0: float
+    geostatic: bool
+
+    @property
+    def ratios(self) -> Array:
+        """Of the initial stress to its vertical component (6,)."""
+        return np.array([self.K0, self.K0, 1.0, 0.0, 0.0, 0.0]) * float(self.geostatic)
+
+    def stress(self, depth: Array) -> Array:
+        """Initial stress (n, 6) at depths (n,) [Pa]."""
+        return -self.weight.stress(depth)[:, None] * self.ratios
+
+
 def _at_rest(law: Formula, initial: Array) -> StressUpdate:
     """Before the first step."""
     return StressUpdate(initial, np.empty(0), law.start(), np.zeros(len(initial)), np.zeros_like(initial))
@@ -246,9 +406,3 @@ def _check_level(grid: DistributedMesh, level: float) -> None:
             f"soil mesh: it spans z = {low:.4g} to {high:.4g} m, which misses seabed.level = {level:.4g} m; "
             "move the mesh or the level"
         )
-
-
-def _geostatic(above: Array, K0: float) -> Array:
-    """Stress (n, 6) under a weight above (n,) [Pa]."""
-    vertical, none = -above, np.zeros_like(above)
-    return np.column_stack((K0 * vertical, K0 * vertical, vertical, none, none, none))

@@ -11,7 +11,7 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import any_of
 from riser_soil.core.part import Energy, Forces, State, Work, local
-from riser_soil.core.roles import Adaptive, with_role
+from riser_soil.core.roles import Adaptive, Limited, with_role
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
@@ -48,6 +48,7 @@ class Newton:
         self._state: State | None = None
         self._known: State | None = None  # whose forces are known
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
+        self._limited: list[Limited] = with_role(system.model.parts, Limited)
         self.loop = self._new_loop()
         self._pivots = PivotCounter(system)
         self._make_vectors()
@@ -181,10 +182,13 @@ class Newton:
         return self.system.energy(solution.state), self.system.work(before, solution.state)
 
     def require_admissible(self, state: State) -> None:
-        """Raise NotConvergedError where a state in balance is none of the line."""
+        """Raise NotConvergedError where a state in balance is none of a line's or of a part's; collective."""
         before = self._step.before if self._step.scheme.dynamic else None
         for line in self.system.model.lines:
             if reason := line.inadmissible(state, before):
+                raise NotConvergedError(reason)
+        for part in self._limited:
+            if reason := part.inadmissible(state):
                 raise NotConvergedError(reason)
 
     def require_stable(self, solution: Solution) -> None:

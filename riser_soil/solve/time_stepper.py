@@ -11,11 +11,12 @@ import numpy as np
 from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import any_of
 from riser_soil.core.part import Energy, Forces, LineField, State, Work, local
-from riser_soil.core.roles import MomentumCorrecting, Predictor, with_role
+from riser_soil.core.roles import MomentumCorrecting, Predictor, Renewing, with_role
 from riser_soil.core.saved_state import Saved, Stateful, gathered, record_of, under, values_of, within
 from riser_soil.core.system import System, total
 from riser_soil.errors import SolveError
 from riser_soil.solve.energy_gain import LARGEST, EnergyGain
+from riser_soil.solve.held_balance import balance_held
 from riser_soil.solve.local_error import LocalError, committed_error
 from riser_soil.solve.predictor import Extrapolation
 from riser_soil.solve.solution import NotConvergedError, Solution, Step
@@ -84,6 +85,7 @@ class TimeStepper:
         parts = system.model.parts
         self._predictors: list[Predictor] = [*system.model.lines, *with_role(parts, Predictor)]
         self._momentum_correcting: list[MomentumCorrecting] = with_role(parts, MomentumCorrecting)
+        self._renewing: list[Renewing] = with_role(parts, Renewing)
         if isinstance(before, State):
             self._begin(before)
         else:
@@ -131,6 +133,7 @@ class TimeStepper:
         """Take one step, cut as often as it needs; SolveError when it can't be cut any more, or may not."""
         if control.judges_error and self._error is None:
             self._error = self._new_error()
+        self._renew()
         cuts = 0
         while True:
             try:
@@ -235,6 +238,17 @@ class TimeStepper:
         self._keep_energy(step)
         self._past.accept(state.u, step.dt)
         control.accept(easy=step.solution.iterations <= EASY)
+
+    def _renew(self) -> None:
+        """Go on with another discretisation of what is not a line, where a part asks for one."""
+        for part in self._renewing:
+            if not part.renew(self.before):
+                continue
+            system = self.system
+            balance_held(system.comm, system.model, self.before.t, self.newton.settings, system.clock)
+            part.lose(self.energy.total - system.energy(self.before).total)
+            self._forces = system.forces(self.before)
+            self._past.stop(slice(system.end_of_lines, None))
 
     def _rates_after(self, step: AcceptedStep) -> tuple[State, State]:
         """The state just committed, increments zero: with the bulk's rates alone, and as the riser moves."""

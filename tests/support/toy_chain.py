@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager, nullcontext
+
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
@@ -27,6 +29,9 @@ class Chain:
 
     def predict(self, guess: State) -> Array:
         return guess.u
+
+    def held(self) -> AbstractContextManager[None]:
+        return nullcontext()
 
     def inadmissible(self, state: State, before: State | None = None) -> str:
         return ""

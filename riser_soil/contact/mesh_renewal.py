@@ -1,0 +1,83 @@
+"""New meshes of soil at large strain: the part "new mesh", which looks after each step whether its cells have strained
+too far and lets soil and contact go on on new ones.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from riser_soil.contact.soil_friction import SoilFriction
+from riser_soil.contact.surface_contact import SurfaceContact
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
+from riser_soil.core.roles import Renewing
+from riser_soil.core.saved_state import Saved, Stateful
+from riser_soil.soil.sections import Sections, spread
+from riser_soil.soil.soil import Soil
+
+SKEWED = 0.7  # least over mean volume per point in a cell, below which it is renewed
+STRETCHED = 1.25  # length of a facet that presses, across the riser, over what it was on its mesh at first
+
+
+class MeshRenewal:
+    """Renews the mesh of a soil, see the module's text. sections: of its block's nodes, on the first rank."""
+
+    name = "new mesh"
+    active = True
+    traits = Traits("E", symmetric=True, roles=(Renewing, Stateful))
+
+    def __init__(
+        self, soil: Soil, contact: SurfaceContact, friction: SoilFriction | None, sections: Sections | None
+    ) -> None:
+        self._soil, self._contact, self._friction, self._sections = soil, contact, friction, sections
+        self.count, self._lost = 0, 0.0
+
+    def blocks(self) -> dict[str, MatrixBlock]:
+        return {}
+
+    def residual(self, state: State, forces: Forces) -> None:
+        """Nothing acts."""
+
+    def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
+        """Nothing acts."""
+
+    def energy(self, state: State) -> Energy:
+        return Energy()
+
+    def work(self, before: State, after: State) -> Work:
+        """What the transfer before the step has lost."""
+        return Work(dissipated=self._lost)
+
+    def commit(self, state: State) -> None:
+        self._lost = 0.0
+
+    def renew(self, state: State) -> bool:
+        """Go on on a new mesh if need be; whether so. state: accepted, increments zero. Collective."""
+        comm = self._soil.grid.nodes.comm
+        worn = self._soil.skewed < SKEWED or (self._contact.active and self._contact.stretched(state) > STRETCHED)
+        if not any(comm.allgather(bool(worn))):
+            return False
+        points = self._soil.gathered_points()
+        made = self._renewed(points, state) if comm.rank == 0 else None
+        surface = self._soil.surface.points + self._soil.surface.committed
+        self._soil.take_mesh(comm.bcast(made))
+        if self._contact.active:
+            self._contact.surface_renewed(surface, [self._friction.memory] if self._friction else [])
+        self.count += 1
+        return True
+
+    def lose(self, energy: float) -> None:
+        self._lost = energy if self._soil.grid.nodes.comm.rank == 0 else 0.0
+
+    def _renewed(self, points: Array, state: State) -> Array:
+        assert self._sections is not None
+        lines = points[self._sections.surface]
+        made = [spread(line, self._sections.columns, self._contact.gaps(line, state)) for line in lines]
+        tops = np.stack([self._contact.brought_to(top, gaps, state) for top, gaps in made])
+        return self._sections.renewed(points, tops)
+
+    def state(self) -> Saved:
+        return {"count": np.array(self.count), "lost": np.array(self._lost)}
+
+    def restore(self, saved: Saved) -> None:
+        self.count, self._lost = int(saved["count"]), float(saved["lost"])

@@ -1,0 +1,126 @@
+"""New meshes of a block of hexahedra that has been strained: its sections across the riser, each smoothed by itself.
+
+A block of hexahedra is a grid of sections along the riser, columns across it and layers in depth, and stays one. In
+each section the nodes of the surface are spread anew along it, as they were along the level surface at first, and the
+inner ones follow by Winslow's equations: the map from where they are to where they were at first is harmonic, which
+never folds and leaves an undisturbed section as it is. A. M. Winslow, Numerical solution of the quasilinear Poisson
+equation in a nonuniform triangle mesh, J. Comput. Phys. 1 (1966).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+from scipy.sparse import csr_matrix
+from scipy.sparse.linalg import splu
+
+from riser_soil.core.arrays import Array, IntArray
+
+SAME = 1e-6  # of the block's size: coordinates nearer to each other are those of one plane of the grid
+MOST_PASSES, SETTLED = 30, 1e-6  # of Winslow's equations; movement of a pass over the smallest cell
+
+
+@dataclass(frozen=True, eq=False)
+class Sections:
+    """Numbers of a block's nodes (ns, nc, nl), section by section, columns across, layers from the bottom up; places of
+    the columns (nc,) and layers (nl,) at first [m]. across: axis, x (0) or y (1), of the columns.
+    """
+
+    nodes: IntArray
+    columns: Array
+    layers: Array
+    across: int
+
+    @property
+    def surface(self) -> IntArray:
+        """Nodes (ns, nc) of the top."""
+        return self.nodes[:, :, -1]
+
+    def renewed(self, points: Array, surface: Array) -> Array:
+        """Points (n, 3) of the block's nodes: those of the surface at (ns, nc, 3), the inner ones as these ask."""
+        out = points.copy()
+        for section, top in zip(self.nodes, surface, strict=True):
+            at = points[section]
+            if np.array_equal(at[:, -1], top):
+                continue
+            at = at.copy()
+            at[:, -1] = top
+            out[section] = smoothed(at, self.columns, self.layers, self.across)
+        return out
+
+
+def sections_of(points: Array, along: int) -> Sections | None:
+    """Of nodes at points (n, 3), the riser along x (0) or y (1); None where they form no grid along x, y and z."""
+    axes = (along, 1 - along, 2)
+    near = SAME * float(np.ptp(points, axis=0).max())
+    lines = [np.unique(np.round(points[:, axis] / near)) for axis in axes]
+    if np.prod([len(line) for line in lines]) != len(points):
+        return None
+    place = [np.searchsorted(line, np.round(points[:, axis] / near)) for line, axis in zip(lines, axes, strict=True)]
+    nodes = np.empty([len(line) for line in lines], dtype=np.int64)
+    nodes[tuple(place)] = np.arange(len(points))
+    return Sections(nodes, points[nodes[0, :, 0], 1 - along], points[nodes[0, 0, :], 2], 1 - along)
+
+
+def spread(line: Array, places: Array, beside: Array) -> tuple[Array, Array]:
+    """Nodes (nc, 3) spread anew along the smooth curve through those of a surface line (nc, 3), in proportion to their
+    places (nc,) at first; values (nc,) beside them as they are along the line.
+    """
+    arc = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1)))
+    now = (places - places[0]) / (places[-1] - places[0]) * arc[-1]
+    return np.asarray(PchipInterpolator(arc, line)(now)), np.interp(now, arc, beside)
+
+
+def smoothed(at: Array, columns: Array, layers: Array, across: int) -> Array:
+    """A section's nodes (nc, nl, 3), those of its rim as they are, the inner ones by Winslow's equations from there."""
+    at = at.copy()
+    smallest = min(np.diff(columns).min(), np.diff(layers).min())
+    first, second = _differences(columns), _differences(layers)
+    for _ in range(MOST_PASSES):
+        moved = _pass(at, first, second, across)
+        largest = float(np.abs(moved - at[1:-1, 1:-1]).max())
+        at[1:-1, 1:-1] = moved
+        if largest < SETTLED * smallest:
+            break
+    return at
+
+
+def _differences(x: Array) -> tuple[Array, Array]:
+    """Weights (n - 2, 3) of first and second derivatives at the inner ones of n places x."""
+    a, b = x[1:-1] - x[:-2], x[2:] - x[1:-1]
+    first = np.stack([-b / (a * (a + b)), (b - a) / (a * b), a / (b * (a + b))], axis=1)
+    second = np.stack([2.0 / (a * (a + b)), -2.0 / (a * b), 2.0 / (b * (a + b))], axis=1)
+    return first, second
+
+
+def _pass(at: Array, first: tuple[Array, Array], second: tuple[Array, Array], across: int) -> Array:
+    """Inner nodes (nc - 2, nl - 2, 3) of g22 x_11 - 2 g12 x_12 + g11 x_22 = 0, metrics those of `at` in the section."""
+    nc, nl, _ = at.shape
+    shape = (nc - 2, nl - 2)
+    (d1, dd1), (d2, dd2) = first, second
+    shifted = [[at[1 + i : nc - 1 + i, 1 + j : nl - 1 + j] for j in (-1, 0, 1)] for i in (-1, 0, 1)]
+    plane = [across, 2]
+    x1 = np.sum([d1[:, i, None, None] * shifted[i][1] for i in range(3)], axis=0)[..., plane]
+    x2 = np.sum([d2[None, :, j, None] * shifted[1][j] for j in range(3)], axis=0)[..., plane]
+    g11, g12, g22 = (np.einsum("abi,abi->ab", a, b) for a, b in ((x1, x1), (x1, x2), (x2, x2)))
+    number = np.full((nc, nl), -1)
+    number[1:-1, 1:-1] = np.arange(shape[0] * shape[1]).reshape(shape)
+    rows, cols, values, load = [], [], [], np.zeros((*shape, 3))
+    for i in range(3):
+        for j in range(3):
+            weight = -2.0 * g12 * d1[:, i, None] * d2[None, :, j]
+            if j == 1:
+                weight = weight + g22 * dd1[:, i, None]
+            if i == 1:
+                weight = weight + g11 * dd2[None, :, j]
+            target = number[i : nc - 2 + i, j : nl - 2 + j]
+            inner = target >= 0
+            rows.append(number[1:-1, 1:-1][inner])
+            cols.append(target[inner])
+            values.append(weight[inner])
+            load[~inner] -= weight[~inner][:, None] * shifted[i][j][~inner]
+    size = shape[0] * shape[1]
+    matrix = csr_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(cols))), shape=(size, size))
+    return np.asarray(splu(matrix.tocsc()).solve(load.reshape(size, 3))).reshape(*shape, 3)

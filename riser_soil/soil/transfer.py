@@ -1,0 +1,34 @@
+"""Transfer of what points of the soil hold to those of a new mesh: each takes it from the point nearest to where it is.
+
+So states stay such as the law admits, of any law. What grows with depth is not nearest: the stress by the weight above,
+which the new point has of its own depth, and the depth at which the material lay at first, on which its strength hangs,
+which goes on from the old point by its gradient.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.soil.grid import DistributedMesh
+
+
+def nearest_rows(grid: DistributedMesh, before: Array, after: Array, rows: Array) -> tuple[Array, Array]:
+    """Rows (n, k) of those points of all ranks, at places (m, 3) before, that are nearest to this rank's places (n, 3)
+    after; and the ways (n, 3) from there. Collective.
+    """
+    comm = grid.nodes.comm
+    gathered = comm.gather((before, rows, after))
+    shares = [] if gathered is None else _shares(gathered)
+    mine: tuple[Array, Array] = comm.scatter(shares)
+    return mine
+
+
+def _shares(gathered: list[tuple[Array, Array, Array]]) -> list[tuple[Array, Array]]:
+    """What each rank gets."""
+    places, held, asked = (np.concatenate(each) for each in zip(*gathered, strict=True))
+    number: IntArray = cKDTree(places).query(asked)[1]
+    ends = np.cumsum([len(after) for _, _, after in gathered])[:-1]
+    taken, way = np.split(held[number], ends), np.split(asked - places[number], ends)
+    return list(zip(taken, way, strict=True))

@@ -1,0 +1,187 @@
+"""Soil that moves: objective stress, simple shear, volume, energy, and what a change of mesh leaves of stress."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.soil.element import cell_gradients
+from riser_soil.soil.iwan import IwanOverlay
+from riser_soil.soil.kinematic_hardening import KinematicHardening
+from riser_soil.soil.large_strain import turn, turned
+from riser_soil.soil.law import STRESS
+from riser_soil.soil.soil import Soil
+from riser_soil.soil.von_mises import VonMises
+from tests.support.soil_cases import CLAY, KINDS, distorted, inner, small_block
+
+LAWS = (
+    VonMises(kind="von-mises", su=4.0e3, E_over_su=300.0),
+    KinematicHardening(kind="kinematic-hardening", su=4.0e3, E_over_su=300.0),
+    IwanOverlay(kind="iwan", su=4.0e3, E_over_su=300.0),
+)
+ROOT = np.sqrt(2.0)
+
+
+def tensors(mandel: Array) -> Array:
+    """(n, 3, 3) of (n, 6)."""
+    xx, yy, zz, xy, xz, yz = mandel.T * np.array([1, 1, 1, 1 / ROOT, 1 / ROOT, 1 / ROOT])[:, None]
+    return np.moveaxis(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), 2, 0)
+
+
+def moving(kind: Any, law: Any = CLAY, unit_weight: float = 0.0) -> Soil:
+    return Soil(distorted(small_block(kind)), law, level=0.0, unit_weight=unit_weight, moves=True)
+
+
+def move(soil: Soil, points: Array) -> None:
+    """Take one step that brings all nodes to points (n, 3)."""
+    u = (points - soil.points).ravel()
+    state = State(1.0, u, u, u)
+    soil.commit(state)
+    soil.field.commit(state)
+
+
+def stress(soil: Soil) -> Array:
+    return soil.state()["law/stress"]
+
+
+def test_tensors_turn_by_cayleys_rotation() -> None:
+    """A spin w over a step turns by 2 atan(|w|/2) about w, see Hughes & Winget 1980."""
+    rng = np.random.default_rng(1)
+    before, spin = rng.normal(size=(20, 6)), rng.normal(size=(20, 3))
+    after = before.copy()
+    turn(after, spin)
+    size = np.linalg.norm(spin, axis=1, keepdims=True)
+    Q = Rotation.from_rotvec(2.0 * np.arctan(0.5 * size) * spin / size).as_matrix()
+    np.testing.assert_allclose(tensors(after), Q @ tensors(before) @ Q.transpose(0, 2, 1), atol=1e-14)
+
+
+def test_only_tensors_of_a_history_turn() -> None:
+    columns = ("scalar", *STRESS, "equivalent_plastic_strain", *(f"backstress{name[6:]}" for name in STRESS))
+    history, spin = np.random.default_rng(2).normal(size=(4, 14)), np.full((4, 3), 0.3)
+    after = turned(history, columns, spin)
+    assert (after[:, [0, 7]] == history[:, [0, 7]]).all()
+    for first in (1, 8):
+        expected = history[:, first : first + 6].copy()
+        turn(expected, spin)
+        np.testing.assert_array_equal(after[:, first : first + 6], expected)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.kind)
+@pytest.mark.parametrize("steps", [1, 7])
+def test_a_stressed_block_that_turns_keeps_its_stress_in_its_own_axes(kind: str, law: Any, steps: int) -> None:
+    soil = moving(kind, law.at_points)
+    gradient = 2e-3 * np.array([[0.5, 1.0, -0.4], [0.3, -0.9, 0.6], [-0.2, 0.7, 0.2]])
+    move(soil, soil.points @ (np.eye(3) + gradient).T)
+    first, places = tensors(stress(soil)), soil.points
+    axis = np.array([2.0, -1.0, 2.0]) / 3.0
+    for n in range(1, steps + 1):
+        R = Rotation.from_rotvec(0.5 * np.pi * n / steps * axis).as_matrix()
+        move(soil, places @ R.T)
+    own = R.T @ tensors(stress(soil)) @ R
+    assert np.abs(own - first).max() < 1e-10 * np.abs(first).max()
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.kind)
+def test_simple_shear_to_four_times_the_height_rises_to_the_strength(law: Any) -> None:
+    """An overlay's strongest elements yield beyond a strain of 2, and until then turn with the material."""
+    soil = moving("hex", law.at_points)
+    first, shear = soil.points.copy(), [0.0]
+    for gamma in np.linspace(0.0, 4.0, 401)[1:]:
+        move(soil, first + gamma * np.outer(first[:, 2], [1.0, 0.0, 0.0]))
+        shear.append(float(stress(soil)[:, 4].mean()) / ROOT)
+    assert np.diff(shear).min() > -1e-3 * 4.0e3
+    assert (0.95 if law.kind == "iwan" else 0.999) < shear[-1] / 4.0e3 < 1.0 + 1e-9
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_pressure_is_that_of_the_volume_that_there_is(kind: str) -> None:
+    """Cells stretched to half of their height in 20 steps, their volume less by 1e-3: p = -K ln(1 - 1e-3)."""
+    soil = moving(kind, LAWS[0].at_points)
+    first, volume = soil.points.copy(), cell_gradients(soil.grid.family, soil.points, soil.grid.nodes.cells).weights
+    for n in range(1, 21):
+        height, plan = 0.5 ** (n / 20), (1.0 - 1e-3) ** (n / 20)
+        move(soil, first * np.array([plan / height, 1.0, height]))
+    now = cell_gradients(soil.grid.family, soil.points, soil.grid.nodes.cells).weights
+    np.testing.assert_allclose(now.sum(axis=1) / volume.sum(axis=1), 1.0 - 1e-3, rtol=1e-12)
+    found = -stress(soil)[:, :3].mean(axis=1)
+    np.testing.assert_allclose(found, -soil.law.bulk * np.log(1.0 - 1e-3), rtol=5e-3)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.kind)
+def test_energy_is_balanced_over_steps_that_move(kind: str, law: Any) -> None:
+    """What forces put in is stored or dissipated, steps after others that have moved the cells included."""
+    soil = moving(kind, law.at_points, unit_weight=5.0e3)
+    first, rng = soil.points.copy(), np.random.default_rng(3)
+    free = inner(soil.grid)
+    stored = soil.energy(State.at_rest(0.0, soil.field.size)).total
+    for n in range(4):
+        target = first.copy()
+        target[free] += 0.005 * (n + 1) * rng.uniform(-1.0, 1.0, (np.count_nonzero(free), 3))
+        u = (target - soil.points).ravel()
+        state, rest = State(1.0, u, u, u), State.at_rest(0.0, soil.field.size)
+        force = soil._answer(state).force
+        put_in, turned_over = float(force @ u), soil.work(rest, state)
+        after = soil.energy(state).total
+        assert after - stored + turned_over.dissipated == pytest.approx(put_in, rel=1e-10)
+        soil.commit(state)
+        soil.field.commit(state)
+        stored = after
+
+
+def test_weight_goes_along_with_the_cells() -> None:
+    soil = moving("hex", unit_weight=5.0e3)
+    raised = soil.points + np.array([0.0, 0.0, 0.4]) * (1.0 + soil.points[:, 2:])
+    move(soil, raised)
+    whole = 5.0e3 * 2.0 * 1.5 * 1.4
+    assert -(soil._load - soil._held)[2::3].sum() == pytest.approx(whole, rel=1e-12)
+
+
+def waved(soil: Soil, amount: float) -> Array:
+    """Points of the soil, inner ones moved in a smooth manner."""
+    x, y, z = soil.points.T
+    bump = amount * np.sin(np.pi * x / 2.0) * np.sin(np.pi * y / 1.5) * np.sin(np.pi * z)
+    return np.asarray(soil.points + np.outer(bump, [1.0, 0.5, -0.7]))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_uniform_stress_survives_a_hundred_new_meshes(kind: str) -> None:
+    gradient = 2e-4 * np.array([[0.5, 1.0, -0.4], [0.3, -0.9, 0.6], [-0.2, 0.7, 0.2]])
+    law = VonMises(kind="von-mises", su=4.0e3, E_over_su=300.0, nu=0.3)
+    soil = Soil(small_block(kind), law.at_points, level=0.0, unit_weight=0.0, moves=True)
+    move(soil, soil.points @ (np.eye(3) + gradient).T)
+    first, here, there = stress(soil)[0], soil.points.copy(), waved(soil, 0.05)
+    for n in range(100):
+        soil.take_mesh((here if n % 2 else there)[np.argsort(soil.grid.nodes.number)])
+    assert np.abs(stress(soil) - first).max() < 1e-10 * np.abs(first).max()
+
+
+def test_stress_by_weight_and_strength_by_depth_are_those_of_the_new_places() -> None:
+    soil = Soil(small_block("hex", 0.25), CLAY, level=0.0, unit_weight=5.0e3, moves=True)
+    for amount in (0.04, -0.03, 0.05):
+        soil.take_mesh(waved(soil, amount)[np.argsort(soil.grid.nodes.number)])
+    depth = -soil._at_points(soil.points)[:, 2]
+    limit = np.sqrt(3.0) * (4.0e3 + 1.5e3 * depth)
+    np.testing.assert_allclose(vars(soil.law)["limit"], limit, rtol=1e-10)
+    of_cell = soil._cell_mean(5.0e3 * depth)
+    np.testing.assert_allclose(-soil._cell_mean(stress(soil)[:, 2]), of_cell, rtol=1e-10)
+
+
+def test_a_stress_that_varies_is_kept_to_first_order_in_the_way() -> None:
+    """Half the way to the new mesh's nodes, half the error."""
+    errors = []
+    for amount in (0.02, 0.01):
+        soil = Soil(small_block("hex", 0.125), LAWS[0].at_points, level=0.0, unit_weight=0.0, moves=True)
+        x = soil.points
+        move(soil, x + 1e-3 * np.stack([x[:, 0] * x[:, 2], 0.0 * x[:, 0], -0.5 * x[:, 2] ** 2], axis=1))
+        soil.take_mesh(waved(soil, amount)[np.argsort(soil.grid.nodes.number)])
+        at = soil._at_points(soil.points)
+        shear = soil.law.shear * 1e-3 * at[:, 0]
+        errors.append(float(np.sqrt(np.mean((stress(soil)[:, 4] / ROOT - shear) ** 2))))
+    assert errors[1] < 0.6 * errors[0]

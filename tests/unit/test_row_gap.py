@@ -1,0 +1,117 @@
+"""Contact by rows of points across the riser, as on soil that moves: derivatives, balance, and a groove that fits."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+from riser_soil.contact.law import Penalty
+from riser_soil.contact.soil_friction import SoilFriction
+from riser_soil.core.arrays import Array
+from riser_soil.soil.surface import SoilTop
+from tests.support.differences import slope as differences
+from tests.support.pipe_on_surface import RADIUS, STIFFNESS, PipeOnSurface, pipe_on_surface, sagging, shaken
+from tests.support.soil_tops import top
+
+DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])
+
+
+def moving(turned: bool = False) -> SoilTop:
+    """A surface of squares a third as wide as the pipe; turned: numbered the other way around."""
+    surface = top("quad4", 30, 10, 0.1)
+    surface.moves = True
+    surface.committed = 0.004 * np.random.default_rng(4).normal(size=surface.points.shape)
+    if turned:
+        surface.facets = np.roll(surface.facets, 1, axis=1)
+    return surface
+
+
+@DIMENSIONS
+@pytest.mark.parametrize("turned", [False, True])
+def test_residual_and_tangent_are_slopes(dimension: int, turned: bool) -> None:
+    made = pipe_on_surface(sagging(), moving(turned), dimension)
+    u, h = shaken(made, 2, 0.002), 1e-6
+
+    def energy(direction: Array, s: float) -> Array:
+        return np.array(made.contact.energy(made.state(direction * s)).potential)
+
+    def residual(direction: Array, s: float) -> Array:
+        return made.residual(u + s * direction)
+
+    for seed in range(3):
+        direction = shaken(made, 10 + seed, 1.0)
+        wanted = float(differences(partial(energy, direction), h))
+        assert made.residual(np.zeros(made.size)) @ direction == pytest.approx(wanted, rel=1e-6)
+        assert abs(wanted) > 20.0
+        by_tangent, slope = made.tangent(u) @ direction, differences(partial(residual, direction), 1e-7)
+        assert np.abs(by_tangent - slope).max() < 2e-6 * np.abs(by_tangent).max()
+
+
+def test_the_tangent_of_friction_is_its_slope() -> None:
+    made = pipe_on_surface(sagging(), moving())
+    friction = SoilFriction(made.contact, 0.5, 0.3, 3e6)
+    u = shaken(made, 3, 0.001)
+    direction = shaken(made, 12, 1.0)
+    by_tangent = made.tangent(u, friction) @ direction
+    slope = differences(lambda s: made.residual(u + s * direction, friction), 1e-7)
+    assert np.abs(by_tangent - slope).max() < 5e-6 * np.abs(by_tangent).max()
+
+
+def test_forces_and_moments_sum_to_zero() -> None:
+    made = pipe_on_surface(sagging(), moving())
+    state, surface = made.state(), made.surface
+    on_riser, on_soil = made.contact.force_on_riser(state), made.contact.force_on_soil(state)
+    assert np.abs(on_riser + on_soil).max() < 1e-12 * np.abs(on_riser).max()
+    turn, spin, nodal = np.zeros(made.size), np.array([0.3, 0.5, 1.0]), np.zeros((made.line.nodes, 6))
+    trial = made.line.trial(state)
+    nodal[:, :3] = np.cross(spin, made.line.to_global(trial.x))
+    nodal[:, 3:] = [trial.turn.at(node).T @ spin for node in range(made.line.nodes)]
+    turn[2 : 2 + made.line.size] = nodal.ravel()
+    turn[surface.offset :] = np.cross(spin, surface.points + surface.committed).ravel()
+    work = made.residual(state.u) * turn
+    assert abs(work.sum()) < 1e-12 * np.abs(work).sum()
+
+
+def grooved(moves: bool, depth: float) -> PipeOnSurface:
+    """A pipe that penetrates by `depth`, all along, a groove of its own shape, whose nodes lie on a circle."""
+    surface = top("quad4", 30, 10, 0.1)
+    surface.moves = moves
+    angle = np.clip(surface.points[:, 1] / 0.1 * 0.3, -1.2, 1.2)
+    groove = np.stack([(RADIUS - depth) * np.sin(angle), -(RADIUS - depth) * np.cos(angle)], axis=1)
+    surface.committed[:, 1:] = groove - surface.points[:, 1:]
+    along = np.linspace(-0.5, 3.5, 6)
+    return pipe_on_surface(np.stack([along, 0.0 * along, 0.0 * along], axis=1), surface, 2, 0.005, Penalty(STIFFNESS))
+
+
+def test_a_groove_that_fits_bears_the_pipe_evenly() -> None:
+    """k times the penetration, over the facets' own width and along normals between those of their nodes, while points
+    of the facets' chords, each 0.3 rad of the circle wide, penetrate by R 0.15^2/2 more.
+    """
+    depth = 1e-4
+    made = grooved(True, depth)
+    gap = made.contact.evaluate(made.state()).pressed.points.gap
+    np.testing.assert_allclose(gap, -depth, rtol=1e-9)
+    upwards = 2.0 * sum(2.0 * np.sin(0.15) * np.mean([np.cos(0.3 * n), np.cos(0.3 * n + 0.3)]) for n in range(4))
+    expected = STIFFNESS * depth * (RADIUS - depth) * upwards * 3.0
+    assert -made.contact.force_on_soil(made.state())[2] == pytest.approx(expected, rel=1e-6)
+    assert -grooved(False, depth).contact.force_on_soil(made.state())[2] > 5.0 * expected
+
+
+def test_what_points_remember_goes_over_to_those_that_lie_there_next() -> None:
+    """Nodes slide along the surface by half a facet: the tractions of friction stay where they were."""
+    made = pipe_on_surface(sagging(0.0), (surface := top("quad4", 60, 40, 0.05)), spacing=0.01)
+    surface.moves = True
+    made = pipe_on_surface(sagging(0.0), surface, spacing=0.01)
+    friction = SoilFriction(made.contact, 0.5, 0.3, 3e6)
+    u = np.zeros(made.size)
+    u[2 : 2 + made.line.size : 6] = 1e-3
+    friction.commit(made.state(u))
+    before, places = friction.memory.rows.copy(), surface.points + surface.committed
+    total = before[:, :3].T @ before[:, 3]
+    surface.committed[:, 1] += 0.025
+    made.contact.surface_renewed(places, [friction.memory])
+    after = friction.memory.rows
+    assert after[:, :3].T @ after[:, 3] == pytest.approx(total, rel=0.02, abs=0.02 * np.abs(total).max())
+    assert len(after) != 0
