@@ -43,12 +43,16 @@ def _reasons(scene: Scene) -> dict[str, str]:
         "friction": _no_friction(scene, "seabed"),
         "soil friction": _no_friction(scene, "soil"),
         "soil": "" if scene.soil is not None else "the scene has no soil",
+        "new mesh": _no_new_mesh(scene),
         "cushion": _no_cushion(scene),
         "contact": "" if ground else "the scene has neither seabed nor soil",
     }
 
 
-DISSIPATING = ("morison", "structural damping", "contact", "seabed", "friction", "soil friction", "soil", "cushion")
+DISSIPATING = (
+    *("morison", "structural damping", "contact", "seabed", "friction"),
+    *("soil friction", "soil", "new mesh", "cushion"),
+)
 #: Accounts of a part that tells what is its own and what is the time scheme's.
 SPLIT = {
     "soil": ("soil_plasticity", "soil_time_scheme"),
@@ -83,6 +87,14 @@ def _no_cushion(scene: Scene) -> str:
     if scene.soil.given_block is not None and scene.soil.given_block.feature is not None:
         return "the soil's top is not level"
     return "" if scene.stages[0].kind == "static" else "the riser is not laid in a static stage"
+
+
+def _no_new_mesh(scene: Scene) -> str:
+    if scene.soil is None:
+        return "the scene has no soil"
+    if scene.soil.is_linear:
+        return "elastic soil is computed at small strain"
+    return "" if scene.soil.moves else "soil.strain: small keeps the cells where they are"
 
 
 def _no_friction(scene: Scene, ground: str) -> str:

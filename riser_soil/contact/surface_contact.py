@@ -387,11 +387,14 @@ class SurfaceContact(SoilContact):
         return np.asarray(x[:, 2] - radius - heights(facet, xi, self._soil.facets, surface))
 
     def state(self) -> Saved:
-        """That of the pattern, and the history of the points."""
-        return super().state() | (gathered({"points": self._memory}) if self.active else {})
+        """That of the pattern, the history of the points, and how wide facets were on their mesh at first."""
+        kept = super().state() | (gathered({"points": self._memory}) if self.active else {})
+        return kept | ({"widths": self._widths} if self.active and self._by_rows else {})
 
     def restore(self, saved: Saved) -> None:
         super().restore(saved)
         if self.active:
             self._memory.restore(within(saved, "points"))
+            if self._by_rows:
+                self._widths = saved["widths"]
 

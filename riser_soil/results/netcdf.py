@@ -29,6 +29,7 @@ _SPOKEN = {  # parts whose names don't tell what dissipates or works
     "contact": "contact of the riser with the soil",
     "soil_plasticity": "plastic flow of the soil",
     "soil_time_scheme": "the time scheme, which takes the soil's stress at the end of a step for all of it",
+    "new_mesh": "transfer of stress to new meshes of the soil",
     "supports": "moving ends",
 }
 

@@ -53,15 +53,22 @@ class Sections:
 
 def sections_of(points: Array, along: int) -> Sections | None:
     """Of nodes at points (n, 3), the riser along x (0) or y (1); None where they form no grid along x, y and z."""
-    axes = (along, 1 - along, 2)
     near = SAME * float(np.ptp(points, axis=0).max())
-    lines = [np.unique(np.round(points[:, axis] / near)) for axis in axes]
-    if np.prod([len(line) for line in lines]) != len(points):
+    place = [_planes(points[:, axis], near) for axis in (along, 1 - along, 2)]
+    counts = [int(planes.max()) + 1 for planes in place]
+    if np.prod(counts) != len(points):
         return None
-    place = [np.searchsorted(line, np.round(points[:, axis] / near)) for line, axis in zip(lines, axes, strict=True)]
-    nodes = np.empty([len(line) for line in lines], dtype=np.int64)
+    nodes = np.empty(counts, dtype=np.int64)
     nodes[tuple(place)] = np.arange(len(points))
     return Sections(nodes, points[nodes[0, :, 0], 1 - along], points[nodes[0, 0, :], 2], 1 - along)
+
+
+def _planes(x: Array, near: float) -> IntArray:
+    """Number (n,) of the plane that each of some coordinates lies on, in rising order."""
+    order = np.argsort(x)
+    out = np.empty(len(x), dtype=np.int64)
+    out[order] = np.append(0, np.cumsum(np.diff(x[order]) > near))
+    return out
 
 
 def spread(line: Array, places: Array, beside: Array) -> tuple[Array, Array]:

@@ -31,6 +31,7 @@ def balance_held(comm: Communicator, model: Model, t: float, settings: NewtonSet
             except NotConvergedError:
                 return
             for part in parts:
-                part.commit(found)
+                if part.active:
+                    part.commit(found)
             for field in model.others:
                 field.commit(found)

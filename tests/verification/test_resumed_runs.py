@@ -14,6 +14,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.solver import Solver
 from tests.support.coupled_scenes import LAY, heave, touchdown
 from tests.support.interrupted_run import differing, differing_rows, resumed, summary, whole
+from tests.support.sinking_pipe import sinking
 
 ROOT = Path(__file__).parents[2]
 MIDPOINT = "stages.1.scheme={midpoint: {}}"
@@ -60,6 +61,13 @@ def laid_and_lifted_on_clay() -> Scene:
     return scene_from_mapping(touchdown(LAY, lift, su=1000.0))
 
 
+def sinks_into_clay() -> Scene:
+    """On new meshes before and after it is left."""
+    law = {"kind": "kinematic-hardening", "su": 5.0e3, "E_over_su": 400.0, "elastic_share": 0.1}
+    friction = {"friction": {"axial": 0.3, "lateral": 0.3}}
+    return scene_from_mapping(sinking(6, 0.2, 16, law, contact=friction, submerged_unit_weight=5.0e3))
+
+
 SHORT = {
     "first scene": (lambda: shortened("demos/first_scene.yaml", 1.0), (5,)),
     "catenary": (lambda: shortened("demos/catenary/scene.yaml", 1.0), (1, 6)),
@@ -72,6 +80,7 @@ SHORT = {
     "kept factors": (kept_factors, (4, 10, 12)),
     "condensed soil": (condensed_soil, (4, 10)),
     "laid and lifted on clay": (laid_and_lifted_on_clay, (10,)),
+    "sinks into clay": (sinks_into_clay, (5, 12)),
     "midpoint rule": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT), (6,)),
     "midpoint rule in space": (lambda: shortened("demos/catenary/scene.yaml", 1.0, MIDPOINT, *IN_SPACE), (6,)),
     "automatic steps": (lambda: shortened("demos/catenary/scene.yaml", 2.0, "stages.1.time_step=auto"), (7,)),

@@ -1,0 +1,85 @@
+"""A stiff pipe pushed into a slice of clay at large strain: load by embedment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from riser_soil.core.arrays import Array
+from riser_soil.core.part import State
+from riser_soil.core.system import Timer
+from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
+from riser_soil.stages import run_stage
+from tests.support.coupled_scenes import Mapping
+from tests.support.driven_stage import Watcher, built
+
+D, SU, STIFF = 0.3, 5.0e3, 400.0  # m, Pa, E over su
+CLAY: Mapping = {"kind": "von-mises", "su": SU, "E_over_su": STIFF}
+
+
+def sinking(cells: int, depth: float, steps: int, law: Mapping = CLAY, **more: Any) -> Mapping:
+    """To an embedment of `depth` diameters in so many steps, on so many cells across the pipe; one cell is plane
+    strain. more: keys of the soil; contact: of contact.
+    """
+    size, contact = D / cells, more.pop("contact", {})
+    ends = {name: {"position": [x, 0.0, 0.5 * D], "rotation": "fixed"} for name, x in (("start", 0.0), ("end", D))}
+    down = {name: [*end["position"][:2], 0.5 * D - depth * D] for name, end in ends.items()}
+    pipe = {"outer_diameter": D, "submerged_weight": 500.0, "mass": 120.0, "EA": 1e10, "EI": 1e9}
+    around = {"x": [0.5 * (D - size), 0.5 * (D + size)], "y": [-5.0 * D, 5.0 * D], "depth": 5.0 * D}
+    cell_sizes = {"along": size, "across": size, "strip": (1.5 + depth) * D}
+    return {
+        "title": "Pipe that sinks into clay",
+        "gravity": 9.81,
+        "dimension": 2,
+        "line_types": {"pipe": pipe},
+        "riser": {"segments": [{"line_type": "pipe", "length": D, "elements": 1}], **ends, "initial": "straight"},
+        "soil": {
+            "block": around,
+            "mesh": {"kind": "hex", "size_at_riser": cell_sizes, "size_far": D},
+            "law": dict(law),
+            "strain": "large",
+            **more,
+        },
+        "contact": {"method": "surface", **contact},
+        "solver": {"load_steps": steps},
+        "stages": [{"name": "push", "kind": "static", "move": down}],
+    }
+
+
+@dataclass(frozen=True, eq=False)
+class Sunk:
+    """Step by step: embedment over D, load per length over su D, Newton iterations; new meshes that it took; and the
+    area of the slice's section over that at first.
+    """
+
+    w: Array
+    V: Array
+    iterations: Array
+    renewals: int
+    area: float
+
+    def at(self, w: float) -> float:
+        """V/(su D) at an embedment w/D."""
+        return float(np.interp(w, self.w, self.V))
+
+
+def sink(scene: Mapping) -> Sunk:
+    """Take the scene's only stage."""
+    assembly, rows = built(scene), list[tuple[float, float, float]]()
+    contact, soil = assembly.soil_contact, assembly.soil
+    assert contact is not None
+    assert soil is not None
+    thickness = float(soil.grid.high[0] - soil.grid.low[0])
+    deepest = 0.5 - scene["stages"][0]["move"]["start"][2] / D
+    first = soil._gradients.weights.sum()
+
+    def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
+        load = -float(contact.force_on_soil(stepper.before)[2]) / (thickness * SU * D)
+        rows.append((step.t * deepest, load, step.solution.iterations))
+
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Timer.new())
+    w, V, iterations = np.array(rows).T
+    renewals = 0 if assembly.mesh_renewal is None else assembly.mesh_renewal.count
+    return Sunk(w, V, iterations, renewals, float(soil._gradients.weights.sum() / first))

@@ -1,0 +1,94 @@
+"""A pipe that sinks into clay, beside published loads with heave; two meshes and steps; ranks.
+
+R. S. Merifield, D. J. White & M. F. Randolph, Effect of surface heave on response of partially embedded pipelines on
+clay, J. Geotech. Geoenviron. Eng. 135 (2009): V/(su D) = 5.3 (w/D)^0.25 smooth, 7.1 (w/D)^0.33 rough, weightless; from
+memory, as the source could not be read.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.support.on_ranks import mpirun
+from tests.support.sinking_pipe import Sunk, sink, sinking
+
+ROUGH = {"contact": {"friction": {"axial": 0.4, "lateral": 0.4}}}
+
+
+def smooth(w: float) -> float:
+    return float(5.3 * w**0.25)
+
+
+def require_a_load_that_rises(found: Sunk) -> None:
+    """By no more than half a per cent does it fall as the pipe sinks."""
+    highest = np.maximum.accumulate(found.V)
+    assert np.max((highest - found.V) / highest) < 0.005
+
+
+def test_a_pipe_sinks_to_a_fifth_of_its_diameter() -> None:
+    """On cells of D/8 the load climbs in stairs as cell after cell touches."""
+    found = sink(sinking(8, 0.2, 40))
+    for w in (0.1, 0.15, 0.2):
+        assert found.at(w) == pytest.approx(smooth(w), rel=0.07)
+    assert found.renewals > 0
+    assert found.iterations.mean() < 6.0
+    assert found.area == pytest.approx(1.0, abs=2e-3)
+
+
+@pytest.mark.verify
+def test_a_pipe_sinks_to_half_of_its_diameter_on_three_meshes() -> None:
+    loads = []
+    for cells in (16, 32):
+        found = sink(sinking(cells, 0.5, 100))
+        for w in (0.1, 0.2, 0.3, 0.4, 0.5):
+            assert found.at(w) == pytest.approx(smooth(w), rel=0.07)
+        require_a_load_that_rises(found)
+        assert found.iterations.mean() < 6.5
+        loads.append([found.at(w) for w in (0.1, 0.2, 0.3, 0.4, 0.5)])
+    np.testing.assert_allclose(loads[0], loads[1], rtol=0.04)
+
+
+@pytest.mark.verify
+def test_steps_of_a_fortieth_and_a_hundred_and_sixtieth_of_the_diameter_agree() -> None:
+    coarse, fine = (sink(sinking(16, 0.5, n)) for n in (20, 80))
+    for w in (0.1, 0.2, 0.3, 0.4, 0.5):
+        assert coarse.at(w) == pytest.approx(fine.at(w), rel=0.02)
+
+
+@pytest.mark.verify
+def test_a_pipe_sinks_by_its_diameter() -> None:
+    found = sink(sinking(16, 1.0, 200))
+    require_a_load_that_rises(found)
+    assert found.at(0.7) == pytest.approx(smooth(0.7), rel=0.07)
+
+
+@pytest.mark.verify
+def test_ranks_agree_across_new_meshes() -> None:
+    script = (
+        "import numpy as np\n"
+        "from mpi4py import MPI\n"
+        "from riser_soil.assembly import build\n"
+        "from riser_soil.core.part import State\n"
+        "from riser_soil.core.system import Timer\n"
+        "from riser_soil.scene.reader import scene_from_mapping\n"
+        "from riser_soil.stages import run_stage\n"
+        "from tests.support.driven_stage import Watcher\n"
+        "from tests.support.sinking_pipe import sinking\n"
+        "from tests.verification.test_large_strain import ROUGH\n"
+        "made = build(scene_from_mapping(sinking(8, 0.2, 20, **ROUGH)), MPI.COMM_WORLD)\n"
+        "rest = State.at_rest(0.0, made.size)\n"
+        "state = run_stage(made, made.scene.stages[0], rest, Watcher(), Timer.new())\n"
+        "force = made.soil_contact.force_on_soil(state)\n"
+        "if MPI.COMM_WORLD.rank == 0:\n"
+        "    print(made.mesh_renewal.count, *force)\n"
+    )
+    found = []
+    for ranks in (1, 2, 4):
+        done = mpirun(ranks, "-c", script)
+        assert done.returncode == 0, done.stderr
+        found.append([float(x) for x in done.stdout.split()[-4:]])
+    assert found[0][0] > 0
+    for others in found[1:]:
+        assert others[0] == found[0][0]
+        assert others[3] == pytest.approx(found[0][3], rel=1e-6)
