@@ -141,8 +141,7 @@ def _take(
     system = System(assembly.comm, model, clock)
     if not isinstance(begin, State):
         _restore(system, begin)
-    settings = replace(settings_of(assembly), linear_start=_starts_at_rest(assembly, stage))
-    newton = solver_of(system, scheme_of(stage), settings)
+    newton = solver_of(system, scheme_of(stage), _settings_in(assembly, stage))
     with destroyed_together(assembly.comm, newton, system):
         try:
             run = _begin_run(assembly, stage, system, newton, begin, observer)
@@ -184,7 +183,8 @@ def _begin_run(
     assembly: Assembly, stage: Stage, system: System, newton: StepSolver, begin: State | Saved, observer: StageObserver
 ) -> StageRun:
     if isinstance(begin, State):
-        stepper = TimeStepper(system, newton, scheme_of(stage), replace(begin, t=0.0))
+        guess = assembly.first_guess(stage)
+        stepper = TimeStepper(system, newton, scheme_of(stage), replace(begin, t=0.0), first_guess=guess)
         with uninterrupted():
             observer.begin_stage(stage, stepper)
         return StageRun(assembly, stage, stepper, steps_of(assembly, stage, stepper), observer)
@@ -273,9 +273,11 @@ def settings_of(assembly: Assembly) -> NewtonSettings:
     )
 
 
-def _starts_at_rest(assembly: Assembly, stage: Stage) -> bool:
-    """Whether a stage on soil begins with a riser in equilibrium: on its cushion, or after another stage."""
-    return assembly.soil is not None and (assembly.cushion is not None or not assembly.is_laid_in(stage))
+def _settings_in(assembly: Assembly, stage: Stage) -> NewtonSettings:
+    """Newton's settings in a stage: in statics on a ground, steps are cut short where contact opens and closes."""
+    settings, lies = settings_of(assembly), bool(assembly.contacts) and isinstance(stage, StaticStage)
+    at_rest = assembly.cushion is not None or not assembly.is_laid_in(stage)
+    return replace(settings, line_search=settings.line_search or lies, linear_start=lies and at_rest)
 
 
 def _load_steps(assembly: Assembly, stage: StaticStage) -> int:

@@ -258,6 +258,19 @@ class Assembly:
         targets = (getattr(stage.move, name, None) for name in ("start", "end"))
         return [(x, np.asarray(target)) for x, target in zip(origins, targets, strict=True) if target is not None]
 
+    def first_guess(self, stage: Stage) -> Array | None:
+        """Increments (size,) to where the first static step begins its search; None where it begins as it is placed."""
+        if not self.is_laid_in(stage) or self.seabed is None or self.catenary is None or self.soil is not None:
+            return None
+        from riser_soil.assembly.laid_guess import laid_guess
+
+        guess = laid_guess(self.scene, self.seabed, self.elements, self.attachments, self.catenary)
+        if guess is None:
+            return None
+        increments = np.zeros(self.size)
+        self.line.nodal(increments)[:] = guess
+        return increments
+
     def is_laid_in(self, stage: Stage) -> bool:
         """Whether a static stage is the first, in which the riser is laid on the soil."""
         first = self.laying.name if self.laying is not None else self.scene.stages[0].name

@@ -68,6 +68,7 @@ class TimeStepper:
     adds to them (see `time_scheme`). now: the same state as the riser moves; energy: stored in it [J].
     local_error: largest of a place in the last step [m], see `local_error`; 0 in statics.
     largest_gain: share of the energy in motion that a step may create, see `energy_gain`.
+    first_guess (size,): beyond the guess of the steps until one is accepted, where it is known how they end.
     """
 
     def __init__(
@@ -77,6 +78,7 @@ class TimeStepper:
         scheme: Scheme,
         before: State | Saved,
         largest_gain: float = LARGEST,
+        first_guess: Array | None = None,
     ) -> None:
         self.system, self.newton, self.scheme, self._largest_gain = system, newton, scheme, largest_gain
         self._mass = newton.mass if scheme.dynamic else None
@@ -90,6 +92,7 @@ class TimeStepper:
             self._begin(before)
         else:
             self.restore(before)
+        self._first_guess = first_guess
 
     def _begin(self, before: State) -> None:
         self.before = self.now = before
@@ -104,7 +107,7 @@ class TimeStepper:
     def restart(self) -> None:
         """Start anew from the configuration that the parts hold now."""
         self._forces = self.system.forces(self.before)
-        self._past = self._new_predictor()
+        self._past, self._first_guess = self._new_predictor(), None
 
     def _new_predictor(self) -> Extrapolation:
         return Extrapolation(self.system.numbering.size, smooth=self.system.smooth)
@@ -180,7 +183,7 @@ class TimeStepper:
         guess = self._past.increments(dt)
         for owner in self._predictors:
             guess = owner.predict(State(t, guess, self.before.v, self.before.a))
-        return guess
+        return guess if self._first_guess is None else guess + self._first_guess
 
     def _account(self, solution: Solution, control: Control, cuts: int) -> AcceptedStep:
         """Energy balance of the step: stored, dissipated and external."""
@@ -237,6 +240,7 @@ class TimeStepper:
         self._forces, self._history = forces, self._forces_after(step) if self._renews_history else None
         self._keep_energy(step)
         self._past.accept(state.u, step.dt)
+        self._first_guess = None
         control.accept(easy=step.solution.iterations <= EASY)
 
     def _renew(self) -> None:
