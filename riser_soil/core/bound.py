@@ -19,6 +19,7 @@ from numba.extending import intrinsic
 from riser_soil.core.arrays import IntArray
 from riser_soil.core.compiled import FOLDER, OPTIONS, njit
 from riser_soil.core.kernel_cache import EntryCache, caching_in, mark
+from riser_soil.core.machine_code import NOTHING, WORD, borrowed, made_tuple, stored
 from riser_soil.core.packed import Packed
 
 _entries: dict[tuple[Any, ...], Any] = {}
@@ -102,29 +103,13 @@ def _arguments(context: Any, row: Any, kinds: Any) -> Any:
     both = kinds.instance_type
 
     def load(target: Any, builder: Any, signature: Any, given: Any) -> Any:
-        addresses = builder.inttoptr(given[0], target.get_value_type(types.intp).as_pointer())
-        values = []
+        addresses, values = builder.inttoptr(given[0], WORD.as_pointer()), []
         for n, kind in enumerate(both):
-            model = target.data_model_manager[kind]
-            address = builder.load(builder.gep(addresses, [target.get_constant(types.intp, n)]))
-            place = builder.inttoptr(address, model.get_data_type().as_pointer())
-            values.append(_borrowed(builder, kind, model.load_from_data_pointer(builder, place)))
-        return target.make_tuple(builder, both, values)
+            address = builder.load(builder.gep(addresses, [WORD(n)]))
+            values.append(borrowed(builder, kind, builder.inttoptr(address, stored(kind).as_pointer())))
+        return made_tuple(builder, both, values)
 
     return both(row, kinds), load
-
-
-def _borrowed(builder: Any, kind: Any, value: Any) -> Any:
-    """The same value, of whose arrays compiled code is told that it doesn't own them, as for all that is packed.
-    Else it counts references at each row that a loop touches, which takes longer than most of the work there.
-    """
-    if isinstance(kind, types.Array):
-        for n in range(2):  # meminfo and parent
-            value = builder.insert_value(value, ir.Constant(value.type.elements[n], None), n)
-    elif isinstance(kind, types.BaseTuple):
-        for n, each in enumerate(kind.types):
-            value = builder.insert_value(value, _borrowed(builder, each, builder.extract_value(value, n)), n)
-    return value
 
 
 @intrinsic
@@ -132,8 +117,8 @@ def _call(context: Any, function: Any, row: Any) -> Any:
     """In compiled code: call a function by its address."""
 
     def call(target: Any, builder: Any, signature: Any, given: Any) -> Any:
-        kind = ir.FunctionType(ir.VoidType(), [target.get_value_type(types.intp)])
+        kind = ir.FunctionType(ir.VoidType(), [WORD])
         builder.call(builder.inttoptr(given[0], kind.as_pointer()), [given[1]])
-        return target.get_dummy_value()
+        return NOTHING
 
     return types.void(types.intp, types.intp), call

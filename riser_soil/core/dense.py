@@ -1,21 +1,45 @@
-"""Dense LU factorisation with partial pivoting in compiled code: LAPACK's, which numba reaches, but tells by raising.
+"""Dense LU factorisation with partial pivoting in compiled code: LAPACK's dgetrf, as SciPy has it for Cython.
 
 LAPACK takes a matrix by columns, so of one that lies by rows it factorises the transpose, P A' = L U. A x = b is solved
 with U' first and with L' then, both of them read along their rows.
+
+Compiled code calls it by a name that stands for its address in this process, as an address is nothing to keep on disk.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
+import llvmlite.binding
+import numpy as np
+from llvmlite import ir
 from numba import types
-from numba.np.linalg import _LAPACK, F_INT_nptype
+from numba.extending import get_cython_function_address, intrinsic
+from scipy.linalg import cython_lapack
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.compiled import njit
+from riser_soil.core.machine_code import ADDRESS, NOTHING, items
 
 HUGE = 1e300  # a pivot beyond it is no number to divide by
-PIVOT = F_INT_nptype  # the type of LAPACK's pivots
-_DOUBLE = ord("d")
-_getrf = _LAPACK().numba_xxgetrf(types.float64)
+PIVOT = np.intc if "(int *" in str(cython_lapack.__pyx_capi__["dgetrf"]) else np.int64  # LAPACK's integers
+SYMBOL = "riser_soil_dgetrf"
+
+llvmlite.binding.add_symbol(SYMBOL, get_cython_function_address("scipy.linalg.cython_lapack", "dgetrf"))
+
+
+@intrinsic
+def _dgetrf(context: Any, size: Any, a: Any, pivots: Any, info: Any) -> Any:
+    """In compiled code: factorise a matrix of the size (1,); arrays."""
+
+    def call(target: Any, builder: Any, signature: Any, given: Any) -> Any:
+        n, matrix, exchanged, told = (builder.bitcast(items(builder, array), ADDRESS) for array in given)
+        known = builder.module.globals.get(SYMBOL)
+        function = known or ir.Function(builder.module, ir.FunctionType(ir.VoidType(), [ADDRESS] * 6), SYMBOL)
+        builder.call(function, [n, n, matrix, n, exchanged, told])
+        return NOTHING
+
+    return types.void(size, a, pivots, info), call
 
 
 @njit
@@ -24,7 +48,9 @@ def factorise(a: Array, pivots: IntArray) -> bool:
     n = pivots.size
     if n == 0:
         return True
-    if _getrf(_DOUBLE, n, n, a.ctypes, n, pivots.ctypes) != 0:
+    size, info = np.full(1, n, pivots.dtype), np.zeros(1, pivots.dtype)
+    _dgetrf(size, a, pivots, info)
+    if info[0] != 0:
         return False
     regular = True
     for k in range(n):

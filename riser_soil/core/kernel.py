@@ -55,5 +55,5 @@ class Kernel(CPUDispatcher):
         found = self.called._compile_for_args(*args, **named)
         for kinds in set(self.called.overloads) - known:
             made = self.called.overloads[kinds]
-            self._insert([kind._code for kind in kinds], made.entry_point, made.objectmode)
+            self._insert([kind._code for kind in kinds], made.entry_point, False)  # not in object mode
         return found

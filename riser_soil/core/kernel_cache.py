@@ -16,7 +16,7 @@ from typing import Any
 
 from llvmlite import ir
 from llvmlite.binding import parse_assembly
-from numba.core import config
+from numba import config
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
 from numba.core.runtime import rtsys
 

@@ -9,7 +9,9 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-DOUBLE, INDEX, FUSED = ir.DoubleType(), ir.IntType(32), ("contract",)
+from riser_soil.core.machine_code import INDEX, NOTHING, WORD, items, made_tuple
+
+DOUBLE, FUSED = ir.DoubleType(), ("contract",)
 WIDTHS = 4, 2, 1  # of vectors that make up a row
 Size = tuple[int, ...]  # of `compiled.fixed`; or an array, where a length is not known as it is compiled
 
@@ -20,10 +22,10 @@ def add_multiple(context: Any, out: Any, at: Any, factor: Any, rows: Any, start:
 
     def add(target: Any, builder: Any, signature: Any, given: Any) -> Any:
         rows_of = _Rows(builder, len(N))
-        to = builder.gep(_data(target, builder, out, given[0]), [given[1]])
-        row = rows_of.load(builder.gep(_data(target, builder, rows, given[3]), [given[4]]))
+        to = builder.gep(_data(builder, out, given[0]), [given[1]])
+        row = rows_of.load(builder.gep(_data(builder, rows, given[3]), [given[4]]))
         rows_of.store(rows_of.sum(rows_of.load(to), rows_of.times(rows_of.spread(given[2]), row)), to)
-        return target.get_dummy_value()
+        return NOTHING
 
     return types.void(out, types.intp, types.float64, rows, types.intp, N), add
 
@@ -34,8 +36,8 @@ def numbers_at(context: Any, values: Any, start: Any, D: Any) -> Any:
     found = types.UniTuple(types.float64, len(D))
 
     def read(target: Any, builder: Any, signature: Any, given: Any) -> Any:
-        first = builder.gep(_data(target, builder, values, given[0]), [given[1]])
-        return target.make_tuple(builder, found, [builder.load(_at(builder, first, i)) for i in range(len(D))])
+        first = builder.gep(_data(builder, values, given[0]), [given[1]])
+        return made_tuple(builder, found, [builder.load(_at(builder, first, i)) for i in range(len(D))])
 
     return found(values, types.intp, D), read
 
@@ -49,9 +51,9 @@ def combined(context: Any, terms: Any, D: Any) -> Any:
         rows_of, total = _Rows(builder, len(D)), list[Any]()
         for t, kinds in enumerate(terms):
             factor, values, at = (builder.extract_value(builder.extract_value(given[0], t), i) for i in range(3))
-            row = rows_of.load(builder.gep(_data(target, builder, kinds[1], values), [at]))
+            row = rows_of.load(builder.gep(_data(builder, kinds[1], values), [at]))
             total = rows_of.sum(total, rows_of.times(rows_of.spread(factor), row))
-        return target.make_tuple(builder, found, rows_of.numbers(total))
+        return made_tuple(builder, found, rows_of.numbers(total))
 
     return found(terms, D), add
 
@@ -63,11 +65,11 @@ def add_shares(context: Any, F: Any, start: Any, four: Any, first: Any, f: Any, 
 
     def add(target: Any, builder: Any, signature: Any, given: Any) -> Any:
         rows_of = _Rows(builder, 4 * d)
-        to = builder.gep(_data(target, builder, F, given[0]), [given[1]])
-        weights = builder.gep(_data(target, builder, four, given[2]), [given[3]])
+        to = builder.gep(_data(builder, F, given[0]), [given[1]])
+        weights = builder.gep(_data(builder, four, given[2]), [given[3]])
         shares = rows_of.times(rows_of.repeated(weights, d), rows_of.tiled(given[4], d))
         rows_of.store(rows_of.sum(rows_of.load(to), shares), to)
-        return target.get_dummy_value()
+        return NOTHING
 
     return types.void(F, types.intp, four, types.intp, f, D), add
 
@@ -78,12 +80,12 @@ def add_weighed(context: Any, S: Any, weights: Any, terms: Any, D: Any, R: Any) 
 
     def add(target: Any, builder: Any, signature: Any, given: Any) -> Any:
         rows_of = _Rows(builder, 2 * (len(D) + len(R)))
-        change = _change(target, builder, rows_of, terms, given[2], D, R)
-        to, weight = _data(target, builder, S, given[0]), _data(target, builder, weights, given[1])
+        change = _change(builder, rows_of, terms, given[2], D, R)
+        to, weight = _data(builder, S, given[0]), _data(builder, weights, given[1])
         for a, i, at in _rows_of_shapes(builder, rows_of, to, len(D)):
             by = rows_of.spread(builder.load(_at(builder, weight, a)))
             rows_of.store(rows_of.sum(rows_of.load(at), rows_of.times(by, change[i])), at)
-        return target.get_dummy_value()
+        return NOTHING
 
     return types.void(S, weights, terms, D, R), add
 
@@ -96,25 +98,25 @@ def put_weighed(context: Any, S: Any, stations: Any, D: Any, R: Any) -> Any:
         rows_of, each = _Rows(builder, 2 * (len(D) + len(R))), list[tuple[Any, Any]]()
         for k, (weights, terms) in enumerate(stations):
             weight, values = (builder.extract_value(builder.extract_value(given[1], k), i) for i in range(2))
-            change = _change(target, builder, rows_of, terms, values, D, R)
-            each.append((_data(target, builder, weights, weight), change))
-        for a, i, at in _rows_of_shapes(builder, rows_of, _data(target, builder, S, given[0]), len(D)):
+            change = _change(builder, rows_of, terms, values, D, R)
+            each.append((_data(builder, weights, weight), change))
+        for a, i, at in _rows_of_shapes(builder, rows_of, _data(builder, S, given[0]), len(D)):
             total = list[Any]()
             for weight, change in each:
                 by = rows_of.spread(builder.load(_at(builder, weight, a)))
                 total = rows_of.sum(total, rows_of.times(by, change[i]))
             rows_of.store(total, at)
-        return target.get_dummy_value()
+        return NOTHING
 
     return types.void(S, stations, D, R), put
 
 
-def _change(target: Any, builder: Any, rows_of: _Rows, terms: Any, values: Any, D: Size, R: Size) -> list[list[Any]]:
+def _change(builder: Any, rows_of: _Rows, terms: Any, values: Any, D: Size, R: Size) -> list[list[Any]]:
     """Sum of the terms of `rows.add_weighed`: d rows."""
     d, change = len(D), [list[Any]() for _ in range(len(D))]
     for t, kinds in enumerate(terms):
         term = builder.extract_value(values, t)
-        four, A, rows = (_data(target, builder, k, builder.extract_value(term, i)) for i, k in enumerate(kinds))
+        four, A, rows = (_data(builder, k, builder.extract_value(term, i)) for i, k in enumerate(kinds))
         factors = rows_of.blocks(four, D, R)
         for j in range(d):
             row = rows_of.times(factors, rows_of.load(_at(builder, rows, j * 2 * (d + len(R)))))
@@ -138,14 +140,14 @@ def put_blocks(context: Any, S: Any, M: Any, factor: Any, rows: Any, D: Any, R: 
 
     def put(target: Any, builder: Any, signature: Any, given: Any) -> Any:
         rows_of = _Rows(builder, n)
-        to, four, of = (_data(target, builder, kind, given[k]) for k, kind in ((0, S), (1, M), (3, rows)))
+        to, four, of = (_data(builder, kind, given[k]) for k, kind in ((0, S), (1, M), (3, rows)))
         whole = rows_of.spread(given[2])
         each = [rows_of.times(whole, rows_of.load(_at(builder, of, i * n))) for i in range(d)]
         for a in range(4):
             factors = rows_of.blocks(_at(builder, four, 4 * a), D, R)
             for i in range(d):
                 rows_of.store(rows_of.times(factors, each[i]), _at(builder, to, (a * d + i) * n))
-        return target.get_dummy_value()
+        return NOTHING
 
     return types.void(S, M, types.float64, rows, D, R), put
 
@@ -158,7 +160,7 @@ def add_pulled_back(context: Any, out: Any, P: Any, S: Any, D: Any, R: Any) -> A
 
     def add(target: Any, builder: Any, signature: Any, given: Any) -> Any:
         rows_of = _Rows(builder, n)
-        to, turn, of = (_data(target, builder, kind, given[k]) for k, kind in ((0, out), (1, P), (2, S)))
+        to, turn, of = (_data(builder, kind, given[k]) for k, kind in ((0, out), (1, P), (2, S)))
         for side in range(2):
             first = 2 * side * d
             for i in range(d):
@@ -173,20 +175,20 @@ def add_pulled_back(context: Any, out: Any, P: Any, S: Any, D: Any, R: Any) -> A
                     by = builder.load(_at(builder, turn, (side * d + i) * r + k))
                     total = rows_of.sum(total, rows_of.times(rows_of.spread(by), turned[i]))
                 rows_of.store(total, at)
-        return target.get_dummy_value()
+        return NOTHING
 
     return types.void(out, P, S, D, R), add
 
 
-def _data(target: Any, builder: Any, kind: Any, value: Any) -> Any:
+def _data(builder: Any, kind: Any, value: Any) -> Any:
     """Pointer to the first number of an array."""
     assert kind.layout == "C"
     assert kind.dtype == types.float64
-    return target.make_array(kind)(target, builder, value).data
+    return items(builder, value)
 
 
 def _at(builder: Any, data: Any, shift: int) -> Any:
-    return builder.gep(data, [ir.Constant(ir.IntType(64), shift)])
+    return builder.gep(data, [WORD(shift)])
 
 
 class _Rows:

@@ -1,4 +1,4 @@
-"""Steel catenary risers laid on clay, springs and hard floors: by Newton's method alone, where relaxation finds them."""
+"""Steel catenary risers laid on clay, springs and hard floors, by Newton alone, where relaxation finds them."""
 
 from __future__ import annotations
 

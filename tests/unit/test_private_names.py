@@ -1,0 +1,157 @@
+"""Names of numba that its documentation does not have: those that are used are listed here, and the list only shrinks.
+
+A release of numba may change them without a word, so the project asks for the releases alone that it is tested with.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import textwrap
+import tomllib
+from collections.abc import Iterator
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numba
+import pytest
+from numba.core import caching, ccallback, codegen, compiler, cpu, dispatcher, funcdesc, lowering
+from numba.core.datamodel.manager import DataModelManager
+from numba.core.datamodel.models import DataModel
+from numba.core.options import TargetOptions
+from numba.core.registry import CPUDispatcher
+from numba.core.runtime import rtsys
+from packaging.requirements import Requirement
+
+from tests.support.on_ranks import ROOT
+
+PUBLIC = {"numba", "numba.types", "numba.typed", "numba.experimental", "numba.extending", "numba.core.event"}  # modules
+DOCUMENTED = {"address", "ctypes", "py_func"}
+OTHERS = {"load", "args", "name", "register", "globals", "_replace"}  # words that LLVM's and Python's objects have, too
+OPTIONS = {"nopython", "boundscheck", "error_model", "fastmath", "forceinline", "inline"}
+INSIDE: tuple[Any, ...] = (
+    CPUDispatcher, dispatcher._DispatcherBase, caching.FunctionCache, caching.CompileResultCacheImpl,
+    caching.IndexDataCacheFile, caching.InTreeCacheLocator, ccallback.CFunc, codegen.JITCodeLibrary,
+    codegen.JITCPUCodegen, compiler.CompileResult, funcdesc.PythonFunctionDescriptor, cpu.CPUContext, DataModel,
+    DataModelManager, lowering.Environment, type(rtsys),
+)  # fmt: skip
+MOST = 42  # of the names below; lower it with each that goes
+
+USED = {
+    "core/bound.py": {"CFunc", "_cache", "compile"},
+    "core/kernel.py": {
+        "CPUDispatcher", "_cache", "_code", "_compilation_chain_init_hook", "_compile_for_args", "_insert",
+        "add_overload", "entry_point", "fndesc", "insert_user_function", "library", "no_cfunc_wrapper",
+        "no_cpython_wrapper", "overloads", "signature", "targetctx",
+    },
+    "core/kernel_cache.py": {
+        "CompileResultCacheImpl", "FunctionCache", "IndexDataCacheFile", "_cache_file", "_cache_path",
+        "_get_module_for_linking", "_impl", "_impl_class", "_index_key", "_load_overload", "env_name", "filename_base",
+        "fndesc", "get_llvm_str", "get_source_stamp", "initialize", "library", "llvm_cfunc_wrapper_name",
+        "llvm_cpython_wrapper_name", "llvm_func_name", "load_overload", "locator", "magic_tuple", "reduce", "rtsys",
+        "save_overload",
+    },
+}  # fmt: skip
+
+
+def members(kind: Any) -> set[str]:
+    """Attributes of a class and of its objects."""
+    found = {*dir(kind), *getattr(kind, "_fields", ())}
+    for base in inspect.getmro(kind):
+        try:
+            tree = ast.parse(textwrap.dedent(inspect.getsource(base)))
+        except (OSError, TypeError):  # of C's
+            continue
+        found |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute) and is_own(node.value)}
+    return found
+
+
+def is_own(node: ast.expr) -> bool:
+    return isinstance(node, ast.Name) and node.id == "self"
+
+
+@pytest.fixture(scope="module")
+def private() -> set[str]:
+    """Names of attributes and methods within numba, but for those of Python's own objects."""
+    usual = {name for kind in (object, list, dict, str, tuple, type(ast)) for name in dir(kind)}
+    of_types = {name for name in dir(numba.types.float64) if name.startswith("_")}
+    options = {name for name in dir(cpu.CPUTargetOptions) if name not in dir(TargetOptions)}
+    found = set().union(*map(members, INSIDE), of_types, options) - usual - DOCUMENTED - OTHERS - OPTIONS
+    return {name for name in found if not name.startswith("__")}
+
+
+def imports(tree: ast.AST) -> Iterator[tuple[str, str]]:
+    """Modules of numba, and what is taken from them."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from ((each.name, "") for each in node.names if each.name.partition(".")[0] == "numba")
+        elif isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] == "numba":
+            yield from ((node.module or "", each.name) for each in node.names)
+
+
+def words(tree: ast.AST) -> Iterator[str]:
+    """Attributes, names that classes give to what they have of their bases, and strings."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Attribute):
+            yield node.attr
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            yield node.value
+        elif isinstance(node, ast.ClassDef) and node.bases:
+            yield from (each.name for each in node.body if isinstance(each, ast.FunctionDef))
+            targets = [target for each in node.body if isinstance(each, ast.Assign) for target in each.targets]
+            yield from (each.id for target in targets for each in ast.walk(target) if isinstance(each, ast.Name))
+
+
+def used(text: str, private: set[str]) -> set[str]:
+    """Private names in a source."""
+    tree = ast.parse(text)
+    taken = list(imports(tree))
+    if not taken:
+        return set()
+    named = {name or module for module, name in taken if not {module, f"{module}.{name}"} & PUBLIC}
+    return named | set(words(tree)) & private
+
+
+def test_private_names_are_those_that_are_listed(private: set[str]) -> None:
+    """One that is new has to be replaced by a public one; one that has gone, to be taken off the list."""
+    found = {}
+    for path in sorted(Path(ROOT, "riser_soil").rglob("*.py")):
+        if names := used(path.read_text(encoding="utf-8"), private):
+            found[str(path.relative_to(ROOT / "riser_soil"))] = names
+    assert found == USED
+
+
+def test_the_list_does_not_grow() -> None:
+    assert len(set().union(*USED.values())) == MOST
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("import numba\nnumba.njit(f)", set()),
+        ("from numba.core import event, types", {"types"}),
+        ("from numba.np.linalg import _LAPACK", {"_LAPACK"}),
+        ("import numba.core.codegen", {"numba.core.codegen"}),
+        ("import numba\nf.targetctx", {"targetctx"}),
+        ("import numba\nkind._code", {"_code"}),
+        ("import numba\nclass A(B):\n    _impl_class, x = C, 1", {"_impl_class"}),
+        ("import numba\nclass A(B):\n    def load_overload(self): 1", {"load_overload"}),
+        ("import numba\ncall(**{'no_cfunc_wrapper': True})", {"no_cfunc_wrapper"}),
+        ("import os\nf.targetctx", set()),
+    ],
+)  # fmt: skip
+def test_what_counts(text: str, names: set[str], private: set[str]) -> None:
+    assert used(text, private) == names
+
+
+def test_numba_is_one_that_is_asked_for() -> None:
+    """Up to the release that is tested, in the extras as well."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    texts = [*project["dependencies"], *(text for extra in project["optional-dependencies"].values() for text in extra)]
+    asked = [each for each in map(Requirement, texts) if each.name == "numba"]
+    major, minor, *_ = map(int, version("numba").split("."))
+    assert asked[0].specifier.contains(version("numba"))
+    for each in asked:
+        assert any(bound.operator == "<" for bound in each.specifier), f"{each} has no ceiling"
+        assert not each.specifier.contains(f"{major}.{minor + 1}"), f"{each} allows releases that are not tested"
