@@ -52,7 +52,8 @@ def laid_guess(
     placed = bed.in_plane(cable)
     if (bent := bed.bent(placed, cable.H)) is None:
         return None
-    nearer = catenary_between(scene, elements, attachments, *bed.moved(cable, _missed(bent, placed)))
+    start, end = bed.moved(cable, _missed(bent, placed))
+    nearer = catenary_between(scene, elements, attachments, start, end, near=cable)
     bent = bed.bent(bed.in_plane(nearer), nearer.H)
     return None if bent is None else _increments(seabed.line, placed, _closed(bent, placed, elements.length))
 

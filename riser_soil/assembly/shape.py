@@ -106,9 +106,14 @@ def _laid_straight(riser: Riser, arc: Array) -> shapes.Curve:
 
 
 def catenary_between(
-    scene: Scene, elements: sections.Elements, attachments: Sequence[PointAttachment], start: Array, end: Array
+    scene: Scene,
+    elements: sections.Elements,
+    attachments: Sequence[PointAttachment],
+    start: Array,
+    end: Array,
+    near: Catenary | None = None,
 ) -> Catenary:
-    """The riser as a catenary between two points (3,) [m], on the ground where there is one."""
+    """The riser as a catenary between two points (3,) [m], on the ground where there is one; near: as of `catenary`."""
     from riser_soil.riser.catenary import catenary
 
     return catenary(
@@ -120,6 +125,7 @@ def catenary_between(
         level=resting_level(scene, elements, np.array([start, end])),
         points=np.array([(attachment.arc, attachment.net_weight) for attachment in attachments]).reshape(-1, 2),
         least_H=_least_tension(elements),
+        near=near,
     )
 
 

@@ -32,6 +32,8 @@ llvmlite.binding.add_symbol(SYMBOL, get_cython_function_address("scipy.linalg.cy
 def _dgetrf(context: Any, size: Any, a: Any, pivots: Any, info: Any) -> Any:
     """In compiled code: factorise a matrix of the size (1,); arrays."""
 
+    assert (a.dtype, a.layout) == (types.float64, "C")
+
     def call(target: Any, builder: Any, signature: Any, given: Any) -> Any:
         n, matrix, exchanged, told = (builder.bitcast(items(builder, array), ADDRESS) for array in given)
         known = builder.module.globals.get(SYMBOL)

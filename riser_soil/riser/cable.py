@@ -108,12 +108,15 @@ class SpanCondition:
     least_H: float
 
 
-def fit(chain: BarChain, h: float, least_H: float) -> CableBalance:
+def fit(chain: BarChain, h: float, least_H: float, near: CableBalance | None = None) -> CableBalance:
     """The chain in balance with its ends h apart; with least_H [N] and its ends farther apart where it would need less.
 
-    Raises SceneError when no balance is found.
+    near: a balance of the same bars with ends nearby, from which it is sought first. Raises SceneError when no balance
+    is found.
     """
     goal, straight = SpanCondition(h, least_H), _straight(chain)
+    if near is not None and (found := _newton(_held_by(chain, near), goal)) is not None and least_H < found.H:
+        return found
     taut = _solved(straight, straight)
     far = _nearly(taut, goal)
     if far.reach <= h:
@@ -125,6 +128,13 @@ def fit(chain: BarChain, h: float, least_H: float) -> CableBalance:
         return slack
     near = _nearly(slack, goal)
     return _solved(near, near, goal)
+
+
+def _held_by(chain: BarChain, near: CableBalance) -> CableBalance:
+    """A balance with the ends of another chain of the same bars."""
+    z = near.z.copy()
+    z[0], z[-1] = chain.z0, chain.z1
+    return replace(near, chain=chain, z=z)
 
 
 def _nearly(start: CableBalance, goal: SpanCondition) -> CableBalance:

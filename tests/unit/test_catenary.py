@@ -92,6 +92,17 @@ def test_resting_line_lies_on_the_seabed() -> None:
     assert np.linalg.norm(found.curve.chord[0]) / 0.1 - 1.0 == pytest.approx(found.H / 1.0e5, rel=1e-6)
 
 
+@pytest.mark.parametrize("moved", [0.1, 5.0, 120.0])
+def test_it_is_found_from_one_nearby_and_from_one_far_away(moved: float) -> None:
+    """Both ends in other places, the lower one lifted off the seabed by as much."""
+    start, end = np.array([0.0, 0.0, moved]), np.array([230.0 - moved, 0.0, 150.0 + moved])
+    near = catenary(ARC, ORIGIN, np.array([230.0, 0.0, 150.0]), W, 1e8, 0.0)
+    found, alone = (catenary(ARC, start, end, W, 1e8, 0.0, near=known) for known in (near, None))
+    assert abs(near.H / alone.H - 1.0) > 1e-4
+    assert abs(found.H / alone.H - 1.0) < 1e-5
+    assert np.abs(found.curve.position - alone.curve.position).max() < 1e-3
+
+
 def test_a_line_that_clears_the_seabed_hangs() -> None:
     free, above = (
         catenary(ARC, ORIGIN, np.array([150.0, 0.0, 150.0]), W, STIFF, level=level) for level in (-np.inf, -200.0)
