@@ -25,7 +25,7 @@ class EnergyGain:
     dissipated in all [J].
     """
 
-    def __init__(self, largest: float, begun: Energy) -> None:
+    def __init__(self, begun: Energy, largest: float = LARGEST) -> None:
         self._largest = largest
         self._sum = self._work = self._dissipated = 0.0
         self._turned = max(begun.kinetic, begun.strain)

@@ -102,7 +102,7 @@ class TimeStepper:
         self._begin_step()
         self._history = self.system.forces(self.before) if self._renews_history else None
         self.energy = self.system.energy(self.before)
-        self._gain = EnergyGain(self._largest_gain, self.energy)
+        self._gain = EnergyGain(self.energy, self._largest_gain)
 
     def restart(self) -> None:
         """Start anew from the configuration that the parts hold now."""
@@ -309,7 +309,7 @@ class TimeStepper:
         self._forces = record_of(Forces, within(saved, "forces"))
         self._history = record_of(Forces, history) if (history := within(saved, "history")) else None
         self.energy = record_of(Energy, within(saved, "energy"))
-        self._gain = EnergyGain(self._largest_gain, self.energy)
+        self._gain = EnergyGain(self.energy, self._largest_gain)
         self._gain.restore(within(saved, "gain"))
         self._past = self._new_predictor()
         self._past.restore(within(saved, "predictor"))

@@ -10,7 +10,7 @@ import pytest
 from riser_soil.assembly.stage import times_to_hit
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import DynamicStage
-from riser_soil.solve.automatic_steps import AIM, AutoSteps
+from riser_soil.solve.automatic_steps import AutoSteps
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene
 
 TOLERANCE = 1e-3
@@ -30,8 +30,8 @@ def walk(steps: AutoSteps, error: Callable[[float, float], float], easy: bool = 
 
 
 def smooth(size: float) -> Callable[[float, float], float]:
-    """An error of third order that asks for steps of this size."""
-    return lambda t, dt: AIM * TOLERANCE * (dt / size) ** 3
+    """An error of third order that asks for steps of this size, at which it is 0.3 of the tolerance."""
+    return lambda t, dt: 0.3 * TOLERANCE * (dt / size) ** 3
 
 
 def test_steps_settle_where_the_error_asks() -> None:

@@ -179,6 +179,31 @@ def test_small_strain_leaves_no_plastic_strain(make: type) -> None:
     np.testing.assert_allclose(found.tangent, mandel.stiffness(law.bulk, law.shear), rtol=1e-12, atol=1e-9 * G0)
 
 
+@LAWS
+def test_plastic_strain_in_shear_is_what_the_stress_leaves_of_the_strain(make: type) -> None:
+    """One way, in steps: (γ - τ/G)/√3."""
+    law = make()
+    history, slip = law.start(), law.columns.index(PLASTIC_STRAIN)
+    for strain in np.linspace(0.0, 0.05, 51)[1:]:
+        found = law.update(shear(1e-3), history)
+        history = found.history
+        left = strain - found.stress[0, 4] / np.sqrt(2.0) / law.shear[0]
+        assert history[0, slip] == pytest.approx(left / np.sqrt(3.0), rel=1e-9)
+    assert history[0, slip] > 0.02
+
+
+def test_kinematic_hardening_keeps_the_work_of_its_backstress() -> None:
+    """A spring of the stiffness C, besides the elastic one, under all that it bears beyond q0: at failure each stores
+    half of its stress squared over its stiffness.
+    """
+    law, history = kinematic(share=0.25), kinematic(share=0.25).start()
+    for _ in range(200):
+        found = law.update(shear(1e-3), history)
+        history = found.history
+    elastic, hardened = SU**2 / (2.0 * G0), (0.75 * np.sqrt(3.0) * SU) ** 2 / (2.0 * OVER_SU * SU)
+    assert found.stored[0] == pytest.approx(elastic + hardened, rel=1e-6)
+
+
 @pytest.mark.parametrize("amplitude", [3e-4, 3e-3, 3e-2])
 def test_loops_are_masings(amplitude: float) -> None:
     """τ = τa - 2 f((γa - γ)/2) on the way down, the same turned on the way up; damping from the loop's area."""

@@ -13,9 +13,8 @@ from mpi4py import MPI
 from riser_soil.accuracy.companions import peaks_of
 from riser_soil.accuracy.headlines import headlines
 from riser_soil.assembly import build
-from riser_soil.assembly.graded_segments import FEWEST
 from riser_soil.checks.check import describe
-from riser_soil.checks.element_proposal import SHARE, asked_lengths, proposal, segments_for
+from riser_soil.checks.element_proposal import asked_lengths, proposal, segments_for
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.riser import Segment
 from riser_soil.scene.scene import Scene
@@ -47,14 +46,16 @@ def hung(**more: Any) -> Scene:
 
 
 def test_shortest_elements_of_a_catenary() -> None:
-    """2 H/w sinh(w h/(2 H)) is its length; at its lowest point k = w/H and k'' = 2 w^3/H^3."""
+    """2 H/w sinh(w h/(2 H)) is its length; at its lowest point k = w/H and k'' = 2 w^3/H^3. An element there may miss
+    a hundredth of the largest moment.
+    """
     w, h, length = 200.0, 80.0, 100.0
     low, high = 1.0, 1e5
     for _ in range(100):
         H = 0.5 * (low + high)
         low, high = (H, high) if 2.0 * H / w * math.sinh(0.5 * w * h / H) > length else (low, H)
     moment, second = 1e3 * w / H, 2.0 * w**3 / H**3
-    shortest = (384.0 * SHARE * moment / (H * second)) ** 0.25
+    shortest = (384.0 * 0.01 * moment / (H * second)) ** 0.25
     segments = of(hung())
     assert segments is not None
     least = min(x for each in segments for x in each.element_lengths)
@@ -121,9 +122,10 @@ def test_there_are_nodes_where_something_is_attached() -> None:
 
 
 def test_a_chain_has_no_bend() -> None:
+    """So it has no more than the dozen elements that any riser has."""
     segments = of(hung(line={"EI": 0.0}))
     assert segments is not None
-    assert FEWEST <= sum(each.element_count for each in segments) <= FEWEST + 1
+    assert 12 <= sum(each.element_count for each in segments) <= 13
 
 
 def test_what_is_no_cable_gets_no_proposal() -> None:

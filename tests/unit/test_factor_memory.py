@@ -12,10 +12,12 @@ from typer.testing import CliRunner
 
 from riser_soil.__main__ import app
 from riser_soil.assembly import build
+from riser_soil.core import factor_memory
 from riser_soil.core.arrays import Array
-from riser_soil.core.factor_memory import MOST_ROOM, ROOM, Room
+from riser_soil.core.factor_memory import Room
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
+from riser_soil.errors import MemoryShortageError
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve import linear_solver, linear_systems
 from riser_soil.stages import LayingCounter, run_stage
@@ -49,7 +51,16 @@ def test_too_little_room_grows_and_the_step_is_the_same(place: object, monkeypat
 
     monkeypatch.setattr(place, "Room", tight)
     np.testing.assert_allclose(laid(), expected, rtol=0.0, atol=1e-7 * np.abs(expected).max())
-    assert ROOM <= max(room.percent for room in rooms) < MOST_ROOM
+    assert 60 <= max(room.percent for room in rooms) < 960
+
+
+def test_room_doubles_up_to_ten_times_what_is_foretold(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(factor_memory, "_said", lambda pc: (-9, 1))  # too little room
+    monkeypatch.setattr(factor_memory, "_too_little", lambda *told: "none left")
+    room = Room()
+    assert [room.percent for _ in range(4) if room.grows_after(None)] == [120, 240, 480, 960]
+    with pytest.raises(MemoryShortageError, match="none left"):
+        room.grows_after(None)
 
 
 def test_a_run_without_memory_ends_in_plain_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

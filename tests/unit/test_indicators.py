@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from riser_soil.core.snapshot import Ledger, StepStatistics
-from riser_soil.results.course import SHARE
 from riser_soil.results.doubtful_extremes import AT, JUDGED
 from riser_soil.results.figures import places_of
 from riser_soil.results.indicators import ImpactLoss, StageIndicators
 from riser_soil.results.time_resolution import TimeResolution
 
+SHARE = 0.3  # of the second difference around an extreme: how far it may be off, as calibrated
 SIZE = int(AT.max()) + 1
 TENSION = places_of("end.effective_tension").start
 LEAST = places_of("min_effective_tension").start

@@ -11,7 +11,7 @@ from scipy.signal import periodogram
 
 from riser_soil.core.arrays import Array
 from riser_soil.sea.components import Components
-from riser_soil.sea.jonswap import HIGHEST, LOWEST, components, quantiles, spectrum
+from riser_soil.sea.jonswap import components, quantiles, spectrum
 from riser_soil.sea.sea import Sea
 from riser_soil.sea.wave_field import WaveField
 
@@ -55,8 +55,10 @@ def test_peak_is_narrower_below_than_above() -> None:
 
 @pytest.mark.parametrize("gamma", [1.0, 7.0])
 def test_range_of_frequencies_leaves_little_energy_out(gamma: float) -> None:
-    assert energy(0.1, LOWEST, gamma) < 1e-6 * HS**2 / 16.0
-    assert energy(HIGHEST, np.inf, gamma) < 2.1e-3 * HS**2 / 16.0
+    """Half the peak's to five times as much: below that there is nothing, above 0.1 to 0.2 %."""
+    assert energy(0.1, 0.5, gamma) < 1e-6 * HS**2 / 16.0
+    assert energy(5.0, np.inf, gamma) < 2.1e-3 * HS**2 / 16.0
+    assert quantiles(np.array([0.0, 1.0]), gamma) == pytest.approx([0.5, 5.0], rel=2e-3)
 
 
 @pytest.mark.parametrize("count", [1, 7, 100])
@@ -75,8 +77,8 @@ def test_seed_decides_the_sea() -> None:
 
 
 def test_each_bin_of_equal_energy_has_one_wave() -> None:
-    x, total = sea(40).frequency / PEAK, energy(LOWEST, HIGHEST)
-    share = np.array([energy(LOWEST, value) for value in x]) / total
+    x, total = sea(40).frequency / PEAK, energy(0.5, 5.0)
+    share = np.array([energy(0.5, value) for value in x]) / total
     assert np.array_equal(np.floor(40.0 * share), np.arange(40.0))
     assert np.unique(np.floor(400.0 * share) % 10.0).size > 5
 

@@ -11,7 +11,7 @@ from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.factor_memory import Room
-from riser_soil.solve.kept_factors import FEWEST, KeptFactors
+from riser_soil.solve.kept_factors import KeptFactors
 
 SIDE = 12  # cells along each edge of a cube
 TOLERANCE = 1e-8
@@ -103,7 +103,7 @@ def test_factors_that_do_not_do_are_made_anew_at_once(symmetric: Solver) -> None
     changed = np.sqrt(np.outer(scale, scale)) * K
     assert residual(changed, symmetric.solution(changed, B)) <= TOLERANCE
     assert symmetric.kept.factorisations == 2
-    assert symmetric.kept.iterations == 1 + max(FEWEST, int(symmetric.kept.worth)) + 1
+    assert symmetric.kept.iterations == 1 + max(10, int(symmetric.kept.worth)) + 1
 
 
 def test_factors_are_made_anew_once_a_solve_costs_more_than_the_mean(symmetric: Solver) -> None:
@@ -132,7 +132,7 @@ def test_one_triangle_is_enough_where_little_symmetry_is_missing(skew: Solver) -
     changed[np.triu_indices(len(K), 1)] *= 1.01
     assert residual(changed, skew.solution(changed, B)) <= TOLERANCE
     assert skew.kept.factorisations == 1
-    assert 1 < skew.kept.iterations <= FEWEST
+    assert 1 < skew.kept.iterations <= 10
 
 
 def test_all_of_the_matrix_is_factorised_from_then_on_where_a_triangle_does_not_do(skew: Solver) -> None:

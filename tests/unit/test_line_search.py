@@ -13,7 +13,7 @@ from mpi4py import MPI
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import GROUPS, Forces, Model, State, Weights
 from riser_soil.core.system import System, Timer
-from riser_soil.solve.line_search import FAR, MOST, NEAR, step_length
+from riser_soil.solve.line_search import step_length
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Step
 from riser_soil.solve.time_scheme import Static
@@ -35,7 +35,7 @@ def linear(end: float, part: float) -> float:
 
 
 def test_a_full_step_stays_where_it_ends_near_the_least_energy() -> None:
-    for end in (-0.9, 0.0, 0.99 * FAR):
+    for end in (-0.9, 0.0, 0.49):
         slope, looked = counted(partial(linear, end))
         assert step_length(-1.0, slope) == 1.0
         assert looked == [1.0]
@@ -46,12 +46,30 @@ def test_a_step_into_something_stiff_ends_where_the_slope_is_nearly_zero(stiffer
     """Free up to 0.1 of the step, then on a spring: zero at 0.1 + 0.9/stiffer."""
     slope, looked = counted(lambda a: -1.0 + stiffer * max(0.0, a - 0.1))
     part = step_length(-1.0, slope)
-    assert len(looked) <= MOST + 1
+    assert len(looked) <= 11
     assert part < 1.0
     if stiffer < 1e4:
-        assert abs(slope(part)) <= NEAR
+        assert abs(slope(part)) <= 0.25
     else:
         assert part < 0.2
+
+
+def test_a_slope_half_as_steep_as_at_the_start_is_too_far() -> None:
+    assert step_length(-1.0, partial(linear, 0.51)) == pytest.approx(1.0 / 1.51)
+
+
+@pytest.mark.parametrize(("found", "looks"), [(0.24, 2), (-0.24, 2), (0.26, 3), (-0.26, 3)])
+def test_a_quarter_of_the_slope_at_the_start_is_near_enough(found: float, looks: int) -> None:
+    """The first place looked at is the middle, as far from zero at both ends; a straight line leads on from there."""
+    slope, looked = counted(lambda a: float(np.interp(a, (0.0, 0.5, 1.0), (-1.0, found, 1.0))))
+    step_length(-1.0, slope)
+    assert len(looked) == looks
+
+
+def test_it_looks_ten_times_within_a_step_at_most() -> None:
+    slope, looked = counted(lambda a: -1.0 if a < 0.3 else 1.0)
+    assert step_length(-1.0, slope) == pytest.approx(0.3, abs=0.1)
+    assert len(looked) == 11
 
 
 def test_a_step_that_leads_to_nowhere_is_shortened() -> None:
@@ -62,7 +80,7 @@ def test_a_step_that_leads_to_nowhere_is_shortened() -> None:
 
 def test_a_step_that_climbs_is_taken_backwards() -> None:
     """To the least energy there, or all of it where that lies further away."""
-    assert step_length(1.0, lambda a: 1.0 + 10.0 * a) == pytest.approx(-0.1, abs=0.1 * NEAR)
+    assert step_length(1.0, lambda a: 1.0 + 10.0 * a) == pytest.approx(-0.1, abs=0.025)
     assert step_length(1.0, lambda a: 1.0 + 0.2 * a) == -1.0
 
 

@@ -6,23 +6,15 @@ import math
 
 import pytest
 
-from riser_soil.accuracy.error_bars import ORDER, SAFETY, SMALLEST, STEP_GAP, Companion, ErrorBar, RunValues, divisor
+from riser_soil.accuracy.error_bars import Companion, ErrorBar, RunValues, divisor
 from riser_soil.accuracy.headlines import Headline
-from riser_soil.accuracy.needed import (
-    BY_CHANCE,
-    COST,
-    MARGIN,
-    MESH,
-    MOST,
-    NOT_KNOWN,
-    expected,
-    largest,
-    needed,
-    out_of_reach,
-)
+from riser_soil.accuracy.needed import expected, largest, needed, out_of_reach
 
 VALUE = 1000.0
-ORDERS = ORDER | {"mesh": MESH}
+ORDERS = {"mesh": 2.0, "time": 2.0, "soil": 1.0, "penalty": 0.75}  # in which shares fall
+COST = {"mesh": 0.7, "time": 1.0, "soil": 3.0, "penalty": 0.1}  # powers: soil's cells grow in number by the cube
+SAFETY, SMALLEST = {"mesh": 1.5, "time": 1.8, "penalty": 1.6}, 5e-5  # of error bars, as calibrated
+MARGIN, BY_CHANCE = 0.8, 0.25  # of the accuracy, that bars keep to; of a share, that stays where two runs agree
 HEADLINE = Headline("hang", "top tension", "N", VALUE, 100.0)
 KEY = HEADLINE.key
 
@@ -63,7 +55,7 @@ def test_no_cheaper_way_leads_there() -> None:
 
     for mesh in (0.9, 0.97, 1.03, 1.1):
         other = factors | {"mesh": mesh * factors["mesh"]}
-        of_time = math.sqrt((MARGIN * 0.01 - SMALLEST) ** 2 - (0.02 / other["mesh"] ** MESH) ** 2)
+        of_time = math.sqrt((MARGIN * 0.01 - SMALLEST) ** 2 - (0.02 / other["mesh"] ** ORDERS["mesh"]) ** 2)
         other["time"] = (0.04 / of_time) ** (1.0 / ORDERS["time"])
         assert left(given, other) == pytest.approx(MARGIN * 0.01)
         assert cost(other) > cost(factors)
@@ -75,9 +67,10 @@ def test_what_is_accurate_enough_stays() -> None:
 
 
 def test_the_worst_quantity_counts_and_no_step_is_huge() -> None:
+    """Elements four times as fine at most."""
     found = needed([bar(time=0.02), bar(time=0.05), bar(mesh=100.0)], 0.01)
     assert found["time"] == pytest.approx(math.sqrt(0.05 / (MARGIN * 0.01 - SMALLEST)))
-    assert found["mesh"] == MOST["mesh"]
+    assert found["mesh"] == 4.0
 
 
 def test_soil_that_would_have_to_be_far_finer_stays_as_it_is() -> None:
@@ -90,7 +83,7 @@ def test_soil_that_would_have_to_be_far_finer_stays_as_it_is() -> None:
 
 def test_unknown_bars_ask_for_a_finer_setting() -> None:
     unknown = ErrorBar(HEADLINE, None, {"time": 1.0}, "a companion failed")
-    assert needed([unknown], 0.01) == {"mesh": NOT_KNOWN, "time": NOT_KNOWN}
+    assert needed([unknown], 0.01) == {"mesh": 2.0, "time": 2.0}
     assert largest([unknown, bar(time=0.5)]) == (math.inf, KEY)
 
 
@@ -115,7 +108,7 @@ def test_two_runs_that_several_sources_tell_apart_bound_the_share_of_each() -> N
     before, factors = bar(penalty=0.02, mesh=0.02), {"penalty": 4.0 ** (1 / 0.75), "mesh": 2.0}
     (near,) = expected([before], values(1000.0), values(1003.0), factors)
     assert near.by_source["penalty"] == pytest.approx(SAFETY["penalty"] * 3.0 / 3.0)
-    by_mesh = divisor(Companion("mesh", 2.0, {}), 3e-3, MESH)
+    by_mesh = divisor(Companion("mesh", 2.0, {}), 3e-3, ORDERS["mesh"])
     assert near.by_source["mesh"] == pytest.approx(SAFETY["mesh"] * 3.0 / by_mesh, rel=1e-3)
     (same,) = expected([before], values(1000.0), values(1000.001), factors)
     assert same.by_source["penalty"] == pytest.approx(BY_CHANCE * 5.0)
@@ -144,7 +137,7 @@ def test_bars_grow_where_the_runs_are_further_apart_than_they_said() -> None:
 
 def test_what_falls_between_the_runs_own_steps_is_kept() -> None:
     (found,) = expected([bar(time=0.02)], values(1000.0), values(1000.0, peak=1008.0), {"time": 10.0})
-    assert found.by_source["time"] == pytest.approx(SAFETY["time"] * STEP_GAP * 8.0)
+    assert found.by_source["time"] == pytest.approx(SAFETY["time"] * 2.0 * 8.0)
 
 
 def test_a_quantity_that_the_run_before_lacks_is_not_known() -> None:

@@ -8,7 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from riser_soil.core.part import State
+from riser_soil.results import plausibility as module
 from riser_soil.results.plausibility import LargestValue, Plausibility
+from riser_soil.riser.resolution import BendingMisfit
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
@@ -86,6 +89,21 @@ def test_bending_that_elements_blur_is_told_in_every_stage(tmp_path: Path) -> No
     for (warning,) in others:
         assert warning.startswith("elements of 7.5 m are too long for the bending at arc 146.25 m: at ")
         assert "N.m, 46% of the stage's largest (told above 20%)" in warning
+
+
+@pytest.mark.parametrize(
+    ("smooth", "steep", "limit"), [(9.9, 19.9, ""), (10.1, 0.0, "told above 10%"), (0.0, 20.1, "told above 20%")]
+)
+def test_bending_is_blurred_from_a_tenth_of_the_largest_moment_where_it_is_smooth_and_a_fifth_beside_a_clamp(
+    smooth: float, steep: float, limit: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "misfit", lambda *found: BendingMisfit(smooth, 1, steep, 1))
+    assembly = built(pulled(static()))
+    seen = Plausibility(assembly)
+    seen.begin_stage(assembly.scene.stages[0])
+    seen._largest = 100.0
+    seen.look_closely(1.0, State.at_rest(1.0, assembly.size), np.empty(0))
+    assert [limit in warning for warning in seen.warnings()] == [True] * bool(limit)
 
 
 def test_soil_that_is_never_touched_is_told_after_the_last_stage(tmp_path: Path) -> None:

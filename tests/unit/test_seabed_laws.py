@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -112,6 +114,16 @@ def test_force_is_zero_out_of_contact(law: NormalLaw) -> None:
 def test_no_path_from_untouched_ground_gains_work(law: NormalLaw, path: list[float], tremble: list[float]) -> None:
     whole = np.array([*path, *(0.05 + np.array(tremble))])
     assert work(whole, forces(law, whole)).min() >= -1e-9
+
+
+@pytest.mark.parametrize("make", [randolph_quiggin, aubeny_biscontin])
+def test_stored_is_what_comes_back_along_the_slope_with_which_the_pipe_turns(
+    make: Callable[[float, float, float], NormalLaw],
+) -> None:
+    law, deep = make(D, SU, GRADIENT), np.array([0.07])
+    found = law.update(deep, law.initial_history((1,)))
+    force, slope = found.force[0], at(law, deep - 1e-9, found.history)[1][0]
+    assert found.stored[0] == pytest.approx(0.5 * force**2 / slope, rel=1e-5)
 
 
 def lost_per_cycle(law: NormalLaw, cycle: Array, times: int) -> Array:

@@ -159,7 +159,9 @@ def column_of(
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_geostatic_start_bears_the_weight_of_all_layers(kind: str) -> None:
-    """σv is the weight above, σh = K0 σv, in equilibrium at once with the nodal weight  found another way."""
+    """σv is the weight above, σh = K0 σv, in equilibrium at once with the nodal weight found another way. The forces'
+    work along a stretch of one direction is the integral of its normal stress, be it that of sides which are held.
+    """
     weight = LayeredWeight((0.7, 1.9), (4.0e3, 9.0e3, 6.0e3))
     soil = column_of(kind, (SOFT, STIFF, SOFT), (0.7, 1.9), weight, K0=0.6)
     loose = column_of(kind, (SOFT, STIFF, SOFT), (0.7, 1.9), weight, start="unstressed")
@@ -170,6 +172,9 @@ def test_geostatic_start_bears_the_weight_of_all_layers(kind: str) -> None:
     internal = soil._internal(soil._initial)
     np.testing.assert_allclose(internal[free], weighs[free], atol=1e-9 * np.abs(weighs).max())
     assert weighs.sum() == pytest.approx(-(4.0e3 * 0.7 + 9.0e3 * 1.2 + 6.0e3 * 1.1), rel=1e-12)
+    upper, middle, lower = 4.0e3 * 0.7**2 / 2.0, 2.8e3 * 1.2 + 9.0e3 * 1.2**2 / 2.0, 13.6e3 * 1.1 + 6.0e3 * 1.1**2 / 2.0
+    stretched = (internal.reshape(-1, 3) * soil.field.points).sum(axis=0)
+    assert stretched == pytest.approx(-(upper + middle + lower) * np.array([0.6, 0.6, 1.0]), rel=1e-9)
 
 
 CLAYS: list[dict[str, Any]] = [

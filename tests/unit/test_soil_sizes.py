@@ -13,7 +13,7 @@ from riser_soil.assembly import sized
 from riser_soil.assembly.ground import contact_width
 from riser_soil.assembly.riser import elements_of
 from riser_soil.assembly.scales import Scales
-from riser_soil.assembly.soil_sizes import ACROSS, BESIDE, bending_on_soil, touching_width
+from riser_soil.assembly.soil_sizes import bending_on_soil, touching_width
 from riser_soil.assembly.touchdown_forecast import forecast
 from riser_soil.checks.estimate import size_of
 from riser_soil.errors import SceneError
@@ -58,9 +58,11 @@ def test_a_light_pipe_touches_as_hertz_says_a_heavy_one_as_clay_bears() -> None:
     assert touching_width(Scales(1e5, 0.3, 1.0), CLAY) == pytest.approx(0.3)
 
 
-@pytest.mark.parametrize(("su", "cells", "strip"), [(6000.0, ACROSS, 2.0), (600.0, None, BESIDE)])
+@pytest.mark.parametrize(("su", "cells", "strip"), [(6000.0, 4.0, 2.0), (600.0, None, 1.25)])
 def test_cells_follow_from_what_touches_and_from_what_bends(su: float, cells: float | None, strip: float) -> None:
-    """A light pipe has so many across the width that touches; a heavy one, which sinks in, D/16."""
+    """A light pipe has four across the width that touches; a heavy one, which sinks in, D/16. They don't grow
+    within eight of them, and not within 1.25 of that width, as clay heaves beside it.
+    """
     scene = automatic(soil__law__su=su)
     block, mesh, sizes = chosen(scene)
     assert scene.soil is not None
