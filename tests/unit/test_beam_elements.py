@@ -348,3 +348,23 @@ def test_geometric_term_of_the_plane_matters(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(beam2d, "configuration_variation", lambda *_: (0.0, 0.0))
     _, incomplete = elements.call(beam2d.forces_and_tangent.py_func)
     assert difference(incomplete, K) > 1e4 * TOLERANCE
+
+
+def test_torque_that_varies_along_an_element_twists_it_within() -> None:
+    """A section that turns by phi turns its curvature against its moment, at P phi per length with P the torque's rate.
+    The energy is that of the phi, 0 at both ends, for which 1/2 GJ phi'^2 - P phi is least: a parabola.
+    """
+    L, GJ, EI = 3.0, 4.0, np.array([2.0, 5.0])
+    D = strain3d.Stiffness(L, EA, 2.0, 5.0, GJ)
+    k, k0 = np.array([0.11, -0.07]), np.array([0.03, 0.02])
+    P = k[0] * EI[1] * (k - k0)[1] - k[1] * EI[0] * (k - k0)[0]
+    s, weight = (0.5 * L * values for values in np.polynomial.legendre.leggauss(5))
+    s += 0.5 * L
+    found = []
+    for top in np.linspace(0.5, 1.5, 101) * P * L**2 / (8.0 * GJ):
+        phi, slope = 4.0 * top * s * (L - s) / L**2, 4.0 * top * (L - 2.0 * s) / L**2
+        found.append(weight @ (0.5 * GJ * slope**2 - P * phi))
+    bent = 0.5 * L * EI @ (k - k0) ** 2
+    total, elastic = (strain3d.Strain(0.0, 0.0, tuple(each), tuple(each)) for each in (k, k - k0))
+    assert stress3d.energy(D, total, elastic) == pytest.approx(bent + min(found), rel=1e-9)
+    assert min(found) < -1e-4 * bent

@@ -12,7 +12,7 @@ from scipy.optimize import brentq, fsolve
 
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
-from riser_soil.riser.catenary import Catenary, catenary
+from riser_soil.riser.catenary import Catenary, bend_of_curvature, catenary, curvature
 from riser_soil.riser.shapes import X
 
 ARC = np.linspace(0.0, 350.0, 3501)
@@ -49,6 +49,16 @@ def test_hanging_line_tends_to_the_closed_form() -> None:
     nodes, end = np.linspace(0.0, 350.0, 26), np.array([150.0, 0.0, 150.0])
     require_second_order(lambda n: abs(catenary(nodes, ORIGIN, end, W, STIFF, bars=n).H / (W * a) - 1.0), 3e-7)
     assert abs(catenary(nodes, ORIGIN, end, W, STIFF).H / (W * a) - 1.0) < 1e-7
+
+
+def test_curvature_and_how_it_bends_are_derivatives_of_the_angle() -> None:
+    """A cable rises by atan(w s/H) at s from its lowest point."""
+    H, s, h = 4.0e4, np.array([-300.0, -20.0, 0.0, 50.0, 66.0, 400.0]), 0.05
+    T = np.hypot(H, W * s)
+    angle = [np.arctan(W * (s + n * h) / H) for n in (-2, -1, 0, 1, 2)]
+    assert curvature(np.array(W), H, T) == pytest.approx((angle[3] - angle[1]) / (2.0 * h), rel=1e-6)
+    third = np.abs(angle[4] - 2.0 * angle[3] + 2.0 * angle[1] - angle[0]) / (2.0 * h**3)
+    assert bend_of_curvature(np.array(W), H, T) == pytest.approx(third, abs=1e-4 * third.max())
 
 
 def test_hanging_line_is_balanced() -> None:

@@ -41,6 +41,7 @@ def test_a_rigid_bar_turns_to_the_neutral_angle(dimension: int, upper: str) -> N
     x, _, z = pushed.position[-1][free]
     turned = np.arctan2(-side * x, L - z)
     assert K * (turned - theta) == pytest.approx(-side * force * (L - z), rel=1e-5)
+    assert pushed.energy[-1] == pytest.approx(0.5 * K * (turned - theta) ** 2, rel=1e-4)
 
 
 def test_the_joint_of_a_hanging_riser() -> None:

@@ -139,6 +139,21 @@ def test_cantilever_reactions_balance_weight_and_tip_load(dimension: int) -> Non
     assert at_tip.force[0] == pytest.approx(-start.force, abs=1e-6)
 
 
+@both_dimensions
+def test_loads_that_grow_work_by_their_mean(dimension: int) -> None:
+    """From 0.2 to 0.8 of them while the tip goes 0.3 m along and 0.1 m up, and all of the bar half as far."""
+    line, _ = bar(dimension, End(True, rotation_fixed=True), End(False))
+    tip, spread = np.array([100.0, 0.0, -80.0]), np.array([0.0, 0.0, 5.0])
+    loads = PointLoads(line, [AppliedLoad(lambda t: t, 12.0, tip), AppliedLoad(lambda t: t, distributed=spread)])
+    before, after = State.at_rest(0.2, line.size), State.at_rest(0.8, line.size)
+    line.nodal(after.u)[:, [0, dimension - 1]] = np.array([0.15, 0.05])
+    line.nodal(after.u)[-1, [0, dimension - 1]] = np.array([0.3, 0.1])
+    work = loads.work(before, after)
+    of_spread = 5.0 * 12.0 * 0.05 + 5.0 * 0.5 * 2.0 * 0.05
+    assert work.external == pytest.approx(0.5 * (100.0 * 0.3 - 80.0 * 0.1 + of_spread), rel=1e-12)
+    assert work.dissipated == work.inertial == 0.0
+
+
 def test_small_deflections_give_textbook_section_forces() -> None:
     fixed, kind = End(True, rotation_fixed=True), replace(BAR, EI_y=2.0e6, EI_z=2.0e6)
     line, e = bar(3, fixed, fixed, kind=kind)

@@ -1,0 +1,118 @@
+"""Breaks the package at the places of places.txt, one at a time, and counts those that the quick tests notice.
+
+    python -m tests.mutants.run [--only TEXT]
+
+Each mutant is made in a copy, in `build/mutants`, and the test files named beside its place run there until the first
+failure; first without any mutant, when all must pass. A mutant that makes tests hang is noticed, too. Most of them take
+seconds, those of compiled kernels a minute.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+REPOSITORY = Path(__file__).parents[2]
+AT = REPOSITORY / "build" / "mutants"
+COPY = AT / "copy"
+LONGEST = 600.0  # s, of a mutant's tests
+ENOUGH = 0.95  # of all mutants
+
+
+class Place(NamedTuple):
+    """A module of the package, text that it has once, what a mutant has instead, and the test files to notice it."""
+
+    module: str
+    old: str
+    new: str
+    tests: str
+
+    @property
+    def path(self) -> str:
+        return f"riser_soil/{self.module}.py"
+
+    def mutated(self, text: str) -> str:
+        """The module's text as the mutant has it; ValueError unless the place is there once."""
+        if text.count(self.old) != 1:
+            raise ValueError(f"{self.path} has {text.count(self.old)} times, not once: {self.old}")
+        return text.replace(self.old, self.new)
+
+
+def places() -> Iterator[Place]:
+    for line in (Path(__file__).parent / "places.txt").read_text(encoding="utf-8").splitlines():
+        if line and not line.startswith("#"):
+            yield Place(*(field.strip() for field in line.split(" | ")))
+
+
+def not_copied(folder: str, names: list[str]) -> set[str]:
+    """What was made from the sources; the package has a folder of results, too."""
+    made = {"build", "__pycache__"} | ({"results"} if "__init__.py" not in names else set())
+    return {name for name in names if name in made or name.startswith(".")}
+
+
+def outcome(tests: Iterable[str], longest: float) -> str:
+    """The first failure of test files by their names, "" where all pass; RuntimeError where they don't run."""
+    shutil.rmtree(COPY / ".hypothesis", ignore_errors=True)  # what it has found with another mutant
+    files = [f"tests/unit/test_{name}.py" for name in tests]
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--hypothesis-seed=0", *files]
+    own = {"PYTHONPATH": str(COPY), "PYTHONDONTWRITEBYTECODE": "1", "XDG_CACHE_HOME": str(AT / "cache")}
+    with subprocess.Popen(
+        command, cwd=COPY, env=os.environ | own, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        start_new_session=True,
+    ) as process:  # fmt: skip
+        try:
+            told = process.communicate(timeout=longest)[0]
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            return f"no end within {longest:g} s"
+    if process.returncode == 0:
+        return ""
+    failed = re.search(r"^(?:FAILED|ERROR) tests/unit/test_(\S+)", told, re.MULTILINE)
+    if process.returncode != 1 or not failed:
+        raise RuntimeError(f"pytest ends with {process.returncode}: {told[-2000:]}")
+    return failed[1]
+
+
+def noticed(place: Place) -> str:
+    """The first test that fails of the mutant, "" for none."""
+    path = COPY / place.path
+    text, times = path.read_text(encoding="utf-8"), path.stat()
+    path.write_text(place.mutated(text), encoding="utf-8")
+    try:
+        return outcome(place.tests.split(), LONGEST)
+    finally:
+        path.write_text(text, encoding="utf-8")
+        os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))  # compiled kernels are known by it
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", default="", help="places with this text in their line")
+    only = parser.parse_args().only
+    chosen = [place for place in places() if only in " | ".join(place)]
+    shutil.rmtree(COPY, ignore_errors=True)
+    shutil.copytree(REPOSITORY, COPY, ignore=not_copied)
+    if failed := outcome(sorted({name for place in chosen for name in place.tests.split()}), 10.0 * LONGEST):
+        print(f"without any mutant: {failed}")
+        return 1
+    count = 0
+    for place in chosen:
+        begun, by = time.monotonic(), noticed(place)
+        count += bool(by)
+        told = f"({time.monotonic() - begun:.0f} s): {place.path}: {place.old} -> {place.new}"
+        print(by or "NOT NOTICED", told, flush=True)
+    print(f"{count} of {len(chosen)} mutants are noticed")
+    return int(count < ENOUGH * len(chosen))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
