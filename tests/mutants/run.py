@@ -40,6 +40,12 @@ class Place(NamedTuple):
     def path(self) -> str:
         return f"riser_soil/{self.module}.py"
 
+    @property
+    def files(self) -> list[str]:
+        """Tests of single pieces, but for those named with another folder."""
+        parts = (name.rpartition("/") for name in self.tests.split())
+        return [f"tests/{folder or 'unit'}/test_{name}.py" for folder, _, name in parts]
+
     def mutated(self, text: str) -> str:
         """The module's text as the mutant has it; ValueError unless the place is there once."""
         if text.count(self.old) != 1:
@@ -59,10 +65,9 @@ def not_copied(folder: str, names: list[str]) -> set[str]:
     return {name for name in names if name in made or name.startswith(".")}
 
 
-def outcome(tests: Iterable[str], longest: float) -> str:
-    """The first failure of test files by their names, "" where all pass; RuntimeError where they don't run."""
+def outcome(files: Iterable[str], longest: float) -> str:
+    """The first failure of test files, "" where all pass; RuntimeError where they don't run."""
     shutil.rmtree(COPY / ".hypothesis", ignore_errors=True)  # what it has found with another mutant
-    files = [f"tests/unit/test_{name}.py" for name in tests]
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--hypothesis-seed=0", *files]
     own = {"PYTHONPATH": str(COPY), "PYTHONDONTWRITEBYTECODE": "1", "XDG_CACHE_HOME": str(AT / "cache")}
     with subprocess.Popen(
@@ -76,7 +81,7 @@ def outcome(tests: Iterable[str], longest: float) -> str:
             return f"no end within {longest:g} s"
     if process.returncode == 0:
         return ""
-    failed = re.search(r"^(?:FAILED|ERROR) tests/unit/test_(\S+)", told, re.MULTILINE)
+    failed = re.search(r"^(?:FAILED|ERROR) tests/(\S+)", told, re.MULTILINE)
     if process.returncode != 1 or not failed:
         raise RuntimeError(f"pytest ends with {process.returncode}: {told[-2000:]}")
     return failed[1]
@@ -88,7 +93,7 @@ def noticed(place: Place) -> str:
     text, times = path.read_text(encoding="utf-8"), path.stat()
     path.write_text(place.mutated(text), encoding="utf-8")
     try:
-        return outcome(place.tests.split(), LONGEST)
+        return outcome(place.files, LONGEST)
     finally:
         path.write_text(text, encoding="utf-8")
         os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))  # compiled kernels are known by it
@@ -101,7 +106,7 @@ def main() -> int:
     chosen = [place for place in places() if only in " | ".join(place)]
     shutil.rmtree(COPY, ignore_errors=True)
     shutil.copytree(REPOSITORY, COPY, ignore=not_copied)
-    if failed := outcome(sorted({name for place in chosen for name in place.tests.split()}), 10.0 * LONGEST):
+    if failed := outcome(sorted({file for place in chosen for file in place.files}), 10.0 * LONGEST):
         print(f"without any mutant: {failed}")
         return 1
     count = 0

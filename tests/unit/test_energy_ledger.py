@@ -112,6 +112,23 @@ def test_accounts_follow_from_what_is_built_and_not_from_what_is_booked(lost: fl
     assert all(isinstance(x, float) for x in (balance.ledger.dissipated, balance.ledger.work))
 
 
+@pytest.mark.parametrize(
+    ("stored", "turned"),
+    [
+        (Energy(kinetic=7.0), {}),
+        (Energy(strain=7.0), {}),
+        (Energy(), {"seabed": Work(dissipated=7.0)}),
+        (Energy(potential=7.0), {"supports": Work(external=7.0)}),
+        (Energy(potential=-7.0), {"supports": Work(external=-7.0)}),
+    ],
+)
+def test_turned_over_is_the_most_that_was_stored_or_went_through(stored: Energy, turned: dict[str, Work]) -> None:
+    balance = EnergyLedger(Energy(), False, ("seabed",), ("supports",))
+    for energy, work in ((stored, turned), (Energy(kinetic=3.0, strain=4.0, potential=9.0), {})):
+        balance.add(energy, step(work))
+        assert balance.ledger.turned_over == 7.0
+
+
 def test_what_has_no_account_can_t_be_booked() -> None:
     balance = EnergyLedger(Energy(), True, ("seabed",), ("supports",))
     with pytest.raises(KeyError, match="friction"):

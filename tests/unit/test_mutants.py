@@ -18,7 +18,7 @@ def test_there_are_enough_of_them() -> None:
 def test_the_package_has_the_place_once(place: Place) -> None:
     text = (REPOSITORY / place.path).read_text(encoding="utf-8")
     assert place.mutated(text) != text
-    assert all((REPOSITORY / f"tests/unit/test_{name}.py").exists() for name in place.tests.split())
+    assert all((REPOSITORY / file).exists() for file in place.files)
 
 
 def test_text_that_is_not_there_once_is_refused() -> None:

@@ -17,7 +17,6 @@ from typer.testing import CliRunner, Result
 
 from riser_soil.__main__ import app
 from riser_soil.core.arrays import Array
-from riser_soil.fatigue.damage import YEAR
 from riser_soil.fatigue.stress_history import stress_history
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
@@ -25,6 +24,7 @@ from riser_soil.whole_run import run
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import dynamic, prescribed, riser_scene
 
+YEAR = 365.25 * 86400.0  # s
 OUTER, INNER, PULL, BEND = 0.2731, 0.2319, 3.0e5, 6.0e4
 A = 0.25 * np.pi * (OUTER**2 - INNER**2)
 I = np.pi / 64.0 * (OUTER**4 - INNER**4)
