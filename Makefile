@@ -20,7 +20,7 @@ export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow
 
-.PHONY: help setup demo demos test lint verify stress fuzz bench bench-peers parts bars asked quality verify-fresh docs docker pins clean
+.PHONY: help setup demo demos test lint verify stress fuzz mutants bench bench-peers parts bars asked quality verify-fresh docs docker pins clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
@@ -53,6 +53,9 @@ stress: setup ## stiff and extreme scenes with known answers, each in a process 
 
 fuzz: setup ## 600 mutated scenes, each in a process with limits: how they end; also among those of verify
 	$(PYTHON) -m tests.fuzz.run --count 600 --seed 1
+
+mutants: setup ## 69 places of the package broken one at a time: which of them the quick tests notice; an hour
+	$(PYTHON) -m tests.mutants.run
 
 bench: setup ## seconds by part of the demo, Newton iterations against the bare work in them, waves against plain sums, energy of an impact by scheme
 	$(PYTHON) -m benchmarks

@@ -16,6 +16,8 @@ import pytest
 from riser_soil.core import outputs
 from riser_soil.core.output import OutputQuantity
 from riser_soil.core.step_outputs import OF_STEP
+from riser_soil.plots.curves import ALONG_ARC
+from riser_soil.plots.units import SHOWN
 from riser_soil.results import Run
 from riser_soil.results.netcdf import HEALTH, SERIES
 from tests.support.on_ranks import HANGS, ROOT, environment
@@ -74,6 +76,29 @@ def test_a_new_entry_is_in_the_summary_with_its_extremes_and_on_the_screen(toys:
     assert re.search(row, toys[1])
     heave = Run(toys[0] / "told").summary["stages"][1]["extremes"]["max_height"]
     assert heave["max"] == Run(toys[0] / "told")["height"].max() > heave["min"]
+
+
+PREFIXES = {"k": 1e3, "M": 1e6, "m": 1e-3}
+
+
+def of_si(unit: str, si: str) -> float:
+    """How many of a unit are one of SI, by its prefix."""
+    return 1.0 / PREFIXES[unit[0]] if unit[1:] == si else 1.0
+
+
+def test_figures_are_told_in_the_units_that_stand_beside_them() -> None:
+    spelt = {"N m-1": "N/m", "m-1": "1/m", "1": "-", "degree": "°"}
+    rows = [(output.units, each.row) for output in TABLE for each in output.figures if each.row is not None]
+    assert len(rows) > 15
+    for units, row in rows:
+        si = spelt.get(units, units)
+        assert row.scale == pytest.approx(of_si(row.unit, si)), row
+    for units, (unit, factor) in SHOWN.items():
+        assert factor == pytest.approx(of_si(unit, spelt.get(units, units)))
+        assert unit.endswith(spelt.get(units, units))
+    for name, (words, factor) in ALONG_ARC.items():
+        (si,) = (spelt.get(output.units, output.units) for output in TABLE if output.name == name)
+        assert factor == pytest.approx(of_si(re.findall(r"\[(.*)\]", words)[0], si)), words
 
 
 def test_names_of_the_table_are_unique() -> None:

@@ -6,10 +6,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
+from riser_soil.core.part import Model, State
+from riser_soil.core.system import System, Timer
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.solve.buckling import stabilising_drag
+from riser_soil.solve.stability import PivotCounter, unstable_modes
+from riser_soil.solve.time_scheme import Static
 from riser_soil.whole_run import run
+from tests.support.toy_chain import Chain, Floor, Springs
 
 PIPE = {"EA": 1e7, "EI": 1e3, "submerged_weight": 100.0}
 EULER = np.pi**2 * 1e3 / 10.0**2
@@ -128,3 +135,21 @@ def test_a_riser_that_cannot_move_is_pressed_into_soil(tmp_path: Path) -> None:
     }
     run(scene_from_mapping(scene), tmp_path)
     assert Run(tmp_path).summary["stages"][0]["final"]["contact_force"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "certain", "possible"), [(1e-9, 0, 0), (2e-13, 0, 1), (0.0, 0, 1), (-2e-13, 0, 1), (-1e-9, 1, 1)]
+)
+def test_round_off_neither_makes_nor_hides_an_unstable_mode(stiffness: float, certain: int, possible: int) -> None:
+    """Two masses on a spring of 1000 N/m between them, each on such a floor: rows of 2000 N/m, known to 4e-13."""
+    chain = Chain(np.array([-1.0, -0.5]))
+    system = System(MPI.COMM_SELF, Model([chain], [Springs(chain, 0.5, 1e3), Floor(chain, stiffness)]), Timer.new())
+    state, weights = State.at_rest(1.0, chain.size), Static().weights(0.0)
+    found = [unstable_modes(PivotCounter(system), state, weights, 1.0, doubtful) for doubtful in (False, True)]
+    assert found == [certain, possible]
+    system.destroy()
+
+
+def test_the_least_stabilising_drag() -> None:
+    assert stabilising_drag(1e4, lambda drag: drag > 3.0) == pytest.approx(1e4 / 2**11)
+    assert stabilising_drag(1e-3, lambda drag: drag > 3.0) == pytest.approx(1e-3 * 2**12)

@@ -18,7 +18,7 @@ from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.solve.buckling import _largest, stabilising_drag
+from riser_soil.solve.buckling import _largest
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.solution import NewtonSettings
 from riser_soil.solve.time_scheme import Static
@@ -144,17 +144,6 @@ def test_pushed_frame_far_beyond_buckling(elements: int, tmp_path: Path) -> None
     """
     found, _ = tip(frame(elements, -1.36, across=1e-4), tmp_path)
     assert found == pytest.approx([-15.41, 234.71, -132.45], abs=0.01 * 240.0)
-
-
-def test_the_least_stabilising_drag() -> None:
-    asked = list[float]()
-
-    def stable(drag: float) -> bool:
-        asked.append(drag)
-        return drag > 3.0
-
-    assert stabilising_drag(1e4, stable) == pytest.approx(1e4 / 2**11)
-    assert stabilising_drag(1e-3, stable) == pytest.approx(1e-3 * 2**12)
 
 
 def test_the_sign_of_a_mode_hangs_on_no_round_off() -> None:
