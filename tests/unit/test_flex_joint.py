@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
+from riser_soil.core.arrays import Array
 from riser_soil.hang_off import from_vertical
+from riser_soil.riser import rotations
+from riser_soil.riser.load_kernels import PlanarSpring, SpatialSpring
+from riser_soil.riser.part_kernels import add_energy
 from tests.support.coupled_scenes import Mapping
 from tests.support.riser_scenes import prescribed, riser_scene, stage_histories, static
 
@@ -55,3 +59,19 @@ def test_the_joint_of_a_hanging_riser() -> None:
     turn = np.radians(from_vertical(run.end.end_tangent) - 2.0)
     assert abs(turn) > 0.02
     assert run.end.end_moment == pytest.approx([0.0, -2.0e4 * turn, 0.0], rel=1e-6)
+
+
+class Turned(NamedTuple):
+    """What a spring sees of a line of one node: its angle in a plane, its frame in space."""
+
+    angle: Array
+    frames: Array
+
+
+def test_energy_in_the_loop_is_that_of_the_turn_from_the_support() -> None:
+    support, turn = np.array([0.3, -0.5, 0.2]), np.array([0.4, 0.6, -1.2])
+    first, then = (np.array(rotations.exp(tuple(each))) for each in (support, turn))
+    at, stored = Turned(np.array([1.7]), (then @ first)[None]), np.zeros((2, 3))
+    add_energy.kernels[PlanarSpring](PlanarSpring(0, K, np.array([0.3])), at, stored[0])
+    add_energy.kernels[SpatialSpring](SpatialSpring(0, K, first), at, stored[1])
+    assert stored == pytest.approx(0.5 * K * np.array([[0.0, 1.4**2, 0.0], [0.0, 1.4**2, 0.0]]))
