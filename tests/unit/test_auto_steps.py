@@ -42,6 +42,23 @@ def test_steps_settle_where_the_error_asks() -> None:
     assert times[-1] == 40.0
 
 
+@pytest.mark.parametrize(("error", "next_step"), [(0.0, 4.0**0.1), (0.9, 3.0 ** (-1.0 / 6.0)), (0.3, 1.0)])
+def test_sizes_go_half_of_the_way_down_and_a_tenth_of_it_up(error: float, next_step: float) -> None:
+    """In the logarithm; up at most to four times the step, down to where a third of its error would be left."""
+    steps = AutoSteps(1000.0, TOLERANCE, 1e-5, 1.0)
+    assert not steps.rejection(error * TOLERANCE)
+    steps.accept(easy=True)
+    assert steps.dt == pytest.approx(next_step, rel=2e-3)
+
+
+@pytest.mark.parametrize(("error", "again"), [(1e9, 0.2), (8.0 * 0.3, 0.5), (1.0001, 0.3 ** (1.0 / 3.0))])
+def test_what_errs_too_much_is_tried_again_with_what_fits_but_no_less_than_a_fifth(error: float, again: float) -> None:
+    steps = AutoSteps(1000.0, TOLERANCE, 1e-5, 1.0)
+    assert steps.rejection(error * TOLERANCE)
+    assert steps.cut()
+    assert steps.dt == pytest.approx(again, rel=2e-3)
+
+
 def test_too_long_a_first_step_is_tried_again_at_once_with_the_right_size() -> None:
     times, failed = walk(AutoSteps(100.0, TOLERANCE, 1e-5, 1.0), smooth(0.3))
     assert failed == 1

@@ -10,6 +10,7 @@ from riser_soil.assembly.ground import contact_width, smoothing, stiffnesses
 from riser_soil.assembly.scales import Scales
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.errors import SceneError
+from riser_soil.results.settlement_trough import offsets_of
 from riser_soil.scene.contact import Contact
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.seabed.law import NormalLaw
@@ -90,3 +91,8 @@ def test_friction_is_mobilised_by_a_thirtieth_of_the_diameter() -> None:
     np.testing.assert_allclose(assembly.friction._stiffness, 0.6 * weight / (D / 30.0))
     width = contact_width(assembly.scales, E)
     assert assembly.soil_friction._stiffness == pytest.approx(0.6 * weight / width / (D / 30.0))
+
+
+def test_sections_across_the_riser_reach_three_diameters_to_either_side() -> None:
+    offsets = offsets_of(with_contact())
+    assert (len(offsets), offsets[0], offsets[30], offsets[-1]) == pytest.approx((61, -3.0 * D, 0.0, 3.0 * D))

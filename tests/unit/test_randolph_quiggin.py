@@ -72,6 +72,15 @@ def test_repenetration_is_softer_and_joins_the_first_curve_beyond_the_deepest_po
     np.testing.assert_allclose(at(EVEN, later, again)[0], at(EVEN, later, EVEN.initial_history((1,)))[0], rtol=1e-2)
 
 
+def test_a_tremble_beyond_the_deepest_point_leaves_the_clay_as_whole_as_it_was() -> None:
+    """Softened by exp(-0.3) at the deepest point, by exp(-0.2) a tenth beyond it: so it is after a turn there, too."""
+    out, on = through(0.0, DEEP, -0.01), through(-0.01, 1.1 * DEEP)
+    again = after(EVEN, np.concatenate([out, on, through(1.1 * DEEP, 1.1 * DEEP - 1e-6, 1.1 * DEEP, steps=2)]))
+    z = np.array([1.11 * DEEP])
+    first = at(EVEN, z, EVEN.initial_history((1,)))[0]
+    assert at(EVEN, z, again)[0] == pytest.approx(first * np.exp(-0.2 + 0.01 / 1.1), rel=2e-3)
+
+
 def test_repenetration_after_a_small_uplift_starts_with_the_greatest_stiffness() -> None:
     history = after(EVEN, through(0.0, DEEP, DEEP - 5e-4, steps=50))
     slope = at(EVEN, np.array([DEEP - 5e-4 + 1e-9]), history)[1][0]

@@ -182,8 +182,10 @@ def test_bearing_resistance() -> None:
 
 
 def test_displaced_area_of_half_a_pipe_and_of_a_whole_one() -> None:
-    integral, area, width = np.vectorize(displaced)(np.array([-0.1, 0.5 * D, D, 2.0 * D]), D)
+    depths = np.array([-0.1, 0.5 * D, D, 2.0 * D])
+    integral, area, width = np.vectorize(displaced)(depths, D)
     half = 0.125 * np.pi * D**2
     np.testing.assert_allclose(area, [0.0, half, 2.0 * half, 2.0 * half], atol=1e-15)
     np.testing.assert_allclose(width, [0.0, D, 0.0, 0.0], atol=1e-15)
-    assert integral[-1] == pytest.approx(quad(lambda z: displaced(z, D)[1], 0.0, 2.0 * D, points=[D])[0])
+    below = [quad(lambda z: displaced(z, D)[1], 0.0, depth, points=[D])[0] for depth in depths[1:]]
+    assert integral == pytest.approx([0.0, *below])

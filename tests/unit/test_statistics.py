@@ -18,7 +18,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
 from riser_soil.statistics.analysis import PlaceStatistics, Wanted
-from riser_soil.statistics.extremes import fit_gumbel, fit_weibull, rayleigh_height
+from riser_soil.statistics.extremes import fit_gumbel, fit_weibull, plotting_positions, rayleigh_height
 from riser_soil.statistics.records import records_of
 from riser_soil.statistics.series import block_maxima, cycles, spectrum
 
@@ -137,6 +137,11 @@ def test_weibulls_fit_is_that_of_most_likelihood() -> None:
     assert fit_weibull(heights).scale == pytest.approx(scale, rel=1e-3)
     exceeded = stats.weibull_min.sf(4.0, shape, 0.0, scale)
     assert fit_weibull(heights).exceedance(np.array(4.0)) == pytest.approx(exceeded, rel=1e-2)
+
+
+def test_each_of_n_samples_is_exceeded_as_often_as_its_rank_in_one_more() -> None:
+    samples, exceeded = plotting_positions(np.array([1.0, 3.0, 2.0]))
+    assert (samples.tolist(), exceeded.tolist()) == ([3.0, 2.0, 1.0], [0.25, 0.5, 0.75])
 
 
 def test_what_is_exceeded() -> None:

@@ -45,6 +45,14 @@ def test_rigid_contact_with_the_same_resultant(rule: str, layer: float, toleranc
     assert found == pytest.approx(exact(end, layer), abs=tolerance if rule == "line" else 0.05)
 
 
+@pytest.mark.parametrize("before", [0.9, 2.5, 6.0])
+def test_contact_that_ends_close_to_the_riser_s_end(before: float) -> None:
+    """So close that the riser at rest beyond it would weigh less than the force that is concentrated there, or more."""
+    arc, share = points("line", np.linspace(0.0, LENGTH, 3201))
+    end = LENGTH - before
+    assert touchdown(arc, share, *landed(arc, end, 0.2)) == pytest.approx(exact(end, 0.2), abs=1e-3)
+
+
 def test_softness_of_the_bed_cancels() -> None:
     """The force ends 0.45 m apart; the touchdown points differ by second-order terms in the layer's length."""
     arc, share = points("line", np.linspace(0.0, LENGTH, 3201))
