@@ -54,7 +54,7 @@ stress: setup ## stiff and extreme scenes with known answers, each in a process 
 fuzz: setup ## 600 mutated scenes, each in a process with limits: how they end; also among those of verify
 	$(PYTHON) -m tests.fuzz.run --count 600 --seed 1
 
-mutants: setup ## 69 places of the package broken one at a time: which of them the quick tests notice; an hour
+mutants: setup ## some 70 places of the package broken one at a time: which of them the quick tests notice; half an hour
 	$(PYTHON) -m tests.mutants.run
 
 bench: setup ## seconds by part of the demo, Newton iterations against the bare work in them, waves against plain sums, energy of an impact by scheme

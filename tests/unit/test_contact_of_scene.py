@@ -93,6 +93,17 @@ def test_friction_is_mobilised_by_a_thirtieth_of_the_diameter() -> None:
     assert assembly.soil_friction._stiffness == pytest.approx(0.6 * weight / width / (D / 30.0))
 
 
+def test_the_riser_bounces_on_the_stiffest_of_its_grounds() -> None:
+    """A metre of it on springs of 1e5 N/m2; on soil with a penalty of 20 E, which gives way by a strip's 1/E, too."""
+    soil, alone = with_contact(), touchdown()
+    del alone["soil"]
+    springs = built(alone)
+    mass = float(springs.elements.mass.min())
+    assert mass * (2.0 * np.pi / springs.contact_period) ** 2 == pytest.approx(1.0e5)
+    series = 1.0 / (1.0 / (20.0 * E) + 1.0 / E)
+    assert mass * (2.0 * np.pi / soil.contact_period) ** 2 == pytest.approx(series)
+
+
 def test_sections_across_the_riser_reach_three_diameters_to_either_side() -> None:
     offsets = offsets_of(with_contact())
     assert (len(offsets), offsets[0], offsets[30], offsets[-1]) == pytest.approx((61, -3.0 * D, 0.0, 3.0 * D))
