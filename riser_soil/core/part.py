@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -32,12 +32,14 @@ class State:
     u: increment since the last accepted state: displacement [m], body-axes rotation vector [rad].
     v: rate: velocity [m/s], body-axes angular velocity [rad/s].
     a: acceleration [m/s2], body-axes angular acceleration [rad/s2].
+    dt: seconds that the increments take: inf in statics, where all is slow; 0 of an accepted state, which has none.
     """
 
     t: float
     u: Array
     v: Array
     a: Array
+    dt: float = field(default=0.0, kw_only=True)
 
     @classmethod
     def at_rest(cls, t: float, size: int) -> State:

@@ -18,7 +18,7 @@ from pydantic_core import PydanticCustomError
 
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.errors import SceneError
-from riser_soil.scene.columns import CsvColumns, Known, Units, read_columns
+from riser_soil.scene.columns import TIME, CsvColumns, Known, Units, read_columns
 
 STRAINS = ("eps_xx", "eps_yy", "eps_zz", "gamma_xy", "gamma_xz", "gamma_yz")
 STRESSES = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")
@@ -28,7 +28,8 @@ STRESS_FACTOR: Array = 1.0 / STRAIN_FACTOR
 
 _STRAIN: Units = {"-": 1.0, "%": 0.01}
 _STRESS: Units = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6}
-_KNOWN: Known = {**dict.fromkeys(STRAINS, _STRAIN), **dict.fromkeys(STRESSES, _STRESS)}
+_TIME: Units = {**TIME, "h": 3600.0, "d": 86400.0}
+_KNOWN: Known = {**dict.fromkeys(STRAINS, _STRAIN), **dict.fromkeys(STRESSES, _STRESS), "time": _TIME}
 AMPLITUDES: tuple[float, ...] = tuple(10.0 ** (0.5 * k) for k in range(-10, -2))
 ROWS, TURNS = 40, 4  # of the automatic cycles: rows from turn to turn, turns at each amplitude
 
@@ -36,13 +37,15 @@ ROWS, TURNS = 40, 4  # of the automatic cycles: rows from turn to turn, turns at
 @dataclass(frozen=True, eq=False)
 class MaterialPath:
     """values (nr, 6): strain, or change of stress [Pa] where `stress` (6,) says so, since the start, in the engineer's
-    components. names: of the components that are given. source: the file, or what else it comes from.
+    components. names: of the components that are given. source: the file, or what else it comes from. seconds (nr,):
+    that each row takes; inf where all is slow.
     """
 
     values: Array
     stress: BoolArray
     names: tuple[str, ...]
     source: str
+    seconds: Array
 
     @property
     def driven(self) -> int:
@@ -62,21 +65,33 @@ def read_path(file: Path) -> MaterialPath:
             raise SceneError(f"{file}:{columns.header}: {strain} and {stress} exclude each other; remove one of them")
     if columns.rows == 0:
         raise SceneError(f"{file}:{columns.header}: there are no rows below the header; add the path, row by row")
-    return _path_of(columns, str(file))
+    if columns.values.keys() <= {"time"}:
+        raise SceneError(f"{file}:{columns.header}: there is no strain and no stress beside time; add gamma_xz [-]")
+    path = _path_of(columns, str(file))
+    late = np.flatnonzero(~(path.seconds > 0.0))
+    if late.size:
+        raise SceneError(f"{file}:{columns.lines[late[0]]}: time must grow from row to row, from 0 before the first")
+    return path
 
 
 def _path_of(columns: CsvColumns, source: str) -> MaterialPath:
     stress = np.array([name in columns.values for name in STRESSES])
     names = np.where(stress, STRESSES, STRAINS)
     values = np.column_stack([columns.get(str(name)) for name in names])
-    return MaterialPath(values, stress, tuple(str(n) for n in names if n in columns.values), source)
+    given = tuple(str(n) for n in names if n in columns.values)
+    times = columns.values.get("time")
+    seconds = np.full(len(values), np.inf) if times is None else np.diff(times, prepend=0.0)
+    return MaterialPath(values, stress, given, source, seconds)
 
 
 def shear_cycles(amplitudes: Sequence[float] = AMPLITUDES, rows: int = ROWS) -> MaterialPath:
-    """Symmetric cycles of gamma_xz that grow, two at each amplitude, under a vertical stress that stays as it is."""
+    """Symmetric cycles of gamma_xz that grow, two at each amplitude, under a vertical stress that stays as it is,
+    all of them slow.
+    """
     turns = [0.0, *(sign * amplitude for amplitude in amplitudes for sign in (1.0, -1.0) * (TURNS // 2))]
     gamma = np.concatenate([np.linspace(a, b, rows + 1)[1:] for a, b in pairwise(turns)])
     values = np.zeros((gamma.size, 6))
     values[:, 4] = gamma
     stress = np.array([name == "sigma_zz" for name in STRESSES])
-    return MaterialPath(values, stress, ("gamma_xz", "sigma_zz"), "cycles of simple shear")
+    seconds = np.full(gamma.size, np.inf)
+    return MaterialPath(values, stress, ("gamma_xz", "sigma_zz"), "cycles of simple shear", seconds)

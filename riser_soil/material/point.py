@@ -77,9 +77,9 @@ def drive(point: MaterialPoint, path: MaterialPath) -> MaterialCurve:
     strain: Array = np.zeros(6)
     lost = 0.0
     rows = [(strain, before, lost)]
-    for number, values in enumerate(wanted, start=1):
+    for row, values in enumerate(wanted):
         increment = np.where(path.stress, 0.0, values - strain)
-        increment, found = _answer(point, increment, values, path, before.history, number)
+        increment, found = _answer(point, increment, values, path, before.history, row)
         lost += _dissipated(point, increment, before, found)
         strain, before = strain + increment, found
         rows.append((strain, found, lost))
@@ -87,13 +87,13 @@ def drive(point: MaterialPoint, path: MaterialPath) -> MaterialCurve:
 
 
 def _answer(
-    point: MaterialPoint, increment: Array, wanted: Array, path: MaterialPath, history: Array, number: int
+    point: MaterialPoint, increment: Array, wanted: Array, path: MaterialPath, history: Array, row: int
 ) -> tuple[Array, StressUpdate]:
     """The increment (6,) that brings the given components of stress to their change, by Newton's method, and its
     answer.
     """
     free: BoolArray = path.stress
-    found = point.law.update(increment[None], history)
+    found = point.law.update(increment[None], history, path.seconds[row])
     for _ in range(MOST_ITERATIONS):
         missing = (wanted - found.stress[0] + point.initial[0])[free]
         if not np.abs(missing).max(initial=0.0) > CONVERGED * np.abs(found.stress).max():
@@ -101,10 +101,10 @@ def _answer(
         moduli = found.tangent[0][np.ix_(free, free)]
         increment = increment.copy()
         increment[free] += np.linalg.lstsq(moduli, missing, rcond=1e-12)[0]
-        found = point.law.update(increment[None], history)
+        found = point.law.update(increment[None], history, path.seconds[row])
     names = ", ".join(np.array(STRESSES)[free])
     raise SolveError(
-        f"{path.source}, row {number}: no strain brings {names} to what is asked: the soil has no such strength, or "
+        f"{path.source}, row {row + 1}: no strain brings {names} to what is asked: the soil has no such strength, or "
         "the row is too far from the one before; lower the stress, or put rows in between"
     )
 

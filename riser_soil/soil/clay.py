@@ -11,6 +11,7 @@ from riser_soil.core.lazy import LazyModule
 from riser_soil.core.quantities import PoissonRatio, Ratio, StrengthGradient, StressOrNone, wrong
 from riser_soil.seabed.bearing import Number, Strength, strip_capacity
 from riser_soil.soil.law import Bearing, Formula, SoilLaw
+from riser_soil.soil.rate import Rate
 from riser_soil.soil.remoulding import RemouldedClay, Remoulding, WeakeningFormula
 
 if TYPE_CHECKING:
@@ -33,9 +34,13 @@ class UndrainedClay(SoilLaw, ABC):
         default=None, description="{sensitivity, xi_95}: loss of strength with plastic strain; none by default"
     )
 
+    rate: Rate | None = Field(
+        default=None, description="{mu, reference}: gain of strength with the rate of shear; none by default"
+    )
+
     @abstractmethod
     def intact(self, depth: Array, initial: Array) -> WeakeningFormula:
-        """The formula of clay that keeps its strength; arguments as of `at_points`."""
+        """The formula of clay without remoulding; arguments as of `at_points`."""
 
     def at_points(self, depth: Array, initial: Array) -> Formula:
         intact = self.intact(depth, initial)

@@ -115,6 +115,7 @@ class FrictionalSoil:
     dilation: float
     initial: Array
     columns: ClassVar[tuple[str, ...]] = (*STRESS, PLASTIC_STRAIN)
+    by_rate: ClassVar[bool] = False
 
     @property
     def symmetric(self) -> bool:
@@ -133,7 +134,7 @@ class FrictionalSoil:
         """3 G + K M M' (n,) [Pa]: fall of q + M σm by Δλ."""
         return 3.0 * self.shear + self.bulk * self.slope * self.dilation
 
-    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
+    def update(self, strain_increment: Array, history: Array, dt: float = math.inf) -> StressUpdate:
         stress = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
         tangent, slip = self._elastic.copy(), np.zeros(len(stress))
         q, excess = mandel.von_mises(stress), self._excess(stress)

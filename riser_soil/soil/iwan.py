@@ -21,6 +21,7 @@ from riser_soil.core.lazy import LazyModule
 from riser_soil.core.quantities import Positive, Share, wrong
 from riser_soil.soil.clay import UndrainedClay
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, StressUpdate
+from riser_soil.soil.rate import Rate, gain_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -67,7 +68,7 @@ class IwanOverlay(UndrainedClay):
         share = slope - np.append(slope[1:], 0.0)
         bends = share > STRAIGHT  # points in one line with their neighbours are no corners
         moduli = share[bends] * shear[:, None]
-        return Overlay(bulk, moduli, np.sqrt(3.0) * moduli * strain[bends], limit, initial)
+        return Overlay(bulk, moduli, np.sqrt(3.0) * moduli * strain[bends], limit, initial, self.rate)
 
     def _backbone(self) -> tuple[Array, Array]:
         """Shear strains of the corners, the last one where the stress is su, and slopes before them over G0, (N,)."""
@@ -89,7 +90,7 @@ class IwanOverlay(UndrainedClay):
 @dataclass(frozen=True, eq=False)
 class Overlay:
     """Bulk modulus (n,); shear moduli and largest equivalent stresses of the elements (n, N), the latter of the sum
-    `limit` (n,); initial stress (n, 6) [Pa].
+    `limit` (n,), in slow shear; initial stress (n, 6) [Pa].
 
     History (n, 7 + 6 N): stress, equivalent plastic strain, deviators of the elements.
     """
@@ -99,7 +100,12 @@ class Overlay:
     limits: Array
     limit: Array
     initial: Array
+    rate: Rate | None = None
     symmetric: ClassVar[bool] = True
+
+    @property
+    def by_rate(self) -> bool:
+        return self.rate is not None
 
     @cached_property
     def shear(self) -> Array:
@@ -130,12 +136,14 @@ class Overlay:
         stress = np.minimum(corners[:, None], corners) @ (3.0 * moduli)
         return float(np.interp(q, np.append(0.0, stress), np.append(0.0, corners)))
 
-    def update(self, strain_increment: Array, history: Array, strength: Array | float = 1.0) -> StressUpdate:
+    def update(
+        self, strain_increment: Array, history: Array, dt: float = math.inf, strength: Array | float = 1.0
+    ) -> StressUpdate:
         limits = np.reshape(strength, (-1, 1)) * self.limits
         n, e = len(self.limit), mandel.deviator(strain_increment)
         trial = history[:, 7:].reshape(n, self.moduli.shape[1], 6) + 2.0 * self.moduli[:, :, None] * e[:, None, :]
         q = np.sqrt(1.5 * np.einsum("nki,nki->nk", trial, trial))
-        shrink = limits / np.maximum(q, limits)
+        shrink, slope = gain_of(self.rate, dt).radial_return(q, limits, 3.0 * self.moduli)
         s = shrink[:, :, None] * trial
         before = history[:, :6]
         change = s.sum(axis=1) - mandel.deviator(before)
@@ -146,7 +154,7 @@ class Overlay:
         elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
         stored = self._stored(stress, s) - self._stored_first - mandel.product(self.initial, elastic)
         after = np.column_stack((stress, slip, s.reshape(n, history.shape[1] - 7)))
-        return StressUpdate(stress, self._tangent(trial, q, shrink), after, stored, elastic)
+        return StressUpdate(stress, self._tangent(trial, q, shrink, slope), after, stored, elastic)
 
     @cached_property
     def _stored_first(self) -> Array:
@@ -157,11 +165,11 @@ class Overlay:
         of_elements = np.einsum("nki,nki,nk->n", s, s, 0.25 / self.moduli)
         return of_elements + 0.5 * mandel.mean(stress) ** 2 / self.bulk
 
-    def _tangent(self, trial: Array, q: Array, shrink: Array) -> Array:
-        """K 1⊗1 + Σ 2 Gi θi (P - n⊗n where it yields)."""
+    def _tangent(self, trial: Array, q: Array, shrink: Array, slope: Array) -> Array:
+        """K 1⊗1 + Σ 2 Gi (θi P - (θi - slope) n⊗n where it yields)."""
         moduli = mandel.stiffness(self.bulk, np.einsum("nk,nk->n", self.moduli, shrink))
         yields = shrink < 1.0
-        weight = np.where(yields, 3.0 * self.moduli * shrink / np.where(yields, q, 1.0) ** 2, 0.0)
+        weight = np.where(yields, 3.0 * self.moduli * (shrink - slope) / np.where(yields, q, 1.0) ** 2, 0.0)
         moduli -= np.einsum("nk,nki,nkj->nij", weight, trial, trial, optimize=True)
         return moduli
 

@@ -11,10 +11,15 @@ of η, and Δp solves
     |η| = √(2/3) (q0 + C θ Δp) + √6 G Δp.
 
 Its left side less the right falls with Δp, by √6 G at least, so that the root is one and Newton's method finds it.
+
+With a rate of shear (see `rate`) that makes clay r times as strong, r q0 stands for q0 and γ/r for γ: at a steady rate
+loops are those of clay with r su. With y = Δp/r, θ = 1/(1 + γ y) and r' = dr/dΔp, dy/dΔp = (1 - y r')/r and
+d(θ Δp)/dΔp = θ² (1 + γ y² r'). When flow slows down α falls by what it recalls, within a strain of some 1/γ.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
@@ -25,6 +30,7 @@ from riser_soil.core.lazy import LazyModule
 from riser_soil.core.quantities import Share
 from riser_soil.soil.clay import UndrainedClay
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, StressUpdate
+from riser_soil.soil.rate import Gain, Rate, gain_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -50,22 +56,26 @@ class KinematicHardening(UndrainedClay):
     def intact(self, depth: Array, initial: Array) -> CyclicClay:
         bulk, shear, limit = self._constants(depth)
         hardening = 9.0 * bulk * shear / (3.0 * bulk + shear)  # Young's modulus
-        return CyclicClay(bulk, shear, limit, self.elastic_share * limit, hardening, initial)
+        return CyclicClay(bulk, shear, limit, self.elastic_share * limit, hardening, initial, self.rate)
 
 
 class _Step(NamedTuple):
-    """Of points that yield: direction n and η (m, 6), Δp and θ (m,)."""
+    """Of points that yield: direction n and η (m, 6), Δp, θ and -dθ/dΔp (m,), and by how much |η| lacks behind what
+    the equation asks for, by Δp (m,).
+    """
 
     n: Array
     eta: Array
     slip: Array
     theta: Array
+    recall: Array
+    falls: Array
 
 
 @dataclass(frozen=True, eq=False)
 class CyclicClay:
     """Elastic moduli, largest equivalent stress, equivalent stress q0 at first yield, hardening modulus C, each (n,),
-    and initial stress (n, 6) [Pa].
+    and initial stress (n, 6) [Pa]; strengths in slow shear.
 
     History (n, 13): stress, equivalent plastic strain, backstress. The backstress stores 3/(4 C) α:α, which comes back
     or stays in the soil.
@@ -77,8 +87,13 @@ class CyclicClay:
     elastic_limit: Array
     hardening: Array
     initial: Array
+    rate: Rate | None = None
     columns: ClassVar[tuple[str, ...]] = (*STRESS, PLASTIC_STRAIN, *BACKSTRESS)
     symmetric: ClassVar[bool] = False
+
+    @property
+    def by_rate(self) -> bool:
+        return self.rate is not None
 
     def start(self) -> Array:
         return np.column_stack((self.initial, np.zeros(len(self.limit)), self._first_backstress))
@@ -103,15 +118,19 @@ class CyclicClay:
         """γ (n,) [-]."""
         return self.hardening / (self.limit - self.elastic_limit)
 
-    def update(self, strain_increment: Array, history: Array, strength: Array | float = 1.0) -> StressUpdate:
+    def update(
+        self, strain_increment: Array, history: Array, dt: float = math.inf, strength: Array | float = 1.0
+    ) -> StressUpdate:
+        gain = gain_of(self.rate, dt)
         now = replace(self, limit=strength * self.limit, elastic_limit=strength * self.elastic_limit)
         stress = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
-        backstress, slip = now._bounded(history[:, 7:]), np.zeros(len(stress))
+        backstress = history[:, 7:].copy() if gain.gains else now._bounded(history[:, 7:])
+        slip = np.zeros(len(stress))
         tangent = self._elastic.copy()
         relative = mandel.deviator(stress) - backstress
         at = np.flatnonzero(np.sqrt(1.5 * mandel.product(relative, relative)) > now.elastic_limit)
-        if at.size:
-            step = now._yielding(mandel.deviator(stress[at]), backstress[at], at)
+        if at.size and gain.flows:
+            step = now._yielding(mandel.deviator(stress[at]), backstress[at], at, gain)
             tangent[at] = now._tangent(step, backstress[at], at)
             moved = step.slip[:, None] * step.n
             stress[at] -= np.sqrt(6.0) * self.shear[at, None] * moved
@@ -131,45 +150,49 @@ class CyclicClay:
         """Energy of the backstress (n,) [J/m3]."""
         return 0.75 / self.hardening * mandel.product(backstress, backstress)
 
-    def _yielding(self, trial: Array, backstress: Array, at: IntArray) -> _Step:
+    def _yielding(self, trial: Array, backstress: Array, at: IntArray, gain: Gain) -> _Step:
         """Δp by Newton's method, kept where the root is known to lie."""
         C, recall, stiff = self.hardening[at], self._recall[at], np.sqrt(6.0) * self.shear[at]
-        root = np.sqrt(2.0 / 3.0)
+        root, first = np.sqrt(2.0 / 3.0), self.elastic_limit[at]
 
-        def excess(slip: Array) -> tuple[Array, Array, Array, Array]:
-            theta = 1.0 / (1.0 + recall * slip)
+        def excess(slip: Array) -> tuple[Array, _Step]:
+            factor, slope = gain.factor(slip)
+            y = slip / factor
+            theta = 1.0 / (1.0 + recall * y)
             eta = trial - theta[:, None] * backstress
-            size = np.sqrt(mandel.product(eta, eta))
-            return size - root * (self.elastic_limit[at] + C * theta * slip) - stiff * slip, theta, eta, size
+            size = mandel.size(eta)
+            n = eta / size[:, None]
+            recalls = recall * theta**2 * (1.0 - y * slope) / factor
+            hardens = C * theta**2 * (1.0 + recall * y**2 * slope) + first * slope
+            falls = stiff + root * hardens - recalls * mandel.product(n, backstress)
+            found = size - root * (factor * first + C * theta * slip) - stiff * slip
+            return found, _Step(n, eta, slip, theta, recalls, falls)
 
-        slip: Array = np.zeros(len(at))
-        found, theta, eta, size = excess(slip)
         low: Array = np.zeros(len(at))
+        found, step = excess(low)
         high: Array = found / stiff
-        least = np.maximum(CONVERGED * high, ROUND_OFF / stiff * size)
+        if gain.gains:  # α may be beyond its bound
+            high += mandel.size(backstress) / stiff
+            found, step = excess(np.clip(gain.slip(first + found / root, first, step.falls / root), low, high))
+        least = np.maximum(CONVERGED * high, ROUND_OFF / stiff * mandel.size(step.eta))
         for _ in range(MOST_ITERATIONS):
-            along = mandel.product(eta, backstress) / size
-            falls = stiff + theta**2 * (root * C - recall * along)
-            better = slip + found / falls
+            better = step.slip + found / step.falls
             better = np.where((better < low) | (better > high), 0.5 * (low + high), better)
-            done = np.abs(better - slip) <= least
-            slip = better
-            found, theta, eta, size = excess(slip)
-            low, high = np.where(found > 0.0, slip, low), np.where(found < 0.0, slip, high)
+            done = np.abs(better - step.slip) <= least
+            found, step = excess(better)
+            low, high = np.where(found > 0.0, better, low), np.where(found < 0.0, better, high)
             if done.all():
                 break
-        return _Step(eta / size[:, None], eta, slip, theta)
+        return step
 
     def _tangent(self, step: _Step, backstress: Array, at: IntArray) -> Array:
         """Consistent: dΔp = 2G n:dε/h; the direction turns with the strain and with what the backstress recalls."""
-        G, C, recall = self.shear[at], self.hardening[at], self._recall[at]
-        n, theta = step.n, step.theta
-        recalled = (recall * theta**2)[:, None] * backstress
-        h = np.sqrt(6.0) * G + np.sqrt(2.0 / 3.0) * C * theta**2 - mandel.product(n, recalled)
-        by_strain = (2.0 * G / h)[:, None] * n
+        G, n = self.shear[at], step.n
+        recalled = step.recall[:, None] * backstress
+        by_strain = (2.0 * G / step.falls)[:, None] * n
         eta = 2.0 * G[:, None, None] * mandel.DEVIATOR + recalled[:, :, None] * by_strain[:, None, :]
         turn = np.eye(6) - n[:, :, None] * n[:, None, :]
-        share = step.slip / np.sqrt(mandel.product(step.eta, step.eta))
+        share = step.slip / mandel.size(step.eta)
         flow = n[:, :, None] * by_strain[:, None, :] + share[:, None, None] * (turn @ eta)
         return mandel.stiffness(self.bulk[at], G) - (np.sqrt(6.0) * G)[:, None, None] * flow
 

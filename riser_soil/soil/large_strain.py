@@ -26,15 +26,17 @@ FIRST, LAST = STRESS[0][-3:], STRESS[-1][-3:]  # "_xx", "_yz"
 
 
 def moved_on(
-    family: Family, points: Array, cells: IntArray, u: Array, law: Formula, history: Array
+    family: Family, points: Array, cells: IntArray, u: Array, law: Formula, history: Array, dt: float
 ) -> StressUpdate:
-    """The law's answer (n points) to the displacements u (3n,) of nodes at points (n, 3), in cells (nc, nn)."""
+    """The law's answer (n points) to the displacements u (3n,) of nodes at points (n, 3), in cells (nc, nn), within
+    dt [s].
+    """
     half = cell_gradients(family, points + 0.5 * u.reshape(-1, 3), cells)
     nc, nq = half.weights.shape
     strain, spin = np.empty((nc, nq, 6)), np.empty((nc, nq, 3))
     kernels.strain(half.full, half.volume, cells, u, strain)
     kernels.spin(half.full, cells, u, spin)
-    return law.update(strain.reshape(-1, 6), turned(history, law.columns, spin.reshape(-1, 3)))
+    return law.update(strain.reshape(-1, 6), turned(history, law.columns, spin.reshape(-1, 3)), dt)
 
 
 def turned(history: Array, columns: Sequence[str], spin: Array) -> Array:

@@ -6,6 +6,7 @@ initial stress and no state: the caller keeps the history and decides when a tri
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol
 
@@ -37,7 +38,7 @@ class StressUpdate(NamedTuple):
 
 
 class Formula(Protocol):
-    """A rate-independent law at n points. columns: names of what the history holds; PLASTIC_STRAIN goes to the
+    """A law at n points. columns: names of what the history holds; PLASTIC_STRAIN goes to the
     results, other names are the law's own.
     """
 
@@ -47,6 +48,11 @@ class Formula(Protocol):
     @property
     def symmetric(self) -> bool:
         """Whether the tangent is symmetric."""
+        ...
+
+    @property
+    def by_rate(self) -> bool:
+        """Whether the answer hangs on the time that an increment takes."""
         ...
 
     @property
@@ -63,8 +69,8 @@ class Formula(Protocol):
         """History (n, nh) of undisturbed soil, under its initial stress."""
         ...
 
-    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
-        """The answer to a strain increment (n, 6) from a history."""
+    def update(self, strain_increment: Array, history: Array, dt: float = math.inf) -> StressUpdate:
+        """The answer to a strain increment (n, 6) from a history, within dt [s]: inf for slow, 0 for at once."""
         ...
 
     def overstress(self, stress: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -75,6 +76,10 @@ class LayeredFormula:
         return all(formula.symmetric for formula in self.formulas)
 
     @property
+    def by_rate(self) -> bool:
+        return any(formula.by_rate for formula in self.formulas)
+
+    @property
     def bulk(self) -> Array:
         return self._at_points([formula.bulk for formula in self.formulas])
 
@@ -93,11 +98,11 @@ class LayeredFormula:
             history[np.ix_(at, own)] = formula.start()
         return history
 
-    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
+    def update(self, strain_increment: Array, history: Array, dt: float = math.inf) -> StressUpdate:
         n, out = self.size, np.zeros_like(history)
         found = StressUpdate(np.empty((n, 6)), np.empty((n, 6, 6)), out, np.empty(n), np.empty((n, 6)))
         for at, own, formula in zip(self.places, self._own, self.formulas, strict=True):
-            part = formula.update(strain_increment[at], history[np.ix_(at, own)])
+            part = formula.update(strain_increment[at], history[np.ix_(at, own)], dt)
             out[np.ix_(at, own)] = part.history
             found.stress[at], found.tangent[at] = part.stress, part.tangent
             found.stored[at], found.elastic[at] = part.stored, part.elastic

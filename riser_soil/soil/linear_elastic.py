@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal
@@ -47,11 +48,12 @@ class Elastic:
     initial: Array
     columns: ClassVar[tuple[str, ...]] = STRESS
     symmetric: ClassVar[bool] = True
+    by_rate: ClassVar[bool] = False
 
     def start(self) -> Array:
         return self.initial
 
-    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
+    def update(self, strain_increment: Array, history: Array, dt: float = math.inf) -> StressUpdate:
         stress = history + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
         elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
         return StressUpdate(stress, self._moduli, stress, 0.5 * mandel.product(stress - self.initial, elastic), elastic)

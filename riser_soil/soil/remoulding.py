@@ -4,14 +4,15 @@
 
 is the strength over that of intact clay, ξ the plastic shear strain summed up without regard to its sign, √3 times the
 equivalent plastic strain. I. Einav & M. F. Randolph, Combining upper bound and strain path methods for evaluating
-penetration resistance, Int. J. Numer. Methods Eng. 63 (2005), without their factor for the rate of strain; from memory,
-as the source could not be read. The factor of a step is that of ξ at its start, so that the tangent stays consistent;
-the error is of first order in the increment of ξ. The stiffness stays. Softening concentrates strain within the width
-of a cell: what follows from it depends on the mesh.
+penetration resistance, Int. J. Numer. Methods Eng. 63 (2005), from memory, as the source could not be read; for their
+factor by the rate of strain see `rate`. The factor of a step is that of ξ at its start, so that the tangent stays
+consistent; the error is of first order in the increment of ξ. The stiffness stays. Softening concentrates strain within
+the width of a cell: what follows from it depends on the mesh.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Protocol
 
@@ -50,7 +51,9 @@ class Remoulding(BaseModel):
 class WeakeningFormula(Formula, Protocol):
     """A formula whose strength may fall from step to step."""
 
-    def update(self, strain_increment: Array, history: Array, strength: Array | float = 1.0) -> StressUpdate:
+    def update(
+        self, strain_increment: Array, history: Array, dt: float = math.inf, strength: Array | float = 1.0
+    ) -> StressUpdate:
         """strength: that of this step over the intact one, (n,) or one for all."""
         ...
 
@@ -71,6 +74,10 @@ class RemouldedClay:
         return self.clay.symmetric
 
     @property
+    def by_rate(self) -> bool:
+        return self.clay.by_rate
+
+    @property
     def bulk(self) -> Array:
         return self.clay.bulk
 
@@ -81,8 +88,8 @@ class RemouldedClay:
     def start(self) -> Array:
         return self.clay.start()
 
-    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
-        return self.clay.update(strain_increment, history, self.strength(history))
+    def update(self, strain_increment: Array, history: Array, dt: float = math.inf) -> StressUpdate:
+        return self.clay.update(strain_increment, history, dt, self.strength(history))
 
     def strength(self, history: Array) -> Array:
         """Strength over that of intact clay (n,) in a step that begins with this history."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -123,7 +124,7 @@ class Soil:
         With σ0 the initial stress and εe the elastic strain since then, potential = ∫ σ0:εe − load·u, which is −∫ σ0:εp
         for a geostatic start: nothing, as long as K0 = 1.
         """
-        u, _, found, _ = self._answer(state)
+        u, _, _, found, _ = self._answer(state)
         started = float(np.einsum("n,ni,ni->", self._volumes, self._initial, found.elastic))
         return Energy(
             strain=float(self._volumes @ found.stored), potential=started + self._lifted - float(self._load @ u)
@@ -138,7 +139,7 @@ class Soil:
         stays at its limit, nothing where no plastic strain grows; backstress and elements in parallel add half the
         product of the changes of their own stress and strain.
         """
-        _, strain, found, _ = self._answer(after)
+        _, _, strain, found, _ = self._answer(after)
         taken = self._integral(found.stress, strain)
         by_scheme = 0.5 * self._integral(found.stress - self._found.stress, found.elastic - self._found.elastic)
         return Work(dissipated=taken - self._stores(found) + self._stored, by_scheme=by_scheme)
@@ -149,17 +150,17 @@ class Soil:
 
     def commit(self, state: State) -> None:
         """Soil that has not moved, and whose history has not changed, answers as before."""
-        u, _, found, _ = self._answer(state)
+        u, dt, _, found, _ = self._answer(state)
         self._stored, self._lifted = self._stores(found), self._lifted - float(self._load @ u)
         if u.any() and self.moves:
-            found = self._move(u)
+            found = self._move(u, dt)
         if u.any() or not np.array_equal(found.history, self._found.history):
             self._last = None
         self._found = found._replace(tangent=np.empty(0))
 
-    def _move(self, u: Array) -> StressUpdate:
-        """Let the nodes move by u; the law's answer to that."""
-        found = moved_on(self.grid.family, self.points, self._cells, u, self.law, self._found.history)
+    def _move(self, u: Array, dt: float) -> StressUpdate:
+        """Let the nodes move by u within dt [s]; the law's answer to that."""
+        found = moved_on(self.grid.family, self.points, self._cells, u, self.law, self._found.history, dt)
         self._renew_gradients(self.points + u.reshape(-1, 3))
         self._load = self._held + self._weight()
         return found
@@ -241,7 +242,7 @@ class Soil:
         height = self._at_points(self.points)[:, 2]
         beyond = mandel.mean(stress) - height * mandel.mean(by_height)
         stress += (np.repeat(self._cell_mean(beyond), self._shape[1]) - beyond)[:, None] * mandel.UNIT
-        return self.law.update(np.zeros_like(stress), history)._replace(tangent=np.empty(0))
+        return self.law.update(np.zeros_like(stress), history, dt=0.0)._replace(tangent=np.empty(0))
 
     def _corners(self, points: Array) -> Array:
         """Nodes (nc, nn, 3) of the cells, at points (n, 3)."""
@@ -270,16 +271,18 @@ class Soil:
         return -mandel.mean(stress), mandel.von_mises(stress), strength_used, self._plastic_strain()
 
     def _answer(self, state: State) -> _Answer:
-        """At a trial state: the last one, as long as neither the soil's increments nor its history change."""
-        u = self.field.own(state.u)
-        if self._last is None or not np.array_equal(u, self._last.u):
-            self._last = self._new_answer(u.copy())
+        """At a trial state: the last one, as long as neither the soil's increments, the time that they take, where it
+        counts, nor its history change.
+        """
+        u, dt = self.field.own(state.u), state.dt if self.law.by_rate else math.inf
+        if self._last is None or dt != self._last.dt or not np.array_equal(u, self._last.u):
+            self._last = self._new_answer(u.copy(), dt)
         return self._last
 
-    def _new_answer(self, u: Array) -> _Answer:
+    def _new_answer(self, u: Array, dt: float) -> _Answer:
         strain = self._strain(u)
-        found = self.law.update(strain, self._found.history)
-        return _Answer(u, strain, found, self._internal(found.stress) - self._load)
+        found = self.law.update(strain, self._found.history, dt)
+        return _Answer(u, dt, strain, found, self._internal(found.stress) - self._load)
 
     def _plastic_strain(self) -> Array:
         """Equivalent plastic strain (n,), 0 for a law without plasticity."""
@@ -354,9 +357,10 @@ class Soil:
 
 
 class _Answer(NamedTuple):
-    """Of the soil to its increments u: strain increment (n, 6), the law's answer, and residual [N]."""
+    """Of the soil to its increments u within dt [s]: strain increment (n, 6), the law's answer, and residual [N]."""
 
     u: Array
+    dt: float
     strain: Array
     found: StressUpdate
     force: Array

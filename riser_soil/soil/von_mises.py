@@ -7,6 +7,7 @@ Computational Inelasticity (1998), box 3.2, without hardening.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal
@@ -16,6 +17,7 @@ from pydantic import Field
 from riser_soil.core.lazy import LazyModule
 from riser_soil.soil.clay import UndrainedClay
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, StressUpdate
+from riser_soil.soil.rate import Rate, gain_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -32,12 +34,12 @@ class VonMises(UndrainedClay):
     kind: Literal["von-mises"] = Field(description="the law's name")
 
     def intact(self, depth: Array, initial: Array) -> PerfectlyPlastic:
-        return PerfectlyPlastic(*self._constants(depth), initial)
+        return PerfectlyPlastic(*self._constants(depth), initial, self.rate)
 
 
 @dataclass(frozen=True, eq=False)
 class PerfectlyPlastic:
-    """Elastic moduli and largest equivalent stress, each (n,), and initial stress (n, 6) [Pa].
+    """Elastic moduli and largest equivalent stress in slow shear, each (n,), and initial stress (n, 6) [Pa].
 
     History (n, 7): stress and equivalent plastic strain.
     """
@@ -46,34 +48,41 @@ class PerfectlyPlastic:
     shear: Array
     limit: Array
     initial: Array
+    rate: Rate | None = None
     columns: ClassVar[tuple[str, ...]] = (*STRESS, PLASTIC_STRAIN)
     symmetric: ClassVar[bool] = True
+
+    @property
+    def by_rate(self) -> bool:
+        return self.rate is not None
 
     def start(self) -> Array:
         return np.column_stack((self.initial, np.zeros(len(self.limit))))
 
-    def update(self, strain_increment: Array, history: Array, strength: Array | float = 1.0) -> StressUpdate:
+    def update(
+        self, strain_increment: Array, history: Array, dt: float = math.inf, strength: Array | float = 1.0
+    ) -> StressUpdate:
         limit = strength * self.limit
         trial = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
         s = mandel.deviator(trial)
         q = np.sqrt(1.5 * mandel.product(s, s))
-        shrink = limit / np.maximum(q, limit)
+        shrink, slope = gain_of(self.rate, dt).radial_return(q, limit, 3.0 * self.shear)
         slip = q * (1.0 - shrink) / (3.0 * self.shear)
         stress = trial - (1.0 - shrink)[:, None] * s
         elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
         return StressUpdate(
             stress,
-            self._tangent(s, q, shrink),
+            self._tangent(s, q, shrink, slope),
             np.column_stack((stress, history[:, 6] + slip)),
             0.5 * mandel.product(stress - self.initial, elastic),
             elastic,
         )
 
-    def _tangent(self, s: Array, q: Array, shrink: Array) -> Array:
-        """K 1⊗1 + 2G θ (P − n⊗n) where it yields: n = s/|s| of the trial, θ = limit/q = shrink; else elastic."""
+    def _tangent(self, s: Array, q: Array, shrink: Array, slope: Array) -> Array:
+        """K 1⊗1 + 2G (θ (P − n⊗n) + slope n⊗n) where it yields: n = s/|s| of the trial, θ = shrink; else elastic."""
         moduli, at = self._elastic.copy(), np.flatnonzero(shrink < 1.0)
         n, shear = s[at] * (np.sqrt(1.5) / q[at])[:, None], (self.shear * shrink)[at]
-        along = (2.0 * shear)[:, None, None] * n[:, :, None] * n[:, None, :]
+        along = (2.0 * (shear - self.shear[at] * slope[at]))[:, None, None] * n[:, :, None] * n[:, None, :]
         moduli[at] = mandel.stiffness(self.bulk[at], shear) - along
         return moduli
 

@@ -126,7 +126,7 @@ class CondensedNewton:
 
     def _state(self, step: Step, still: State) -> State:
         """The state found."""
-        line, weights = self._riser.solved(step.t), step.scheme.weights(step.dt)
+        line, weights = self._riser.solved(step.t, step.dt), step.scheme.weights(step.dt)
         dofs, moved = self._border.increments
         u, v, a = self._nothing.copy(), still.v, still.a
         u[self._at], v[self._at], a[self._at], u[dofs] = line.u, line.v, line.a, moved
@@ -135,7 +135,7 @@ class CondensedNewton:
         rest = self.system.prescribed.copy()
         rest[self._at] = False
         v[rest] = a[rest] = 0.0
-        return State(step.t, u, v, a)
+        return State(step.t, u, v, a, dt=step.dt)
 
     def _forces(self) -> Forces:
         """Those of the last trial; on the soil's free dofs they are in balance."""
@@ -237,4 +237,4 @@ class MassAmongOthers:
 
 def of_line(state: State, at: slice) -> State:
     """A state of the line's dofs alone."""
-    return State(state.t, state.u[at], state.v[at], state.a[at])
+    return State(state.t, state.u[at], state.v[at], state.a[at], dt=state.dt)

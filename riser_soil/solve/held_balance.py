@@ -13,6 +13,8 @@ from riser_soil.solve.newton import Newton
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Step
 from riser_soil.solve.time_scheme import Static
 
+INSTANT = Static(seconds=0.0)  # what flows under rate keeps its stress
+
 
 def balance_held(comm: Communicator, model: Model, t: float, settings: NewtonSettings, clock: Timer) -> None:
     """Find what the parts of group E, soil and contact, balance at while no line moves, and commit it. Where that fails
@@ -27,7 +29,7 @@ def balance_held(comm: Communicator, model: Model, t: float, settings: NewtonSet
         with destroyed_together(comm, newton, system):
             size = system.numbering.size
             try:
-                found = newton.solve(Step(Static(), State.at_rest(t, size), t, 0.0, None, np.zeros(size))).state
+                found = newton.solve(Step(INSTANT, State.at_rest(t, size), t, 0.0, None, np.zeros(size))).state
             except NotConvergedError:
                 return
             for part in parts:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -146,7 +147,7 @@ class Newton:
 
     def _balance(self, u: Array) -> tuple[State, Array]:
         """State of the increments u, those of the prescribed dofs included, and its residual."""
-        state = State(self._step.t, u, self._still.v, self._still.a)
+        state = replace(self._still, u=u)
         self._forces, self._known = self.system.forces(state), state
         return state, self._step.scheme.combine(self._forces, self._past)
 
@@ -242,7 +243,8 @@ class Newton:
         self._step, self._norms, self._first = step, list[float](), 0
         self._weights, self._past = step.scheme.weights(step.dt), step.scheme.past(step.start)
         self._still = step.scheme.trial(step.before, step.t, step.dt, np.zeros_like(step.guess))
-        self._prescribed = State(step.t, *(x.copy() for x in (step.guess, self._still.v, self._still.a)))
+        still = self._still
+        self._prescribed = replace(still, u=step.guess.copy(), v=still.v.copy(), a=still.a.copy())
         self.system.prescribe(self._prescribed)
         self._state = None
         self._x = self.system.numbering.to_global(step.guess)
@@ -266,7 +268,7 @@ class Newton:
         a = self._still.a + self._weights.shift_a * u
         at = self.system.prescribed_dofs
         v[at], a[at] = self._prescribed.v[at], self._prescribed.a[at]
-        return State(self._step.t, u, v, a)
+        return State(self._step.t, u, v, a, dt=self._still.dt)
 
     def residual(self, x: Array) -> Array:
         """Residual of the unknowns, both (owned,); collective."""

@@ -152,9 +152,9 @@ class PackedRiser:
         outcome, taken = listed(self.progress.ending)
         return outcome, taken
 
-    def solved(self, t: float) -> State:
+    def solved(self, t: float, dt: float) -> State:
         """The state of the step solved last."""
-        return State(t, self.step.u.flatten(), self.step.v.flatten(), self.step.a.flatten())
+        return State(t, self.step.u.flatten(), self.step.v.flatten(), self.step.a.flatten(), dt=dt)
 
     def account(self, before: State) -> tuple[Array, Array]:
         """Energy (3,) at the end of the step solved last, and work (parts that have kernels for it, 4) in it."""

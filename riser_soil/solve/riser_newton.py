@@ -74,7 +74,7 @@ class RiserNewton:
             raise NotConvergedError(self._reason(outcome, norms))
         if reason := self._line.tangled(*self._riser.tangled):
             raise NotConvergedError(reason)
-        state = self._riser.solved(step.t)
+        state = self._riser.solved(step.t, step.dt)
         self._solved = state if self.system.smooth else None
         return Solution(state, self._found(), norms)
 

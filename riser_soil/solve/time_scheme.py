@@ -14,6 +14,7 @@ Generalised-alpha: Chung & Hulbert (1993), eqs 17 and 25; alpha_m = alpha_f = 0 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -86,8 +87,9 @@ class Scheme(Protocol):
 
 @dataclass(frozen=True)
 class Static:
-    """Equilibrium: no rates, no inertia."""
+    """Equilibrium: no rates, no inertia. seconds: that a step takes; 0 is an instant, in which nothing flows."""
 
+    seconds: float = math.inf
     dynamic = False
     lag = stiff_lag = error_constant = 0.0
     start_share = 0.5
@@ -106,7 +108,7 @@ class Static:
 
     def trial(self, before: State, t: float, dt: float, u: Array) -> State:
         nothing = np.zeros_like(u)
-        return State(t, u, nothing, nothing.copy())
+        return State(t, u, nothing, nothing.copy(), dt=self.seconds)
 
     def balanced_at(self, before: State, end: State, dt: float) -> State:
         return end
@@ -170,7 +172,7 @@ class GeneralizedAlpha:
         )
 
     def trial(self, before: State, t: float, dt: float, u: Array) -> State:
-        return State(t, u, *_rates(u, before.v, before.a, dt, self.beta, self.gamma))
+        return State(t, u, *_rates(u, before.v, before.a, dt, self.beta, self.gamma), dt=dt)
 
     def balanced_at(self, before: State, end: State, dt: float) -> State:
         return end
@@ -192,7 +194,7 @@ class GeneralizedAlpha:
     def split_contact(self, state: State, contact: Array, dt: float) -> State:
         a = state.a - contact / (2.0 * self.beta)
         v = state.v + dt * (1.0 - self.gamma / (2.0 * self.beta)) * contact
-        return State(state.t, state.u, v, a)
+        return State(state.t, state.u, v, a, dt=state.dt)
 
     def rates_after(self, end: CommittedStep) -> tuple[State, State]:
         if end.contact is None:
@@ -250,10 +252,10 @@ class Midpoint:
 
     def trial(self, before: State, t: float, dt: float, u: Array) -> State:
         v = 2.0 / dt * u - before.v
-        return State(t, u, v, 2.0 / dt * (v - before.v) - before.a)
+        return State(t, u, v, 2.0 / dt * (v - before.v) - before.a, dt=dt)
 
     def balanced_at(self, before: State, end: State, dt: float) -> State:
-        return State(end.t - 0.5 * dt, 0.5 * end.u, end.u / dt, (end.v - before.v) / dt)
+        return State(end.t - 0.5 * dt, 0.5 * end.u, end.u / dt, (end.v - before.v) / dt, dt=0.5 * dt)
 
     def past(self, start: Forces | None) -> Array | None:
         return None

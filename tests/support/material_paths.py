@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
 import numpy as np
 
 from riser_soil.core.arrays import Array
@@ -25,15 +28,17 @@ def at_start(law: Formula, n: int) -> StressUpdate:
     return law.update(np.zeros((n, 6)), law.start())
 
 
-def random_paths(law: Formula, initial: Array, steps: int, seed: int, largest: float = -0.5) -> float:
-    """Random increments of 1e-7 to 10^largest at n points; asserts finite numbers, stress within the limit and no
+def random_paths(
+    law: Formula, initial: Array, steps: int, seed: int, largest: float = -0.5, seconds: Sequence[float] = (math.inf,)
+) -> float:
+    """Random increments of 1e-7 to 10^largest at n points, within these seconds in turn; asserts finite numbers and no
     work given back; the worst stress over its limit.
     """
     rng, n, worst = np.random.default_rng(seed), len(initial), 0.0
     before = at_start(law, n)
     for step in range(steps):
         increment = 10.0 ** rng.uniform(-7.0, largest, (n, 1)) * rng.standard_normal((n, 6))
-        found = law.update(increment, before.history)
+        found = law.update(increment, before.history, seconds[step % len(seconds)])
         assert all(np.isfinite(values).all() for values in found), step
         lost = dissipated(initial, increment, before, found)
         scale = np.abs(found.stored) + mandel.product(np.abs(found.stress), np.abs(increment)) + 1e-9

@@ -87,11 +87,12 @@ class HardeningPoints:
     initial: Array
     columns: ClassVar[tuple[str, ...]] = (*STRESS, PLASTIC_STRAIN)
     symmetric: ClassVar[bool] = True
+    by_rate: ClassVar[bool] = False
 
     def start(self) -> Array:
         return np.column_stack((self.initial, np.zeros(len(self.shear))))
 
-    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
+    def update(self, strain_increment: Array, history: Array, dt: float = math.inf) -> StressUpdate:
         trial = history[:, :6] + mandel.elastic_stress(self.bulk, self.shear, strain_increment)
         s, q, G3 = mandel.deviator(trial), mandel.von_mises(trial), 3.0 * self.shear
         slip = np.maximum(q - self.limit - self.H * history[:, 6], 0.0) / (G3 + self.H)

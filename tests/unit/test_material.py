@@ -161,6 +161,7 @@ def test_more_stress_than_the_soil_bears_is_told_and_leaves_nothing(material: Ca
         ("gamma_xz [-]\nnan", "path.csv:2: gamma_xz"),
         ("gamma_xz [-], tau_xz [Pa]\n0.1, 2", "exclude each other"),
         ("gamma_xz [-]\n0.1, 2", "path.csv:2: the row has 2 values"),
+        ("time [s]\n1.0", "no strain and no stress beside time"),
     ],
 )
 def test_a_bad_path_is_told_in_one_line(material: Call, path: str, told: str) -> None:
@@ -248,3 +249,31 @@ def test_nothing_that_solves_is_imported(tmp_path: Path) -> None:
         [sys.executable, "-c", code], cwd=tmp_path, env=environment(), capture_output=True, text=True, timeout=HANGS
     )
     assert done.stdout.splitlines()[-1:] == ["set()"], done.stdout + done.stderr
+
+
+VISCOUS = {"kind": "von-mises", "su": SU, "E_over_su": E / SU, "nu": NU, "rate": {"mu": 0.1, "reference": 1e-5}}
+
+
+@pytest.mark.parametrize(("times", "gain"), [(1.0, 0.0), (10.0, 0.1), (100.0, 0.2)])
+def test_shear_in_time_finds_the_strength_of_its_rate(material: Call, times: float, gain: float) -> None:
+    gamma = np.linspace(0.0, 0.1, 201)[1:]
+    done = material(VISCOUS, rows("time [min], gamma_xz [%]", gamma / (times * 1e-5) / 60.0, 100.0 * gamma))
+    assert done.exit_code == 0, done.output
+    assert table("material.csv")["tau_xz"][-1] == pytest.approx(SU * (1.0 + gain), rel=1e-6)
+
+
+def test_stress_beyond_slow_strength_is_borne_by_creep(material: Call) -> None:
+    """At 1.15 su a strain rate of 10^1.5 times the reference, for as long as it is held."""
+    times, tau = np.arange(1.0, 41.0) * 60.0, np.full(40, 1.15 * SU)
+    done = material(VISCOUS, rows("time [s], tau_xz [Pa]", times, tau))
+    assert done.exit_code == 0, done.output
+    creep = np.diff(table("material.csv")["gamma_xz"][1:]) / 60.0
+    np.testing.assert_allclose(creep, 1e-5 * 10.0**1.5, rtol=1e-6)
+
+
+@pytest.mark.parametrize("times", ["0.0", "-1.0", "1.0, 0\n1.0"])
+def test_time_that_does_not_grow_is_told(material: Call, times: str) -> None:
+    done = material(VISCOUS, f"time [s], gamma_xz [-]\n{times}, 0.1\n")
+    assert done.exit_code == 2
+    assert f"path.csv:{2 + times.count(chr(10))}: time must grow from row to row" in done.output
+    assert done.output.count("\n") == 1

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from riser_soil.core.arrays import Array
@@ -17,11 +19,11 @@ class Asked:
     def __init__(self, law: Formula, forgetful: bool) -> None:
         self._law, self._forgetful, self.times = law, forgetful, 0
         self.columns, self.symmetric, self.bulk, self.shear = law.columns, law.symmetric, law.bulk, law.shear
-        self.start, self.overstress = law.start, law.overstress
+        self.start, self.overstress, self.by_rate = law.start, law.overstress, law.by_rate
 
-    def update(self, strain_increment: Array, history: Array) -> StressUpdate:
+    def update(self, strain_increment: Array, history: Array, dt: float = math.inf) -> StressUpdate:
         self.times += 1
-        found = self._law.update(strain_increment, history)
+        found = self._law.update(strain_increment, history, dt)
         return found._replace(history=found.history + 1e-9) if self._forgetful else found
 
 
