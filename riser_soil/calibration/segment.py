@@ -25,7 +25,7 @@ from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import StatelessObserver, run_stage
 
 TABLE = "path.csv"
-STEP = 1.0  # s; the soil has no rate and both ends are driven: time only counts
+STEP = 1.0  # s; no rate of the soil's is taken and both ends are driven: time only counts
 
 
 @dataclass(frozen=True)
@@ -85,6 +85,8 @@ def first_penetration(scene: Scene) -> float:
     ends = scene.riser.start, scene.riser.end
     if scene.soil is None:
         raise SceneError("soil: missing: a pipe segment is pressed into soil; add soil")
+    if scene.soil.reference_rate is not None:
+        raise SceneError("soil.law.rate: a measured path has no times; leave rate out: su is that at the test's speed")
     for name, end in zip(("start", "end"), ends, strict=True):
         if not isinstance(end, Support) or end.rotation == "free":
             remedy = "give position and rotation: fixed"

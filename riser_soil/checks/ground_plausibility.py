@@ -11,9 +11,11 @@ from riser_soil.assembly.ground import smoothing
 from riser_soil.assembly.scales import contact_radius
 from riser_soil.checks.bending_plausibility import nodes_on_ground
 from riser_soil.checks.mesh_plausibility import mesh_warnings, told_size
-from riser_soil.checks.motion_plausibility import farthest_move
+from riser_soil.checks.motion_plausibility import farthest_move, top_speed
 from riser_soil.core.arrays import Array
+from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import GeneratedMesh
+from riser_soil.scene.stages import DynamicStage
 
 # Bounds of the penalty stiffness over the soil's Young's modulus: below it hides the soil, above it costs iterations.
 SOFT, STIFF = 1.0, 1e4
@@ -43,6 +45,7 @@ def ground_warnings(assembly: Assembly) -> Iterator[str]:
         yield from mesh_warnings(assembly)
         yield from _top_off_the_seabed(assembly)
         yield from _out_of_reach(assembly)
+        yield from _rate_without_effect(assembly)
 
 
 def _beyond_the_grid(assembly: Assembly) -> Iterator[str]:
@@ -118,9 +121,8 @@ def _out_of_reach(assembly: Assembly) -> Iterator[str]:
     points, underside = _along(assembly)
     above = np.all((points[:, :2] >= grid.low[:2]) & (points[:, :2] <= grid.high[:2]), axis=1)
     gap = float(np.min((underside - scene.seabed_level)[above], initial=np.inf))
-    driven = any(stage.loads for stage in scene.stages) or (scene.water and (scene.water.current or scene.water.waves))
     moved = farthest_move(scene)
-    reach = LOWERED * moved + DRIVEN * scene.riser.length * bool(driven) + 2.0 * _diameter(assembly)
+    reach = LOWERED * moved + DRIVEN * scene.riser.length * _driven(scene) + 2.0 * _diameter(assembly)
     if gap <= reach:
         return
     where = f"hangs {gap:.4g} m above it" if np.isfinite(gap) else "is not above it"
@@ -129,6 +131,30 @@ def _out_of_reach(assembly: Assembly) -> Iterator[str]:
         f"the riser does not reach the soil, {_extent(assembly)}: in its first shape it {where}, and its ends move by "
         f"no more than {moved:.4g} m; it is lowest at x = {down[0]:.5g}, y = {down[1]:.5g} m: move the soil there"
     )
+
+
+def _driven(scene: Scene) -> bool:
+    """Whether more moves the riser than its ends."""
+    water = scene.water is not None and (scene.water.current is not None or scene.water.waves is not None)
+    return water or any(stage.loads for stage in scene.stages)
+
+
+def _rate_without_effect(assembly: Assembly) -> Iterator[str]:
+    """A reference rate of shear beyond that of the fastest end over the diameter, where ends alone move."""
+    scene = assembly.scene
+    assert scene.soil is not None
+    reference, dynamic = scene.soil.reference_rate, [s for s in scene.stages if isinstance(s, DynamicStage)]
+    if reference is None:
+        return
+    if not dynamic:
+        yield "soil.law.rate: static stages are slow and the scene has no other: it changes nothing; leave it out"
+    elif not _driven(scene):
+        fastest = top_speed(scene) / _diameter(assembly)
+        if fastest < reference:
+            yield (
+                f"soil.law.rate: the reference, {reference:.3g} 1/s, is more than the fastest end makes over a "
+                f"diameter, {fastest:.3g} 1/s: clay gains next to nothing; check its unit, 1 % an hour is 2.8e-6 1/s"
+            )
 
 
 def _along(assembly: Assembly) -> tuple[Array, Array]:

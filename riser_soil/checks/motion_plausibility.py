@@ -56,6 +56,15 @@ def farthest_move(scene: Scene) -> float:
     return float(max(found, default=0.0))
 
 
+def top_speed(scene: Scene) -> float:
+    """The largest speed [m/s] of an end in dynamic stages."""
+    ends = [(name, getattr(scene.riser, name)) for name in ("start", "end")]
+    courses = [_courses(scene, name, end) for name, end in ends if isinstance(end, Support)]
+    moving = zip(scene.stages, *courses, strict=True)
+    found = [each["m/s"].top for stage, *course in moving if isinstance(stage, DynamicStage) for each in course]
+    return max(found, default=0.0)
+
+
 def _stretched(scene: Scene) -> Iterator[str]:
     """Ends that go farther apart than the riser is long."""
     length = scene.riser.length

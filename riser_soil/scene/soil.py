@@ -263,6 +263,11 @@ class SoilScene(BaseModel):
         return [layer.law for layer in self.layers] if self.layers else [self.top_law]
 
     @property
+    def reference_rate(self) -> float | None:
+        """The least of its laws' [1/s]; None where no rate counts."""
+        return min((rate for law in self.laws if (rate := law.reference_rate) is not None), default=None)
+
+    @property
     def top_law(self) -> SoilLaw:
         """The law at the seabed: the only one, or the first layer's."""
         law = self.layers[0].law if self.layers else self.law

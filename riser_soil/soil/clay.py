@@ -52,6 +52,10 @@ class UndrainedClay(SoilLaw, ABC):
             raise wrong("su", "must be above 0 where su_gradient is not", "raise su or su_gradient")
         return self
 
+    @property
+    def reference_rate(self) -> float | None:
+        return None if self.rate is None else self.rate.reference
+
     def surface_modulus(self, width: float) -> float:
         """Of clay without strength at the seabed, that at half the width below it."""
         return self._modulus(self._strength.at(0.0 if self.su > 0.0 else 0.5 * width))

@@ -97,6 +97,11 @@ class SoilLaw(BaseModel, ABC):
     linear: ClassVar[bool] = False
     kind: str
 
+    @property
+    def reference_rate(self) -> float | None:
+        """Rate of shear [1/s] beyond which the soil is stronger; None where no rate counts."""
+        return None
+
     @abstractmethod
     def surface_modulus(self, width: float) -> float:
         """Young's modulus at the soil's surface [Pa], above 0, as a pipe of this width [m] meets it: contact is so much

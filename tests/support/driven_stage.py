@@ -18,6 +18,7 @@ from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
 from riser_soil.results.observer import Observer
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.newton import Newton
@@ -33,7 +34,11 @@ Watch = Callable[[System, AcceptedStep], None]
 
 def built(mapping: Mapping) -> Assembly:
     """The parts of a scene, on this process alone."""
-    return build(scene_from_mapping(mapping), MPI.COMM_SELF)
+    return built_of(scene_from_mapping(mapping))
+
+
+def built_of(scene: Scene) -> Assembly:
+    return build(scene, MPI.COMM_SELF)
 
 
 @contextmanager

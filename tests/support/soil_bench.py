@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -17,12 +18,13 @@ WEIGHTS = Weights(inertia=0.0, force=1.0, shift_v=0.0, shift_a=0.0)
 
 @dataclass
 class Bench:
-    """Steps a Soil through given increments (size,) of the `driven` dofs; keeps the residual norms."""
+    """Steps a Soil through given increments (size,) of the `driven` dofs, seconds each; keeps the residual norms."""
 
     soil: Soil
     driven: BoolArray
     norms: list[float] = field(default_factory=list)
     increment: Array | None = None
+    seconds: float = math.inf
 
     def step(self, given: Array, tolerance: float = 1e-8, most: int = 25) -> None:
         """Find the equilibrium after the increment `given` of the driven dofs, and accept it."""
@@ -65,8 +67,15 @@ class Bench:
 
     def force(self, u: Array) -> Array:
         """Internal force minus weight (size,) [N] after the increment u."""
-        forces = Forces.zeros(len(u))
-        self.soil.residual(self._state(u), forces)
+        return self._force(self._state(u))
+
+    def at_rest(self) -> Array:
+        """The same as accepted."""
+        return self._force(State.at_rest(1.0, self.soil.field.size))
+
+    def _force(self, state: State) -> Array:
+        forces = Forces.zeros(len(state.u))
+        self.soil.residual(state, forces)
         return forces.end
 
     def _accept(self, u: Array) -> None:
@@ -74,7 +83,7 @@ class Bench:
         self.soil.field.commit(self._state(u))
 
     def _state(self, u: Array) -> State:
-        return State(1.0, u, np.zeros_like(u), np.zeros_like(u))
+        return State(1.0, u, np.zeros_like(u), np.zeros_like(u), dt=self.seconds)
 
 
 def assemble(soil: Soil, state: State) -> sp.csr_matrix:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -38,10 +39,13 @@ def press_strip(
     strength: float = SU,
     steps: int = 15,
     rough: bool = True,
+    seconds: float = math.inf,
 ) -> Strip:
-    """Press half of a strip 0.15 m into a plane-strain block 5 m wide, 3 m deep; `cells` under the strip."""
+    """Press half of a strip 0.15 m into a plane-strain block 5 m wide, 3 m deep; `cells` under the strip, seconds a
+    step.
+    """
     soil, under = strip_soil(kind, cells, family, far, law)
-    return press(soil, under, 1.0 / cells, strength, steps, rough)
+    return press(soil, under, 1.0 / cells, strength, steps, rough, seconds=seconds)
 
 
 def press_graded_strip(
@@ -57,18 +61,25 @@ def press_graded_strip(
 
 
 def press(
-    soil: Soil, under: BoolArray, thickness: float, strength: float, steps: int, rough: bool, depth: float = 0.15
+    soil: Soil,
+    under: BoolArray,
+    thickness: float,
+    strength: float,
+    steps: int,
+    rough: bool,
+    depth: float = 0.15,
+    seconds: float = math.inf,
 ) -> Strip:
     """Press the nodes `under` (n,) the strip `depth` [m] down, in equal steps, on a slice of this thickness [m]."""
     driven = np.zeros((len(under), 3), dtype=bool)
     driven[under] = [rough, rough, True]
-    bench = Bench(soil, driven.ravel())
+    bench = Bench(soil, driven.ravel(), seconds=seconds)
     given = np.where(under, -depth / steps, 0.0)[:, None] * np.array([0.0, 0.0, 1.0])
     loads, norms = [], []
     for _ in range(steps):
         _step(bench, given.ravel())
         norms.append(bench.norms)
-        reaction = bench.force(np.zeros(soil.field.size)).reshape(-1, 3)[under, 2].sum()
+        reaction = bench.at_rest().reshape(-1, 3)[under, 2].sum()
         loads.append(-reaction / (thickness * strength))
     return Strip(np.array(loads), norms)
 
@@ -87,7 +98,8 @@ def _step(bench: Bench, given: Array, halvings: int = 2) -> None:
 
 
 def _scale(bench: Bench, share: float) -> None:
-    """The next step starts from so much of the last increment."""
+    """The next step takes so much of the time, and starts from so much of the last increment."""
+    bench.seconds *= share
     if bench.increment is not None:
         bench.increment = share * bench.increment
 

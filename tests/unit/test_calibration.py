@@ -82,6 +82,7 @@ def test_bad_wishes_are_refused_and_nothing_is_left(tmp_path: Path, wanted: tupl
     [
         ("riser.end.rotation=free", "riser.end: both ends"),
         ("riser.end.position=[0.3, 0.0, 0.16]", "lay the pipe level"),
+        ("soil.law.rate={mu: 0.1, reference: 1.0e-5}", "leave rate out"),
     ],
 )
 def test_a_scene_that_is_no_segment_is_refused(override: str, said: str) -> None:
