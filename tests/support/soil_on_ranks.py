@@ -20,13 +20,14 @@ from riser_soil.soil.grid import block_grid, file_grid
 from riser_soil.soil.iwan import IwanOverlay
 from riser_soil.soil.law import Formula
 from riser_soil.soil.layered import LayeredWeight, law_by_depth
+from riser_soil.soil.rate import Rate
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.von_mises import VonMises
 from tests.support.mesh_drawings import LEFT, RIGHT, Drawing, msh
 from tests.support.soil_cases import CLAY
 
 COMM = MPI.COMM_WORLD
-SOFT = VonMises(kind="von-mises", su=4.0e3, E_over_su=300.0)
+SOFT = VonMises(kind="von-mises", su=4.0e3, E_over_su=300.0, rate=Rate(mu=0.1, reference=1e-5))
 IWAN = IwanOverlay(kind="iwan", su=4.0e3, su_gradient=1.5e3, E_over_su=300.0, elements=3)
 
 
@@ -43,7 +44,7 @@ def pushed(soil: Soil, factor: float) -> State:
     x, y, z = soil.field.points.T
     u = factor * np.column_stack((np.sin(x + y), np.cos(2.0 * x) * y, np.sin(x) * np.cos(y) * (z + 1.0)))
     u[soil.field.prescribed.reshape(-1, 3)] = 0.0
-    return State(1.0, u.ravel(), u.ravel(), u.ravel())
+    return State(1.0, u.ravel(), u.ravel(), u.ravel(), dt=1.0)
 
 
 def tangent_times(soil: Soil, state: State, u: Array) -> Array:

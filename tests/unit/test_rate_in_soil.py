@@ -11,14 +11,18 @@ import pytest
 
 from riser_soil.checks.ground_plausibility import ground_warnings
 from riser_soil.core.part import Forces, State
+from riser_soil.core.system import System, Timer
 from riser_soil.soil.iwan import IwanOverlay
 from riser_soil.soil.kinematic_hardening import KinematicHardening
 from riser_soil.soil.rate import Rate
 from riser_soil.soil.remoulding import Remoulding
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.von_mises import VonMises
+from riser_soil.solve.held_balance import balance_held
+from riser_soil.solve.solution import NewtonSettings
+from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.coupled_scenes import LAY, Mapping, heave, touchdown
-from tests.support.driven_stage import built
+from tests.support.driven_stage import built, take
 from tests.support.soil_bench import assemble
 from tests.support.soil_cases import distorted, moved, sheared, small_block
 
@@ -51,6 +55,11 @@ def shear_stress(soil: Soil) -> float:
     stress = soil.state()["law/stress"]
     assert np.ptp(stress[:, 4]) < 1e-9 * SU
     return float(stress[:, 4].mean()) / math.sqrt(2.0)
+
+
+def strength_used(soil: Soil) -> float:
+    """Most of its strength in slow shear that any point bears."""
+    return float(soil.law.overstress(soil.state()["law/stress"]).max())
 
 
 @pytest.mark.parametrize("moves", [False, True])
@@ -140,3 +149,27 @@ def test_a_rate_that_changes_nothing_is_told(stages: list[Mapping], reference: f
     scene["soil"]["law"]["rate"] = {"mu": 0.1, "reference": reference}
     found = [text for text in ground_warnings(built(scene)) if "soil.law.rate" in text]
     assert (told in found[0]) if told else not found
+
+
+def test_steps_tell_their_time_and_held_lines_leave_the_soil_none() -> None:
+    """A new mesh is balanced at once: what fast flow has borne stays."""
+    scene = touchdown(LAY, heave(1.5, 0.15), su=450.0)
+    scene["soil"]["law"]["rate"] = {"mu": 0.2, "reference": 1e-5}
+    assembly, times = built(scene), list[float]()
+    soil, (lay, last) = assembly.soil, assembly.scene.stages
+    assert soil is not None
+
+    def watch(system: System, step: AcceptedStep) -> None:
+        times.append(step.solution.state.dt)
+
+    left = take(assembly, lay, None, watch)
+    assert {*times} == {math.inf}
+    assert left.dt == 0.0
+    times.clear()
+    take(assembly, last, left, watch)
+    assert times == pytest.approx([0.15] * 10)
+    used = strength_used(soil)
+    settings = NewtonSettings(assembly.scene.solver.tolerance, 20, assembly.scales.force_floor)
+    balance_held(assembly.comm, assembly.begin(last), 1.5, settings, Timer.new())
+    assert used > 1.05
+    assert strength_used(soil) == pytest.approx(used, rel=1e-6)
