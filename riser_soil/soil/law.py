@@ -74,7 +74,7 @@ class Formula(Protocol):
         ...
 
     def overstress(self, stress: Array) -> Array:
-        """Equivalent stress over its limit (n,): impossible above 1; 0 where there is no limit."""
+        """Equivalent stress over its limit (n,): impossible above 1 in slow flow; 0 where there is no limit."""
         ...
 
 
