@@ -60,8 +60,8 @@ class KinematicHardening(UndrainedClay):
 
 
 class _Step(NamedTuple):
-    """Of points that yield: direction n and η (m, 6), Δp, θ and -dθ/dΔp (m,), and by how much |η| lacks behind what
-    the equation asks for, by Δp (m,).
+    """Of points that yield: direction n and η (m, 6), Δp, θ, -dθ/dΔp, and by how much the left side of the equation for
+    Δp less its right side falls with Δp (m,).
     """
 
     n: Array
