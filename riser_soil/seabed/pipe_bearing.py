@@ -42,10 +42,11 @@ def resistance(law: PowerLaw, z: float) -> tuple[float, float]:
     if z <= 0.0:
         return 0.0, 0.0
     below = max(z, 1e-12 * law.diameter)
-    ratio, scale, exponent = below / law.diameter, law.a, law.b
+    ratio, exponent = below / law.diameter, law.b
+    factor = law.a * law.diameter * max(ratio, law.shallow) ** law.b
     if ratio < law.shallow:
-        scale, exponent = law.a * law.shallow ** (law.b - 0.5), 0.5
-    factor, su = scale * ratio**exponent * law.diameter, strength_at(law.strength, below)
+        factor, exponent = factor * math.sqrt(ratio / law.shallow), 0.5
+    su = strength_at(law.strength, below)
     return factor * su, factor * (exponent * su / below + law.strength.gradient)
 
 

@@ -90,6 +90,8 @@ def _answer(
     after[0], after[1], after[2], after[3] = now.down, z, P, now.z0
     after[4], after[5], after[6], after[7] = now.P0, now.zm, now.s, now.c
     rebound = 0.5 * P**2 / max(law.per_metre * ultimate[0], TINY)
+    if law.weight == 0.0:
+        return P, slope, rebound
     volume, area, width = displaced(z, law.ultimate.diameter)
     return P + law.weight * area, slope + law.weight * width, rebound + law.weight * volume
 
