@@ -115,13 +115,16 @@ class CoulombFriction(LinePart):
         position, traction, resistance = vectors
         along, mu = np.zeros((*shape, d, d - 1)), (float(self._mu[0]), float(self._mu[-1]))
         self._in_loop = FrictionNumbers(
-            self.contact.in_loop, mu, self._stiffness, position, along, traction, resistance
+            self.contact.in_loop, mu, self._stiffness, position, along, traction, np.zeros(shape), resistance
         )
         return self._in_loop
 
     def renew_numbers(self, start: float, end: float) -> None:
         begun, numbers = self._friction_state_from(end), self._in_loop
-        numbers.position[:], numbers.along[:], numbers.traction[:] = begun
+        if begun.position is not numbers.position:  # else the loop has kept it
+            numbers.position[:], numbers.along[:], numbers.traction[:] = begun
+            numbers.slid[:] = self._slid
+            self._begun, self._slid = FrictionState(numbers.position, numbers.along, numbers.traction), numbers.slid
 
     def energy(self, state: State) -> Energy:
         """Stored in what the ground gives elastically along itself."""
@@ -171,7 +174,8 @@ class CoulombFriction(LinePart):
 
     def state(self) -> Saved:
         """The state at the start of the next step, if there was one, and the slip of the stations."""
-        return {"slid": self._slid} | (self._begun._asdict() if self._begun is not None else {})
+        kept = {"slid": self._slid} | (self._begun._asdict() if self._begun is not None else {})
+        return {name: values.copy() for name, values in kept.items()}
 
     def restore(self, saved: Saved) -> None:
         begun = [saved[name] for name in FrictionState._fields if name in saved]

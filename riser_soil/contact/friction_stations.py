@@ -72,6 +72,14 @@ def read_along(along: Array) -> Along:
 
 
 @njit
+def put_along(along: Along, out: Array) -> None:
+    """Store the directions in an array (d, r)."""
+    put(along[0], out[:, 0])
+    if out.shape[1] > 1:
+        put(along[1], out[:, 1])
+
+
+@njit
 def read_pair(a: Array) -> Pair:
     """The components that are stored in an array (r,)."""
     return a[0], a[1] if a.size > 1 else 0.0
@@ -84,10 +92,7 @@ def directions(tau: Array, normal: Array) -> Array:
     out = np.empty((ne, ng, d, d - 1))
     for e in range(ne):
         for g in range(ng):
-            along = directions_at(padded(tau[e, g]), padded(normal[e, g]))
-            put(along[0], out[e, g, :, 0])
-            if d > 2:
-                put(along[1], out[e, g, :, 1])
+            put_along(directions_at(padded(tau[e, g]), padded(normal[e, g])), out[e, g])
     return out
 
 

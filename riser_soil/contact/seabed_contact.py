@@ -165,7 +165,9 @@ class SeabedContact(LineContact):
         return self.in_loop
 
     def renew_numbers(self, start: float, end: float) -> None:
-        self.in_loop.memory[:] = self.memory
+        if self.memory is not self.in_loop.memory:  # else the loop has kept it
+            self.in_loop.memory[:] = self.memory
+            self.memory = self.in_loop.memory
         if self._covering is not None:
             self._covering.renew_cover(self.in_loop.cover)
 
@@ -266,7 +268,7 @@ class SeabedContact(LineContact):
         return landing_predictor(guess, self.line.translation_dofs[low, -1], present, guessed, start)
 
     def state(self) -> Saved:
-        return {"memory": self.memory}
+        return {"memory": self.memory.copy()}
 
     def restore(self, saved: Saved) -> None:
         self.memory = saved["memory"]

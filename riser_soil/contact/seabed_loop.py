@@ -7,7 +7,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from riser_soil.contact.coulomb import Pair, return_map
-from riser_soil.contact.friction_stations import elastic_guess, read_along, resistance_by_position, vector_of
+from riser_soil.contact.friction_stations import (
+    directions_at,
+    elastic_guess,
+    put_along,
+    read_along,
+    resistance_by_position,
+    slip_at,
+    vector_of,
+)
 from riser_soil.contact.seabed_stations import LineFrame, by_position, distance_in, frame_of, global_place
 from riser_soil.contact.work_along_step import work_at
 from riser_soil.core.arrays import Array, BoolArray, IntArray
@@ -17,16 +25,16 @@ from riser_soil.core.rows import add_pulled_back, add_weighed, held
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.line import Line
-from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work
-from riser_soil.riser.vectors import Vec, dot, padded, put, put_matrix, scale, sub
+from riser_soil.riser.part_kernels import LineForces, LineWeights, add_energy, add_forces, add_tangent, add_work, keep
+from riser_soil.riser.vectors import Vec, add, dot, padded, put, put_matrix, scale, sub
 from riser_soil.seabed.compiled_law import answer, may_act
 from riser_soil.seabed.law import NormalLaw
 
 
 class Found(NamedTuple):
     """What was found last at the stations: which elements touch (ne,); position and normal (ne, ng, d); penetration,
-    force, its slope and energy stored (ne, ng); what covers the ground below (ne, ng), or -1; the law's history (nh,)
-    after a step, which nobody keeps.
+    force, its slope and energy stored (ne, ng); what covers the ground below (ne, ng), or -1; the law's history after
+    the step (ne, ng, nh), of elements that touch.
     """
 
     touches: BoolArray
@@ -48,8 +56,8 @@ class Bare(NamedTuple):
 
 class SeabedNumbers(NamedTuple):
     """A `SeabedContact`: its stations and their share of arc length (ne, ng), radius (ne,), memory (ne, ng, nh), and
-    the numbers of its ground and law; the law's reach; what covers the ground in places; room for an element, and for
-    the force and its derivative at a station.
+    the numbers of its ground and law; the law's reach; what covers the ground in places; room for an element, for the
+    force and its derivative at a station, and for a history (nh,).
     """
 
     at: stations.Stations
@@ -65,11 +73,12 @@ class SeabedNumbers(NamedTuple):
     element: Array
     f: Array
     by: Array
+    after: Array
 
 
 class FrictionNumbers(NamedTuple):
-    """A `CoulombFriction` at the stations of a contact: coefficients, stiffness (ne,), its `FrictionState`, and minus
-    the traction found last (ne, ng, d).
+    """A `CoulombFriction` at the stations of a contact: coefficients, stiffness (ne,), its `FrictionState` and way slid
+    (ne, ng), and minus the traction found last (ne, ng, d).
     """
 
     contact: SeabedNumbers
@@ -78,6 +87,7 @@ class FrictionNumbers(NamedTuple):
     position: Array
     along: Array
     traction: Array
+    slid: Array
     resistance: Array
 
 
@@ -95,10 +105,10 @@ def seabed_numbers(
     (ne, ng), d = share.shape, line.dimension
     position, normal = np.zeros((ne, ng, d)), np.zeros((ne, ng, d))
     penetration, force, slope, stored = (np.zeros((ne, ng)) for _ in range(4))
-    touches, after = np.zeros(ne, dtype=np.bool_), np.zeros(memory.shape[2])
-    found = Found(touches, position, normal, penetration, force, slope, stored, np.full((ne, ng), -1), after)
+    touches, below = np.zeros(ne, dtype=np.bool_), np.full((ne, ng), -1)
+    found = Found(touches, position, normal, penetration, force, slope, stored, below, np.zeros(memory.shape))
     element = stations.element_room(2 * line.ndof, fixed(d))
-    room = element, np.zeros(d), np.zeros((d, d))
+    room = element, np.zeros(d), np.zeros((d, d)), np.zeros(memory.shape[2])
     given = at, share, radius, memory.copy(), frame_of(line), ground, law.numbers, float(law.reach)
     return SeabedNumbers(*given, Bare(-1) if cover is None else cover, found, *room)
 
@@ -148,7 +158,7 @@ def _press(part: SeabedNumbers, at: Configuration, e: int, out: LineForces) -> N
     """Forces on an element that touches."""
     found = part.found
     for g in range(part.share.shape[1]):
-        force, slope, stored = answer(part.law, found.penetration[e, g], part.memory[e, g], found.after)
+        force, slope, stored = answer(part.law, found.penetration[e, g], part.memory[e, g], found.after[e, g])
         found.force[e, g], found.slope[e, g], found.stored[e, g] = force, slope, stored
         put(scale(-force, padded(found.normal[e, g])), part.f)
         p = e * part.share.shape[1] + g
@@ -202,22 +212,40 @@ def _contact_work(part: SeabedNumbers, first: Configuration, last: Configuration
                 taken -= share * found.force[e, g] * dot(padded(found.normal[e, g]), way)
                 gained += share * found.stored[e, g]
             if touched:
-                gained -= share * answer(part.law, before[g], part.memory[e, g], found.after)[2]
+                gained -= share * answer(part.law, before[g], part.memory[e, g], part.after)[2]
             if part.memory.shape[2] > 0 and (touched or found.touches[e]):
                 after = found.penetration[e, g]
-                by_law += share * work_at(part.law, part.reach, before[g], after, part.memory[e, g], found.after)
+                by_law += share * work_at(part.law, part.reach, before[g], after, part.memory[e, g], part.after)
     work[0] += taken - gained
     work[3] += taken - by_law if part.memory.shape[2] > 0 else taken - gained
+
+
+@keep.of(SeabedNumbers)
+def _keep_memory(part: SeabedNumbers, at: Configuration) -> None:
+    """See `SeabedContact.commit`."""
+    found, memory = part.found, part.memory
+    for e in range(memory.shape[0] if memory.shape[2] > 0 else 0):
+        for g in range(memory.shape[1]):
+            if not found.touches[e]:
+                answer(part.law, found.penetration[e, g], memory[e, g], found.after[e, g])
+            for k in range(memory.shape[2]):
+                memory[e, g, k] = found.after[e, g, k]
 
 
 @njit
 def _elastic(part: FrictionNumbers, e: int, g: int) -> Pair:
     """t* of `coulomb` at a station."""
-    moved = sub(padded(part.contact.found.position[e, g]), padded(part.position[e, g]))
     guess: Pair = elastic_guess(
-        read_along(part.along[e, g]), padded(part.traction[e, g]), part.stiffness[e], moved
+        read_along(part.along[e, g]), padded(part.traction[e, g]), part.stiffness[e], _moved(part, e, g)
     )
     return guess
+
+
+@njit
+def _moved(part: FrictionNumbers, e: int, g: int) -> Vec:
+    """The movement of a station in the step."""
+    moved: Vec = sub(padded(part.contact.found.position[e, g]), padded(part.position[e, g]))
+    return moved
 
 
 @add_forces.of(FrictionNumbers)
@@ -273,5 +301,21 @@ def _friction_work(part: FrictionNumbers, first: Configuration, last: Configurat
             work[0] += 0.5 * share / part.stiffness[e] * dot(begun, begun)
             if contact.found.touches[e]:
                 t: Vec = padded(part.resistance[e, g])
-                way = sub(padded(contact.found.position[e, g]), padded(part.position[e, g]))
-                work[0] += share * dot(t, way) - 0.5 * share / part.stiffness[e] * dot(t, t)
+                work[0] += share * dot(t, _moved(part, e, g)) - 0.5 * share / part.stiffness[e] * dot(t, t)
+
+
+@keep.of(FrictionNumbers)
+def _keep_traction(part: FrictionNumbers, at: Configuration) -> None:
+    """See `CoulombFriction.commit`."""
+    found = part.contact.found
+    for e in range(part.stiffness.size):
+        for g in range(part.slid.shape[1]):
+            t, k = padded(part.traction[e, g]), part.stiffness[e]
+            if found.touches[e] and found.force[e, g] > 0.0:
+                taken = add(t, padded(part.resistance[e, g]))
+                part.slid[e, g] += slip_at(read_along(part.along[e, g]), taken, k, _moved(part, e, g))
+            stations.put_unit_tangent(part.contact.at.dN[e, g], at.chord[e], at.tangent[e], part.contact.f, at.D)
+            put_along(directions_at(padded(part.contact.f), padded(found.normal[e, g])), part.along[e, g])
+            for i in range(len(at.D)):
+                part.position[e, g, i] = found.position[e, g, i]
+                part.traction[e, g, i] = -part.resistance[e, g, i] if found.touches[e] else 0.0

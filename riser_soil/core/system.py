@@ -193,9 +193,9 @@ class System:
         at = self.prescribed_dofs
         return forces.inertia[at] + forces.force[at] + forces.end[at]
 
-    def commit(self, state: State) -> None:
-        """Accept a state: parts first, then the fields that they act on."""
-        for part in self._active:
+    def commit(self, state: State, parts: Sequence[Part] | None = None) -> None:
+        """Accept a state: parts first, by default all of them, then the fields that they act on."""
+        for part in self._active if parts is None else parts:
             part.commit(state)
         for field in self.model.fields:
             field.commit(state)

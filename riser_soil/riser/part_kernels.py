@@ -1,4 +1,4 @@
-"""What the compiled loop over a riser alone asks of its parts, see `by_type`: forces, tangent, energy, work.
+"""What the compiled loop over a riser alone asks of its parts, see `by_type`: forces, tangent, energy, work, history.
 
 A part that takes part in the loop has its `numbers`: a NamedTuple of arrays, and kernels for that type. They are the
 functions that its methods call, too, so that each formula is in one place.
@@ -78,3 +78,8 @@ def add_work(part: tuple, first: Configuration, last: Configuration, work: Array
     """Add what a part turns over in a step between two configurations to work (4,): dissipated, external, inertial, by
     the scheme, as in `core.part.Work` [J].
     """
+
+
+@bound_by_type
+def keep(part: tuple, at: Configuration) -> None:
+    """Keep a part's history at the end of a step, in the configuration of the forces found last; of parts with one."""

@@ -124,6 +124,10 @@ class CondensedNewton:
         finally:
             self.iterations += self._newton.iterations - before
 
+    def commit(self, state: State) -> None:
+        """Accept the state of the step solved last."""
+        self.system.commit(state)
+
     def _state(self, step: Step, still: State) -> State:
         """The state found."""
         line, weights = self._riser.solved(step.t, step.dt), step.scheme.weights(step.dt)

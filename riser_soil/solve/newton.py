@@ -77,6 +77,10 @@ class Newton:
         self.require_admissible(state)
         return Solution(state, self._forces, self._norms)
 
+    def commit(self, state: State) -> None:
+        """Accept the state of the step solved last."""
+        self.system.commit(state)
+
     @cached_property
     def mass(self) -> RiserMass:
         """Inverse of the lines' mass."""

@@ -8,11 +8,13 @@ from typing import Any
 
 from riser_soil.core.part import State, Work
 from riser_soil.riser.line_part import LinePart, overrides
-from riser_soil.riser.part_kernels import add_work
+from riser_soil.riser.part_kernels import add_work, keep
 
 
 class NumberedParts:
-    """Parts with their numbers; t: the time [s] that what depends on it was written for last."""
+    """Parts with their numbers; t: the time [s] that what depends on it was written for last; committed: parts whose
+    history no kernel keeps.
+    """
 
     def __init__(self, numbered: Sequence[tuple[Any, tuple[Any, ...]]]) -> None:
         self.numbered, self.t = numbered, math.nan
@@ -20,6 +22,7 @@ class NumberedParts:
         self.numbers = [held for _, held in numbered]
         self._renewed = [part for part in self.parts if overrides(part, "renew_numbers")]
         kernels = [(part, type(held) in add_work.kernels) for part, held in numbered]
+        self.committed = [part for part, held in numbered if type(held) not in keep.kernels]
         self._turning = [(part, kernel) for part, kernel in kernels if kernel or overrides(part, "work")]
 
     def bring(self, start: float, end: float) -> None:

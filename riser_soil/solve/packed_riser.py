@@ -30,6 +30,7 @@ from riser_soil.riser.part_kernels import (
     add_work,
     bound,
     forces_of,
+    keep,
 )
 from riser_soil.solve import riser_loop as loop
 from riser_soil.solve.loop_border import LoopBorder
@@ -108,6 +109,7 @@ class PackedRiser:
         solve = Bound(loop.solve_step, *tables, limits, progress)
         self._solve = in_turn(solve, bound(put_tangled, at, self._placed.base, Packed(self._tangled)))
         self.evaluate, self.put_tangent = in_turn(*evaluate), in_turn(*put_tangent, put_sizes)
+        self.keep = in_turn(*(bound(keep, each, now) for each in numbers if type(each) in keep.kernels))
 
     def _bind_account(self, numbers: Sequence[Numbers]) -> None:
         """Bind the kernels of energy and work."""

@@ -78,6 +78,13 @@ class RiserNewton:
         self._solved = state if self.system.smooth else None
         return Solution(state, self._found(), norms)
 
+    def commit(self, state: State) -> None:
+        """Accept the state of the step solved last."""
+        since = time.perf_counter()
+        self._riser.keep()
+        self.system.commit(state, self._parts.committed)
+        self.system.clock.add("riser alone", since)
+
     @cached_property
     def mass(self) -> CompiledMass:
         """Inverse of the line's mass."""

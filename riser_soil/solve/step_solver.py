@@ -26,6 +26,10 @@ class StepSolver(Protocol):
 
     def solve(self, step: Step) -> Solution: ...
 
+    def commit(self, state: State) -> None:
+        """Accept the state of the step solved last."""
+        ...
+
     def turned_over(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
         """Energy stored at the end of the step solved last, from the accepted state `before`, and what each part turned
         over in it, those of one name together; collective.

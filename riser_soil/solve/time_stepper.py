@@ -229,7 +229,7 @@ class TimeStepper:
     def commit(self, step: AcceptedStep, control: Control) -> None:
         """Accept the step and get ready for the next."""
         state, forces = step.solution.state, step.solution.forces
-        self.system.commit(state)
+        self.newton.commit(state)
         start, begun = self._start(step.dt), (self.before, self.now)
         self.before, self.now = self._rates_after(step)
         if self.scheme.dynamic:
