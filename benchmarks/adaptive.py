@@ -11,9 +11,9 @@ from mpi4py import MPI
 from riser_soil.assembly import Assembly, build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
+from riser_soil.core.snapshot import instants_at
 from riser_soil.core.system import Timer
-from riser_soil.results.observer import riser_snapshot
-from riser_soil.results.touchdown_zone import TouchdownZone
+from riser_soil.results.instants import Instants
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.stages import Stage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
@@ -40,7 +40,7 @@ class StepHistory(StatelessObserver):
     iterations: int = 0
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
-        self._zone = TouchdownZone(self.assembly)
+        self._instants = Instants(self.assembly)
 
     def relaxed(self, relaxed: RelaxationResult) -> None:
         pass
@@ -48,8 +48,9 @@ class StepHistory(StatelessObserver):
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         self.t.append(step.t)
         self.dt.append(step.dt)
-        self.tension.append(float(riser_snapshot(self.assembly, stepper).effective_tension[-1]))
-        self.touchdown.append(self._zone.look(stepper.now).touchdown_arc)
+        seen = instants_at(self._instants.told([self._instants.look(stepper)]), 0)
+        self.tension.append(float(seen.riser.effective_tension[-1]))
+        self.touchdown.append(float(seen.touch.touchdown_arc))
         self.cuts += step.cuts
         self.iterations = stepper.newton.iterations
 

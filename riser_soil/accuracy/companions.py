@@ -6,13 +6,12 @@ from typing import Any
 
 from riser_soil.accuracy.element_sizes import CurveEnvelope
 from riser_soil.assembly import Assembly, build, sized
-from riser_soil.core.snapshot import Instant
+from riser_soil.core.snapshot import Instant, instants_at
 from riser_soil.core.system import Timer
 from riser_soil.interruption import agreeing
+from riser_soil.results.instants import Instants
 from riser_soil.results.peaks import RunPeaks
-from riser_soil.results.riser_snapshot import riser_snapshot
 from riser_soil.results.schedule import Schedule
-from riser_soil.results.touchdown_zone import TouchdownZone
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import Stage, StaticStage
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
@@ -37,7 +36,7 @@ class PeakObserver(StatelessObserver):
     """Follows a companion: `peaks` has what the summary of a run would have of it; on rank 0."""
 
     def __init__(self, assembly: Assembly, envelope: CurveEnvelope | None = None) -> None:
-        self._assembly, self._zone = assembly, TouchdownZone(assembly)
+        self._assembly, self._instants = assembly, Instants(assembly)
         output, soil = assembly.scene.output, assembly.soil
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         self.peaks = RunPeaks(None if soil is None else soil.output_mesh())
@@ -48,7 +47,7 @@ class PeakObserver(StatelessObserver):
         self._schedule.begin_stage(stage.kind)
         self.peaks.begin_stage(stage.name, stage.kind)
         if first and not isinstance(stage, StaticStage) and self._assembly.comm.rank == 0:
-            self.peaks.stages[-1].update(0.0, self._seen(stepper))  # not followed: no shape that a step has found
+            self.peaks.stages[-1].update([0.0], self._seen(stepper))  # not followed: no shape that a step has found
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Of a committed step; collective where there is soil."""
@@ -56,13 +55,12 @@ class PeakObserver(StatelessObserver):
         soil = None if whole is None else whole.output_fields()
         if self._assembly.comm.rank == 0:
             seen = self._seen(stepper)
-            self.peaks.record(step.t, seen, soil)
+            self.peaks.record([step.t], seen, soil)
             if self._envelope is not None and (last or self.peaks.stages[-1].kind == "dynamic"):
-                self._envelope.follow(seen)
+                self._envelope.follow(instants_at(seen, 0))
 
     def relaxed(self, relaxed: object) -> None:
         pass
 
     def _seen(self, stepper: TimeStepper) -> Instant:
-        riser = riser_snapshot(self._assembly, stepper)
-        return Instant(self._assembly.line.arc, riser, self._zone.look(stepper.now))
+        return self._instants.told([self._instants.look(stepper)])

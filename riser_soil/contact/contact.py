@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol, runtime_checkable
 
-from riser_soil.contact.touchdown import ContactInterval
+from riser_soil.contact.touchdown import ContactInterval, PointsAlong
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part, State
 
@@ -16,6 +16,15 @@ class RiserContact(Part, Protocol):
     A rank that is not active tells of a riser that touches nothing: zeros, nan for the touchdown point, no contact
     intervals.
     """
+
+    @property
+    def along(self) -> PointsAlong:
+        """Where contact forces and gaps are told along the line."""
+        ...
+
+    def results(self, state: State) -> Array:
+        """All that results tell of it, see `ContactResults.within`; on the rank that evaluates contact."""
+        ...
 
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m], > 0 where it pushes the riser away, < 0 where it sucks."""

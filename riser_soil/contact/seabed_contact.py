@@ -8,10 +8,12 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from riser_soil.contact import seabed_stations
+from riser_soil.contact.contact_results import ContactResults, size_of
 from riser_soil.contact.landing import landing_predictor
-from riser_soil.contact.line_contact import ContactAlongLine, LineContact
+from riser_soil.contact.line_contact import LineContact
 from riser_soil.contact.seabed_loop import SeabedNumbers, seabed_numbers
 from riser_soil.contact.station_forces import StationForces
+from riser_soil.contact.touchdown import PointsAlong
 from riser_soil.contact.work_along_step import work_along_step
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Energy, Forces, State, Traits, Weights, Work
@@ -93,13 +95,14 @@ class SeabedContact(LineContact):
     ) -> None:
         super().__init__(line, law)
         self.ground, self._radius, self._covered, self._covering = ground, radius, covered, covering
-        self._radius_of_nodes = larger_beside(radius)
         self._frame = seabed_stations.frame_of(line)
         self.at = stations.stations(line.length, rule)
         self._forces = StationForces(line, self.at)
         self.share = line.length[:, None] * rule.weights
-        self._arc = line.arc[:-1, None] + line.length[:, None] * rule.points
-        self._linear = np.stack([1.0 - rule.points, rule.points])
+        arc = line.arc[:-1, None] + line.length[:, None] * rule.points
+        self._along = PointsAlong(arc.ravel(), self.share.ravel())
+        linear = np.stack([1.0 - rule.points, rule.points])
+        self._nodes = seabed_stations.OverNodes(larger_beside(radius), line.tributary_length, linear)
         self.memory = law.initial_history((line.length.size, rule.points.size))
 
     def evaluate(self, trial: Trial) -> StationContact:
@@ -159,7 +162,7 @@ class SeabedContact(LineContact):
     def numbers(self) -> SeabedNumbers | None:
         if self._covered is not None and self._covering is None:
             return None
-        stations = self.at, self.share, self._radius, self.memory
+        stations = self.at, self.share, self._radius, self.memory, self._nodes
         cover = None if self._covering is None else self._covering.cover()
         self.in_loop = seabed_numbers(self.line, *stations, self.ground.numbers, self.law, cover)
         return self.in_loop
@@ -199,56 +202,62 @@ class SeabedContact(LineContact):
             found = self.evaluate(self.line.trial(state))
             self.memory = self.law.update(found.penetration, self.memory).history
 
-    def _at_stations(self, elements: IntArray, values: Array) -> Array:
-        """Values (m, ng) of some elements' stations, among those of all (ne, ng), 0 elsewhere."""
-        out = np.zeros_like(self.share)
-        out[elements] = values
+    def results(self, state: State) -> Array:
+        """See `ContactResults.within`."""
+        found: Array = self.line.trial(state).once((self, "results"), self._results_at)
+        return found
+
+    def _results_at(self, trial: Trial) -> Array:
+        out = np.zeros(size_of(self.line.nodes, self.share.size))
+        if self.active:
+            found, results = self.evaluate(trial), ContactResults.within(out, self.line.nodes, self.share.size)
+            touching, force = np.zeros(len(self.share), dtype=bool), np.zeros_like(self.share)
+            touching[found.touching.elements], force[found.touching.elements] = True, found.touching.force
+            over = self._frame, self.ground.numbers, self._nodes, float(self.law.start), self.share, trial.x
+            seabed_stations.put_contact(*over, (touching, found.penetration, force, found.normal), results)
+            if self._covered is not None:
+                below = self._covered(self.line.to_global(trial.x)[:, :2])
+                results.penetration[below] = results.depth[below] = 0.0
         return out
+
+    def _results(self, state: State) -> ContactResults:
+        return ContactResults.within(self.results(state), self.line.nodes, self.share.size)
 
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m]: the stations' forces, shared linearly by two nodes."""
-        if not self.active:
-            return np.zeros(self.line.nodes)
-        touching = self.evaluate(self.line.trial(state)).touching
-        return self.at_nodes(self._at_stations(touching.elements, touching.force))
+        return self._results(state).force_per_length
 
     def at_nodes(self, values: Array) -> Array:
         """Means at the nodes (nn,) of values at the stations (ne, ng), which count with their share of arc length."""
-        return np.asarray(seabed_stations.shared(self.share * values, self._linear) / self.line.tributary_length)
+        return np.asarray(seabed_stations.shared(self.share * values, self._nodes.linear) / self._nodes.length)
+
+    def penetration(self, state: State) -> Array:
+        """Penetration (nn,) [m] of the nodes' undersides, 0 above the ground."""
+        return self._results(state).penetration
 
     def depth(self, state: State) -> Array:
         """The same: this ground is where it lay at first."""
-        return self.penetration(state)
+        return self._results(state).depth
 
     def max_penetration(self, state: State) -> float:
         """Deepest penetration of a station [m], >= 0: an error where the ground is rigid."""
-        return max(0.0, float(self.evaluate(self.line.trial(state)).penetration.max())) if self.active else 0.0
+        return float(self._results(state).deepest[0])
 
     def force_on_riser(self, state: State) -> Array:
         """Sum of the contact forces on the riser (3,) [N], global axes."""
-        if not self.active:
-            return np.zeros(3)
-        touching = self.evaluate(self.line.trial(state)).touching
-        per_station = self.share[touching.elements][..., None] * touching.resistance
-        return np.asarray(-self.line.basis @ per_station.sum(axis=(0, 1)))
+        return self._results(state).on_riser
 
-    def contact_along_line(self, state: State) -> ContactAlongLine:
-        """At the stations, ne ng points."""
-        found = self.evaluate(self.line.trial(state))
-        force = self._at_stations(found.touching.elements, found.touching.force)
-        clearance = -found.penetration.ravel() - self.law.start
-        return ContactAlongLine(self._arc.ravel(), self.share.ravel(), clearance, force.ravel())
+    @property
+    def along(self) -> PointsAlong:
+        """The stations, ne ng points."""
+        return self._along
 
-    def clearance(self, state: State) -> Array:
-        """Gap (nn,) of the nodes less that at which the force begins [m]."""
-        found: Array = self.line.trial(state).once((self, "clearance"), self._clearance_at)
-        return found
-
-    def _clearance_at(self, trial: Trial) -> Array:
-        return self._clearance(trial.x, self._radius_of_nodes)
+    def contact_along_line(self, state: State) -> tuple[Array, Array]:
+        found = self._results(state)
+        return found.clearance, found.force
 
     def _clearance(self, x: Array, radius: Array) -> Array:
-        """The same of places x (n, d) with radii (n,)."""
+        """Gap (n,) of places x (n, d) with radii (n,) less that at which the force begins [m]."""
         penetration, _, _ = self._over_ground(x[:, None], radius)
         return -penetration[:, 0] - self.law.start
 
@@ -259,10 +268,10 @@ class SeabedContact(LineContact):
         if self._covered is None:
             increments = guess.u.copy()
             ground, moved = self.ground.numbers, self.line.nodal(increments)
-            seabed_stations.land(self._frame, ground, self._radius_of_nodes, self.law.start, self.line.x, moved)
+            seabed_stations.land(self._frame, ground, self._nodes.radius, self.law.start, self.line.x, moved)
             return increments
         moved = self.line.nodal(guess.u)[:, : self.line.dimension]
-        x, radius, start = self.line.x + moved, self._radius_of_nodes, self.law.start
+        x, radius, start = self.line.x + moved, self._nodes.radius, self.law.start
         low = np.flatnonzero(self._penetration(x[:, None], radius)[0][:, 0] > -start)
         present, guessed = (self._clearance(at[low], radius[low]) for at in (self.line.x, x))
         return landing_predictor(guess, self.line.translation_dofs[low, -1], present, guessed, start)

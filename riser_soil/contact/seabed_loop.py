@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from riser_soil.contact.contact_results import ContactResults, put_results
 from riser_soil.contact.coulomb import Pair, return_map
 from riser_soil.contact.friction_stations import (
     directions_at,
@@ -16,7 +17,15 @@ from riser_soil.contact.friction_stations import (
     slip_at,
     vector_of,
 )
-from riser_soil.contact.seabed_stations import LineFrame, by_position, distance_in, frame_of, global_place
+from riser_soil.contact.seabed_stations import (
+    LineFrame,
+    OverNodes,
+    by_position,
+    distance_in,
+    frame_of,
+    global_place,
+    put_contact,
+)
 from riser_soil.contact.work_along_step import work_at
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.by_type import by_type
@@ -55,18 +64,20 @@ class Bare(NamedTuple):
 
 
 class SeabedNumbers(NamedTuple):
-    """A `SeabedContact`: its stations and their share of arc length (ne, ng), radius (ne,), memory (ne, ng, nh), and
-    the numbers of its ground and law; the law's reach; what covers the ground in places; room for an element, for the
-    force and its derivative at a station, and for a history (nh,).
+    """A `SeabedContact`: its stations and their share of arc length (ne, ng), radius (ne,), memory (ne, ng, nh), the
+    nodes, and the numbers of its ground and law; the law's start and reach; what covers the ground in places; room for
+    an element, for the force and its derivative at a station, and for a history (nh,).
     """
 
     at: stations.Stations
     share: Array
     radius: Array
     memory: Array
+    nodes: OverNodes
     frame: LineFrame
     ground: Any
     law: Any
+    start: float
     reach: float
     cover: Any
     found: Found
@@ -97,6 +108,7 @@ def seabed_numbers(
     share: Array,
     radius: Array,
     memory: Array,
+    nodes: OverNodes,
     ground: Any,
     law: NormalLaw,
     cover: Any = None,
@@ -109,7 +121,8 @@ def seabed_numbers(
     found = Found(touches, position, normal, penetration, force, slope, stored, below, np.zeros(memory.shape))
     element = stations.element_room(2 * line.ndof, fixed(d))
     room = element, np.zeros(d), np.zeros((d, d)), np.zeros(memory.shape[2])
-    given = at, share, radius, memory.copy(), frame_of(line), ground, law.numbers, float(law.reach)
+    law_numbers = law.numbers, float(law.start), float(law.reach)
+    given = at, share, radius, memory.copy(), nodes, frame_of(line), ground, *law_numbers
     return SeabedNumbers(*given, Bare(-1) if cover is None else cover, found, *room)
 
 
@@ -230,6 +243,13 @@ def _keep_memory(part: SeabedNumbers, at: Configuration) -> None:
                 answer(part.law, found.penetration[e, g], memory[e, g], found.after[e, g])
             for k in range(memory.shape[2]):
                 memory[e, g, k] = found.after[e, g, k]
+
+
+@put_results.of(SeabedNumbers)
+def _contact_results(part: SeabedNumbers, at: Configuration, out: ContactResults) -> None:
+    """Of ground on which nothing lies anywhere."""
+    found = part.found.touches, part.found.penetration, part.found.force, part.found.normal
+    put_contact(part.frame, part.ground, part.nodes, part.start, part.share, at.x, found, out)
 
 
 @njit

@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from riser_soil.contact.contact_results import ContactResults
 from riser_soil.contact.landing import lift
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser.line import Line
 from riser_soil.riser.vectors import (
@@ -30,6 +31,7 @@ from riser_soil.riser.vectors import (
     padded_matrix,
     put,
     put_matrix,
+    scale,
     sub,
     transpose,
     vecmat,
@@ -127,6 +129,50 @@ def answers(law: Any, elements: IntArray, penetration: Array, memory: Array, nor
             for j in range(d):
                 normals[i, g, j], resistance[i, g, j] = normal[e, g, j], -force[i, g] * normal[e, g, j]
     return force, slope, stored, normals, resistance
+
+
+class OverNodes(NamedTuple):
+    """What stations (ne, ng) share with the nodes: radius and length of the line that belongs to a node (nn,) [m];
+    linear (2, ng): shares of a station at the first and the second node of its element.
+    """
+
+    radius: Array
+    length: Array
+    linear: Array
+
+
+@njit
+def put_contact(
+    frame: LineFrame,
+    ground: Any,
+    nodes: OverNodes,
+    start: float,
+    share: Array,
+    x: Array,
+    found: tuple[BoolArray, Array, Array, Array],
+    out: ContactResults,
+) -> None:
+    """Write the results of contact.
+
+    start: gap at which it begins [m]; share (ne, ng) [m]; x (nn, d); found: which elements touch (ne,), penetration and
+    force (ne, ng), the force where they touch, and normal (ne, ng, d).
+    """
+    touches, penetration, force, normal = found
+    total, ng = (0.0, 0.0, 0.0), share.shape[1]
+    out.force_per_length[:], out.deepest[0] = 0.0, 0.0
+    for e in range(touches.size):
+        for g in range(ng):
+            pressing, k = force[e, g] if touches[e] else 0.0, e * ng + g
+            out.clearance[k], out.force[k] = -penetration[e, g] - start, pressing
+            out.deepest[0] = max(out.deepest[0], penetration[e, g])
+            for side in range(2):
+                out.force_per_length[e + side] += nodes.linear[side, g] * (share[e, g] * pressing)
+            total = add(total, scale(share[e, g] * pressing, padded(normal[e, g])))
+    put(vecmat(total, frame.axes), out.on_riser)
+    for n in range(x.shape[0]):
+        value, _, _ = distance_in(frame, ground, padded(x[n]))
+        out.force_per_length[n] /= nodes.length[n]
+        out.penetration[n] = out.depth[n] = max(0.0, nodes.radius[n] - value)
 
 
 @njit

@@ -9,10 +9,12 @@ import numpy as np
 
 from riser_soil.contact.candidates import CandidatePairs
 from riser_soil.contact.ground import DeformedSurface
+from riser_soil.contact.landing import landing_predictor
 from riser_soil.contact.law import Penalty
-from riser_soil.contact.line_contact import ContactAlongLine, LineContact
+from riser_soil.contact.line_contact import LineContact
 from riser_soil.contact.seabed_cover import Cover
 from riser_soil.contact.suction import SuctionLaw
+from riser_soil.contact.touchdown import PointsAlong
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.part import Forces, MatrixBlock, State, Traits, Weights
 from riser_soil.core.roles import Adaptive, Predictor
@@ -70,6 +72,12 @@ class SoilContact(LineContact):
     @abstractmethod
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m], >= 0."""
+
+    @abstractmethod
+    def clearance(self, state: State) -> Array:
+        """Gap (nn,) of the nodes less that at which the force begins [m], inf far away; called only on the rank that
+        evaluates contact.
+        """
 
     @abstractmethod
     def depth(self, state: State) -> Array:
@@ -156,10 +164,33 @@ class SoilContact(LineContact):
         soil = self._soil
         return soil.height(xy, soil.at_first) - soil.height(xy, soil.deformed(state))
 
-    def contact_along_line(self, state: State) -> ContactAlongLine:
-        """At the nodes."""
-        share, force = self.line.tributary_length, self.force_per_length(state)
-        return ContactAlongLine(self.line.arc, share, self.clearance(state), force)
+    @property
+    def along(self) -> PointsAlong:
+        """The nodes."""
+        return PointsAlong(self.line.arc, self.line.tributary_length)
+
+    def contact_along_line(self, state: State) -> tuple[Array, Array]:
+        return self.clearance(state), self.force_per_length(state)
+
+    def results(self, state: State) -> Array:
+        """See `ContactResults.within`."""
+        of_nodes = self.force_per_length(state), self.penetration(state), self.depth(state)
+        whole = [self.max_penetration(state)], self.force_on_riser(state)
+        return np.concatenate([*of_nodes, *self.contact_along_line(state), *whole])
+
+    def penetration(self, state: State) -> Array:
+        """Penetration (nn,) [m] of the nodes' undersides into the ground as it is now, 0 above it."""
+        if not self.active:
+            return np.zeros(self.line.nodes)
+        return np.maximum(0.0, -self.clearance(state) - self.law.start)
+
+    def predict(self, guess: State) -> Array:
+        """Increments of a first guess that lands, see `landing`."""
+        if not self.active:
+            return guess.u
+        present = self.clearance(State.at_rest(guess.t, guess.u.size))
+        heights, guessed = self.line.translation_dofs[:, -1], self.clearance(guess)
+        return landing_predictor(guess, heights, present, guessed, self.law.start)
 
     def state(self) -> Saved:
         """The pattern: another one, as wide as need be, gives the same forces but to round-off."""

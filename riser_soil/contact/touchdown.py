@@ -34,12 +34,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.arrays import Array, IntArray, listed
 from riser_soil.core.compiled import njit
 
 DEEP = 96.0  # rises of the force within a depth of 1: 43 l on stiff springs, of which f0 is read from the far half
 LEAST = 60.0  # stations within a depth of 1 in a layer that the mesh doesn't resolve
 FADING = 8  # power of the depth with which stations count in f0: 1e-8 at the peak
+
+
+class PointsAlong(NamedTuple):
+    """Points along the riser from its start: their growing arc length, and share of its length by quadrature (n,) [m].
+    """
+
+    arc: Array
+    share: Array
 
 
 class ContactInterval(NamedTuple):
@@ -74,18 +82,26 @@ def contact_intervals(arc: Array, share: Array, clearance: Array, force: Array) 
     A gap that is no higher than the deepest penetration does not end a stretch: just behind the touchdown point a stiff
     bed lifts the riser off a little.
     """
-    found, n, whole = [], len(arc), float(np.sum(share))
-    for first, last in _runs(clearance, force):
-        f = np.zeros(n)
+    runs, ends = _runs(clearance, force), np.empty((0, 2))
+    if len(runs) > 0:
+        ends = _ends_of(runs, arc, share, clearance, force)
+    return [ContactInterval(*between, *run) for run, between in zip(listed(runs), listed(ends), strict=True)]
+
+
+@njit
+def _ends_of(runs: IntArray, arc: Array, share: Array, clearance: Array, force: Array) -> Array:
+    """Where what touches begins and ends (k, 2) [m]."""
+    n, whole, ends = arc.size, share.sum(), np.empty(runs.shape)
+    for k in range(len(runs)):
+        first, last = runs[k]
+        f, ends[k, 0], ends[k, 1] = np.zeros(n), 0.0, whole
         f[first : last + 1] = force[first : last + 1]
-        start, end = 0.0, whole
         if first > 0:
-            turned, behind, gap, pressing = (np.ascontiguousarray(x[::-1]) for x in (whole - arc, share, clearance, f))
-            start = whole - _leaving(turned, behind, gap, pressing, n - 1 - int(first))
+            behind, gap, pressing = share[::-1].copy(), clearance[::-1].copy(), f[::-1].copy()
+            ends[k, 0] = whole - _leaving(whole - arc[::-1], behind, gap, pressing, n - 1 - first)
         if last < n - 1:
-            end = _leaving(arc, share, clearance, f, int(last))
-        found.append(ContactInterval(start, end, int(first), int(last)))
-    return found
+            ends[k, 1] = _leaving(arc, share, clearance, f, last)
+    return ends
 
 
 @njit
@@ -172,8 +188,8 @@ def _resting(weight: Array, force: Array) -> float:
     total = 0.0
     for own in weight:
         total += own
-    upto, reached, mean = 0.0, 0.25 * total, 0.0
-    for i in force.argsort():
+    upto, reached, mean, counting = 0.0, 0.25 * total, 0.0, np.flatnonzero(weight)
+    for i in counting[force[counting].argsort()]:
         before, upto = reached, upto + weight[i]
         reached = min(max(upto, 0.25 * total), 0.75 * total)
         mean += (reached - before) * force[i]

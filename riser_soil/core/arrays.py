@@ -4,6 +4,8 @@ Arrays are of double precision and of 64-bit integers. Their types leave the wid
 its functions only that they return a floating or an integer type, and one annotation has to hold for numpy 1 and 2.
 """
 
+import math
+from collections.abc import Sequence
 from typing import Any, cast
 
 import numpy as np
@@ -18,3 +20,13 @@ BoolArray = npt.NDArray[np.bool_]
 def listed(values: npt.NDArray[Any]) -> list[Any]:
     """Numbers of an array, which has axes, as Python's own: a list of them, or of lists."""
     return cast(list[Any], values.tolist())
+
+
+def views(vector: Array, shapes: Sequence[tuple[int, ...]]) -> list[Array]:
+    """Arrays of these shapes, which lie one behind the other along a vector's last axis; axes before it stay."""
+    first, found = 0, []
+    for shape in shapes:
+        end = first + math.prod(shape)
+        found.append(vector[..., first:end].reshape(*vector.shape[:-1], *shape))
+        first = end
+    return found

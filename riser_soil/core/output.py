@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
@@ -49,13 +48,14 @@ class Figure:
     by the output's value of the node that it sits on; figures of the soil are largest values, and have the indices of
     all points or cells where they may sit. arc: arc length [m] by the output's value, where it sits between nodes. None
     where there is none. row: on the screen, None for none.
+    Of many instants the output's value has one axis more in front, and so have figure, node and arc.
     """
 
     name: str
     of: Callable[[Any], Any] = lambda value: value
     size: int = 1
     node: Callable[[Any], Any] | None = None
-    arc: Callable[[Any], float] | None = None
+    arc: Callable[[Any], Any] | None = None
     row: Row | None = None
 
     @property
@@ -75,7 +75,7 @@ class OutputQuantity(Generic[Seen]):
     units, text and sign (what its sign means, where it has one) go into results.nc, with units as UDUNITS writes them.
     get: the value by what is seen, `Instant`, `SoilSnapshot` or `StepRecord`; (nn,) at nodes, (nv,) at points of the
     soil, (nc,) in its cells, (ns,) of sections, (ns, m) across them, one number in the rest; by three where it is a
-    vector, in global axes.
+    vector, in global axes. Of many instants all have one axis more in front: `position[..., 2]`, not `[:, 2]`.
     needs: what must be known for it. always: recorded along the riser even where the scene does not request it.
     """
 
@@ -105,17 +105,19 @@ class OutputQuantity(Generic[Seen]):
 
 def least(name: str, row: Row | None = None) -> Figure:
     """The smallest value along the riser, with its place."""
-    return Figure(name, lambda along: along.min(), node=lambda along: along.argmin(), row=row)
+    return Figure(name, lambda along: along.min(axis=-1), node=lambda along: along.argmin(axis=-1), row=row)
 
 
 def greatest(name: str, row: Row | None = None) -> Figure:
     """The largest value along the riser, with its place."""
-    return Figure(name, lambda along: along.max(), node=lambda along: along.argmax(), row=row)
+    return Figure(name, lambda along: along.max(axis=-1), node=lambda along: along.argmax(axis=-1), row=row)
 
 
 def greatest_known(name: str, row: Row | None = None) -> Figure:
     """The largest value along the riser but for nodes where it is nan, with its place."""
-    return Figure(name, lambda along: np.nanmax(along), node=lambda along: np.nanargmax(along), row=row)
+    return Figure(
+        name, lambda along: np.nanmax(along, axis=-1), node=lambda along: np.nanargmax(along, axis=-1), row=row
+    )
 
 
 def extreme_along(name: str, row: Row | None = None) -> Figure:
@@ -134,16 +136,19 @@ def near_greatest(values: Array) -> Array:
     return (values >= top - 1e-6 * abs(top)).nonzero()[0]
 
 
-def bend_radius(curvature: float) -> float:
+def bend_radius(curvature: Array | float) -> Array:
     """Radius [m] of a curvature [1/m]; infinite for a straight pipe."""
-    return float(1.0 / curvature) if curvature > 0.0 else math.inf
+    bent = np.asarray(curvature)
+    return np.divide(1.0, bent, out=np.full(bent.shape, np.inf), where=bent > 0.0)
 
 
-def angle_deg(tangent: Array) -> float:
-    """Angle of a tangent (3,) from the horizontal [deg]; positive where the riser rises with its arc."""
-    return math.degrees(math.atan2(tangent[2], math.hypot(tangent[0], tangent[1])))
+def angle_deg(tangent: Array) -> Array:
+    """Angle of a tangent (..., 3) from the horizontal [deg]; positive where the riser rises with its arc."""
+    x, y, z = np.moveaxis(tangent, -1, 0)
+    return np.asarray(np.degrees(np.arctan2(z, np.hypot(x, y))))
 
 
-def resultant(vector: Array) -> float:
-    """Size of a vector (3,)."""
-    return math.hypot(*vector)
+def resultant(vector: Array) -> Array:
+    """Size of a vector (..., 3)."""
+    x, y, z = np.moveaxis(vector, -1, 0)
+    return np.asarray(np.hypot(np.hypot(x, y), z))

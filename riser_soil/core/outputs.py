@@ -36,14 +36,17 @@ ALONG_RISER: tuple[OutputQuantity[Instant], ...] = (
     OutputQuantity(
         "position", "x", "m", "position of the riser's axis", "nodes",
         lambda i: i.riser.position, "global axes, z up", vector=True, always=True,
-        figures=(Figure("start.position", lambda x: x[0], 3), Figure("end.position", lambda x: x[-1], 3)),
+        figures=(
+            Figure("start.position", lambda x: x[..., 0, :], 3),
+            Figure("end.position", lambda x: x[..., -1, :], 3),
+        ),
     ),
     OutputQuantity(
         "effective_tension", "T", "N", "effective tension", "nodes",
         lambda i: i.riser.effective_tension, "positive in tension",
         figures=(
-            Figure("start.effective_tension", lambda T: T[0], row=_TOP),
-            Figure("end.effective_tension", lambda T: T[-1], row=_TOP),
+            Figure("start.effective_tension", lambda T: T[..., 0], row=_TOP),
+            Figure("end.effective_tension", lambda T: T[..., -1], row=_TOP),
         ),
     ),
     OutputQuantity(
@@ -269,7 +272,7 @@ OF_MODEL: tuple[OutputQuantity[Instant], ...] = (
     OutputQuantity(
         "contact_force_sum", "", "N", "sum of the contact forces", "model",
         lambda i: i.touch.contact_force, "exerted by the seabed on the riser; global axes, z up", vector=True,
-        figures=(Figure("contact_force", lambda F: F[2], row=Row("contact force", "kN", 1e-3)),),
+        figures=(Figure("contact_force", lambda F: F[..., 2], row=Row("contact force", "kN", 1e-3)),),
     ),
 )  # fmt: skip
 

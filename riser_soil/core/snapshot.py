@@ -1,13 +1,16 @@
 """Snapshots for the recorder: results of a state as plain arrays, SI units, global axes (z up).
 
-nn riser nodes in the order of the arc length; nv points and nc cells of the soil's output mesh.
+nn riser nodes in the order of the arc length; nv points and nc cells of the soil's output mesh. Those of the riser and
+its contact are of one state, or of many, by one axis more in front of all arrays.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 
@@ -15,12 +18,11 @@ from riser_soil.core.arrays import Array, IntArray
 class ExtremeAlong(NamedTuple):
     """The largest or least value along the riser, largest ones between nodes too, and its arc length [m]."""
 
-    value: float
-    arc: float
+    value: Array | float
+    arc: Array | float
 
 
-@dataclass(frozen=True, eq=False)
-class WallSnapshot:
+class WallSnapshot(NamedTuple):
     """Loads and stress of the pipe's wall at the nodes (nn,); stresses are nan where there is no wall, and at a joint
     those of the side with the larger von Mises' stress. Moments about the section's axes, exerted by the part towards
     `end` on the part towards `start`.
@@ -55,7 +57,7 @@ class RiserSnapshot(NamedTuple):
     largest_moment: ExtremeAlong  # N.m
     largest_curvature: ExtremeAlong  # 1/m
     largest_bend_utilisation: ExtremeAlong  # nan where no least bend radius is given
-    tightest_radius: float  # m, where the bend utilisation is largest; the same
+    tightest_radius: Array | float  # m, where the bend utilisation is largest; the same
     contact_force: Array  # (nn,) N/m, positive where the ground pushes, negative where it holds the riser by suction
     moment_vector: Array  # (nn, 3) N.m, exerted by the part towards `end` on the part towards `start`
     start_force: Array  # (3,) N
@@ -87,8 +89,7 @@ class SoilMesh:
     cells: IntArray  # (nc, 8), (nc, 4) or (nc, 10)
 
 
-@dataclass(frozen=True, eq=False)
-class SectionSnapshot:
+class SectionSnapshot(NamedTuple):
     """The soil's settlement at m offsets across the riser, in ns sections; nan where no section is laid yet."""
 
     arc: Array  # (ns,) m, of the riser where it lay over the section
@@ -100,10 +101,10 @@ class SectionSnapshot:
 class ContactSnapshot(NamedTuple):
     """Contact of the riser with seabed and soil: touchdown, penetration and contact force."""
 
-    touchdown_arc: float  # m, nan when nothing touches
+    touchdown_arc: Array | float  # m, nan when nothing touches
     touchdown_position: Array  # (3,) m, of the riser's axis there; nan when nothing touches
-    touchdown_points: int  # places where the riser comes down or leaves the seabed; its ends don't count
-    max_penetration: float  # m, 0 when nothing touches
+    touchdown_points: IntArray | int  # places where the riser comes down or leaves the seabed; its ends don't count
+    max_penetration: Array | float  # m, 0 when nothing touches
     contact_force: Array  # (3,) N, the sum over the riser, exerted on the riser
     penetration: Array | None = None  # (nn,) m, of the underside into the ground as it is now; None where not wanted
     embedment: Array | None = None  # (nn,) m, greatest depth yet below the ground as it lay at first; the same
@@ -119,6 +120,27 @@ class Instant(NamedTuple):
     arc: Array
     riser: RiserSnapshot
     touch: ContactSnapshot
+
+
+def instants_at(seen: Instant, at: Any) -> Instant:
+    """Those of many instants that an index of their axis selects: one, by its number, without that axis."""
+    return Instant(seen.arc, *(mapped(lambda values: values[at], each) for each in (seen.riser, seen.touch)))
+
+
+def stacked(seen: Sequence[Instant]) -> Instant:
+    """Single instants as many."""
+    risers, touches = zip(*((each.riser, each.touch) for each in seen), strict=True)
+    return Instant(seen[0].arc, *(mapped(lambda *values: np.stack(values), *each) for each in (risers, touches)))
+
+
+def mapped(change: Callable[..., Any], *values: Any) -> Any:
+    """What a function makes of arrays of one place in nested tuples; None stays."""
+    first = values[0]
+    if first is None:
+        return None
+    if isinstance(first, tuple):
+        return type(first)(*(mapped(change, *each) for each in zip(*values, strict=True)))
+    return change(*values)
 
 
 class StepStatistics(NamedTuple):
@@ -167,6 +189,7 @@ class Ledger:
 class StepRecord(NamedTuple):
     """Record of an accepted step."""
 
+    t: float  # s since the stage began; in a static stage the load factor
     health: StepStatistics
     ledger: Ledger
 

@@ -6,9 +6,7 @@ import math
 from typing import NamedTuple
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.core.bound import Bound
 from riser_soil.core.compiled import njit
-from riser_soil.core.packed import Packed
 
 # Of the largest second difference around an extreme, from the calibration in `tests/verification/test_indicators.py`.
 SHARE = 0.3
@@ -57,45 +55,48 @@ class Extent(NamedTuple):
 
 
 @njit
-def extend(extent: Extent, placed: IntArray, t: float, seen: Array) -> None:
-    """Take in figures at a time, and behind them the arc lengths of those that have one (n + m,); nan does not count.
-
-    placed (m,): which figures these are.
+def extend(extent: Extent, placed: IntArray, times: Array, rows: Array) -> None:
+    """Take in figures at times (nt,), and behind them the arc lengths of those that have one (nt, n + m); nan does not
+    count. placed (m,): which figures these are.
     """
     n = extent.least.size
-    for k, i in enumerate(placed):
-        if seen[i] < extent.least[i]:
-            extent.arc_least[k] = seen[n + k]
-        if seen[i] > extent.most[i]:
-            extent.arc_most[k] = seen[n + k]
-    for i in range(n):
-        if seen[i] < extent.least[i]:
-            extent.least[i], extent.t_least[i] = seen[i], t
-        if seen[i] > extent.most[i]:
-            extent.most[i], extent.t_most[i] = seen[i], t
-
-
-def following(course: Course, after: Array) -> Bound:
-    """A call that takes in what a step ends with, which is in `after`, see `follow`."""
-    return Bound(follow, Packed(course), Packed(after))
+    for row in range(times.size):
+        t, seen = times[row], rows[row]
+        for k, i in enumerate(placed):
+            if seen[i] < extent.least[i]:
+                extent.arc_least[k] = seen[n + k]
+            if seen[i] > extent.most[i]:
+                extent.arc_most[k] = seen[n + k]
+        for i in range(n):
+            if seen[i] < extent.least[i]:
+                extent.least[i], extent.t_least[i] = seen[i], t
+            if seen[i] > extent.most[i]:
+                extent.most[i], extent.t_most[i] = seen[i], t
 
 
 @njit
-def follow(course: Course, after: Array) -> None:
-    """Take in what a step ends with; after (n + 1,): its time [s] and the figures."""
+def follow(course: Course, times: Array, rows: Array) -> None:
+    """Take in what steps end with, in turn: times (nt,) [s] and figures (nt, n)."""
+    for row in range(times.size):
+        _follow(course, times[row], rows[row])
+
+
+@njit
+def _follow(course: Course, t: float, after: Array) -> None:
+    """What one step ends with."""
     n = course.values.size
-    t, before, last_dt = after[0], course.times[0], course.times[1]
+    before, last_dt = course.times[0], course.times[1]
     dt = t - before
     longer = last_dt if last_dt > dt else dt
     for i in range(n):
-        slope = (after[i + 1] - course.values[i]) / dt
+        slope = (after[i] - course.values[i]) / dt
         bend = 2.0 * longer**2 / (dt + last_dt) * abs(slope - course.slope[i])
         if not bend >= 0.0:
             bend = 0.0
         for row in range(2):
             sign = 2.0 * row - 1.0
-            _follow_peak(course, row, i, sign * after[i + 1], sign * course.values[i], bend, longer)
-        course.values[i], course.slope[i], course.past[i] = after[i + 1], slope, bend
+            _follow_peak(course, row, i, sign * after[i], sign * course.values[i], bend, longer)
+        course.values[i], course.slope[i], course.past[i] = after[i], slope, bend
     course.times[0], course.times[1] = t, dt
 
 

@@ -63,16 +63,16 @@ _PACKED = [
 
 
 def pack(seen: Instant) -> Array:
-    """All figures of one instant as one vector, in the order of the summary, and behind them the arc lengths [m] of
-    those that sit somewhere along the riser; nan for what is not known.
+    """All figures of one instant as one vector, of many as rows, in the order of the summary, and behind them the arc
+    lengths [m] of those that sit somewhere along the riser; nan for what is not known.
     """
-    vector = np.full(_SIZE + len(_PLACED), np.nan)
+    vector = np.full((*seen.riser.position.shape[:-2], _SIZE + len(_PLACED)), np.nan)
     for get, figures, placed in _PACKED:
         if (value := get(seen)) is not None:
             for at, of in figures:
-                vector[at] = of(value)
+                vector[..., at] = of(value)
             for n, figure in placed:
-                vector[n] = _arc(figure, value, seen.arc)
+                vector[..., n] = _arc(figure, value, seen.arc)
     return vector
 
 
@@ -109,7 +109,7 @@ _AT_PLACED = np.array([places_of(figure.name).start for _, figure in _PLACED])
 
 
 def final_state(seen: Instant) -> dict[str, Any]:
-    """The summary's `final`: the figures, with the arc length [m] of those that sit somewhere along the riser."""
+    """The summary's `final`: one instant's figures, with the arc length [m] of those that sit along the riser."""
     values = _values(seen)
     final: dict[str, Any] = {}
     for output, figure in _FIGURES:
@@ -118,16 +118,16 @@ def final_state(seen: Instant) -> dict[str, Any]:
             continue
         told: Any = [float(x) for x in found] if figure.size > 1 else float(found)
         if figure.placed:
-            told = {"value": told, "arc": _arc(figure, values[output.name], seen.arc)}
+            told = {"value": told, "arc": float(_arc(figure, values[output.name], seen.arc))}
         _put(final, figure.path, told)
     return final
 
 
-def _arc(figure: Figure, value: Any, arc: Array) -> float:
+def _arc(figure: Figure, value: Any, arc: Array) -> Any:
     if figure.arc is not None:
-        return float(figure.arc(value))
+        return figure.arc(value)
     assert figure.node is not None
-    return float(arc[figure.node(value)])
+    return arc[figure.node(value)]
 
 
 class Extremes:
@@ -140,11 +140,11 @@ class Extremes:
         unknown = np.full(_SIZE, np.nan)
         self._extent = Extent(none, -none, unknown, unknown.copy(), nowhere, nowhere.copy())
 
-    def update(self, t: float, vector: Array) -> None:
-        """t: s (static stages: load factor); vector: from `pack`."""
+    def update(self, t: Array | float, vector: Array) -> None:
+        """t: s (static stages: load factor); vector: from `pack`; both of one instant, or of many in turn."""
         from riser_soil.results.course import extend
 
-        extend(self._extent, _AT_PLACED, t, vector)
+        extend(self._extent, _AT_PLACED, np.atleast_1d(t), np.atleast_2d(vector))
 
     def nested(self) -> dict[str, Any]:
         """{min, max, t_min, t_max} of each figure, and {arc_min, arc_max} [m] of those that sit somewhere along the

@@ -13,15 +13,15 @@ Each is an estimate of size, calibrated in `tests/verification/test_indicators.p
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, listed
 from riser_soil.core.saved_state import Saved, gathered, packed, restore_all, unpacked
-from riser_soil.core.snapshot import Ledger, StepStatistics
+from riser_soil.core.snapshot import Ledger, StepRecord, StepStatistics
 from riser_soil.results.doubtful_extremes import AT, JUDGED, JudgedExtremes
 from riser_soil.results.time_resolution import TimeResolution
 
@@ -102,13 +102,14 @@ class StageIndicators:
         """The figures, from `figures.pack`, that a dynamic stage begins with."""
         self.resolution.update(t, vector[AT])
 
-    def follow(self, t: float, vector: Array, health: StepStatistics, ledger: Ledger) -> None:
-        """After a step of a dynamic stage; t: s of the run."""
-        values = vector[AT]
-        self.resolution.update(t, values)
-        self.largest = np.fmax(self.largest, np.abs(values))
-        self.step.follow(t, health)
-        self.impact.follow(t, health.time_step, self.contact_period, ledger)
+    def follow(self, times: Array, rows: Array, steps: Sequence[StepRecord]) -> None:
+        """After steps of a dynamic stage, in turn: times (nt,) [s] of the run, and the figures then."""
+        values = rows[:, AT]
+        self.resolution.update(times, values)
+        self.largest = np.fmax(self.largest, np.fmax.reduce(np.abs(values)))
+        for t, step in zip(listed(times), steps, strict=True):
+            self.step.follow(t, step.health)
+            self.impact.follow(t, step.health.time_step, self.contact_period, step.ledger)
 
     def as_dict(self, dynamic: bool) -> dict[str, Any]:
         told: dict[str, Any] = {"bending": self.bending} if self.bending else {}

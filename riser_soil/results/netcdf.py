@@ -109,7 +109,7 @@ class SeriesFile:
         self._sizes = {"time": None, "step": None} | {name: size for name, size in sizes.items() if size}
         self._offsets = np.array(offsets)
         self.row_size = sum(8 * values_in(self._variables[name], self._sizes) for name in self._of_instant)  # bytes
-        self._rows: defaultdict[str, list[object]] = defaultdict(list)
+        self._rows: defaultdict[str, list[Any]] = defaultdict(list)  # arrays of rows, to be joined
         self._records = self._steps = 0
         self._stages: list[str] = []
         self._goes_on = goes_on
@@ -118,25 +118,30 @@ class SeriesFile:
     def begin_stage(self, name: str) -> None:
         self._stages.append(name)
 
-    def record(self, values: Mapping[str, object]) -> None:
-        """Adds one output time. values: by the names of SERIES except `stage`; those left out are ignored."""
-        self._records += 1
-        for name in self._of_instant:
-            self._rows[name].append(_kept(values[name]))
-        self._rows["stage"].append(len(self._stages) - 1)
+    def record(self, rows: Mapping[str, Array]) -> None:
+        """Adds output times, in the first axis of all rows, which nobody changes any more.
 
-    def step(self, values: Mapping[str, object]) -> None:
-        """Adds one accepted step. values: by the names of HEALTH and the ledger, without `step` and `step_stage`."""
-        row = dict(values, step=self._steps, step_stage=len(self._stages) - 1)
-        self._steps += 1
+        rows: by the names of SERIES except `stage`; those left out are ignored.
+        """
+        count = len(rows["time"])
+        self._records += count
+        for name in self._of_instant:
+            self._rows[name].append(rows[name])
+        self._rows["stage"].append([len(self._stages) - 1] * count)
+
+    def steps(self, rows: Mapping[str, Sequence[float]]) -> None:
+        """Adds accepted steps. rows: by the names of HEALTH and the ledger, without `step` and `step_stage`."""
+        count = len(rows["step_time"])
+        own = {"step": range(self._steps, self._steps + count), "step_stage": [len(self._stages) - 1] * count}
+        self._steps += count
         for name in self._of_step:
-            self._rows[name].append(row[name])
+            self._rows[name].append(own[name] if name in own else rows[name])
 
     def flush(self, finished: bool = False) -> None:
         """Appends the gathered rows to the file."""
         with appending(self._file) as file:
             for name, rows in self._rows.items():
-                append_rows(file[name], rows)
+                append_rows(file[name], np.concatenate(rows))
             file.attrs["finished"] = np.int8(finished)
             _name_stages(file, self._stages)
         self._rows.clear()
@@ -179,11 +184,6 @@ class SeriesFile:
                     _cut_back(file[name], self._steps if variable.dims[0] == "step" else self._records, self._file.path)
                 file.attrs["finished"] = np.int8(False)
                 _name_stages(file, self._stages)
-
-
-def _kept(value: object) -> object:
-    """A copy of values that the solver continues to use; numbers stay as they are."""
-    return value.copy() if isinstance(value, np.ndarray) else value
 
 
 def _cut_back(dataset: h5py.Dataset, rows: int, path: Path) -> None:

@@ -1,4 +1,7 @@
-"""Observer of a run: collects snapshots from the parts' states on all ranks and hands them to the recorder."""
+"""Observer of a run: looks at the parts' states on all ranks, and hands what it has seen to the recorder.
+
+Riser and contact are looked at after each step, and told of for many steps together, see `instants`.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,24 +19,24 @@ from riser_soil.assembly import Assembly
 from riser_soil.checks.inventory import built, dissipating, left_out, unknowns, working
 from riser_soil.core import outputs
 from riser_soil.core.communicator import Communicator
-from riser_soil.core.part import Energy
+from riser_soil.core.part import Energy, State
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
-from riser_soil.core.snapshot import ContactSnapshot, Instant, RiserSnapshot, RunFacts, SoilSnapshot, StepStatistics
+from riser_soil.core.snapshot import Instant, RunFacts, SoilSnapshot, StepRecord, StepStatistics, instants_at
 from riser_soil.core.system import Timer
 from riser_soil.core.versions import versions
 from riser_soil.errors import Interruption, MemoryShortageError, RiserSoilError, SolveError
 from riser_soil.interruption import leave_between_steps, uninterrupted
 from riser_soil.results.checkpoint import CheckpointSchedule, about
 from riser_soil.results.energy_ledger import EnergyLedger
+from riser_soil.results.instants import Instants, Look
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.plausibility import Plausibility
 from riser_soil.results.progress import Progress
 from riser_soil.results.record import Keeping, Recorder
-from riser_soil.results.riser_snapshot import elastic_residual, riser_snapshot
-from riser_soil.results.schedule import Schedule
+from riser_soil.results.riser_snapshot import elastic_residual
+from riser_soil.results.schedule import DueOutputs, Schedule
 from riser_soil.results.screen import print_summary
 from riser_soil.results.settlement_trough import count_of, offsets_of
-from riser_soil.results.touchdown_zone import TouchdownZone
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.output import Checkpoint
 from riser_soil.scene.stages import Stage, StaticStage
@@ -42,6 +45,18 @@ from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
 if TYPE_CHECKING:
     from riser_soil.soil.boundary_stress import BoundaryStress
+
+MOST_STEPS, MOST_NUMBERS = 64, 1 << 20  # that are looked at before they are told of
+
+
+class Seen(NamedTuple):
+    """A step that has been looked at, its state, and the soil there where that is due."""
+
+    record: StepRecord
+    due: DueOutputs
+    look: Look
+    state: State
+    soil: SoilSnapshot | None
 
 
 class Observer:
@@ -59,7 +74,8 @@ class Observer:
         self._peaks = peaks if recorder is not None else None
         output = assembly.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
-        self._zone = TouchdownZone(assembly, _known_fields(assembly))
+        self._instants = Instants(assembly, _known_fields(assembly))
+        self._seen: list[Seen] = []  # since they were handed over
         self._plausibility = Plausibility(assembly)
         self._checkpoints = CheckpointSchedule(_asked(assembly), assembly.comm)
         self._about = about(assembly) if recorder is not None and _asked(assembly) is not None else None
@@ -91,7 +107,12 @@ class Observer:
                     keeping = Keeping(goes_on, end=asked is not None and asked.keep)
                     recorder = Recorder.open(folder, known, assembly.line.arc, mesh, text, fields, force, keeping)
             with recorder or nullcontext():
-                yield cls(assembly, clock, recorder, progress, peaks)
+                observer = cls(assembly, clock, recorder, progress, peaks)
+                try:
+                    yield observer
+                finally:
+                    with uninterrupted():
+                        observer.hand_over()
 
     def begin_stage(self, stage: Stage, stepper: TimeStepper) -> None:
         """stepper: at the stage's beginning; collective."""
@@ -121,9 +142,10 @@ class Observer:
         """Records the state before all stages, which no static stage has brought about."""
         soil = self._soil()
         if self._recorder is not None:
-            riser, touching = riser_snapshot(self._assembly, stepper), self._zone.look(stepper.now)
-            self._recorder.begin_at(riser, touching, soil)
-            self._add_peaks(0.0, riser, touching)
+            seen = self._instants.told([self._instants.look(stepper)])
+            self._recorder.begin_at(seen, soil)
+            if self._peaks is not None:
+                self._peaks.record([0.0], seen)
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         """Tell the recorder of a step that has been committed; collective."""
@@ -138,26 +160,44 @@ class Observer:
         if self._recorder is not None:
             iterations = step.solution.iterations + self._relaxed
             health = StepStatistics(iterations, step.dt, change, step.cuts, stepper.local_error)
+            record = StepRecord(step.t, health, self._balance.ledger)
             at_rest = due.series and isinstance(self._stage, StaticStage)
-            riser, touching = riser_snapshot(self._assembly, stepper), self._zone.look(stepper.now, at_rest)
-            self._recorder.accept(step.t, due, riser, touching, health, self._balance.ledger, soil)
-            self._add_peaks(step.t, riser, touching)
-            if due.series:
-                self._judge(self._recorder, stepper, riser, touching, closely=due.pictures)
+            self._seen.append(Seen(record, due, self._instants.look(stepper, at_rest), stepper.now, soil))
+            if due.pictures:  # which cost more than to look closely
+                time_of_run, elastic = self._recorder.time_at(step.t), elastic_residual(self._assembly, stepper)
+                self._plausibility.look_closely(time_of_run, stepper.now, elastic)
+            if last or len(self._seen) >= self._most or self._recorder.flush_is_due:
+                self.hand_over()
         self._relaxed = 0
         self._clock.add("output", since)
 
-    def _add_peaks(self, t: float, riser: RiserSnapshot, touching: ContactSnapshot) -> None:
-        if self._peaks is not None:
-            self._peaks.record(t, Instant(self._assembly.line.arc, riser, touching))
+    @property
+    def _most(self) -> int:
+        """Steps to look at before they are told of: one where the soil is to be known then."""
+        if self._assembly.soil is not None or isinstance(self._stage, StaticStage):
+            return 1
+        return min(MOST_STEPS, MOST_NUMBERS // self._seen[0].look.inside.size)
 
-    def _judge(
-        self, recorder: Recorder, stepper: TimeStepper, riser: RiserSnapshot, touching: ContactSnapshot, closely: bool
-    ) -> None:
-        """Look whether what was recorded is plausible; closely where it costs no more than what is written."""
-        self._plausibility.look(recorder.now, stepper.now, riser, touching)
-        if closely:
-            self._plausibility.look_closely(recorder.now, stepper.now, elastic_residual(self._assembly, stepper))
+    def hand_over(self) -> None:
+        """Tell the recorder of all steps that it has not been told of."""
+        seen, self._seen, recorder = self._seen, [], self._recorder
+        if not seen or recorder is None or recorder.closed:
+            return
+        records, instants = [each.record for each in seen], self._instants.told([each.look for each in seen])
+        recorder.accept(records, [each.due for each in seen], instants, seen[-1].soil)
+        if self._peaks is not None:
+            self._peaks.record([record.t for record in records], instants)
+        self._judge(recorder, seen, instants)
+
+    def _judge(self, recorder: Recorder, seen: Sequence[Seen], instants: Instant) -> None:
+        """Look whether what was recorded is plausible."""
+        recorded = [n for n, each in enumerate(seen) if each.due.series]
+        if not recorded:
+            return
+        times = [recorder.time_at(seen[n].record.t) for n in recorded]
+        self._plausibility.look(times, instants_at(instants, recorded).riser)
+        if self._assembly.soil_contact is not None:
+            self._plausibility.look_at_soil(times[-1], seen[-1].state, instants_at(instants, -1))
         stage = recorder.summary.stages[-1]
         stage.implausible, stage.indicators.bending = self._plausibility.warnings(), self._plausibility.bending()
 
@@ -182,6 +222,7 @@ class Observer:
         """The run ends before its time: write the last accepted step; collective where the ranks end together."""
         together = self._assembly.comm.size == 1 or not isinstance(end, Interruption) or end.together
         with uninterrupted():
+            self.hand_over()
             soil = self._soil() if together else None
             if self._recorder is not None:
                 self._recorder.record_last(soil)
@@ -228,6 +269,8 @@ class Observer:
             print_summary(self._recorder.summary.as_dict())
 
     def state(self) -> Saved:
+        """Once the recorder knows all steps."""
+        self.hand_over()
         stage = self._assembly.scene.stages.index(self._stage)
         return gathered(self._owners) | {"stage": np.array(stage), "relaxed": np.array(self._relaxed)}
 
@@ -244,7 +287,7 @@ class Observer:
     def _owners(self) -> dict[str, Stateful]:
         told: dict[str, Stateful] = {} if self._recorder is None else {"recorder": self._recorder}
         told |= {} if self._peaks is None else {"peaks": self._peaks}
-        told |= {"schedule": self._schedule, "ledger": self._balance, "zone": self._zone}
+        told |= {"schedule": self._schedule, "ledger": self._balance, "instants": self._instants}
         return told | {"plausibility": self._plausibility}
 
 

@@ -7,13 +7,14 @@ orders. Largest moments and curvatures are told between nodes already (`riser.be
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, unpacked
-from riser_soil.core.snapshot import Instant, SoilMesh, SoilSnapshot
+from riser_soil.core.snapshot import Instant, SoilMesh, SoilSnapshot, instants_at
 from riser_soil.results.figures import Extremes, final_state, pack, places_of
 from riser_soil.results.soil_extremes import places, with_largest
 
@@ -42,10 +43,10 @@ def least_between_nodes(arc: Array, along: Array) -> float:
 
 
 def pack_peaks(seen: Instant) -> Array:
-    """As `pack`, with the least tension between nodes in place of that at nodes."""
-    vector = pack(seen)
-    vector[places_of(_TENSION)] = least_between_nodes(seen.arc, seen.riser.effective_tension)
-    return vector
+    """As `pack` of many instants, with the least tension between nodes in place of that at nodes."""
+    rows = pack(seen)
+    rows[:, places_of(_TENSION)] = [[least_between_nodes(seen.arc, along)] for along in seen.riser.effective_tension]
+    return rows
 
 
 class StagePeaks:
@@ -61,10 +62,11 @@ class StagePeaks:
         self._t: list[float] = []
         self._last: list[Array] = []
 
-    def update(self, t: float, seen: Instant) -> None:
-        """Of the state that a dynamic stage begins with, and of every accepted step in turn; t: s or load factor."""
-        self._follow(t, pack(seen), pack_peaks(seen))
-        self._seen = seen
+    def update(self, times: Sequence[float], seen: Instant) -> None:
+        """Of the state that a dynamic stage begins with, and of accepted steps in turn; times: s or load factors."""
+        for t, sampled, peaked in zip(times, pack(seen), pack_peaks(seen), strict=True):
+            self._follow(t, sampled, peaked)
+        self._seen = instants_at(seen, -1)
 
     def begin(self, before: StagePeaks) -> None:
         """With the end of the stage before."""
@@ -150,12 +152,12 @@ class RunPeaks:
         if kind == "dynamic" and len(self.stages) > 1:
             self.stages[-1].begin(self.stages[-2])
 
-    def record(self, t: float, seen: Instant, soil: SoilSnapshot | None = None) -> None:
-        """soil: where it is recorded at this step."""
+    def record(self, times: Sequence[float], seen: Instant, soil: SoilSnapshot | None = None) -> None:
+        """Of accepted steps in turn; soil: where it is recorded at the last of them."""
         stage = self.stages[-1]
-        stage.update(t, seen)
+        stage.update(times, seen)
         if soil is not None and self._places is not None:
-            stage.soil = with_largest(stage.soil, self._places, t, soil)
+            stage.soil = with_largest(stage.soil, self._places, times[-1], soil)
 
     def told(self, which: str) -> dict[str, Any]:
         """The share of a summary that headline quantities are read from; which: sampled, of_nodes, peaks or smooth."""

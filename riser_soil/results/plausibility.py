@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import astuple, dataclass
 from typing import TYPE_CHECKING
 
@@ -14,7 +14,7 @@ from riser_soil.checks.overload import over_a_length, surface_bearing
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, packed, unpacked
-from riser_soil.core.snapshot import ContactSnapshot, RiserSnapshot
+from riser_soil.core.snapshot import ContactSnapshot, Instant, RiserSnapshot
 from riser_soil.results.strains import largest_strains
 from riser_soil.riser.resolution import misfit
 from riser_soil.riser.section_forces import at_most
@@ -84,28 +84,32 @@ class Plausibility:
         self._load = self._misfit = LargestValue()
         self._warned: tuple[tuple[object, ...], tuple[str, ...]] | None = None  # of what, and what
 
-    def look(self, t: float, state: State, riser: RiserSnapshot, touch: ContactSnapshot) -> None:
-        """t: s of the run (static stages: load factor)."""
+    def look(self, times: Sequence[float], riser: RiserSnapshot) -> None:
+        """times: s of the run (static stages: load factor), of the riser's instants."""
         arc = self._assembly.line.arc
-        axial, at, bending, bent_at, moment = largest_strains(
-            riser.effective_tension, self.EA, riser.curvature, self.radius, riser.bending_moment
+        tension, curvature, moments = map(
+            np.ascontiguousarray, (riser.effective_tension, riser.curvature, riser.bending_moment)
         )
-        self._axial = self._axial.or_this(axial, arc, at, t)
-        self._bending = self._bending.or_this(bending, arc, bent_at, t)
+        axial, at, bending, bent_at, moment = largest_strains(tension, self.EA, curvature, self.radius, moments)
+        self._axial = self._axial.or_this(axial, arc, at % arc.size, times[at // arc.size])
+        self._bending = self._bending.or_this(bending, arc, bent_at % arc.size, times[bent_at // arc.size])
         self._largest = max(self._largest, moment)
-        contact = self._assembly.soil_contact
-        if contact is not None:
-            force = contact.force_per_length(state)
-            self._touched = self._touched or bool(force.any())
-            if self._bearing is not None:
-                borne = over_a_length(force, self._assembly.line, self._assembly.scales.diameter)
-                self._load = self._load.or_larger(borne, arc, t)
-            self._beyond = self._beyond.or_larger(self._past_the_block(touch), np.array([touch.touchdown_arc]), t)
-            self._stretch = self._stretch.or_larger(np.array([contact.stretch(state)]), np.full(1, np.nan), t)
-            self._look_for_ground(riser, touch)
+
+    def look_at_soil(self, t: float, state: State, seen: Instant) -> None:
+        """t: as above; seen: the instant of this state, where there is soil."""
+        arc, touch, contact = seen.arc, seen.touch, self._assembly.soil_contact
+        assert contact is not None
+        force = contact.force_per_length(state)
+        self._touched = self._touched or bool(force.any())
+        if self._bearing is not None:
+            borne = over_a_length(force, self._assembly.line, self._assembly.scales.diameter)
+            self._load = self._load.or_larger(borne, arc, t)
+        self._beyond = self._beyond.or_larger(self._past_the_block(touch), np.array([touch.touchdown_arc]), t)
+        self._stretch = self._stretch.or_larger(np.array([contact.stretch(state)]), np.full(1, np.nan), t)
+        self._look_for_ground(seen.riser, touch)
 
     def _look_for_ground(self, riser: RiserSnapshot, touch: ContactSnapshot) -> None:
-        down = not math.isnan(touch.touchdown_arc)
+        down = not np.isnan(touch.touchdown_arc)
         self._where = "touches down at" if down else "hangs with its lowest point at"
         self._lowest = touch.touchdown_position if down else riser.position[riser.position[:, 2].argmin()]
 

@@ -16,17 +16,7 @@ import numpy as np
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
-from riser_soil.core.snapshot import (
-    ContactSnapshot,
-    Instant,
-    Ledger,
-    RiserSnapshot,
-    RunFacts,
-    SoilMesh,
-    SoilSnapshot,
-    StepRecord,
-    StepStatistics,
-)
+from riser_soil.core.snapshot import Instant, RunFacts, SoilMesh, SoilSnapshot, StepRecord, instants_at
 from riser_soil.errors import SceneError, WriteError
 from riser_soil.results import folder as run_folder
 from riser_soil.results.checkpoint_file import About, write_checkpoint
@@ -35,7 +25,7 @@ from riser_soil.results.folder import FolderLock
 from riser_soil.results.indicators import StageIndicators
 from riser_soil.results.netcdf import SeriesFile, ledger_variables
 from riser_soil.results.ownership import prepare, sealed
-from riser_soil.results.record_rows import series_row, soil_frame, step_row
+from riser_soil.results.record_rows import series_rows, soil_frame, step_rows
 from riser_soil.results.schedule import DueOutputs
 from riser_soil.results.simulated_time import SimulatedTime
 from riser_soil.results.soil_extremes import places, with_largest
@@ -59,7 +49,7 @@ class Keeping:
 
 @dataclass
 class LastState:
-    """The last recorded state, and the files that it has been written to."""
+    """The last recorded state, one instant as if of many, and the files that it has been written to."""
 
     seen: Instant
     soil: SoilSnapshot | None
@@ -141,6 +131,11 @@ class Recorder:
         return recorder
 
     @property
+    def closed(self) -> bool:
+        """Whether nothing more is written."""
+        return self._closed
+
+    @property
     def reached(self) -> str:
         """Progress of the run, for the message of a run that ends early."""
         if self.summary.finished:
@@ -188,37 +183,45 @@ class Recorder:
         self.summary.stages.append(stage)
         self._series.begin_stage(name)
 
-    def begin_at(self, riser: RiserSnapshot, touch: ContactSnapshot, soil: SoilSnapshot | None = None) -> None:
-        """The state that the run begins with, where its first stage is dynamic: recorded at time zero."""
-        seen = Instant(self._arc, riser, touch)
-        self._latest = pack(seen)
+    def begin_at(self, seen: Instant, soil: SoilSnapshot | None = None) -> None:
+        """The state that the run begins with, where its first stage is dynamic: recorded at time zero.
+
+        seen: of one instant, as if of many.
+        """
+        self._latest = pack(seen)[0]
         self.summary.stages[-1].extremes.update(self._time.now, self._latest)
         self.summary.stages[-1].indicators.begin(self._time.now, self._latest)
-        self._record(seen, DueOutputs(series=True, pictures=True), soil)
+        self._record(seen, [DueOutputs(series=True, pictures=True)], [self._time.stamp()], soil)
 
     def accept(
-        self,
-        t: float,
-        due: DueOutputs,
-        riser: RiserSnapshot,
-        touch: ContactSnapshot,
-        health: StepStatistics,
-        ledger: Ledger,
-        soil: SoilSnapshot | None = None,
+        self, steps: Sequence[StepRecord], due: Sequence[DueOutputs], seen: Instant, soil: SoilSnapshot | None = None
     ) -> None:
-        """Takes one accepted step.
+        """Takes accepted steps of the present stage, in turn.
 
-        t: s since the stage began (static: load factor). soil: needed where there is a soil mesh and pictures
-        are due.
+        seen: the instants at their ends. soil: at the last of them; needed where there is a soil mesh and pictures are
+        due, for no other step then.
         """
-        self._time.advance(t)
-        seen, step = Instant(self._arc, riser, touch), StepRecord(health, ledger)
-        self._tally(t, seen, step)
-        self._series.step(dict.fromkeys(self._ledger, 0.0) | {"step_time": self._time.now} | step_row(step))
-        self._waiting += _STEP
-        self._record(seen, due, soil)
-        if time.monotonic() > self._next_flush or self._waiting > _MOST_WAITING:
+        times, stamps = [], []
+        for step, wanted in zip(steps, due, strict=True):
+            self._time.advance(step.t)
+            times.append(self._time.now)
+            if wanted.series:
+                stamps.append(self._time.stamp())
+        self._tally(steps, times, seen)
+        self._series.steps({"step_time": times} | step_rows(steps, self._ledger))
+        self._waiting += _STEP * len(steps)
+        self._record(seen, due, stamps, soil)
+        if self.flush_is_due or self._waiting > _MOST_WAITING:
             self.flush()
+
+    @property
+    def flush_is_due(self) -> bool:
+        """Whether what has been accepted is to go to disk now."""
+        return time.monotonic() > self._next_flush
+
+    def time_at(self, t: float) -> float:
+        """Time of the run [s] at a time of the present stage; in a static stage its load factor."""
+        return t if self.summary.stages[-1].kind == "static" else self._time.of_stage(t)
 
     def record_last(self, soil: SoilSnapshot | None = None) -> None:
         """Writes the last accepted step to all that it has not been written to: the run ends before its time.
@@ -231,9 +234,9 @@ class Recorder:
         soil = last.soil or soil
         drawable = self._soil_frames is None or soil is not None
         if not last.written.series:
-            self._record(last.seen, DueOutputs(series=True, pictures=drawable), soil)
+            self._record(last.seen, [DueOutputs(series=True, pictures=drawable)], [self._time.stamp()], soil)
         elif drawable and not last.written.pictures:
-            self._picture(last.stamp, series_row(last.stamp, last.seen, self._fields), soil)
+            self._picture(last.stamp, series_rows([last.stamp], last.seen, self._fields), 0, soil)
             last.written = DueOutputs(series=True, pictures=True)
 
     def add_seconds(self, seconds: Mapping[str, float]) -> None:
@@ -312,33 +315,40 @@ class Recorder:
     def _pictures(self) -> list[XdmfFile]:
         return [frames for frames in (self._riser_frames, self._soil_frames) if frames is not None]
 
-    def _tally(self, t: float, seen: Instant, step: StepRecord) -> None:
-        stage = self.summary.stages[-1]
-        self._latest = pack(seen)
-        stage.count(step.health)
+    def _tally(self, steps: Sequence[StepRecord], times: Sequence[float], seen: Instant) -> None:
+        stage, rows = self.summary.stages[-1], pack(seen)
+        self._latest = rows[-1]
+        at = np.array([step.t for step in steps] if stage.kind == "static" else times)
+        self.now = float(at[-1])
+        stage.count([step.health for step in steps])
         stage.time = self._time.stage_time
-        stage.balance(self._time.now, step.ledger)
-        self.now = now = t if stage.kind == "static" else self._time.now
-        stage.extremes.update(now, self._latest)
+        stage.balance(times, [step.ledger for step in steps])
+        stage.extremes.update(at, rows)
         if stage.kind == "dynamic":
-            stage.indicators.follow(now, self._latest, step.health, step.ledger)
-        stage.seen = seen
-        stage.bend(now, seen.riser)
-        stage.pull(now, seen.arc, seen.riser)
+            stage.indicators.follow(at, rows, steps)
+        stage.seen = instants_at(seen, -1)
+        stage.bend(at, seen.riser)
+        stage.pull(at, seen.arc, seen.riser)
 
-    def _record(self, seen: Instant, due: DueOutputs, soil: SoilSnapshot | None) -> None:
-        self._last = LastState(seen, soil, due)
-        if due.series:
-            self._last.stamp = self._time.stamp()
-            row = series_row(self._last.stamp, seen, self._fields)
-            self._waiting += self._series.row_size
-            self._series.record(row)
-            if due.pictures:
-                self._picture(self._last.stamp, row, soil)
+    def _record(
+        self, seen: Instant, due: Sequence[DueOutputs], stamps: Sequence[float], soil: SoilSnapshot | None
+    ) -> None:
+        """stamps: of those whose series is due."""
+        self._last = LastState(instants_at(seen, slice(-1, None)), soil, due[-1], stamps[-1] if due[-1].series else 0.0)
+        recorded = [n for n, wanted in enumerate(due) if wanted.series]
+        if not recorded:
+            return
+        every = len(recorded) == len(due)
+        rows = series_rows(stamps, seen if every else instants_at(seen, recorded), self._fields)
+        self._waiting += self._series.row_size * len(recorded)
+        self._series.record(rows)
+        for row, n in enumerate(recorded):
+            if due[n].pictures:
+                self._picture(stamps[row], rows, row, soil)
 
-    def _picture(self, stamp: float, row: Mapping[str, Array], soil: SoilSnapshot | None) -> None:
+    def _picture(self, stamp: float, rows: Mapping[str, Array], row: int, soil: SoilSnapshot | None) -> None:
         wanted = [output.name for output in outputs.ALONG_RISER if output.chosen and output.name in self._fields]
-        on_points = {name: row[name] for name in (*wanted, "position")}
+        on_points = {name: rows[name][row] for name in (*wanted, "position")}
         self._waiting += _size(on_points)
         self._riser_frames.add(Frame(stamp, on_points, geometry="position"))
         if self._soil_frames is not None:

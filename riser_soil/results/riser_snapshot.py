@@ -1,29 +1,40 @@
-"""The riser at an accepted state, as results tell it: forces and bending along it, reactions, largest values."""
+"""The riser at accepted states, as results tell it: forces and bending along it, reactions, largest values."""
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 
 from riser_soil.assembly import Assembly
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import State
 from riser_soil.core.snapshot import ExtremeAlong, RiserSnapshot, WallSnapshot
 from riser_soil.riser import bending_peaks
 from riser_soil.riser.line_part import acting_on
-from riser_soil.riser.section_forces import at_most, end_reactions, viscous_residual
+from riser_soil.riser.section_forces import add_at_ends, at_most, viscous_residual
 from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.riser.sections import larger_beside
 from riser_soil.solve.time_stepper import TimeStepper
 
 
+def look_inside(assembly: Assembly, stepper: TimeStepper) -> Array:
+    """Section forces at the accepted state, see `SectionForces.within`, and what the supports exert on the ends; on the
+    rank that holds the riser.
+    """
+    line, state, newton = assembly.line, stepper.now, stepper.newton
+    inside, nodal = newton.section_forces(line, assembly.elements, state), newton.nodal_residual(line, state)
+    if nodal is not None:
+        add_at_ends(line, state, nodal, SectionForces.within(inside, line.nodes))
+    return inside
+
+
 def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
     """The riser at the accepted state; on the rank that holds it."""
-    line, state = assembly.line, stepper.now
-    inside = stepper.newton.section_forces(line, assembly.elements, state)
-    start, end = end_reactions(line, state, inside, stepper.newton.nodal_residual(line, state))
-    least_tension, largest_moment, largest_curvature = (ExtremeAlong(float(x), float(s)) for x, s in inside.extreme)
+    inside = SectionForces.within(look_inside(assembly, stepper), assembly.line.nodes)
+    pressed = [contact.force_per_length(stepper.now) for contact in assembly.contacts]
+    return snapshot_of(assembly, inside, np.sum([np.zeros(assembly.line.nodes), *pressed], axis=0))
+
+
+def snapshot_of(assembly: Assembly, inside: SectionForces, contact_force: Array) -> RiserSnapshot:
+    """From its section forces and the contact force per length (nn,), at one instant or at many."""
     most_used, tightest = _tightest_bend(assembly, inside)
     return RiserSnapshot(
         position=inside.position,
@@ -32,21 +43,21 @@ def riser_snapshot(assembly: Assembly, stepper: TimeStepper) -> RiserSnapshot:
         bending_moment=inside.bending_moment,
         curvature=inside.curvature,
         bend_utilisation=_bend_utilisation(assembly, inside.curvature_beside),
-        least_tension=least_tension,
-        largest_moment=largest_moment,
-        largest_curvature=largest_curvature,
+        least_tension=_extreme(inside, 0),
+        largest_moment=_extreme(inside, 1),
+        largest_curvature=_extreme(inside, 2),
         largest_bend_utilisation=most_used,
         tightest_radius=tightest,
-        contact_force=_contact_force(assembly, state),
+        contact_force=contact_force,
         moment_vector=inside.moment,
-        start_force=start.force,
-        end_force=end.force,
-        start_moment=start.moment,
-        end_moment=end.moment,
-        start_tangent=inside.end_tangent[0],
-        end_tangent=inside.end_tangent[1],
+        start_force=inside.end_force[..., 0, :],
+        end_force=inside.end_force[..., 1, :],
+        start_moment=inside.end_moment[..., 0, :],
+        end_moment=inside.end_moment[..., 1, :],
+        start_tangent=inside.tangent[..., 0, 0, :],
+        end_tangent=inside.tangent[..., -1, 1, :],
         tension_utilisation=_tension_utilisation(assembly, inside.effective_tension),
-        wall=_wall(assembly, state, inside),
+        wall=_wall(assembly, inside),
     )
 
 
@@ -58,33 +69,40 @@ def elastic_residual(assembly: Assembly, stepper: TimeStepper) -> Array:
     return residual if viscous is None else residual - viscous
 
 
+def _extreme(inside: SectionForces, row: int) -> ExtremeAlong:
+    return ExtremeAlong(inside.extreme[..., row, 0][()], inside.extreme[..., row, 1][()])
+
+
 def _bend_utilisation(assembly: Assembly, curvature: Array) -> Array | None:
-    """curvature (ne, 2): at the elements' ends."""
+    """curvature (..., ne, 2): at the elements' ends."""
     if not assembly.elements.limits_bending:
         return None
     return at_most(assembly.elements.min_bend_radius[:, None] * curvature)
 
 
-def _tightest_bend(assembly: Assembly, inside: SectionForces) -> tuple[ExtremeAlong, float]:
+def _tightest_bend(assembly: Assembly, inside: SectionForces) -> tuple[ExtremeAlong, Array]:
     """The largest bend utilisation, and the radius [m] there; nan where no least radius is given."""
+    shape, allowed = inside.extreme.shape[:-2], assembly.elements.min_bend_radius[:, None]
     if not assembly.elements.limits_bending:
-        return ExtremeAlong(math.nan, math.nan), math.nan
-    allowed = assembly.elements.min_bend_radius[:, None]
-    used, arc, e = bending_peaks.largest(
-        assembly.line.arc, allowed * inside.curvature_beside, allowed * inside.curvature_slope
-    )
-    return ExtremeAlong(used, arc), float(allowed[e, 0] / used) if used > 0.0 else math.inf
+        unknown = np.full(shape, np.nan)[()]
+        return ExtremeAlong(unknown, unknown), unknown
+    rows = (allowed * values for values in (inside.curvature_beside, inside.curvature_slope))
+    each = zip(*(row.reshape(-1, *allowed.shape[:1], 2) for row in rows), strict=True)
+    found = [bending_peaks.largest(assembly.line.arc, *row) for row in each]
+    used, arc, e = (np.reshape(values, shape) for values in zip(*found, strict=True))
+    radius = np.divide(allowed[e, 0], used, out=np.full(shape, np.inf), where=used > 0.0)
+    return ExtremeAlong(used[()], arc[()]), radius[()]
 
 
 def _wall_tension(assembly: Assembly, inside: SectionForces) -> Array | None:
     if assembly.pressures is None:
         return None
-    return assembly.pressures.wall_tension(inside.effective_tension, inside.position[:, 2])
+    return assembly.pressures.wall_tension(inside.effective_tension, inside.position[..., 2])
 
 
 def _tension_utilisation(assembly: Assembly, tension: Array) -> Array | None:
-    """Of the nodes (nn,), nan where any tension is allowed; None where it is everywhere. A node has the smaller tension
-    allowed beside it.
+    """Of the nodes (..., nn), nan where any tension is allowed; None where it is everywhere. A node has the smaller
+    tension allowed beside it.
     """
     if not assembly.elements.limits_tension:
         return None
@@ -93,17 +111,10 @@ def _tension_utilisation(assembly: Assembly, tension: Array) -> Array | None:
     return np.where(share > 0.0, tension * share, np.nan)
 
 
-def _wall(assembly: Assembly, state: State, inside: SectionForces) -> WallSnapshot | None:
+def _wall(assembly: Assembly, inside: SectionForces) -> WallSnapshot | None:
     sections = assembly.wall_sections
     if sections is None:
         return None
     from riser_soil.results.wall_snapshot import wall_snapshot
 
-    return wall_snapshot(assembly, sections, assembly.line.trial(state), inside)
-
-
-def _contact_force(assembly: Assembly, state: State) -> Array:
-    total = np.zeros(assembly.line.nodes)
-    for contact in assembly.contacts:
-        total += contact.force_per_length(state)
-    return total
+    return wall_snapshot(assembly, sections, inside)

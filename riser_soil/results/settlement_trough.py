@@ -59,12 +59,15 @@ class TroughSections:
         """Whether all of them are somewhere."""
         return not np.isnan(self._direction).any()
 
-    def lay(self, state: State, touchdown_arc: float) -> None:
-        """Lay them across the riser as it lies now; those that have no place stay. touchdown_arc: m, nan without."""
+    def lay(self, nodes: Array, tangent: Array, touchdown_arc: float) -> None:
+        """Lay them across the riser as it lies now; those that have no place stay.
+
+        nodes (nn, 3): positions; tangent (ne, 2, 3): of the elements' ends; touchdown_arc: m, nan without.
+        """
         for n, arc in enumerate(self._given or (touchdown_arc,)):
             if np.isnan(arc):
                 continue
-            position, slope = axis_at(self._line, state, arc)
+            position, slope = axis_at(self._line.arc, nodes, tangent, arc)
             level = np.array([slope[0], slope[1], 0.0])
             size = float(np.linalg.norm(level))
             if size > UPRIGHT:

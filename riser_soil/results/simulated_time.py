@@ -29,6 +29,10 @@ class SimulatedTime:
     def now(self) -> float:
         return self._now
 
+    def of_stage(self, t: float) -> float:
+        """The time at t of the present stage [s]."""
+        return self._begun + t
+
     def begin_stage(self, kind: str) -> None:
         self._static = kind == "static"
         self._begun = self._now
@@ -36,7 +40,7 @@ class SimulatedTime:
     def advance(self, t: float) -> None:
         """t: s since the stage began; in a static stage the load factor, which is no time."""
         if not self._static:
-            self._now = self._begun + t
+            self._now = self.of_stage(t)
 
     def stamp(self) -> float:
         """Time of a record made now [s], later than that of every record before."""

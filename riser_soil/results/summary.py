@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, listed
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, under, unpacked, within
 from riser_soil.core.snapshot import Instant, Ledger, RiserSnapshot, RunFacts, StepStatistics
 from riser_soil.results.figures import Extremes, final_state
@@ -77,30 +77,34 @@ class StageTally:
     indicators: StageIndicators = field(default_factory=StageIndicators)
     soil: dict[str, Any] = field(default_factory=dict)  # largest values in the soil, see `soil_extremes`
 
-    def balance(self, t: float, ledger: Ledger) -> None:
-        """t: s, total simulated time."""
-        self.energy = ledger
-        if abs(ledger.residual) > abs(self.worst_residual[0]):
-            self.worst_residual = ledger.residual, t
+    def balance(self, times: Sequence[float], ledgers: Sequence[Ledger]) -> None:
+        """times: s, total simulated time, after steps in turn."""
+        self.energy = ledgers[-1]
+        for t, ledger in zip(times, ledgers, strict=True):
+            if abs(ledger.residual) > abs(self.worst_residual[0]):
+                self.worst_residual = ledger.residual, t
 
-    def bend(self, t: float, riser: RiserSnapshot) -> None:
-        """t: s (static stages: load factor)."""
+    def bend(self, times: Array, riser: RiserSnapshot) -> None:
+        """times (nt,): s (static stages: load factor), of the instants of the riser."""
         used, arc = riser.largest_bend_utilisation
-        if used > self.tightest.utilisation:
-            self.tightest = TightestBend(used, riser.tightest_radius, arc, t)
+        rows = np.column_stack([used, riser.tightest_radius, arc, times])
+        most = TightestBend(*listed(rows[np.argmax(np.nan_to_num(rows[:, 0], nan=-np.inf))]))
+        if most.utilisation > self.tightest.utilisation:
+            self.tightest = most
 
-    def pull(self, t: float, arc: Array, riser: RiserSnapshot) -> None:
-        """arc (nn,): m, of the nodes. t: s (static stages: load factor)."""
+    def pull(self, times: Array, arc: Array, riser: RiserSnapshot) -> None:
+        """arc (nn,): m, of the nodes. times (nt,): s (static stages: load factor), of the instants of the riser."""
         wall = riser.wall
-        self.pulled = self.pulled.or_more(riser.tension_utilisation, riser.effective_tension, arc, t)
+        self.pulled = self.pulled.or_more(riser.tension_utilisation, riser.effective_tension, arc, times)
         if wall is not None and wall.most_used_stress is not None:
-            self.stressed = self.stressed.or_more(wall.stress_utilisation, wall.most_used_stress, arc, t)
+            self.stressed = self.stressed.or_more(wall.stress_utilisation, wall.most_used_stress, arc, times)
 
-    def count(self, health: StepStatistics) -> None:
-        self.steps += 1
-        self.newton_iterations += health.newton_iterations
-        self.most_newton_iterations = max(self.most_newton_iterations, health.newton_iterations)
-        self.step_cuts += health.step_cuts
+    def count(self, steps: Sequence[StepStatistics]) -> None:
+        self.steps += len(steps)
+        self.newton_iterations += sum(step.newton_iterations for step in steps)
+        most = max(step.newton_iterations for step in steps)
+        self.most_newton_iterations = max(self.most_newton_iterations, most)
+        self.step_cuts += sum(step.step_cuts for step in steps)
 
     @property
     def method(self) -> str | None:

@@ -13,9 +13,6 @@ steps have cut.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cached_property
-
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
@@ -48,19 +45,13 @@ class TimeResolution:
             rival_error=none.copy(),
             rival_steps=none.copy(),
         )
-        self._course, self._next = course, np.empty(n + 1)
+        self._course = course
 
-    @cached_property
-    def _follow(self) -> Callable[[], None]:
-        """Takes in what is next; bound where there are steps."""
-        from riser_soil.results.course import following
+    def update(self, t: Array | float, values: Array) -> None:
+        """t: s; values (n,) after a step, or times (nt,) and values (nt, n) after steps in turn. nan does not count."""
+        from riser_soil.results.course import follow
 
-        return following(self._course, self._next)
-
-    def update(self, t: float, values: Array) -> None:
-        """t: s; values (n,) after a step. nan does not count."""
-        self._next[0], self._next[1:] = t, values
-        self._follow()
+        follow(self._course, np.atleast_1d(t), np.atleast_2d(values))
 
     @property
     def _less(self) -> Array:

@@ -37,12 +37,16 @@ class MostUsed:
     arc: float = math.nan
     t: float = math.nan
 
-    def or_more(self, used: Array | None, actual: Array, arc: Array, t: float) -> MostUsed:
-        """used: utilisation at the nodes, nan where there is none; actual: tension [N] or stress [Pa] there."""
+    def or_more(self, used: Array | None, actual: Array, arc: Array, times: Array) -> MostUsed:
+        """At times (nt,); used (nt, nn): utilisation at the nodes, nan where there is none; actual: tension [N] or
+        stress [Pa] there.
+        """
         if used is None:
             return self
-        n = int(np.nanargmax(used))
-        return MostUsed(float(used[n]), float(actual[n]), float(arc[n]), t) if used[n] > self.utilisation else self
+        k, n = np.unravel_index(np.nanargmax(used), used.shape)
+        if not used[k, n] > self.utilisation:
+            return self
+        return MostUsed(float(used[k, n]), float(actual[k, n]), float(arc[n]), float(times[k]))
 
     def warnings(self, unit: str, what: str, actual: str) -> Iterator[str]:
         if self.utilisation > 1.0:

@@ -8,7 +8,6 @@ meshes.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,23 +15,12 @@ from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
-from riser_soil.riser.section_kernels import SectionForces, SectionInput, put_end_forces, put_section_forces
+from riser_soil.riser.section_kernels import SectionForces, SectionInput, put_end_forces, put_section_forces, size_of
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.spatial_directors import SpatialOrientation
 from riser_soil.riser.trial import Trial
 
 NOTHING, NO_FRAMES = np.empty((0, 0)), np.empty((0, 3, 3))
-
-
-@dataclass(frozen=True, eq=False)
-class Reaction:
-    """Force (3,) N and moment (3,) N m exerted by the support on the riser, global axes."""
-
-    force: Array
-    moment: Array
-
-    def __add__(self, other: Reaction) -> Reaction:
-        return Reaction(self.force + other.force, self.moment + other.moment)
 
 
 def element_residual(line: Line, parts: Iterable[LinePart], state: State) -> Array:
@@ -70,9 +58,17 @@ def section_forces(
     residual: from `element_residual`; viscous: from `viscous_residual`, for the curvature follows from the rest of
     the bending moment.
     """
-    trial, out = line.trial(state), section_room(line)
+    return SectionForces.within(section_vector(line, elements, state, residual, viscous), line.nodes)
+
+
+def section_vector(
+    line: Line, elements: Elements, state: State, residual: Array, viscous: Array | None = None
+) -> Array:
+    """The same as one vector, see `SectionForces.within`."""
+    trial, out = line.trial(state), np.empty(size_of(line.nodes))
     at = trial.x, _moment_maps(line, trial), trial.turn.tangent, *section_frames(trial)
-    put_section_forces(section_input(line, elements, residual, viscous, *at), out)
+    given = section_input(line, elements, residual, viscous, *at)
+    put_section_forces(given, SectionForces.within(out, line.nodes))
     return out
 
 
@@ -93,13 +89,6 @@ def section_input(
     return SectionInput(*(np.ascontiguousarray(values) for values in (*given, *constant)))
 
 
-def section_room(line: Line) -> SectionForces:
-    """Arrays for the section forces of a line."""
-    nn, ne = line.nodes, line.length.size
-    shapes = (nn, 3), (nn, 3), nn, nn, nn, (ne, 2), (ne, 2), (ne, 2), (nn, 3), (2, 3), (2, 3), (2, 3), (3, 2)
-    return SectionForces(*(np.empty(shape) for shape in shapes))
-
-
 def section_frames(trial: Trial) -> tuple[Array, Array]:
     """Section frames (ne, 3, 3) at the elements' ends; none in a plane, where there is one stiffness."""
     if isinstance(trial.turn, SpatialOrientation):
@@ -107,19 +96,14 @@ def section_frames(trial: Trial) -> tuple[Array, Array]:
     return NO_FRAMES, NO_FRAMES
 
 
-def end_reactions(
-    line: Line, state: State, inside: SectionForces, nodal: Array | None = None
-) -> tuple[Reaction, Reaction]:
-    """Reactions at start and end.
-
-    nodal: from `nodal_residual`. A spring is a support, so its moment belongs to the reaction.
+def add_at_ends(line: Line, state: State, nodal: Array, inside: SectionForces) -> None:
+    """Add what acts on the nodes at the line's ends, from `nodal_residual`, to what is exerted there: the sum is what
+    the supports exert. A spring is a support, so its moment belongs to it.
     """
-    start, end = (Reaction(inside.end_force[side], inside.end_moment[side]) for side in range(2))
-    if nodal is None:
-        return start, end
     maps, d = _moment_maps(line, line.trial(state)), line.dimension
-    first, last = (Reaction(line.basis @ nodal[n, :d], maps[n] @ nodal[n, d:]) for n in (0, -1))
-    return start + first, end + last
+    for n in (0, -1):
+        inside.end_force[n] += line.basis @ nodal[n, :d]
+        inside.end_moment[n] += maps[n] @ nodal[n, d:]
 
 
 def end_forces(line: Line, trial: Trial, residual: Array) -> tuple[Array, Array]:
@@ -137,5 +121,7 @@ def _moment_maps(line: Line, trial: Trial) -> Array:
 
 
 def at_most(beside: Array) -> Array:
-    """The larger (nn,) of what the elements beside a node have there (ne, 2)."""
-    return np.maximum(np.append(beside[:, 0], -np.inf), np.append(-np.inf, beside[:, 1]))
+    """The larger (..., nn) of what the elements beside a node have there (..., ne, 2)."""
+    first, second = np.full((2, *beside.shape[:-2], beside.shape[-2] + 1), -np.inf)
+    first[..., :-1], second[..., 1:] = np.moveaxis(beside, -1, 0)
+    return np.maximum(first, second)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, views
 from riser_soil.core.compiled import njit
 from riser_soil.riser import bending_peaks
 
@@ -37,29 +37,52 @@ class SectionInput(NamedTuple):
 
 class SectionForces(NamedTuple):
     """Section forces and moments at nodes, exerted by the line after a node on the line before it, in global axes: (nn,
-    3) or (nn,).
+    3) or (nn,). Those of many instants have one axis more in front.
 
-    force N, moment N m; effective_tension N, positive in tension; bending_moment N m and curvature 1/m, magnitudes;
-    position (nn, 3) m. Of the elements themselves, at their ends (ne, 2): curvature_beside, which differs where
-    stiffnesses meet, and the slopes of moment [N] and curvature [1/m2], which differ where a force or contact acts on a
-    node. Of the line's two ends (2, 3): what is exerted on the elements there, and unit tangents in the direction of
-    growing arc length. extreme (3, 2): least tension, and largest moment and curvature, between nodes too, each with
-    its arc length [m].
+    force N, moment N m; about_axes N m: torque and bending moments about the section's own axes; effective_tension N,
+    positive in tension; bending_moment N m and curvature 1/m, magnitudes; position (nn, 3) m. Of the elements
+    themselves, at their ends (ne, 2): curvature_beside, which differs where stiffnesses meet, the slopes of moment [N]
+    and curvature [1/m2], which differ where a force or contact acts on a node, and unit tangents (ne, 2, 3) in the
+    direction of growing arc length. Of the line's two ends (2, 3): what is exerted on the elements there. extreme
+    (3, 2): least tension, and largest moment and curvature, between nodes too, each with its arc length [m].
+
+    The section's axes: in space the first section's y axis is horizontal before all motion, to the left of the tangent
+    (of a vertical one along the global y axis), and z completes the right-handed frame; along the riser frames follow
+    without twist. In a plane y is normal to it, to the left of the direction from start to end, and so z points up
+    where the riser is level.
     """
 
     force: Array
     moment: Array
+    about_axes: Array
     effective_tension: Array
     bending_moment: Array
     curvature: Array
     curvature_beside: Array
     moment_slope: Array
     curvature_slope: Array
+    tangent: Array
     position: Array
     end_force: Array
     end_moment: Array
-    end_tangent: Array
     extreme: Array
+
+    @classmethod
+    def within(cls, vector: Array, nodes: int) -> SectionForces:
+        """As views of the numbers (..., n) of a line with so many nodes; see `size_of`."""
+        return cls(*views(vector, _shapes(nodes)))
+
+
+def _shapes(nn: int) -> list[tuple[int, ...]]:
+    """Of the arrays of `SectionForces`."""
+    ne = nn - 1
+    at_nodes: list[tuple[int, ...]] = [(nn, 3), (nn, 3), (nn, 3), (nn,), (nn,), (nn,)]
+    return [*at_nodes, (ne, 2), (ne, 2), (ne, 2), (ne, 2, 3), (nn, 3), (2, 3), (2, 3), (3, 2)]
+
+
+def size_of(nodes: int) -> int:
+    """How many numbers the section forces of a line with so many nodes are."""
+    return sum(math.prod(shape) for shape in _shapes(nodes))
 
 
 @njit
@@ -67,23 +90,24 @@ def put_section_forces(given: SectionInput, out: SectionForces) -> None:
     """All together."""
     ne, basis = len(given.residual), given.basis
     shape, free = (ne, 2, 3), np.empty((ne + 1, 3))
-    on_ends, moments, damping, along = np.empty(shape), np.empty(shape), np.zeros(shape), np.zeros(shape)
+    on_ends, moments, damping, along = np.empty(shape), np.empty(shape), np.zeros(shape), out.tangent
     put_end_forces(given.residual, basis, given.maps, on_ends, moments)
     if len(given.viscous) > 0:
         put_end_forces(given.viscous, basis, given.maps, np.empty(shape), damping)
     for e in range(ne):
         for end in range(2):
             for i in range(3):
+                along[e, end, i] = 0.0
                 for j in range(basis.shape[1]):
                     along[e, end, i] += basis[i, j] * given.tangent[e, end, j]
     _put_at_nodes(on_ends, moments, damping, along, given.bends, free, out)
     _put_curvatures(free, given.first, given.second, given.y, given.z, out)
+    _put_about_axes(given, out.moment, out.about_axes)
     _put_position(given, out.position)
     for end in range(2):
         e = -end  # the first element, or the last
         for i in range(3):
             out.end_force[end, i], out.end_moment[end, i] = on_ends[e, end, i], moments[e, end, i]
-            out.end_tangent[end, i] = along[e, end, i]
     _put_extremes(given.arc, out)
 
 
@@ -171,6 +195,24 @@ def _put_curvatures(free: Array, first: Array, second: Array, y: Array, z: Array
             beside[e, end] = k
             out.curvature[n] += k if n == 0 or n == len(beside) else 0.5 * k
             out.curvature_slope[e, end] = out.moment_slope[e, end] * k / size if size > 0.0 else 0.0
+
+
+@njit
+def _put_about_axes(given: SectionInput, moment: Array, out: Array) -> None:
+    """Moments about the section's axes (nn, 3), at a node the mean of those of the elements beside it."""
+    out[:] = 0.0
+    for n in range(len(moment)):
+        M = moment[n]
+        if len(given.first) == 0:
+            out[n, 1] = M[1] * given.basis[0, 0] - M[0] * given.basis[1, 0]
+            continue
+        for e, frames in ((n - 1, given.second), (n, given.first)):
+            if 0 <= e < len(frames):
+                for j in range(3):
+                    out[n, j] += frames[e, 0, j] * M[0] + frames[e, 1, j] * M[1] + frames[e, 2, j] * M[2]
+        if 0 < n < len(moment) - 1:
+            for j in range(3):
+                out[n, j] *= 0.5
 
 
 @njit

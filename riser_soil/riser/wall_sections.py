@@ -7,6 +7,7 @@ stiffener the pipe bears the share of the moments that it has of the stiffness.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -41,11 +42,20 @@ class WallSections:
         return Loads(T + p_i * bore - p_o * outer, borne_y * My, borne_z * Mz, Mx, p_i, p_o)
 
     def at_nodes(self, values: Array, governing: Array, nodes: int) -> Array:
-        """Values (ns,) at the nodes (nn,), of two sections that with more `governing` (ns,); nan without a wall."""
-        found = np.full(nodes, np.nan)
-        order = np.argsort(governing, kind="stable")
-        found[self.node[order]] = values[order]  # of two the last stays
+        """Values (..., ns) at the nodes (..., nn), of two sections that with more `governing` (..., ns), of equal ones
+        the second; nan without a wall.
+        """
+        found, (first, second) = np.full((*values.shape[:-1], nodes), np.nan), self._of_nodes
+        found[..., self.node] = values
+        more = governing[..., first] > governing[..., second]
+        found[..., self.node[first]] = np.where(more, values[..., first], values[..., second])
         return found
+
+    @cached_property
+    def _of_nodes(self) -> tuple[IntArray, IntArray]:
+        """The sections of nodes that have two."""
+        first = np.flatnonzero(self.node[1:] == self.node[:-1])
+        return first, first + 1
 
 
 def walls_of(elements: Elements) -> WallSections:

@@ -10,6 +10,7 @@ the contents' acceleration add is left out. Source: Sparks, Journal of Energy Re
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -48,13 +49,17 @@ class Pressures:
         return inside, np.maximum(outside, 0.0)
 
     def wall_tension(self, effective: Array, z: Array) -> Array:
-        """N, positive in tension, from the effective tension [N] and the heights [m] of the nodes, each (nn,)."""
-        wall = effective
+        """N, positive in tension, from the effective tension [N] and the heights [m] of the nodes, each (..., nn)."""
+        wall, (bore, around) = effective, self._areas
         if self.inside is not None:
-            wall = wall + self.inside.at(z) * _areas_at_nodes(self.inner_diameter)
+            wall = wall + self.inside.at(z) * bore
         if self.outside is not None:
-            wall = wall - np.maximum(self.outside.at(z), 0.0) * _areas_at_nodes(self.outer_diameter)
+            wall = wall - np.maximum(self.outside.at(z), 0.0) * around
         return wall
+
+    @cached_property
+    def _areas(self) -> tuple[Array, Array]:
+        return _areas_at_nodes(self.inner_diameter), _areas_at_nodes(self.outer_diameter)
 
 
 def _areas_at_nodes(diameter: Array) -> Array:

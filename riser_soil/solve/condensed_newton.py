@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,7 +18,6 @@ from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart
-from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.riser.sections import Elements
 from riser_soil.soil.condensed import CondensedSoil
 from riser_soil.solve import riser_loop
@@ -29,6 +29,9 @@ from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.riser_loop import StopLimits
 from riser_soil.solve.soil_border import SoilBorder
 from riser_soil.solve.solution import NewtonSettings, Solution, Step
+
+if TYPE_CHECKING:
+    from riser_soil.contact.contact import RiserContact
 
 MOST_BEGUN = 8  # times that a step is begun with other pairs or dofs before it is left to `Newton`
 
@@ -171,8 +174,11 @@ class CondensedNewton:
     def element_residual(self, line: Line, state: State) -> Array:
         return self._newton.element_residual(line, state)
 
-    def section_forces(self, line: Line, elements: Elements, state: State) -> SectionForces:
+    def section_forces(self, line: Line, elements: Elements, state: State) -> Array:
         return self._newton.section_forces(line, elements, state)
+
+    def contact_results(self, contact: RiserContact, state: State) -> Array:
+        return self._newton.contact_results(contact, state)
 
     def nodal_residual(self, line: Line, state: State) -> Array | None:
         return self._newton.nodal_residual(line, state)

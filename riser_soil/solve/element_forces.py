@@ -24,14 +24,8 @@ from riser_soil.riser.hermite import put_pulled_back
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
 from riser_soil.riser.part_kernels import LineForces, add_forces, bound, forces_of
-from riser_soil.riser.section_forces import (
-    NO_FRAMES,
-    element_residual,
-    section_input,
-    section_room,
-    viscous_residual,
-)
-from riser_soil.riser.section_kernels import SectionForces, put_section_forces
+from riser_soil.riser.section_forces import NO_FRAMES, element_residual, section_input, viscous_residual
+from riser_soil.riser.section_kernels import SectionForces, put_section_forces, size_of
 from riser_soil.riser.sections import Elements
 from riser_soil.solve import riser_loop as loop
 from riser_soil.solve.placed_line import PlacedLine
@@ -65,15 +59,15 @@ class ElementForces:
             self._residual += element_residual(self._line, self._asked, state)
         return self._residual
 
-    def section_forces(self, elements: Elements, state: State) -> SectionForces:
-        """Of the line whose elements these are."""
+    def section_forces(self, elements: Elements, state: State) -> Array:
+        """Of the line whose elements these are, see `SectionForces.within`."""
         if self._elements is not elements:
             self._bind_sections(elements)
         self.residual(state)
         if self._damped:
             self._viscous[...] = viscous_residual(self._line, self._damped, state)
         self._put_sections()
-        return SectionForces(*(values.copy() for values in self._sections))
+        return self._sections.copy()
 
     def _bind_sections(self, elements: Elements) -> None:
         line, at, self._elements = self._line, self._at, elements
@@ -81,10 +75,10 @@ class ElementForces:
         frames = (NO_FRAMES, NO_FRAMES) if isinstance(at, PlanarConfiguration) else (at.frame1, at.frame2)
         viscous = np.zeros_like(self._residual) if self._damped else None
         given = section_input(line, elements, self._residual, viscous, at.x, maps, at.tangent, *frames)
-        self._viscous, self._sections = given.viscous, section_room(line)
+        self._viscous, self._sections = given.viscous, np.empty(size_of(line.nodes))
         self._put_sections = in_turn(
             bound(put_moment_maps, at, Packed(np.ascontiguousarray(line.turning_axes)), Packed(maps)),
-            Bound(put_section_forces, Packed(given), Packed(self._sections)),
+            Bound(put_section_forces, Packed(given), Packed(SectionForces.within(self._sections, line.nodes))),
         )
 
 

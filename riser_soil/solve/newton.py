@@ -6,6 +6,7 @@ import math
 import time
 from dataclasses import replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,8 +18,7 @@ from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import acting_on
-from riser_soil.riser.section_forces import element_residual, nodal_residual, section_forces, viscous_residual
-from riser_soil.riser.section_kernels import SectionForces
+from riser_soil.riser.section_forces import element_residual, nodal_residual, section_vector, viscous_residual
 from riser_soil.riser.sections import Elements
 from riser_soil.solve.chain import is_chain
 from riser_soil.solve.failed_step import place_of_largest
@@ -29,6 +29,9 @@ from riser_soil.solve.round_off import ROUND_OFF, stays
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, UnstableError, told
 from riser_soil.solve.stability import PivotCounter, prescribe_free_turns, unstable_modes
 from riser_soil.solve.time_scheme import Static
+
+if TYPE_CHECKING:
+    from riser_soil.contact.contact import RiserContact
 
 TIGHT = 1e-10  # least share of the residual that a linear system solved by iterations may leave, LOOSE the largest
 BELOW = 0.1  # what it may leave, of what Newton's method is expected to leave, or may
@@ -94,10 +97,14 @@ class Newton:
         """Of a line's elements (ne, 2 ndof) at an accepted state; on the rank that has it."""
         return element_residual(line, acting_on(line, self.system.model.parts), state)
 
-    def section_forces(self, line: Line, elements: Elements, state: State) -> SectionForces:
+    def section_forces(self, line: Line, elements: Elements, state: State) -> Array:
         """Of a line at an accepted state; on the rank that has it."""
         viscous = viscous_residual(line, acting_on(line, self.system.model.parts), state)
-        return section_forces(line, elements, state, self.element_residual(line, state), viscous)
+        return section_vector(line, elements, state, self.element_residual(line, state), viscous)
+
+    def contact_results(self, contact: RiserContact, state: State) -> Array:
+        """Of a contact at an accepted state; on the rank that evaluates it."""
+        return contact.results(state)
 
     def nodal_residual(self, line: Line, state: State) -> Array | None:
         """Of what acts on a line's nodes (nn, ndof) without holding them; on the rank that has it."""

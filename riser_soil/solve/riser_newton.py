@@ -5,17 +5,19 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, listed
+from riser_soil.core.bound import Bound
+from riser_soil.core.packed import Packed
 from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import LinePart, overrides
+from riser_soil.riser.part_kernels import bound
 from riser_soil.riser.section_forces import nodal_residual
-from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.riser.sections import Elements
 from riser_soil.solve import riser_loop
 from riser_soil.solve.compiled_mass import CompiledMass, mass_of
@@ -24,6 +26,9 @@ from riser_soil.solve.numbered_parts import NumberedParts
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.placed_line import PlacedLine
 from riser_soil.solve.solution import NewtonSettings, NotConvergedError, Solution, Step, largest_at, told
+
+if TYPE_CHECKING:
+    from riser_soil.contact.contact import RiserContact
 
 WHY = {
     riser_loop.NOT_FINITE: "diverged_fnorm_nan",
@@ -54,6 +59,8 @@ class RiserNewton:
         self._placed, numbers = PlacedLine(line), [held for _, held in parts]
         self._riser = PackedRiser(line, self._placed, numbers, system.prescribed, system.levers, most)
         self._solved: State | None = None  # last, where no forces may have jumped since
+        self._committed: Array | None = None  # the line's places, where its last step was solved here
+        self._contacts: dict[RiserContact, tuple[Bound, Array]] = {}  # how they tell their results, and where to
         self._parts, self._free = NumberedParts(parts), np.flatnonzero(~system.prescribed)
         self._nothing = np.zeros(line.size)
         self._no_work = {part.name: Work() for part, _ in parts}
@@ -61,7 +68,7 @@ class RiserNewton:
 
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError."""
-        since, self._solved = time.perf_counter(), None
+        since, self._solved, self._committed = time.perf_counter(), None, None
         self._parts.bring(step.before.t, step.t)
         scheme = step.scheme
         self._riser.begin(self._guess(step), scheme.past(step.start), scheme.weights(step.dt), self._limits(step))
@@ -83,6 +90,7 @@ class RiserNewton:
         since = time.perf_counter()
         self._riser.keep()
         self.system.commit(state, self._parts.committed)
+        self._committed = self._line.x
         self.system.clock.add("riser alone", since)
 
     @cached_property
@@ -99,10 +107,29 @@ class RiserNewton:
         known = self._has_solved(state) and not self._line.turns_axes
         return (self._at_solution if known else self._found_at(state)).residual(state)
 
-    def section_forces(self, line: Line, elements: Elements, state: State) -> SectionForces:
+    def section_forces(self, line: Line, elements: Elements, state: State) -> Array:
         """Of the line at an accepted state; of the one solved for last as the loop has found its forces."""
         found = self._at_solution if self._has_solved(state) else self._found_at(state)
         return found.section_forces(elements, state)
+
+    def contact_results(self, contact: RiserContact, state: State) -> Array:
+        """Of a contact at an accepted state: of the one committed last as the loop has found its forces."""
+        if self._committed is not self._line.x:
+            return contact.results(state)
+        if contact not in self._contacts:
+            self._contacts[contact] = self._bound_results(contact)
+        put, found = self._contacts[contact]
+        put()
+        return found.copy()
+
+    def _bound_results(self, contact: RiserContact) -> tuple[Bound, Array]:
+        """A contact's results where the loop has left the line: what writes them, and where to."""
+        from riser_soil.contact.contact_results import ContactResults, put_results, size_of
+
+        numbers = next(numbers for part, numbers in self._parts.numbered if part is contact)
+        sizes = self._line.nodes, contact.along.arc.size
+        out = np.empty(size_of(*sizes))
+        return bound(put_results, numbers, Packed(self._riser.at), Packed(ContactResults.within(out, *sizes))), out
 
     def _has_solved(self, state: State) -> bool:
         """Whether a state is that of the step solved last, whose forces the loop has left and nothing has changed."""

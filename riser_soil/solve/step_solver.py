@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, State, Work
 from riser_soil.core.system import System
 from riser_soil.riser.line import Line
-from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.riser.sections import Elements
 from riser_soil.solve.chain import is_chain
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.riser_mass import InverseMass
 from riser_soil.solve.solution import NewtonSettings, Solution, Step
 from riser_soil.solve.time_scheme import GeneralizedAlpha, Scheme
+
+if TYPE_CHECKING:
+    from riser_soil.contact.contact import RiserContact
 
 
 class StepSolver(Protocol):
@@ -51,8 +53,12 @@ class StepSolver(Protocol):
         """
         ...
 
-    def section_forces(self, line: Line, elements: Elements, state: State) -> SectionForces:
-        """Of a line at an accepted state; on the rank that has it."""
+    def section_forces(self, line: Line, elements: Elements, state: State) -> Array:
+        """Of a line at an accepted state, see `SectionForces.within`; on the rank that has it."""
+        ...
+
+    def contact_results(self, contact: RiserContact, state: State) -> Array:
+        """Of a contact at an accepted state, see `ContactResults.within`; on the rank that evaluates it."""
         ...
 
     def nodal_residual(self, line: Line, state: State) -> Array | None:

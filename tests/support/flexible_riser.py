@@ -16,13 +16,8 @@ from riser_soil.riser.beam import Beam
 from riser_soil.riser.catenary import Catenary, catenary
 from riser_soil.riser.ends import End
 from riser_soil.riser.line import Line
-from riser_soil.riser.section_forces import (
-    Reaction,
-    SectionForces,
-    element_residual,
-    end_reactions,
-    section_forces,
-)
+from riser_soil.riser.section_forces import element_residual, section_forces
+from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.riser.sections import Elements, MeshedSegment, SectionProperties, Surroundings, elements
 from tests.support.dense_chain import solve
 
@@ -37,14 +32,12 @@ class Hanging:
     """Static solution."""
 
     line: Line
-    start: Reaction
-    end: Reaction
     sections: SectionForces
     iterations: int
 
     @property
     def H(self) -> float:
-        return float(self.end.force[0])
+        return float(self.sections.end_force[1, 0])
 
     @property
     def largest_moment(self) -> float:
@@ -74,7 +67,7 @@ def hang(count: int, dimension: int = 2, EI: float = EI) -> Hanging:
     iterations = solve(line, [beam])
     state = State.at_rest(1.0, line.size)
     inside = section_forces(line, e, state, element_residual(line, [beam], state))
-    return Hanging(line, *end_reactions(line, state, inside), inside, iterations)
+    return Hanging(line, inside, iterations)
 
 
 def elastica_H() -> tuple[float, float]:

@@ -46,6 +46,11 @@ class PipeOnSurface:
         u = np.zeros(self.size) if u is None else u
         return State(0.0, u, np.zeros(self.size), np.zeros(self.size))
 
+    def placed(self) -> tuple[Array, Array]:
+        """Positions of the nodes (nn, 3) and unit tangents of the elements' ends (ne, 2, 3), global axes."""
+        trial = self.line.trial(self.state())
+        return self.line.to_global(trial.x), trial.turn.tangent @ self.line.basis.T
+
     def residual(self, u: Array, part: Part | None = None) -> Array:
         """Of contact, or of another part on it."""
         forces = Forces.zeros(self.size)

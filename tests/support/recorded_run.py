@@ -14,14 +14,17 @@ from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.snapshot import (
     ContactSnapshot,
     ExtremeAlong,
+    Instant,
     Ledger,
     RiserSnapshot,
     RunFacts,
     SectionSnapshot,
     SoilMesh,
     SoilSnapshot,
+    StepRecord,
     StepStatistics,
     WallSnapshot,
+    stacked,
 )
 from riser_soil.results.record import Recorder
 from riser_soil.results.schedule import DueOutputs, Schedule
@@ -90,6 +93,9 @@ class Catenary:
             tension_utilisation=tension / 2.0e5,
             wall=_wall(tension, EI * curvature),
         )
+
+    def seen(self, arc: Array) -> Instant:
+        return Instant(arc, self.riser(arc), self.touch(arc))
 
     def touch(self, arc: Array) -> ContactSnapshot:
         place, force = np.array([self.s0, 0.0, RADIUS]), np.array([0.0, 0.0, WEIGHT * self.s0])
@@ -166,7 +172,7 @@ def step(
 ) -> None:
     """Tells the recorder of an accepted step."""
     line, health = Catenary(32.0, 30.0 - 0.01 * t), StepStatistics(3, 0.1, 1e-6, 0)
-    recorder.accept(t, due, line.riser(CATENARY_ARC), line.touch(CATENARY_ARC), health, _ledger(t), pictured)
+    recorder.accept([StepRecord(t, health, _ledger(t))], [due], stacked([line.seen(CATENARY_ARC)]), pictured)
 
 
 def record(
@@ -195,12 +201,9 @@ def record(
                 heave = t if kind == "dynamic" else 0.0
                 line = Catenary(32.0 + np.sin(heave), 30.0 - 2.0 * np.sin(heave))
                 recorder.accept(
-                    float(t),
-                    schedule.due(float(t), t == times[-1]),
-                    line.riser(arc),
-                    line.touch(arc),
-                    StepStatistics(3, 0.1, 1e-6, 0),
-                    _ledger(heave),
+                    [StepRecord(float(t), StepStatistics(3, 0.1, 1e-6, 0), _ledger(heave))],
+                    [schedule.due(float(t), t == times[-1])],
+                    stacked([line.seen(arc)]),
                     None if mesh is None else soil(mesh, line.s0),
                 )
         recorder.add_seconds({"newton": 1.25})

@@ -18,6 +18,7 @@ from riser_soil.core.system import System, Timer
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import acting_on
 from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
+from riser_soil.riser.section_kernels import SectionForces
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.packed_riser import PackedRiser
 from riser_soil.solve.placed_line import PlacedLine
@@ -178,11 +179,12 @@ def require_section_forces(compiled: TimedStage, snes: TimedStage) -> None:
     line, elements, newton = compiled.assembly.line, compiled.assembly.elements, compiled.newton
     assert isinstance(newton, RiserNewton)
     state, other = compiled.stepper.now, snes.stepper.now
-    told = newton.section_forces(line, elements, state)
+    told = SectionForces.within(newton.section_forces(line, elements, state), line.nodes)
     parts = acting_on(line, compiled.system.model.parts)
     acting = element_residual(line, parts, state), viscous_residual(line, parts, state)
     own = section_forces(line, elements, state, *acting)
-    by_snes = snes.newton.section_forces(snes.assembly.line, snes.assembly.elements, other)
+    vector = snes.newton.section_forces(snes.assembly.line, snes.assembly.elements, other)
+    by_snes = SectionForces.within(vector, line.nodes)
     for name, values in told._asdict().items():
         scale = np.abs(values).max()
         np.testing.assert_allclose(values, getattr(own, name), rtol=0.0, atol=1e-10 * scale, err_msg=name)

@@ -17,7 +17,7 @@ HEIGHT: OutputQuantity[Instant] = OutputQuantity(
     "m",
     "height of the riser's axis",
     "nodes",
-    lambda instant: instant.riser.position[:, 2],
+    lambda instant: instant.riser.position[..., 2],
     "positive upwards",
     figures=(greatest("max_height", Row("greatest height", "km", 1e-3)),),
 )

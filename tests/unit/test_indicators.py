@@ -99,11 +99,15 @@ def test_what_is_not_known_is_not_judged() -> None:
 
 def followed(tensions: list[float], dt: float = 0.1, lost: float = 0.0, local_error: float = 0.0) -> StageIndicators:
     """Indicators of steps with these tensions at the end and a loss by impact in each [J], 100 J of motion."""
-    found, vector = StageIndicators(0.3, 1e3, 0.5), np.zeros(SIZE)
-    for n, tension in enumerate(tensions):
-        vector[TENSION] = tension
-        ledger = Ledger(kinetic=100.0, dissipated_by={"seabed": 7.0, "seabed_time_scheme": lost * n})
-        found.follow(n * dt, vector, StepStatistics(3, dt, 0.0, 0, local_error), ledger)
+    found, rows = StageIndicators(0.3, 1e3, 0.5), np.zeros((len(tensions), SIZE))
+    rows[:, TENSION] = tensions
+    ledgers = [
+        Ledger(kinetic=100.0, dissipated_by={"seabed": 7.0, "seabed_time_scheme": lost * n}) for n in range(len(rows))
+    ]
+    steps = [StepRecord(0.0, StepStatistics(3, dt, 0.0, 0, local_error), ledger) for ledger in ledgers]
+    times, half = dt * np.arange(len(rows)), len(rows) // 2  # as many at once as may be
+    found.follow(times[:half], rows[:half], steps[:half])
+    found.follow(times[half:], rows[half:], steps[half:])
     return found
 
 
@@ -122,7 +126,8 @@ def judged(least: list[float], moments: list[float] | None = None, automatic: bo
     found, vector = StageIndicators(0.3, 1e3, 0.5, automatic), np.zeros(SIZE)
     for n, tension in enumerate(least):
         vector[[TENSION, LEAST, MOMENT]] = 1000.0, tension, moments[n] if moments else 0.0
-        found.follow(n * 0.1, vector, StepStatistics(3, 0.1, 0.0, 0), Ledger())
+        step = StepRecord(0.0, StepStatistics(3, 0.1, 0.0, 0), Ledger())
+        found.follow(np.array([n * 0.1]), vector[None], [step])
     return list(found.warnings())
 
 

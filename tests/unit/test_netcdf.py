@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 import xarray as xr
 
+from riser_soil.core.arrays import Array
 from riser_soil.results import Run
 from riser_soil.results.netcdf import HEALTH, SERIES, SeriesFile
 from riser_soil.results.netcdf_layout import Variable, lay_out
@@ -17,17 +18,15 @@ from tests.support.recorded_run import Catenary, record
 ARC = np.linspace(0.0, 100.0, 11)
 
 
-def a_row(time: float, value: float = 1.0) -> dict[str, object]:
+def a_row(time: float, value: float = 1.0) -> dict[str, Array]:
+    """One row alone."""
     sizes = {"arc": ARC.size, "component": 3, "section": 2, "offset": 3}
-    row: dict[str, object] = {
-        name: np.full([sizes[d] for d in variable.dims[1:]], value) for name, variable in SERIES.items()
-    }
-    return row | {"time": time}
+    row = {name: np.full([1, *(sizes[d] for d in variable.dims[1:])], value) for name, variable in SERIES.items()}
+    return row | {"time": np.array([time])}
 
 
-def a_step(iterations: int = 2) -> dict[str, object]:
-    values: dict[str, object] = dict.fromkeys(HEALTH, 0.1)
-    return values | {"newton_iterations": iterations, "step_cuts": 0}
+def a_step(iterations: int = 2) -> dict[str, list[float]]:
+    return {name: [0.1] for name in HEALTH} | {"newton_iterations": [iterations], "step_cuts": [0]}
 
 
 def a_file(folder: Path) -> SeriesFile:
@@ -67,7 +66,7 @@ def test_the_file_on_disk_is_whole_after_each_flush(tmp_path: Path) -> None:
     file = a_file(tmp_path)
     for count in range(1, 4):
         file.record(a_row(0.5 * count))
-        file.step(a_step())
+        file.steps(a_step())
         file.flush()
         with h5py.File(tmp_path / "results.nc") as read:
             assert {len(read[name]) for name in (*SERIES, *HEALTH)} == {count}
@@ -98,14 +97,18 @@ def test_xarray_and_the_package_s_reader_hold_the_file_together(tmp_path: Path) 
         assert [*run["component"]] == [*data["component"].values] == ["x", "y", "z"]
 
 
-def test_rows_are_copies(tmp_path: Path) -> None:
+def test_rows_of_many_instants_are_those_of_each(tmp_path: Path) -> None:
     file = a_file(tmp_path)
-    reused = a_row(0.0, value=1.0)
-    file.record(reused)
-    np.asarray(reused["curvature"])[:] = 2.0
+    one, two = a_row(0.0, value=1.0), a_row(0.5, value=2.0)
+    file.record({name: np.concatenate([one[name], two[name]]) for name in one})
+    file.record(a_row(1.0, value=3.0))
+    file.steps({name: [*values, *values] for name, values in a_step().items()})
     file.flush()
     with h5py.File(tmp_path / "results.nc") as read:
-        np.testing.assert_array_equal(read["curvature"][0], 1.0)
+        assert read["time"][...].tolist() == [0.0, 0.5, 1.0]
+        assert read["curvature"][:, 3].tolist() == [1.0, 2.0, 3.0]
+        assert read["stage"][...].tolist() == [0, 0, 0]
+        assert read["step"][...].tolist() == [0, 1]
 
 
 def test_stages_are_named(tmp_path: Path) -> None:
@@ -122,7 +125,7 @@ def test_stages_are_named(tmp_path: Path) -> None:
 
 def test_nan_and_all_digits_survive(tmp_path: Path) -> None:
     file = a_file(tmp_path)
-    file.record(a_row(1.0 / 3.0, value=1e6 / 7.0) | {"touchdown_arc": np.nan})
+    file.record(a_row(1.0 / 3.0, value=1e6 / 7.0) | {"touchdown_arc": np.array([np.nan])})
     file.flush()
     with xr.open_dataset(tmp_path / "results.nc") as data:
         assert float(data["time"][0]) == 1.0 / 3.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.core.snapshot import ExtremeAlong, Instant
+from riser_soil.core.snapshot import ExtremeAlong, Instant, stacked
 from riser_soil.results.figures import pack, places_of
 from riser_soil.results.peaks import RunPeaks, least_between_nodes, pack_peaks, vertex
 from tests.support.recorded_run import Catenary
@@ -48,7 +48,7 @@ def test_only_what_sits_between_nodes_is_replaced() -> None:
     at_node = ExtremeAlong(float(tension.min()), float(ARC[tension.argmin()]))
     hanging = seen(0.0).riser._replace(effective_tension=tension, least_tension=at_node)
     least = Instant(ARC, hanging, seen(0.0).touch)
-    plain, peaked = pack(least), pack_peaks(least)
+    plain, (peaked,) = pack(least), pack_peaks(stacked([least]))
     changed = np.flatnonzero(~np.isclose(plain, peaked, equal_nan=True))
     assert set(changed) == {places_of("min_effective_tension").start}
     assert plain[changed] == pytest.approx([4.0])
@@ -60,12 +60,12 @@ def test_extremes_of_a_stage_three_ways() -> None:
     peaks = RunPeaks()
     peaks.begin_stage("motion", "dynamic")
     for t in np.arange(-1.0, 1.0, 0.3).tolist():
-        peaks.record(t, seen(t))
+        peaks.record([t], stacked([seen(t)]))
     largest = {
         which: peaks.told(which)["stages"][0]["extremes"]["max_bending_moment"]["max"]
         for which in ("sampled", "of_nodes", "peaks")
     }
-    top = pack_peaks(seen(0.0))[places_of("max_bending_moment")].item()
+    top = pack_peaks(stacked([seen(0.0)]))[0][places_of("max_bending_moment")].item()
     assert largest["sampled"] == pytest.approx(seen(0.1).riser.largest_moment.value)
     assert largest["of_nodes"] == pytest.approx(top * np.cos(0.1))
     assert largest["peaks"] == pytest.approx(top, rel=3e-4)
@@ -76,9 +76,8 @@ def of_five(t: np.ndarray, moment: np.ndarray) -> float:
     peaks = RunPeaks()
     peaks.begin_stage("motion", "dynamic")
     line = Catenary(32.0, 30.0)
-    for at, size in zip(t, moment, strict=True):
-        riser = line.riser(ARC)._replace(largest_moment=ExtremeAlong(float(size), 0.0))
-        peaks.record(float(at), Instant(ARC, riser, line.touch(ARC)))
+    risers = [line.riser(ARC)._replace(largest_moment=ExtremeAlong(float(size), 0.0)) for size in moment]
+    peaks.record(t.tolist(), stacked([Instant(ARC, riser, line.touch(ARC)) for riser in risers]))
     largest: float = peaks.told("smooth")["stages"][0]["extremes"]["max_bending_moment"]["max"]
     return largest
 

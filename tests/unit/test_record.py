@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from riser_soil.core.snapshot import stacked
 from riser_soil.errors import ResultsError, SceneError, WriteError
 from riser_soil.results import Run
 from riser_soil.results.progress import Progress
@@ -239,8 +240,7 @@ def test_what_is_told_of_how_far_a_run_came(tmp_path: Path) -> None:
 
 def test_a_run_that_begins_in_motion_is_recorded_from_its_beginning(tmp_path: Path) -> None:
     with a_recorder(tmp_path) as recorder:
-        line = Catenary(32.0, 35.0)
-        recorder.begin_at(line.riser(CATENARY_ARC), line.touch(CATENARY_ARC))
+        recorder.begin_at(stacked([Catenary(32.0, 35.0).seen(CATENARY_ARC)]))
         step(recorder, 0.1)
         recorder.finish()
     run = Run(tmp_path)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.output import angle_deg
-from riser_soil.core.snapshot import ContactSnapshot, ExtremeAlong, Instant, Ledger
+from riser_soil.core.snapshot import ContactSnapshot, ExtremeAlong, Instant, Ledger, stacked
 from riser_soil.results.figures import Extremes, final_state, pack, unpack
 from riser_soil.results.summary import StageTally, Summary, plain_json
 from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary, record
@@ -89,14 +89,15 @@ def test_a_straight_pipe_has_no_bend_radius() -> None:
 
 def test_a_pipe_bent_too_much_is_a_warning() -> None:
     stage = StageTally("heave", "dynamic")
-    for t, a in ((0.1, 25.0), (0.2, 16.0), (0.3, 18.0)):
-        stage.bend(t, Catenary(a, 30.0).riser(ARC))
+    stage.bend(np.array([0.1]), stacked([Catenary(25.0, 30.0).seen(ARC)]).riser)
+    both = stacked([Catenary(a, 30.0).seen(ARC) for a in (16.0, 18.0)])
+    stage.bend(np.array([0.2, 0.3]), both.riser)
     assert stage.warnings == [
         "the pipe is bent beyond its min_bend_radius: 1.25 times what is allowed at arc 30 m and 0.2 s, where the bend "
         "radius is 16 m"
     ]
     stage = StageTally("heave", "dynamic")
-    stage.bend(0.1, Catenary(20.1, 30.0).riser(ARC))
+    stage.bend(np.array([0.1]), stacked([Catenary(20.1, 30.0).seen(ARC)]).riser)
     assert stage.warnings == []
 
 
@@ -223,14 +224,14 @@ def test_structure_of_the_file(tmp_path: Path) -> None:
 def test_energy_that_does_not_balance_is_a_warning() -> None:
     """1 J of 99 J is more than a hundredth, at its worst or at the end; the scheme's own share has its own warning."""
     stage = StageTally("heave", "dynamic")
-    stage.balance(0.5, Ledger(kinetic=99.0, turned_over=99.0, residual=-1.0))
-    stage.balance(1.0, Ledger(kinetic=99.0, turned_over=99.0, residual=0.1))
+    booked = [Ledger(kinetic=99.0, turned_over=99.0, residual=residual) for residual in (-1.0, 0.1)]
+    stage.balance([0.5, 1.0], booked)
     assert len(stage.warnings) == 1
     assert stage.warnings[0].startswith("the energy balance is -1 J off at 0.5 s, 1.01% of the 99 J turned over")
     quiet, greedy = StageTally("heave", "dynamic"), StageTally("heave", "dynamic")
-    quiet.balance(0.5, Ledger(turned_over=101.0, residual=1.0, numerical=1.0))
+    quiet.balance([0.5], [Ledger(turned_over=101.0, residual=1.0, numerical=1.0)])
     assert quiet.warnings == []
-    greedy.balance(0.5, Ledger(turned_over=99.0, numerical=-1.0))
+    greedy.balance([0.5], [Ledger(turned_over=99.0, numerical=-1.0)])
     assert greedy.warnings == [
         "the time scheme put in 1 J, 1.01% of the 99 J turned over: take a smaller time_step"
     ]

@@ -214,7 +214,7 @@ def test_sections_lie_across_the_riser_and_stay(kind: str) -> None:
     offsets = (-9.0, -0.2, 0.0, 0.3)
     sections = TroughSections(made.line, made.contact, (made.line.arc[2], made.line.arc[3]), offsets)
     assert np.isnan(sections.look(made.state()).settlement).all()
-    sections.lay(made.state(), math.nan)
+    sections.lay(*made.placed(), math.nan)
     assert sections.laid
     seen = sections.look(made.state())
     np.testing.assert_array_equal(seen.arc, made.line.arc[[2, 3]])
@@ -233,7 +233,7 @@ def test_sections_lie_across_the_riser_and_stay(kind: str) -> None:
 def test_a_section_waits_for_the_touchdown_point() -> None:
     made = pipe_on_surface(sagging(), top("quad4"))
     sections = TroughSections(made.line, made.contact, None, (0.0,))
-    sections.lay(made.state(), math.nan)
+    sections.lay(*made.placed(), math.nan)
     assert not sections.laid
-    sections.lay(made.state(), 1.0)
+    sections.lay(*made.placed(), 1.0)
     assert sections.look(made.state()).arc == [1.0]

@@ -19,16 +19,16 @@ def test_without_bending_stiffness_it_is_a_catenary() -> None:
     expected, found = guess(properties(140)), hang(140, EI=20.0)
     vertical = expected.tension[[0, -1]] * expected.curve.tangent[[0, -1], [0, 1], 2]
     assert pytest.approx(expected.H, rel=1e-4) == found.H
-    assert found.start.force[2] == pytest.approx(-vertical[0], rel=1e-4)
-    assert found.end.force[2] == pytest.approx(vertical[1], rel=1e-4)
+    assert found.sections.end_force[0, 2] == pytest.approx(-vertical[0], rel=1e-4)
+    assert found.sections.end_force[1, 2] == pytest.approx(vertical[1], rel=1e-4)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_supports_carry_the_weight(dimension: int) -> None:
     found, weight = hang(35, dimension), float(properties(1).weight[0]) * LENGTH
-    total = found.start.force + found.end.force
+    total = found.sections.end_force.sum(axis=0)
     assert np.abs(total - [0.0, 0.0, weight]).max() < 1e-9 * weight
-    assert np.abs([found.start.moment, found.end.moment]).max() < 1e-9 * weight
+    assert np.abs(found.sections.end_moment).max() < 1e-9 * weight
 
 
 def test_convergence_to_the_elastica(elastica: tuple[float, float]) -> None:

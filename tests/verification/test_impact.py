@@ -29,7 +29,7 @@ from riser_soil.assembly import build
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
-from riser_soil.results.observer import riser_snapshot
+from riser_soil.results.riser_snapshot import riser_snapshot
 from riser_soil.scene.reader import read_scene
 from riser_soil.scene.scene import Scene
 from riser_soil.solve.newton import Newton

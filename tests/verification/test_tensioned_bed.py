@@ -22,7 +22,7 @@ from scipy.optimize import brentq
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import State
 from riser_soil.core.system import Timer
-from riser_soil.results.observer import riser_snapshot
+from riser_soil.results.riser_snapshot import riser_snapshot
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher, built

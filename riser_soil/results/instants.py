@@ -1,0 +1,168 @@
+"""Instants of a run: a look at each accepted state, and what results tell of many looks at once.
+
+A look is what has to be taken before the riser moves on, a few vectors. All that follows from them is found for many
+steps together, as each of its operations takes an interpreter longer than the numbers of one instant do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from riser_soil.assembly import Assembly
+from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.part import State
+from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
+from riser_soil.core.snapshot import ContactSnapshot, Instant, SectionSnapshot, mapped
+from riser_soil.results.riser_snapshot import look_inside, snapshot_of
+from riser_soil.results.settlement_trough import sections_of
+from riser_soil.riser.section_kernels import SectionForces
+from riser_soil.solve.time_stepper import TimeStepper
+
+if TYPE_CHECKING:
+    from riser_soil.contact.contact_results import ContactResults
+
+
+class OnGround(NamedTuple):
+    """What is told of the ground beside `ContactResults`, as in `ContactSnapshot`; None where it is not wanted."""
+
+    slip: Array | None
+    settlement: Array | None
+    force_on_soil: Array | None
+    sections: SectionSnapshot | None
+
+
+class Look(NamedTuple):
+    """Vectors that later steps leave as they are: inside, see `SectionForces.within`, and of each contact, see
+    `ContactResults.within`.
+    """
+
+    inside: Array
+    contacts: tuple[Array, ...]
+    ground: OnGround
+
+
+class Instants:
+    """Looks at a run's states, and tells of them; on the rank that holds the riser.
+
+    fields: those of `ContactSnapshot` wanted.
+    """
+
+    def __init__(self, assembly: Assembly, fields: Sequence[str] = ()) -> None:
+        self._assembly, self._fields = assembly, fields
+        self._embedment: Array = np.zeros(assembly.line.nodes)
+        self._sections = sections_of(assembly) if "settlement_across" in self._fields else None
+
+    def look(self, stepper: TimeStepper, lay_sections: bool = False) -> Look:
+        """At the accepted state.
+
+        lay_sections: where the riser lies now; they are laid anyway as long as they are nowhere.
+        """
+        contacts, state = self._assembly.contacts, stepper.now
+        inside = look_inside(self._assembly, stepper)
+        found = tuple(stepper.newton.contact_results(contact, state) for contact in contacts)
+        if self._sections is not None and (lay_sections or not self._sections.laid):
+            of_one = self._inside(inside[None])
+            arc, _, _ = self._touchdown(of_one, self._found([own[None] for own in found]))
+            self._sections.lay(of_one.position[0], of_one.tangent[0], float(arc[0]))
+        return Look(inside, found, self._ground(state))
+
+    def _ground(self, state: State) -> OnGround:
+        wanted = self._fields if self._assembly.contacts else ()
+        return OnGround(
+            slip=self._slip() if "slip" in wanted else None,
+            settlement=self._settlement(state) if "soil_settlement" in wanted else None,
+            force_on_soil=self._on_soil(state) if "force_on_soil" in wanted else None,
+            sections=self._sections.look(state) if self._sections is not None else None,
+        )
+
+    def told(self, looks: Sequence[Look]) -> Instant:
+        """All that is recorded of looks, each told once, in their order."""
+        inside = self._inside(np.stack([each.inside for each in looks]))
+        found = self._found([np.stack(vectors) for vectors in zip(*(each.contacts for each in looks), strict=True)])
+        pressed = np.sum([np.zeros(inside.effective_tension.shape), *(of.force_per_length for of in found)], axis=0)
+        ground = mapped(lambda *values: np.stack(values), *(each.ground for each in looks))
+        riser = snapshot_of(self._assembly, inside, pressed)
+        return Instant(self._assembly.line.arc, riser, self._touch(inside, found, ground))
+
+    def _inside(self, numbers: Array) -> SectionForces:
+        return SectionForces.within(numbers, self._assembly.line.nodes)
+
+    def _found(self, numbers: Sequence[Array]) -> list[ContactResults]:
+        """Of each contact."""
+        if not numbers:
+            return []
+        from riser_soil.contact.contact_results import ContactResults
+
+        nodes, contacts = self._assembly.line.nodes, self._assembly.contacts
+        sizes = [contact.along.arc.size for contact in contacts]
+        return [ContactResults.within(own, nodes, size) for own, size in zip(numbers, sizes, strict=True)]
+
+    def _touch(self, inside: SectionForces, found: Sequence[ContactResults], ground: OnGround) -> ContactSnapshot:
+        count = len(inside.position)
+        arc, position, points = self._touchdown(inside, found)
+        return ContactSnapshot(
+            touchdown_arc=arc,
+            touchdown_position=position,
+            touchdown_points=points,
+            max_penetration=np.max([np.zeros(count), *(of.deepest[:, 0] for of in found)], axis=0),
+            contact_force=np.sum([np.zeros((count, 3)), *(of.on_riser for of in found)], axis=0),
+            penetration=self._deepest([of.penetration for of in found]) if "penetration" in self._fields else None,
+            embedment=self._embedded([of.depth for of in found]) if "embedment" in self._fields else None,
+            **ground._asdict(),
+        )
+
+    def _touchdown(self, inside: SectionForces, found: Sequence[ContactResults]) -> tuple[Array, Array, IntArray]:
+        """Arc length (nt,) and position (nt, 3) of the touchdown point, number of touchdown points (nt,)."""
+        count, line = len(inside.position), self._assembly.line
+        if not found:
+            return np.full(count, np.nan), np.full((count, 3), np.nan), np.zeros(count, dtype=np.int64)
+        from riser_soil.results.touchdown_zone import touchdown_zone
+
+        alongs = [contact.along for contact in self._assembly.contacts]
+        zones = [
+            touchdown_zone(
+                line,
+                [(along, of.clearance[n], of.force[n]) for along, of in zip(alongs, found, strict=True)],
+                *(inside.position[n], inside.tangent[n]),
+            )
+            for n in range(count)
+        ]
+        arcs, positions, points = zip(*zones, strict=True)
+        return np.array(arcs), np.array(positions), np.array(points)
+
+    def _deepest(self, depths: Sequence[Array]) -> Array | None:
+        return np.max(depths, axis=0) if depths else None
+
+    def _embedded(self, depths: Sequence[Array]) -> Array | None:
+        """The greatest depth yet."""
+        deepest = self._deepest(depths)
+        if deepest is None:
+            return None
+        grown = np.maximum.accumulate(np.concatenate([self._embedment[None], deepest]))[1:]
+        self._embedment = grown[-1]
+        return grown
+
+    def _slip(self) -> Array:
+        return np.sum([friction.slip() for friction in self._assembly.frictions], axis=0)
+
+    def _settlement(self, state: State) -> Array | None:
+        contact, xy = self._assembly.soil_contact, self._assembly.line.positions3(state)[:, :2]
+        return None if contact is None else contact.settlement(xy, state)
+
+    def _on_soil(self, state: State) -> Array:
+        """Of contact and friction together."""
+        return np.sum([part.force_on_soil_per_length(state) for part in self._assembly.on_soil], axis=0)
+
+    def state(self) -> Saved:
+        return {"embedment": self._embedment} | gathered(self._owners)
+
+    def restore(self, saved: Saved) -> None:
+        self._embedment = saved["embedment"]
+        restore_all(self._owners, saved)
+
+    @property
+    def _owners(self) -> dict[str, Stateful]:
+        return {} if self._sections is None else {"sections": self._sections}
