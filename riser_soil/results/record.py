@@ -33,7 +33,7 @@ from riser_soil.results.summary import StageTally, Summary
 from riser_soil.results.xdmf import Frame, XdmfFile, polyline
 
 # A killed run loses this much wall time of results [s]; more where flushing would take more than this share.
-_FLUSH_EVERY, _FLUSH_SHARE = 1.0, 0.05
+_FLUSH_EVERY, _FLUSH_SHARE = 1.0, 0.02
 _LASTING_SHARE = 0.01  # of what waits for the disk itself, and is computed again after a checkpoint
 # What waits in memory for its turn on disk [bytes]: at most so much, whatever the share; about so much for each step.
 _MOST_WAITING, _STEP = 1 << 24, 2000

@@ -87,7 +87,7 @@ class AcceptedForces:
 
     placed: the line there; parts: with the numbers that were asked for last. whole: whether the loop's forces tell the
     same, where it has solved for the state: in the axes in which that step began, which parts with viscous forces don't
-    know any more.
+    know any more. forces: as found last.
     """
 
     def __init__(self, line: Line, placed: PlacedLine, parts: Sequence[tuple[LinePart, tuple[Any, ...]]]) -> None:
@@ -102,13 +102,13 @@ class AcceptedForces:
             *(bound(add_forces, numbers, here, forces) for _, numbers in within if numbers is not None),
         )
         asked = [part for part, numbers in within if numbers is None]
-        self._forces = ElementForces(line, placed.at, out, [part for part, _ in parts], asked)
+        self.forces = ElementForces(line, placed.at, out, [part for part, _ in parts], asked)
 
     def found(self, state: State) -> ElementForces:
         """At an accepted state, to whose time the numbers have been brought."""
         self._placed.move(state)
         self._find()
-        return self._forces
+        return self.forces
 
 
 @njit

@@ -60,6 +60,7 @@ class RiserNewton:
         self._riser = PackedRiser(line, self._placed, numbers, system.prescribed, system.levers, most)
         self._solved: State | None = None  # last, where no forces may have jumped since
         self._committed: Array | None = None  # the line's places, where its last step was solved here
+        self._looked_at: State | None = None  # the accepted state whose forces were found last
         self._contacts: dict[RiserContact, tuple[Bound, Array]] = {}  # how they tell their results, and where to
         self._parts, self._free = NumberedParts(parts), np.flatnonzero(~system.prescribed)
         self._nothing = np.zeros(line.size)
@@ -68,7 +69,8 @@ class RiserNewton:
 
     def solve(self, step: Step) -> Solution:
         """Solve a step or raise NotConvergedError."""
-        since, self._solved, self._committed = time.perf_counter(), None, None
+        since = time.perf_counter()
+        self._solved = self._committed = self._looked_at = None
         self._parts.bring(step.before.t, step.t)
         scheme = step.scheme
         self._riser.begin(self._guess(step), scheme.past(step.start), scheme.weights(step.dt), self._limits(step))
@@ -137,6 +139,9 @@ class RiserNewton:
         return solved is not None and self._accepted.whole and state.v is solved.v and state.a is solved.a
 
     def _found_at(self, state: State) -> ElementForces:
+        if state is self._looked_at:
+            return self._accepted.forces
+        self._looked_at = state
         if self._parts.t != state.t or not self.system.smooth:  # contact has a new history since the step was solved
             self._parts.bring(state.t, state.t)
         return self._accepted.found(state)

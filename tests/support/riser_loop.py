@@ -11,6 +11,7 @@ import pytest
 from mpi4py import MPI
 
 from benchmarks.stage import TimedStage, last_stage
+from riser_soil.contact.contact_results import ContactResults
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Energy, Forces, Model, State
@@ -191,6 +192,19 @@ def require_section_forces(compiled: TimedStage, snes: TimedStage) -> None:
         np.testing.assert_allclose(values, getattr(by_snes, name), rtol=0.0, atol=1e-5 * scale, err_msg=name)
 
 
+def require_contact_results(stage: TimedStage) -> None:
+    """What the loop tells of contact after a step is what the contact's methods tell."""
+    for contact in stage.assembly.contacts:
+        assert isinstance(contact, SeabedContact)
+        sizes = stage.assembly.line.nodes, contact.along.arc.size
+        found = ContactResults.within(stage.newton.contact_results(contact, stage.stepper.now), *sizes)
+        expected = ContactResults.within(contact.results(stage.stepper.now), *sizes)
+        assert expected.force.any()
+        for name, values in expected._asdict().items():
+            scale = np.abs(values[np.isfinite(values)]).max()
+            np.testing.assert_allclose(getattr(found, name), values, rtol=0.0, atol=1e-9 * scale, err_msg=name)
+
+
 def require_steps_of_snes(case: str) -> None:
     """Iterations, states and energy turned over of a scene's steps by the loop are those by SNES."""
     compiled, snes = (walked(case, newton, 25) for newton in ("compiled", "snes"))
@@ -203,6 +217,7 @@ def require_steps_of_snes(case: str) -> None:
     parts = acting_on(compiled.assembly.line, found.system.model.parts)
     require_element_residual(compiled.newton, compiled.assembly.line, parts, found.now)
     require_section_forces(compiled, snes)
+    require_contact_results(compiled)
     np.testing.assert_allclose(found.before.v, expected.before.v, rtol=0.0, atol=1e-7)
     assert found.energy.total == pytest.approx(expected.energy.total, rel=1e-9)
     assert compiled._taken.turned.keys() == snes._taken.turned.keys()

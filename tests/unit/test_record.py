@@ -238,6 +238,27 @@ def test_what_is_told_of_how_far_a_run_came(tmp_path: Path) -> None:
         assert recorder.reached == f"after the last stage; {tmp_path} has the whole run"
 
 
+@pytest.mark.parametrize("interval", [None, 0.3])
+def test_many_steps_at_once_are_recorded_as_one_by_one(tmp_path: Path, interval: float | None) -> None:
+    for at_once in (1, 7, 64):
+        record(tmp_path / str(at_once), interval=interval, picture_interval=0.6, at_once=at_once)
+    one = Run(tmp_path / "1")
+    for many in (Run(tmp_path / "7"), Run(tmp_path / "64")):
+        assert many.summary == one.summary
+        assert numbers_in(many.folder / "results.nc").keys() == numbers_in(one.folder / "results.nc").keys()
+        for file in ("results.nc", "riser.vtkhdf"):
+            for name, values in numbers_in(one.folder / file).items():
+                np.testing.assert_array_equal(numbers_in(many.folder / file)[name], values, err_msg=name)
+
+
+def numbers_in(path: Path) -> dict[str, Any]:
+    """All datasets of an HDF5 file."""
+    found: dict[str, Any] = {}
+    with h5py.File(path) as file:
+        file.visititems(lambda name, at: found.update({name: at[...]} if isinstance(at, h5py.Dataset) else {}))
+    return found
+
+
 def test_a_run_that_begins_in_motion_is_recorded_from_its_beginning(tmp_path: Path) -> None:
     with a_recorder(tmp_path) as recorder:
         recorder.begin_at(stacked([Catenary(32.0, 35.0).seen(CATENARY_ARC)]))
